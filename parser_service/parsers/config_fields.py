@@ -1,0 +1,86 @@
+"""Hyperparameters: declared on a frozen dataclass, read from JSON, shown in a form."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import MISSING, Field, dataclass, field, fields
+from typing import Any, TypeVar
+
+C = TypeVar("C")
+Value = bool | int | float | str
+
+
+@dataclass(frozen=True, slots=True)
+class ConfigField:
+    """One hyperparameter as a form shows it. ``type`` is bool, int, float or str."""
+
+    name: str
+    type: type
+    default: Value
+    description: str
+    minimum: float | None = None
+    maximum: float | None = None
+    choices: tuple[str, ...] = ()
+
+
+def hyperparameter(
+    default: Value,
+    description: str,
+    minimum: float | None = None,
+    maximum: float | None = None,
+    choices: tuple[str, ...] = (),
+) -> Any:
+    """A dataclass field that carries its description and its bounds (both included)."""
+    bounds = {"minimum": minimum, "maximum": maximum, "choices": choices}
+    return field(default=default, metadata={"description": description, **bounds})
+
+
+def describe(config_class: type) -> tuple[ConfigField, ...]:
+    """The hyperparameters of a config dataclass, in order."""
+    return tuple(
+        ConfigField(item.name, type(item.default), item.default, **item.metadata)
+        for item in _declared(config_class)
+    )
+
+
+def validate(config: Any) -> None:
+    """Checks every field of ``config`` against its declaration: for ``__post_init__``.
+
+    A whole number stands for a fraction where a fraction is expected, and is stored as one.
+    Raises ValueError naming the field, the value and what is allowed.
+    """
+    for declared in describe(type(config)):
+        value = getattr(config, declared.name)
+        if declared.type is float and type(value) is int:
+            value = float(value)
+            object.__setattr__(config, declared.name, value)
+        if fault := _fault(declared, value):
+            raise ValueError(f"{declared.name} is {value!r}, but {fault}.")
+
+
+def read_config(config_class: type[C], values: Mapping[str, Any]) -> C:
+    """A config from JSON ``values``, with defaults. Raises ValueError, a sentence."""
+    known = [item.name for item in _declared(config_class)]
+    if unknown := sorted(set(values) - set(known)):
+        names = ", ".join(unknown)
+        raise ValueError(f"No hyperparameter is called {names}; there are: {', '.join(known)}.")
+    return config_class(**values)
+
+
+def _declared(config_class: type) -> list[Field[Any]]:
+    return [item for item in fields(config_class) if item.default is not MISSING]
+
+
+def _fault(declared: ConfigField, value: Any) -> str:
+    """What ``value`` violates, as the end of a sentence; empty where it is allowed."""
+    if type(value) is not declared.type:
+        kinds = {bool: "true or false", int: "a whole number", float: "a number", str: "a text"}
+        return f"it has to be {kinds[declared.type]}"
+    if declared.choices and value not in declared.choices:
+        return f"it has to be one of {', '.join(declared.choices)}"
+    # Written this way round, NaN is outside every bound.
+    if declared.minimum is not None and not value >= declared.minimum:
+        return f"it has to be at least {declared.minimum:g}"
+    if declared.maximum is not None and not value <= declared.maximum:
+        return f"it has to be at most {declared.maximum:g}"
+    return ""
