@@ -1,0 +1,4 @@
+"""The language core: grammar, semantic templates, logical forms and the world they speak of.
+
+Pure Python: no Django and no torch. Frozen values go in and frozen values come out.
+"""

@@ -1,0 +1,129 @@
+"""The symbols of a command grammar: words, nonterminals, wildcards and choices (frozen values)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+ENTITY_CLASSES = (
+    "object",
+    "category",
+    "name",
+    "location",
+    "room",
+    "gesture",
+    "question",
+    "whattosay",
+)
+
+# Wildcard name as written → (kind, type). FORMATS §1.
+ALIASES: dict[str, tuple[str, str]] = {
+    "kobject": ("object", "known"),
+    "aobject": ("object", "alike"),
+    "sobject": ("object", "special"),
+    "room": ("location", "room"),
+    "placement": ("location", "placement"),
+    "beacon": ("location", "beacon"),
+    "male": ("name", "male"),
+    "female": ("name", "female"),
+}
+TYPES: dict[str, tuple[str, ...]] = {
+    "object": ("known", "alike", "special"),
+    "category": (),
+    "location": ("room", "placement", "beacon"),
+    "name": ("male", "female"),
+    "gesture": (),
+    "question": (),
+    "void": (),
+    "pron": ("obj", "sub", "pos", "paj", "posadj", "pab", "posabs"),
+    "whattosay": (),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """One word, or a comma, as it stands in a command."""
+
+    value: str
+
+
+@dataclass(frozen=True, slots=True)
+class Nonterminal:
+    """``$name``; ``name`` is without the dollar sign."""
+
+    name: str
+
+    def __str__(self) -> str:
+        return f"${self.name}"
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """``property operator value`` in a where clause; property is lower-cased."""
+
+    property: str
+    operator: str  # one of = != > >= < <=
+    value: str | float | bool | Wildcard | None
+
+
+@dataclass(frozen=True, slots=True)
+class Negation:
+    operand: Condition
+
+
+@dataclass(frozen=True, slots=True)
+class Combination:
+    operator: str  # and, or, xor
+    left: Condition
+    right: Condition
+
+
+Condition: TypeAlias = "Comparison | Negation | Combination"
+
+
+@dataclass(frozen=True, slots=True)
+class Wildcard:
+    """``{name? type id where … meta: …}``: a value to draw from the ontology.
+
+    ``name`` is the word as written (``kobject``, ``placement``); two wildcards are the same value
+    when their name and id agree (see ``identity``) and the id is given.
+    """
+
+    name: str
+    type: str = ""
+    id: int | None = None
+    obfuscated: bool = False
+    where: Condition | None = None
+    meta: tuple[Symbol, ...] = ()
+
+    @property
+    def kind(self) -> str:
+        """The kind after aliases: object, category, location, name, gesture, question, void, pron, whattosay."""
+        return ALIASES[self.name][0] if self.name in ALIASES else self.name
+
+    @property
+    def restriction(self) -> str:
+        """The type after aliases (known, room, male, …), empty where there is none."""
+        return self.type or (ALIASES[self.name][1] if self.name in ALIASES else "")
+
+    @property
+    def entity_class(self) -> str:
+        """The class of its token: rooms are ``room``, beacons and placements ``location``; empty for void and pron."""
+        if self.kind in ("void", "pron"):
+            return ""
+        return "room" if self.restriction == "room" else self.kind
+
+    @property
+    def identity(self) -> tuple[str, int | None]:
+        return (self.name, self.id)
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """``( a | b )``: one of several sequences."""
+
+    alternatives: tuple[tuple[Symbol, ...], ...]
+
+
+Symbol: TypeAlias = "Text | Nonterminal | Wildcard | Choice"
+Sequence: TypeAlias = "tuple[Symbol, ...]"

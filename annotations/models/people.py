@@ -1,0 +1,54 @@
+"""Accounts, and the tokens by which programs act for them."""
+
+from __future__ import annotations
+
+import hashlib
+import secrets
+from datetime import timedelta
+
+from django.contrib.auth.models import AbstractUser
+from django.db import models
+from django.utils import timezone
+
+
+class User(AbstractUser):
+    """A person with an account. What they may do is said by their memberships, per world."""
+
+
+class ApiTokenQuerySet(models.QuerySet["ApiToken"]):
+    def valid(self) -> ApiTokenQuerySet:
+        return self.filter(expires_at__gt=timezone.now(), user__is_active=True)
+
+    def for_key(self, key: str) -> ApiToken | None:
+        """The valid token whose secret is ``key``, or None."""
+        return self.valid().select_related("user").filter(digest=digest_of(key)).first()
+
+
+class ApiToken(models.Model):
+    """A hashed, expiring secret of an API client. The secret itself is shown once and never stored."""
+
+    user = models.ForeignKey(User, on_delete=models.CASCADE, related_name="api_tokens")
+    name = models.CharField(max_length=80)
+    digest = models.CharField(max_length=64, unique=True)
+    created_at = models.DateTimeField(auto_now_add=True)
+    expires_at = models.DateTimeField()
+
+    objects = ApiTokenQuerySet.as_manager()
+
+    def __str__(self) -> str:
+        return f"{self.name} of {self.user}"
+
+    @classmethod
+    def issue(cls, user: User, name: str, days: int = 90) -> tuple[ApiToken, str]:
+        """A new token and its secret, which is not to be had again."""
+        key = secrets.token_urlsafe(32)
+        expires_at = timezone.now() + timedelta(days=days)
+        token = cls.objects.create(
+            user=user, name=name, digest=digest_of(key), expires_at=expires_at
+        )
+        return token, key
+
+
+def digest_of(key: str) -> str:
+    """SHA-256 in hexadecimal; enough for a secret of 256 random bits."""
+    return hashlib.sha256(key.encode()).hexdigest()

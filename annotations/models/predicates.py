@@ -1,0 +1,28 @@
+"""The predicates of a world's logical forms."""
+
+from __future__ import annotations
+
+from django.db import models
+
+from annotations.models.worlds import World
+
+
+def predicate_kind_choices() -> list[tuple[str, str]]:
+    return [("action", "action"), ("description", "description")]
+
+
+class Predicate(models.Model):
+    """A name with its signatures (a list of lists of argument kinds) and its English gloss."""
+
+    world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="predicates")
+    name = models.CharField(max_length=80)
+    kind = models.CharField(max_length=20, choices=predicate_kind_choices)
+    signatures = models.JSONField(default=list)
+    gloss = models.CharField(max_length=200, blank=True)
+
+    class Meta:
+        ordering = ["name"]
+        constraints = [models.UniqueConstraint(fields=["world", "name"], name="predicate_name")]
+
+    def __str__(self) -> str:
+        return self.name

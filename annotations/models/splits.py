@@ -1,0 +1,100 @@
+"""Frozen splits: copies of texts, so that a later edit never changes a past result."""
+
+from __future__ import annotations
+
+from django.db import models
+
+from annotations.models.people import User
+from annotations.models.worlds import World
+
+
+class Criterion(models.TextChoices):
+    """What two parts of a split never share."""
+
+    COMMAND = "command"
+    SOURCE_COMMAND = "source_command"
+    LOGICAL_FORM = "logical_form"
+
+
+class Part(models.TextChoices):
+    TRAIN = "train"
+    VALIDATION = "validation"
+    TEST = "test"
+
+
+class Source(models.TextChoices):
+    GENERATED = "generated"
+    PARAPHRASED = "paraphrased"
+
+
+def criterion_choices() -> list[tuple[str, str]]:
+    return Criterion.choices
+
+
+def part_choices() -> list[tuple[str, str]]:
+    return Part.choices
+
+
+def source_choices() -> list[tuple[str, str]]:
+    return Source.choices
+
+
+class SplitQuerySet(models.QuerySet["Split"]):
+    def named(self, name: str, criterion: str = Criterion.COMMAND) -> Split | None:
+        """The split ``name``, or ``name-criterion`` where one name stands for several criteria."""
+        found = {split.name: split for split in self.filter(name__in=[name, f"{name}-{criterion}"])}
+        return found.get(name) or found.get(f"{name}-{criterion}")
+
+
+class Split(models.Model):
+    """``content_hash`` is the SHA-256 of all examples; ``seed`` is null for an imported split."""
+
+    world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="splits")
+    name = models.SlugField(max_length=80)
+    criterion = models.CharField(max_length=20, choices=criterion_choices)
+    seed = models.PositiveBigIntegerField(null=True, blank=True)
+    content_hash = models.CharField(max_length=64)
+    created_by = models.ForeignKey(User, null=True, blank=True, on_delete=models.SET_NULL)
+    created_at = models.DateTimeField(auto_now_add=True)
+
+    objects = SplitQuerySet.as_manager()
+
+    class Meta:
+        ordering = ["-created_at", "-id"]
+        constraints = [models.UniqueConstraint(fields=["world", "name"], name="split_name")]
+
+    def __str__(self) -> str:
+        return self.name
+
+
+class ExampleQuerySet(models.QuerySet["Example"]):
+    def of(self, part: str, source: str | None = None) -> ExampleQuerySet:
+        chosen = self.filter(part=part)
+        return chosen.filter(source=source) if source else chosen
+
+
+class Example(models.Model):
+    """An utterance with its form (canonical corpus text), at its ``position`` in the part's file."""
+
+    split = models.ForeignKey(Split, on_delete=models.CASCADE, related_name="examples")
+    position = models.PositiveIntegerField()
+    part = models.CharField(max_length=12, choices=part_choices)
+    source = models.CharField(max_length=12, choices=source_choices)
+    utterance = models.TextField()
+    source_command = models.TextField(blank=True)
+    task_category = models.CharField(max_length=60, blank=True)
+    logical_form = models.TextField()
+    grounded_form = models.TextField(blank=True)
+
+    objects = ExampleQuerySet.as_manager()
+
+    class Meta:
+        ordering = ["source", "part", "position"]
+        constraints = [
+            models.UniqueConstraint(
+                fields=["split", "source", "part", "position"], name="example_position"
+            )
+        ]
+
+    def __str__(self) -> str:
+        return self.utterance

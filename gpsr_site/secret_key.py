@@ -1,0 +1,17 @@
+"""The secret key of a local installation: made once, readable by its owner alone."""
+
+import os
+import secrets
+from pathlib import Path
+
+
+def read_or_make_secret_key(path: Path) -> str:
+    """The key in ``path``; where there is none, a new one is written there with mode 0600."""
+    try:
+        descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+    except FileExistsError:
+        return path.read_text(encoding="ascii").strip()
+    key = secrets.token_urlsafe(48)
+    with os.fdopen(descriptor, "w", encoding="ascii") as file:
+        file.write(key)
+    return key

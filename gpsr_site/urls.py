@@ -1,0 +1,3 @@
+"""All pages and routes."""
+
+urlpatterns: list = []

@@ -1,0 +1,66 @@
+"""What a run's parser says of a split, and how often it is right."""
+
+from __future__ import annotations
+
+from django.db import models
+
+from annotations.models import Example
+from parser_service.models.runs import TrainingRun
+
+
+class Evaluation(models.Model):
+    """Exact match of one run on one test source (``gen``, ``para`` or ``mixed``) of one part.
+
+    Fractions of 1; the interval is Wilson's at 95 %.
+    """
+
+    run = models.ForeignKey(TrainingRun, on_delete=models.CASCADE, related_name="evaluations")
+    test_source = models.CharField(max_length=8)
+    part = models.CharField(max_length=12)
+    count = models.PositiveIntegerField()
+    correct = models.PositiveIntegerField()
+    accuracy = models.FloatField()
+    interval_low = models.FloatField()
+    interval_high = models.FloatField()
+    equivalent = models.FloatField()
+    well_formed = models.FloatField()
+
+    class Meta:
+        ordering = ["run", "part", "test_source"]
+        constraints = [
+            models.UniqueConstraint(fields=["run", "test_source", "part"], name="evaluated_once")
+        ]
+
+    def __str__(self) -> str:
+        return f"{self.run}: {self.accuracy:.3f} on {self.test_source} {self.part}"
+
+
+class PredictionQuerySet(models.QuerySet["Prediction"]):
+    def best(self) -> PredictionQuerySet:
+        """The first-ranked prediction of each example."""
+        return self.filter(rank=1)
+
+
+class Prediction(models.Model):
+    """A ranked candidate for one example. An example without candidates has one row with an empty form."""
+
+    run = models.ForeignKey(TrainingRun, on_delete=models.CASCADE, related_name="predictions")
+    example = models.ForeignKey(Example, on_delete=models.CASCADE, related_name="predictions")
+    rank = models.PositiveSmallIntegerField()
+    logical_form = models.TextField(blank=True)
+    score = models.FloatField()
+    is_exact_match = models.BooleanField()
+    is_equivalent = models.BooleanField()
+    is_well_formed = models.BooleanField()
+
+    objects = PredictionQuerySet.as_manager()
+
+    class Meta:
+        ordering = ["run", "example", "rank"]
+        constraints = [
+            models.UniqueConstraint(fields=["run", "example", "rank"], name="predicted_once")
+        ]
+        indexes = [models.Index(fields=["run", "rank", "is_exact_match"])]
+
+    def __str__(self) -> str:
+        return self.logical_form

@@ -1,0 +1,33 @@
+"""The processes that train. The banner reads these rows."""
+
+from __future__ import annotations
+
+from datetime import timedelta
+
+from django.db import models
+from django.utils import timezone
+
+# The parent process of a worker writes its row every 5 s.
+ALIVE_FOR = timedelta(seconds=8)
+
+
+class WorkerQuerySet(models.QuerySet["Worker"]):
+    def alive(self) -> WorkerQuerySet:
+        return self.filter(last_seen__gt=timezone.now() - ALIVE_FOR)
+
+
+class Worker(models.Model):
+    name = models.CharField(max_length=200, unique=True)
+    host = models.CharField(max_length=200)
+    process_id = models.PositiveIntegerField()
+    queue = models.CharField(max_length=20)
+    started_at = models.DateTimeField(default=timezone.now)
+    last_seen = models.DateTimeField(default=timezone.now)
+
+    objects = WorkerQuerySet.as_manager()
+
+    class Meta:
+        ordering = ["name"]
+
+    def __str__(self) -> str:
+        return self.name

@@ -1,0 +1,13 @@
+"""Sets the environment that the tests run in, before Django's settings are read (a ``-p`` plugin)."""
+
+import os
+import tempfile
+
+os.environ["GPSR_VAR_DIR"] = tempfile.mkdtemp(prefix="gpsr-tests-")
+os.environ["DEBUG"] = "false"
+os.environ["HOST"] = "127.0.0.1"
+os.environ.pop("CELERY_BROKER_URL", None)
+if url := os.environ.get("TEST_DATABASE_URL"):
+    os.environ["DATABASE_URL"] = url
+else:
+    os.environ.pop("DATABASE_URL", None)
