@@ -1,0 +1,149 @@
+"""The nearest neighbour: the form of the training utterance that is closest in words."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+
+from parser_service.parsers.config_fields import hyperparameter, validate
+from parser_service.parsers.interface import (
+    Candidate,
+    Check,
+    Knowledge,
+    Observer,
+    Pair,
+    Parser,
+    keep_going,
+)
+from parser_service.parsers.storage import open_sealed, read_json, seal, write_json
+from parser_service.parsers.words import words
+
+PAIRS = "pairs.json"
+
+
+@dataclass(frozen=True)
+class NearestNeighbourConfig:
+    """How much of an utterance and a neighbour has to be shared."""
+
+    least_overlap: float = hyperparameter(
+        0.0,
+        "Share of common words (0 to 1) below which there is no answer; 0 always answers.",
+        minimum=0.0,
+        maximum=1.0,
+    )
+
+    def __post_init__(self) -> None:
+        validate(self)
+
+
+class NearestNeighbour(Parser):
+    """K = 1 under the Jaccard distance between sets of words (Walker et al. 2019, baselines).
+
+    Ties: of several nearest utterances the form that most of them carry wins; of forms that are
+    equal in this too, the first in alphabetical order. The order of the training pairs is without
+    effect. Further candidates are the forms of the next nearest utterances, one each.
+    A form that no neighbour carries is never answered.
+
+    Neighbours are the training pairs. The paper adds the validation pairs before it scores the
+    test part: that is ``for_test_part(validation)``.
+    """
+
+    name = "knn"
+    version = 1
+    protocols = ("strict",)
+    Config = NearestNeighbourConfig
+
+    def __init__(
+        self,
+        config: NearestNeighbourConfig | None = None,
+        seed: int = 0,
+        knowledge: Knowledge | None = None,
+    ):
+        super().__init__(config, seed, knowledge)
+        self._pairs: list[tuple[str, str]] = []
+
+    def fit(
+        self,
+        train: Sequence[Pair],
+        validation: Sequence[Pair] = (),
+        observe: Observer | None = None,
+    ) -> None:
+        """Remembers ``train``. Raises ValueError where it is empty."""
+        if not train:
+            raise ValueError("There is no training pair, so there is no neighbour to answer with.")
+        (observe or Observer()).check()
+        self._remember([(pair.utterance, pair.form) for pair in train])
+
+    def for_test_part(self, validation: Sequence[Pair]) -> NearestNeighbour:
+        """A nearest neighbour among the training pairs and ``validation``."""
+        other = NearestNeighbour(self.config, self.seed, self.knowledge)
+        other._remember(self._pairs + [(pair.utterance, pair.form) for pair in validation])
+        return other
+
+    def predict(
+        self, utterances: Sequence[str], beam_width: int = 1, check: Check = keep_going
+    ) -> list[list[Candidate]]:
+        """The nearest forms; the score is the share of common words, 1 − distance."""
+        answers = []
+        for utterance in utterances:
+            check()
+            answers.append(self._nearest(utterance, beam_width))
+        return answers
+
+    def save(self, folder: Path) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        write_json(folder / PAIRS, self._pairs)
+        seal(folder, self, [PAIRS])
+
+    @classmethod
+    def load(cls, folder: Path, knowledge: Knowledge | None = None) -> Self:
+        saved = open_sealed(folder, cls, [PAIRS])
+        parser = cls(saved.config, saved.seed, knowledge)
+        parser._remember([(utterance, form) for utterance, form in read_json(folder / PAIRS)])
+        return parser
+
+    def parameters(self) -> int:
+        return 0
+
+    def _remember(self, pairs: list[tuple[str, str]]) -> None:
+        """Builds the inverted index: for each word the positions of the pairs that have it."""
+        self._pairs = pairs
+        self._forms = sorted({form for _, form in pairs})
+        number = {form: index for index, form in enumerate(self._forms)}
+        postings: dict[str, list[int]] = defaultdict(list)
+        sizes = []
+        for position, (utterance, _) in enumerate(pairs):
+            vocabulary = set(words(utterance))
+            sizes.append(len(vocabulary))
+            for word in vocabulary:
+                postings[word].append(position)
+        self._postings = {word: np.array(places) for word, places in postings.items()}
+        self._sizes = np.array(sizes)  # [pairs]
+        self._form_of = np.array([number[form] for _, form in pairs])  # [pairs]
+
+    def _nearest(self, utterance: str, beam_width: int) -> list[Candidate]:
+        overlap = self._overlap(utterance)  # [pairs]
+        best = np.zeros(len(self._forms))  # [forms]
+        np.maximum.at(best, self._form_of, overlap)
+        at_best = self._form_of[overlap == best[self._form_of]]
+        votes = np.bincount(at_best, minlength=len(self._forms))  # [forms]
+        order = np.lexsort((np.arange(len(best)), -votes, -best))[:beam_width]
+        return [
+            Candidate(self._forms[form], float(best[form]))
+            for form in order
+            if best[form] >= self.config.least_overlap
+        ]
+
+    def _overlap(self, utterance: str) -> np.ndarray:
+        """1 − Jaccard distance to every pair. Shape [pairs]; equal ratios are equal floats."""
+        vocabulary = set(words(utterance))
+        found = [self._postings[word] for word in vocabulary if word in self._postings]
+        positions = np.concatenate(found) if found else np.array([], dtype=np.int64)
+        shared = np.bincount(positions, minlength=len(self._pairs))  # [pairs]
+        union = self._sizes + len(vocabulary) - shared  # [pairs]
+        return np.asarray(shared / np.maximum(union, 1))

@@ -1,0 +1,20 @@
+import pytest
+from annotations.language.ontology import Ontology
+
+from parser_service.parsers.interface import Knowledge
+
+EVERYTHING = Knowledge(predicates={}, ontology=Ontology(()), grammar=())
+
+
+@pytest.mark.parametrize("protocol", ["strict", "domain", "grammar"])
+def test_knowledge_is_cut_to_its_protocol(protocol):
+    assert EVERYTHING.limited_to(protocol).protocol == protocol
+
+
+def test_the_strict_protocol_knows_nothing():
+    assert EVERYTHING.limited_to("strict") == Knowledge()
+
+
+def test_the_domain_protocol_hides_the_grammar():
+    limited = EVERYTHING.limited_to("domain")
+    assert limited.ontology is EVERYTHING.ontology and limited.grammar is None

@@ -1,0 +1,107 @@
+import time
+
+import pytest
+
+from parser_service.parsers.interface import Cancelled, Candidate, Pair
+from parser_service.parsers.knn import NearestNeighbour, NearestNeighbourConfig
+
+GO, FIND, BRING = '( go " <room> " )', '( find " <object> " )', '( bring " <object> " )'
+TRAIN = [
+    Pair("go to the kitchen", GO),
+    Pair("find the cup", FIND),
+    Pair("find me a cup", FIND),
+    Pair("bring me the cup", BRING),
+]
+
+
+@pytest.fixture
+def parser():
+    parser = NearestNeighbour()
+    parser.fit(TRAIN)
+    return parser
+
+
+def answer(parser, utterance):
+    return parser.predict([utterance])[0][0].form
+
+
+def test_the_utterance_that_shares_most_words_wins(parser):
+    assert answer(parser, "Go to the bedroom!") == GO
+    assert parser.predict(["find the cup"]) == [[Candidate(FIND, 1.0)]]
+
+
+def test_the_score_is_the_share_of_common_words(parser):
+    [[best]] = parser.predict(["go to kitchen now"])  # 3 of 5 different words
+    assert best == Candidate(GO, 3 / 5)
+
+
+def test_a_word_said_twice_counts_once(parser):
+    assert parser.predict(["find find the the cup"])[0][0].score == 1.0
+
+
+def test_candidates_are_distinct_forms_nearest_first(parser):
+    [ranked] = parser.predict(["find a cup"], beam_width=5)
+    assert [candidate.form for candidate in ranked] == [FIND, BRING, GO]
+    assert sorted((c.score for c in ranked), reverse=True) == [c.score for c in ranked]
+
+
+def test_of_equally_near_utterances_the_form_that_most_carry_wins():
+    parser = NearestNeighbour()
+    parser.fit([Pair("take a", "A"), Pair("take b", "B"), Pair("take c", "B")])
+    assert answer(parser, "take") == "B"
+
+
+def test_a_tie_in_votes_too_goes_to_the_first_form_of_the_alphabet_in_any_order():
+    pairs = [Pair("take b", "B"), Pair("take a", "A")]
+    for train in (pairs, pairs[::-1]):
+        parser = NearestNeighbour()
+        parser.fit(train)
+        assert answer(parser, "take") == "A"
+
+
+def test_validation_pairs_are_neighbours_for_the_test_part_only(parser):
+    follow = Pair("follow Anna", '( follow " <name> " )')
+    parser.fit(TRAIN, [follow])
+    assert answer(parser, "follow Anna") != follow.form
+    assert answer(parser.for_test_part([follow]), "follow Anna") == follow.form
+    assert answer(parser, "follow Anna") != follow.form
+
+
+def test_a_form_that_no_neighbour_carries_is_never_answered(parser):
+    ranked = parser.predict(["answer the question", "", "cup"], beam_width=10)
+    assert {candidate.form for answers in ranked for candidate in answers} <= {GO, FIND, BRING}
+
+
+def test_below_the_least_overlap_there_is_no_answer():
+    parser = NearestNeighbour(NearestNeighbourConfig(least_overlap=0.9))
+    parser.fit(TRAIN)
+    assert parser.predict(["find the mug", "find the cup"]) == [[], [Candidate(FIND, 1.0)]]
+
+
+def test_saved_and_loaded_it_answers_alike(parser, tmp_path):
+    parser.save(tmp_path / "knn")
+    loaded = NearestNeighbour.load(tmp_path / "knn")
+    utterances = ["find it", "go", "nothing known", "bring a cup"]
+    assert loaded.predict(utterances, 3) == parser.predict(utterances, 3)
+
+
+def test_without_training_pairs_it_refuses():
+    with pytest.raises(ValueError, match="no training pair"):
+        NearestNeighbour().fit([])
+
+
+def test_a_cancelled_prediction_stops(parser):
+    def cancel():
+        raise Cancelled
+
+    with pytest.raises(Cancelled):
+        parser.predict(["go"], check=cancel)
+
+
+def test_two_thousand_utterances_against_thirteen_hundred_take_under_a_second():
+    parser = NearestNeighbour()
+    sentences = [f"bring the thing {n} from room {n % 7} to me" for n in range(2000)]
+    parser.fit([Pair(sentence, str(n % 90)) for n, sentence in enumerate(sentences[:1300])])
+    begin = time.process_time()
+    parser.predict(sentences)
+    assert time.process_time() - begin < 1

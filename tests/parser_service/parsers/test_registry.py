@@ -1,0 +1,59 @@
+import subprocess
+import sys
+from dataclasses import FrozenInstanceError, is_dataclass
+
+import pytest
+
+from parser_service.parsers.interface import PROTOCOLS, Parser
+from parser_service.parsers.registry import (
+    PARSERS,
+    config_class,
+    config_fields,
+    config_values,
+    load_class,
+    make_config,
+)
+
+
+@pytest.mark.parametrize("name", PARSERS)
+def test_every_entry_agrees_with_its_class(name):
+    entry, parser = PARSERS[name], load_class(name)
+    assert issubclass(parser, Parser)
+    assert (parser.name, parser.version, parser.protocols) == (name, entry.version, entry.protocols)
+    assert parser.Config is config_class(name)
+    assert set(entry.protocols) <= set(PROTOCOLS)
+    assert entry.queue in ("cpu", "gpu")
+
+
+@pytest.mark.parametrize("name", PARSERS)
+def test_a_config_is_frozen_and_survives_json(name):
+    config = make_config(name)
+    assert is_dataclass(config)
+    assert make_config(name, config_values(config)) == config
+    if fields := config_fields(name):
+        with pytest.raises(FrozenInstanceError):
+            setattr(config, fields[0].name, fields[0].default)
+
+
+@pytest.mark.parametrize("name", PARSERS)
+def test_every_hyperparameter_has_a_description_and_a_default_within_its_bounds(name):
+    for field in config_fields(name):
+        assert field.description.endswith(".")
+        assert field.minimum is None or field.minimum <= field.default
+        assert field.maximum is None or field.default <= field.maximum
+
+
+def test_an_unknown_parser_is_refused_with_the_names_there_are():
+    with pytest.raises(
+        ValueError, match="No parser is called 'transformer'; there are: grammar-or"
+    ):
+        make_config("transformer")
+
+
+def test_reading_the_hyperparameters_of_every_parser_loads_no_torch():
+    code = (
+        "import sys; from parser_service.parsers.registry import PARSERS, config_fields, make_config\n"
+        "for name in PARSERS: config_fields(name), make_config(name)\n"
+        "sys.exit('torch' in sys.modules)"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
