@@ -21,9 +21,6 @@ env = environ.Env()
 VAR_DIR = Path(env.str("GPSR_VAR_DIR", default=str(BASE_DIR / "var"))).resolve()
 VAR_DIR.mkdir(parents=True, exist_ok=True, mode=0o700)
 ENCODERS_DIR = Path(env.str("GPSR_ENCODERS_DIR", default=str(VAR_DIR / "encoders")))
-SHARED_DATA_DIR = Path(
-    env.str("GPSR_SHARED_DATA", default=str(BASE_DIR.parent / "shared" / "data"))
-)
 RUNS_DIR = VAR_DIR / "runs"
 
 # --- where it is served -------------------------------------------------------------------------

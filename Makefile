@@ -1,0 +1,45 @@
+# make run   installs what is missing, starts web server and worker, prints the URL
+# make test  installs what the tests need, then runs all of them
+
+PYTHON ?= $(shell command -v python3.11 || command -v python3)
+VENV := .venv
+BIN := $(VENV)/bin
+SOURCES := $(wildcard static/src/*.js static/css/*.css) static/build.mjs
+
+.PHONY: run test install lint
+.DEFAULT_GOAL := run
+
+run: install
+	@exec $(BIN)/python manage.py quickstart
+
+install: $(VENV)/.installed static/dist/.built
+
+# First with SQLite and the filesystem broker; then, where they are given, what touches the database or
+# a broker once more with PostgreSQL and RabbitMQ or Redis.
+test: install $(VENV)/.tested lint
+	env -u TEST_DATABASE_URL -u TEST_BROKER_URL $(BIN)/python -m pytest $(PYTEST_ARGS)
+ifneq ($(TEST_DATABASE_URL)$(TEST_BROKER_URL),)
+	$(BIN)/python -m pytest -m "(django_db or processes) and not browser" $(PYTEST_ARGS)
+else
+	@echo "Skipped: PostgreSQL (TEST_DATABASE_URL is not set) and a message broker (TEST_BROKER_URL is not set)."
+endif
+
+lint: $(VENV)/.tested
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+$(BIN)/python:
+	$(PYTHON) -m venv $(VENV)
+
+$(VENV)/.installed: pyproject.toml | $(BIN)/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+	@touch $@
+
+$(VENV)/.tested: pyproject.toml | $(VENV)/.installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[test]"
+	@touch $@
+
+static/dist/.built: package.json package-lock.json $(SOURCES) | $(VENV)/.installed
+	$(BIN)/python static/build.py
+	@touch $@

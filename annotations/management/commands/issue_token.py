@@ -1,0 +1,30 @@
+"""Makes an API token and prints its secret once."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from django.core.management.base import BaseCommand, CommandError, CommandParser
+
+from annotations.models import ApiToken, User
+
+
+class Command(BaseCommand):
+    help = "Issue an API token for an account. The secret is printed once and stored only hashed."
+
+    def add_arguments(self, parser: CommandParser) -> None:
+        parser.add_argument("username")
+        parser.add_argument("--name", default="command line", help="what the token is for")
+        parser.add_argument("--days", type=int, default=90, help="days until it expires")
+
+    def handle(self, *args: Any, **options: Any) -> None:
+        user = User.objects.filter(username=options["username"], is_active=True).first()
+        if user is None:
+            raise CommandError(
+                f"There is no active account {options['username']!r}. "
+                "Make one on the people page or with: manage.py createsuperuser"
+            )
+        if options["days"] < 1:
+            raise CommandError(f"--days is {options['days']}; a token lasts at least one day.")
+        _, key = ApiToken.issue(user, options["name"], options["days"])
+        self.stdout.write(key)

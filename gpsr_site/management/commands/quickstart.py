@@ -1,0 +1,95 @@
+"""Everything between an installed project and a page in the browser; ``make run`` calls it."""
+
+from __future__ import annotations
+
+import secrets
+import socket
+import threading
+import time
+import urllib.error
+import urllib.request
+from typing import Any
+
+from django.conf import settings
+from django.core.management import call_command
+from django.core.management.base import BaseCommand, CommandError
+
+from annotations.models import User
+from annotations.starting import load_starter_world
+from gpsr_site.processes import Supervisor, web_server_command, worker_command
+from parser_service.first_runs import request_first_runs
+
+HEALTH_PATIENCE_SECONDS = 60
+
+
+class Command(BaseCommand):
+    help = (
+        "Prepare the database, load the starter world, create an admin on the first start, "
+        "then serve the pages and run one worker until stopped."
+    )
+
+    def handle(self, *args: Any, **options: Any) -> None:
+        self.refuse_a_taken_port()
+        call_command("migrate", interactive=False, verbosity=0)
+        call_command("collectstatic", interactive=False, verbosity=0)
+        self.create_admin()
+        split = load_starter_world(self.say)
+        request_first_runs(split)
+        commands = {
+            "web server": web_server_command(settings.HOST, settings.PORT),
+            "worker": worker_command(),
+        }
+        supervisor = Supervisor(commands, self.say)
+        supervisor.start()
+        threading.Thread(target=self.announce, daemon=True).start()
+        supervisor.watch()
+        self.say("Stopped.")
+
+    def say(self, sentence: str) -> None:
+        self.stdout.write(sentence)
+        self.stdout.flush()
+
+    @property
+    def address(self) -> str:
+        return f"http://{settings.HOST}:{settings.PORT}/"
+
+    def refuse_a_taken_port(self) -> None:
+        family = socket.AF_INET6 if ":" in settings.HOST else socket.AF_INET
+        with socket.socket(family, socket.SOCK_STREAM) as probe:
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            try:
+                probe.bind((settings.HOST, settings.PORT))
+            except OSError as reason:
+                raise CommandError(
+                    f"Cannot serve on {settings.HOST}:{settings.PORT}: {reason.strerror}. "
+                    f"Stop what uses it, or choose another port: PORT={settings.PORT + 1} make run"
+                ) from reason
+
+    def create_admin(self) -> None:
+        """The first administrator, with a password that is printed now and never again."""
+        if User.objects.filter(is_superuser=True).exists():
+            return
+        password = secrets.token_urlsafe(12)
+        User.objects.create_superuser("admin", password=password)
+        self.say(f"Created the administrator. Log in as: admin   password: {password}")
+        self.say("The password is not shown again; change it with: manage.py changepassword admin")
+
+    def announce(self) -> None:
+        """Print the address once the web server answers."""
+        deadline = time.monotonic() + HEALTH_PATIENCE_SECONDS
+        while time.monotonic() < deadline:
+            if self.answers():
+                self.say(f"GPSR Workbench is at {self.address} (Ctrl-C stops it)")
+                return
+            time.sleep(0.2)
+        self.say(f"The web server has not answered at {self.address} for a minute.")
+
+    def answers(self) -> bool:
+        """Whether the web server answers at all; what it answers is the page's business."""
+        try:
+            urllib.request.urlopen(f"{self.address}healthz", timeout=2).close()
+        except urllib.error.HTTPError:
+            return True
+        except OSError:
+            return False
+        return True

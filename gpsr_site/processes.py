@@ -1,0 +1,97 @@
+"""Runs the web server and the worker side by side, and stops them together."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Mapping, Sequence
+from types import FrameType
+
+# A worker stops within 5 s of being asked (DESIGN §6); whoever is later than this is killed.
+PATIENCE_SECONDS = 7.0
+RESTART_PAUSE_SECONDS = 3.0
+
+
+class Supervisor:
+    """Child processes by name, each in a process group of its own.
+
+    A child that ends is started again after a pause; ``SIGINT`` or ``SIGTERM`` ends them all.
+    """
+
+    def __init__(self, commands: Mapping[str, Sequence[str]], say: Callable[[str], object]) -> None:
+        self.commands = dict(commands)
+        self.say = say
+        self.children: dict[str, subprocess.Popen[bytes]] = {}
+        self.restart_at: dict[str, float] = {}
+        self.is_stopping = False
+
+    def start(self) -> None:
+        for signal_number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            signal.signal(signal_number, self._ask_to_stop)
+        for name in self.commands:
+            self._start_child(name)
+
+    def watch(self) -> None:
+        """Keep the children running until a signal comes, then stop them."""
+        while not self.is_stopping:
+            self._restart_the_ended()
+            time.sleep(0.2)
+        self.stop()
+
+    def stop(self) -> None:
+        """Ask every child to stop; kill the process groups of those that have not in time."""
+        for child in self.children.values():
+            if child.poll() is None:
+                child.terminate()
+        deadline = time.monotonic() + PATIENCE_SECONDS
+        for child in self.children.values():
+            try:
+                child.wait(max(0.0, deadline - time.monotonic()))
+            except subprocess.TimeoutExpired:
+                pass
+            _kill_group(child.pid)
+            child.wait()
+
+    def _start_child(self, name: str) -> None:
+        self.children[name] = subprocess.Popen(self.commands[name], start_new_session=True)
+
+    def _restart_the_ended(self) -> None:
+        for name, child in list(self.children.items()):
+            if child.poll() is None:
+                continue
+            now = time.monotonic()
+            if name not in self.restart_at:
+                self.say(f"The {name} ended with status {child.returncode}; starting it again.")
+                _kill_group(child.pid)
+                self.restart_at[name] = now + RESTART_PAUSE_SECONDS
+            elif now >= self.restart_at[name]:
+                del self.restart_at[name]
+                self._start_child(name)
+
+    def _ask_to_stop(self, signal_number: int, frame: FrameType | None) -> None:
+        self.is_stopping = True
+
+
+def _kill_group(process_group: int) -> None:
+    """End what is left of a child's process group; an empty group is fine."""
+    try:
+        os.killpg(process_group, signal.SIGKILL)
+    except (ProcessLookupError, PermissionError):
+        pass
+
+
+def web_server_command(host: str, port: int) -> list[str]:
+    """gunicorn with one process and threads: pages are short, SQLite has one writer."""
+    return [
+        *(sys.executable, "-m", "gunicorn", "gpsr_site.wsgi:application"),
+        *("--bind", f"{host}:{port}"),
+        *("--worker-class", "gthread", "--workers", "1", "--threads", "8"),
+        *("--graceful-timeout", "3", "--timeout", "60", "--log-level", "warning"),
+    ]
+
+
+def worker_command() -> list[str]:
+    return [sys.executable, "manage.py", "work", "--queue", "cpu"]
