@@ -62,12 +62,16 @@ class World(models.Model):
 
     def allows(self, user: User, duty: Duty) -> bool:
         """Whether ``user`` may do ``duty`` here."""
+        return duty in self.duties_of(user)
+
+    def duties_of(self, user: User) -> frozenset[Duty]:
+        """All that ``user`` may do here; nothing for outsiders and accounts that are switched off."""
         if not user.is_active:
-            return False
+            return frozenset()
         if user.is_superuser:
-            return True
+            return frozenset(Duty)
         roles = self.memberships.filter(user=user).values_list("role", flat=True)
-        return any(duty in DUTIES[role] for role in roles)
+        return frozenset(duty for role in roles for duty in DUTIES[role])
 
 
 def role_choices() -> list[tuple[str, str]]:
