@@ -12,13 +12,17 @@ def predicate_kind_choices() -> list[tuple[str, str]]:
 
 
 class Predicate(models.Model):
-    """A name with its signatures (a list of lists of argument kinds) and its English gloss."""
+    """A name with its signatures (a list of lists of argument kinds) and its English gloss.
+
+    ``is_edited`` says that a person has changed it: from then on an import leaves it alone.
+    """
 
     world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="predicates")
     name = models.CharField(max_length=80)
     kind = models.CharField(max_length=20, choices=predicate_kind_choices)
     signatures = models.JSONField(default=list)
     gloss = models.CharField(max_length=200, blank=True)
+    is_edited = models.BooleanField(default=False)
 
     class Meta:
         ordering = ["name"]

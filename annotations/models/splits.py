@@ -74,7 +74,11 @@ class ExampleQuerySet(models.QuerySet["Example"]):
 
 
 class Example(models.Model):
-    """An utterance with its form (canonical corpus text), at its ``position`` in the part's file."""
+    """An utterance with its form (canonical corpus text), at its ``position`` in the part's file.
+
+    ``written_form`` is the form as the file wrote it where that is not the canonical text, so that an
+    export gives the file back.
+    """
 
     split = models.ForeignKey(Split, on_delete=models.CASCADE, related_name="examples")
     position = models.PositiveIntegerField()
@@ -84,6 +88,7 @@ class Example(models.Model):
     source_command = models.TextField(blank=True)
     task_category = models.CharField(max_length=60, blank=True)
     logical_form = models.TextField()
+    written_form = models.TextField(blank=True)
     grounded_form = models.TextField(blank=True)
 
     objects = ExampleQuerySet.as_manager()

@@ -1,0 +1,83 @@
+"""What the commands for scripts share: ``--json``, sentences for errors, exit status 1."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from django.core.management.base import BaseCommand, CommandError, CommandParser
+from django.db import DatabaseError
+
+from annotations.language.errors import LanguageError
+from annotations.models import World
+
+
+class Refused(Exception):
+    """Work that was refused, with the report that is printed all the same."""
+
+    def __init__(self, report: Mapping[str, Any], sentences: list[str]):
+        super().__init__("\n".join(sentences))
+        self.report = report
+
+
+class ReportingCommand(BaseCommand):
+    """A command that answers with one report.
+
+    A subclass gives ``add_options`` and ``report(**options)``, which returns a JSON-ready mapping or
+    raises ``Refused``, ``LanguageError`` or ``ValueError``. With ``--json`` the report is the only
+    thing on standard output. Errors go to standard error as sentences, and the exit status is 1.
+    """
+
+    # The checks read every URL and view; a script that runs often should not pay for them.
+    requires_system_checks: list[str] = []
+
+    def add_arguments(self, parser: CommandParser) -> None:
+        self.add_options(parser)
+        parser.add_argument(
+            "--json", action="store_true", help="print one JSON object and nothing else"
+        )
+
+    def add_options(self, parser: CommandParser) -> None:
+        """Declares the arguments of this command."""
+
+    def report(self, **options: Any) -> Mapping[str, Any]:
+        """Does the work and says what came of it."""
+        raise NotImplementedError
+
+    def describe(self, report: Mapping[str, Any]) -> str:
+        """The report for a person, one figure a line."""
+        return "\n".join(f"{key}: {_in_words(value)}" for key, value in report.items())
+
+    def handle(self, *args: Any, **options: Any) -> None:
+        try:
+            report = self.report(**options)
+        except Refused as refused:
+            self._print(refused.report, options["json"])
+            raise CommandError(str(refused)) from None
+        except DatabaseError as failure:
+            raise CommandError(
+                f"The database answered: {failure}. Has “manage.py migrate” been run?"
+            ) from failure
+        except (LanguageError, ValueError, OSError) as failure:
+            raise CommandError(str(failure)) from failure
+        self._print(report, options["json"])
+
+    def _print(self, report: Mapping[str, Any], as_json: bool) -> None:
+        text = json.dumps(report, ensure_ascii=False) if as_json else self.describe(report)
+        self.stdout.write(text)
+
+
+def _in_words(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return ", ".join(f"{key} {_in_words(item)}" for key, item in value.items()) or "none"
+    return str(len(value)) if isinstance(value, list) else str(value)
+
+
+def find_world(name: str) -> World:
+    """The world called ``name``. Raises CommandError with the names that exist."""
+    world = World.objects.filter(name=name).first()
+    if world is None:
+        names = ", ".join(World.objects.values_list("name", flat=True)) or "none"
+        raise CommandError(f"There is no world “{name}”. Worlds here: {names}.")
+    return world
