@@ -122,18 +122,18 @@ DATA_UPLOAD_MAX_NUMBER_FILES = UPLOAD_MAX_FILES
 
 # --- background work ----------------------------------------------------------------------------
 
-_broker_dir = VAR_DIR / "broker"
 CELERY_BROKER_URL = env.str("CELERY_BROKER_URL", default="filesystem://")
 if CELERY_BROKER_URL == "filesystem://":
-    for _name in ("messages", "processed", "control"):
-        (_broker_dir / _name).mkdir(parents=True, exist_ok=True)
+    for _name in ("messages", "control"):
+        (VAR_DIR / "broker" / _name).mkdir(parents=True, exist_ok=True)
+    CELERY_BROKER_TRANSPORT = "gpsr_site.broker:Transport"
     CELERY_BROKER_TRANSPORT_OPTIONS = {
-        "data_folder_in": str(_broker_dir / "messages"),
-        "data_folder_out": str(_broker_dir / "messages"),
-        "processed_folder": str(_broker_dir / "processed"),
-        "control_folder": str(_broker_dir / "control"),
-        "store_processed": False,
+        "data_folder_in": str(VAR_DIR / "broker" / "messages"),
+        "data_folder_out": str(VAR_DIR / "broker" / "messages"),
+        "control_folder": str(VAR_DIR / "broker" / "control"),
     }
+# Divides every period of the background work (leases, timers): tests run at tempo 10.
+WORK_TEMPO = env.float("GPSR_WORK_TEMPO", default=1.0)
 
 # --- people -------------------------------------------------------------------------------------
 
