@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -114,6 +115,13 @@ class Wildcard:
         return "room" if self.restriction == "room" else self.kind
 
     @property
+    def token(self) -> str:
+        """Its word in an anonymized command (FORMATS §4): ``<class>``, ``them``, or none for void."""
+        if self.kind == "pron":
+            return "them"
+        return f"<{self.entity_class}>" if self.entity_class else ""
+
+    @property
     def identity(self) -> tuple[str, int | None]:
         return (self.name, self.id)
 
@@ -127,3 +135,18 @@ class Choice:
 
 Symbol: TypeAlias = "Text | Nonterminal | Wildcard | Choice"
 Sequence: TypeAlias = "tuple[Symbol, ...]"
+
+
+def walk(sequence: Sequence, notes: bool) -> Iterator[Text | Nonterminal | Wildcard]:
+    """Every symbol of a sequence in order, those inside choices included, choices themselves not.
+
+    With ``notes`` it also enters the meta text of wildcards.
+    """
+    for symbol in sequence:
+        if isinstance(symbol, Choice):
+            for alternative in symbol.alternatives:
+                yield from walk(alternative, notes)
+            continue
+        yield symbol
+        if notes and isinstance(symbol, Wildcard):
+            yield from walk(symbol.meta, notes)

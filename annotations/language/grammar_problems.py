@@ -1,0 +1,112 @@
+"""What can be said against a grammar without a person: positioned findings, in file order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from annotations.language.errors import Position, Problem, error, warning
+from annotations.language.grammar_graph import (
+    MAX_HEIGHT,
+    Edges,
+    Traversal,
+    heights,
+    reachable,
+)
+from annotations.language.productions import Production
+
+
+def find_problems(
+    productions: tuple[Production, ...], edges: Edges, traversal: Traversal, root: str
+) -> tuple[Problem, ...]:
+    """The findings about a grammar whose commands begin at ``root``.
+
+    A missing root, a cycle and nesting beyond ``MAX_HEIGHT`` are errors; undefined and unreachable
+    nonterminals are warnings, since real grammars have them.
+    """
+    return (
+        *_missing_root(productions, edges, root),
+        *(_cycle(productions, cycle) for cycle in traversal.cycles),
+        *_too_high(productions, edges, traversal),
+        *_undefined(productions, edges),
+        *_unreachable(productions, edges, root),
+    )
+
+
+def cycle_text(cycle: tuple[str, ...]) -> str:
+    """``$a → $b → $a``; the middle of a long one is left out."""
+    names = [f"${name}" for name in cycle]
+    if len(names) > 12:
+        names = [*names[:6], f"… {len(names) - 12} more …", *names[-6:]]
+    return " → ".join(names)
+
+
+def place_of(productions: tuple[Production, ...], name: str) -> Position:
+    """Where ``$name`` is first defined; where it is not, the start of the first file."""
+    for production in productions:
+        if production.nonterminal == name:
+            return production.position
+    return Position(productions[0].position.source) if productions else Position()
+
+
+def _missing_root(
+    productions: tuple[Production, ...], edges: Edges, root: str
+) -> Iterator[Problem]:
+    if root not in edges:
+        place = place_of(productions, root)
+        yield error(place, f"the grammar has no ${root}", f"add a line ${root} = …")
+
+
+def _cycle(productions: tuple[Production, ...], cycle: tuple[str, ...]) -> Problem:
+    closing, target = cycle[-2], cycle[-1]
+    places = (
+        place
+        for production in productions
+        if production.nonterminal == closing
+        for name, place in production.references
+        if name == target
+    )
+    return error(
+        next(places, place_of(productions, closing)),
+        f"a cycle: {cycle_text(cycle)}",
+        "a command grammar is finite: take one of these references out",
+    )
+
+
+def _too_high(
+    productions: tuple[Production, ...], edges: Edges, traversal: Traversal
+) -> Iterator[Problem]:
+    if traversal.cycles:
+        return
+    found = heights(edges, traversal.order)
+    name = max(found, key=lambda each: found[each], default="")
+    if name and found[name] > MAX_HEIGHT:
+        yield error(
+            place_of(productions, name),
+            f"nonterminals nest {found[name]} deep below ${name}",
+            f"{MAX_HEIGHT} is the limit",
+        )
+
+
+def _undefined(productions: tuple[Production, ...], edges: Edges) -> Iterator[Problem]:
+    places: dict[str, list[Position]] = {}
+    for production in productions:
+        for name, place in production.references:
+            if name not in edges:
+                places.setdefault(name, []).append(place)
+    for name, found in places.items():
+        uses = f", used {len(found)} times" if len(found) > 1 else ""
+        yield warning(
+            found[0],
+            f"nothing defines ${name}{uses}",
+            "what reaches it yields no command; define it or take it out",
+        )
+
+
+def _unreachable(productions: tuple[Production, ...], edges: Edges, root: str) -> Iterator[Problem]:
+    if root not in edges:
+        return
+    found = reachable(edges, root)
+    for name in edges:
+        if name not in found:
+            place = place_of(productions, name)
+            yield warning(place, f"${root} never reaches ${name}", "use it or take it out")
