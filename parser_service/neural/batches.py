@@ -1,0 +1,70 @@
+"""Pairs as padded tensors, cut into batches of like length."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from parser_service.neural.vocabulary import END, PADDING, START
+
+POOL = 8  # batches sorted by length together: little padding, and still another mix each epoch
+
+
+@dataclass(frozen=True, slots=True)
+class Example:
+    """One pair in numbers: the words of the utterance and the tokens of the form."""
+
+    source: list[int]
+    target: list[int]
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """Some examples, padded."""
+
+    source: Tensor  # [batch, source length]
+    lengths: Tensor  # [batch], words of each utterance
+    inputs: Tensor  # [batch, target length], START and the tokens of the form
+    outputs: Tensor  # [batch, target length], the tokens of the form and END
+
+
+def pad(sequences: Sequence[Sequence[int]]) -> Tensor:
+    """Numbers as one tensor [sequences, longest], filled up with ``PADDING``."""
+    longest = max(map(len, sequences))
+    rows = [[*sequence, *[PADDING] * (longest - len(sequence))] for sequence in sequences]
+    return torch.tensor(rows)  # [sequences, longest]
+
+
+def sources(utterances: Sequence[Sequence[int]]) -> tuple[Tensor, Tensor]:
+    """Utterances padded [batch, source length] and their lengths [batch]; END closes each, so that
+    an utterance without words has a length too."""
+    closed = [[*utterance, END] for utterance in utterances]
+    return pad(closed), torch.tensor([len(utterance) for utterance in closed])
+
+
+def collate(examples: Sequence[Example]) -> Batch:
+    """One batch of ``examples``."""
+    source, lengths = sources([example.source for example in examples])
+    inputs = pad([[START, *example.target] for example in examples])
+    outputs = pad([[*example.target, END] for example in examples])
+    return Batch(source, lengths, inputs, outputs)
+
+
+def in_order(examples: Sequence[Example], size: int) -> Iterator[Batch]:
+    """Batches of ``size`` in the order given."""
+    for begin in range(0, len(examples), size):
+        yield collate(examples[begin : begin + size])
+
+
+def shuffled(examples: Sequence[Example], size: int, generator: torch.Generator) -> Iterator[Batch]:
+    """Batches of ``size`` in random order, each of forms of about one length."""
+    order = torch.randperm(len(examples), generator=generator).tolist()
+    chunks: list[list[int]] = []
+    for begin in range(0, len(order), size * POOL):
+        pool = sorted(order[begin : begin + size * POOL], key=lambda i: len(examples[i].target))
+        chunks += [pool[at : at + size] for at in range(0, len(pool), size)]
+    for chunk in torch.randperm(len(chunks), generator=generator).tolist():
+        yield collate([examples[index] for index in chunks[chunk]])

@@ -1,0 +1,85 @@
+"""Beam search over a whole batch of utterances at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from parser_service.neural.decoder import Decoder
+from parser_service.neural.encoder import Encoded
+from parser_service.neural.vocabulary import END, PADDING, START
+from parser_service.parsers.interface import Check, keep_going
+
+IMPOSSIBLE = float("-inf")
+
+
+@dataclass(frozen=True, slots=True)
+class Hypothesis:
+    """One written form: its token numbers, without START and END, and its log-probability."""
+
+    tokens: list[int]
+    score: float
+
+
+@torch.no_grad()
+def search(
+    decoder: Decoder, encoded: Encoded, width: int, longest: int, check: Check = keep_going
+) -> list[list[Hypothesis]]:
+    """For each utterance the ``width`` most probable forms found, best first.
+
+    A finished hypothesis stays in its beam at its score. Forms are cut at ``longest`` tokens.
+    """
+    batch = encoded.mask.shape[0]
+    repeated = encoded.repeated(width)
+    state = decoder.start(repeated)
+    written = torch.full((batch, width, 1), START)  # [batch, width, tokens so far]
+    scores = torch.full((batch, width), IMPOSSIBLE)  # [batch, width]
+    scores[:, 0] = 0.0  # the hypotheses are alike before the first token: one is enough
+    for _ in range(longest):
+        check()
+        logits, state = decoder(written[:, :, -1].reshape(-1, 1), state, repeated)
+        scores, origins, tokens = _best(scores, logits.view(batch, width, -1), written)
+        state = state.rows(_flat(origins))
+        written = written.gather(1, origins[:, :, None].expand(-1, -1, written.shape[2]))
+        written = torch.cat((written, tokens[:, :, None]), dim=2)
+        if bool(_is_finished(written).all()):
+            break
+    return [_hypotheses(written[row], scores[row]) for row in range(batch)]
+
+
+def _best(scores: Tensor, logits: Tensor, written: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+    """The best continuations over all hypotheses of each beam: scores, the hypotheses they
+    continue and the tokens they add, each [batch, width]."""
+    batch, width, words = logits.shape
+    steps = torch.log_softmax(logits, dim=-1)  # [batch, width, words]
+    steps[:, :, PADDING] = IMPOSSIBLE
+    only_padding = torch.full((words,), IMPOSSIBLE)  # [words]
+    only_padding[PADDING] = 0.0
+    steps = torch.where(_is_finished(written)[:, :, None], only_padding, steps)
+    totals = (scores[:, :, None] + steps).view(batch, width * words)
+    best, places = totals.topk(width, dim=1)  # [batch, width]
+    return best, places // words, places % words
+
+
+def _is_finished(written: Tensor) -> Tensor:
+    """[batch, width], true where the last token ends a form or pads an ended one."""
+    last = written[:, :, -1]  # [batch, width]
+    return (last == END) | (last == PADDING)
+
+
+def _flat(origins: Tensor) -> Tensor:
+    """Hypotheses of each beam [batch, width] as rows of the repeated batch [batch * width]."""
+    batch, width = origins.shape
+    return (torch.arange(batch)[:, None] * width + origins).flatten()
+
+
+def _hypotheses(written: Tensor, scores: Tensor) -> list[Hypothesis]:
+    """The possible ones of a beam: ``written`` [width, tokens], ``scores`` [width]."""
+    found = []
+    for row, score in zip(written[:, 1:].tolist(), scores.tolist(), strict=True):
+        if score > IMPOSSIBLE:
+            end = next((at for at, token in enumerate(row) if token == END), len(row))
+            found.append(Hypothesis(row[:end], score))
+    return found

@@ -1,0 +1,53 @@
+"""The decoder: writes a form token by token, looking at the utterance."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor, nn
+
+from parser_service.neural.attention import BilinearAttention
+from parser_service.neural.embeddings import WordEmbedding
+from parser_service.neural.encoder import Encoded
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """The memory of the decoder between two tokens."""
+
+    hidden: Tensor  # [1, batch, hidden]
+    cell: Tensor  # [1, batch, hidden]
+
+    def rows(self, indices: Tensor) -> State:
+        """The memory of the chosen rows; ``indices`` [rows]."""
+        return State(self.hidden[:, indices], self.cell[:, indices])
+
+
+class Decoder(nn.Module):
+    """One LSTM layer; attention stands between it and the output, so that a whole form is read in
+    one call in training (Dong and Lapata 2016, section 3.2)."""
+
+    def __init__(self, embedding: WordEmbedding, hidden_size: int):
+        super().__init__()
+        self.embedding = embedding
+        self.bridge = nn.Linear(hidden_size, hidden_size)
+        self.lstm = nn.LSTM(embedding.embedding_dim, hidden_size, batch_first=True)
+        self.attention = BilinearAttention(hidden_size)
+        self.combine = nn.Linear(2 * hidden_size, hidden_size)
+        self.output = nn.Linear(hidden_size, embedding.num_embeddings)
+
+    def start(self, encoded: Encoded) -> State:
+        """The memory before the first token."""
+        hidden = torch.tanh(self.bridge(encoded.final))[None]  # [1, batch, hidden]
+        return State(hidden, torch.zeros_like(hidden))
+
+    def forward(self, tokens: Tensor, state: State, encoded: Encoded) -> tuple[Tensor, State]:
+        """Scores of the next token after each of ``tokens`` [batch, target length]: logits
+        [batch, target length, target words], and the memory after the last."""
+        vectors = self.embedding(tokens)  # [batch, target length, embedding]
+        written, (hidden, cell) = self.lstm(vectors, (state.hidden, state.cell))
+        read = self.attention(written, encoded)  # [batch, target length, hidden]
+        joined = torch.cat((written, read), dim=-1)  # [batch, target length, 2 * hidden]
+        logits = self.output(torch.tanh(self.combine(joined)))  # [batch, target length, words]
+        return logits, State(hidden, cell)

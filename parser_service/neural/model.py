@@ -1,0 +1,56 @@
+"""The model: encoder, attention and decoder under one roof, and its loss."""
+
+from __future__ import annotations
+
+import torch
+from torch import Tensor, nn
+from torch.nn.functional import cross_entropy
+
+from parser_service.neural.batches import Batch
+from parser_service.neural.decoder import Decoder
+from parser_service.neural.embeddings import Dropout, WordEmbedding
+from parser_service.neural.encoder import Encoder
+from parser_service.neural.vocabulary import PADDING
+from parser_service.parsers.seq2seq_config import Seq2SeqConfig
+
+
+class Seq2SeqModel(nn.Module):
+    """Bidirectional LSTM encoder, bilinear attention, LSTM decoder (Walker et al. 2019)."""
+
+    def __init__(
+        self,
+        config: Seq2SeqConfig,
+        source_words: int,
+        target_words: int,
+        generator: torch.Generator,
+    ):
+        """Weights and dropout are drawn from ``generator`` alone."""
+        super().__init__()
+        with torch.random.fork_rng(devices=[]):  # torch's layers draw weights that are redrawn
+            source = WordEmbedding(source_words, config.embedding_size)
+            target = WordEmbedding(target_words, config.embedding_size)
+            self.encoder = Encoder(source, config.hidden_size, Dropout(config.dropout, generator))
+            self.decoder = Decoder(target, config.hidden_size)
+        self._draw_weights(generator)
+
+    def loss(self, batch: Batch) -> Tensor:
+        """Cross entropy in nats a token, a scalar."""
+        encoded = self.encoder(batch.source, batch.lengths)
+        start = self.decoder.start(encoded)
+        logits, _ = self.decoder(batch.inputs, start, encoded)  # [batch, target length, words]
+        return cross_entropy(logits.flatten(0, 1), batch.outputs.flatten(), ignore_index=PADDING)
+
+    @torch.no_grad()
+    def _draw_weights(self, generator: torch.Generator) -> None:
+        """Glorot for matrices, small normal values for word vectors, zeros for biases but ones for
+        the forget gates, so that an untrained memory keeps what it reads."""
+        for name, weights in self.named_parameters():
+            if "embedding" in name:
+                weights.normal_(0, 0.1, generator=generator)
+                weights[PADDING] = 0
+            elif weights.dim() > 1:
+                nn.init.xavier_uniform_(weights, generator=generator)
+            else:
+                weights.zero_()
+                if ".bias_ih" in name:
+                    weights[len(weights) // 4 : len(weights) // 2] = 1  # order: in, forget, …

@@ -1,0 +1,208 @@
+"""The sequence-to-sequence parser of Walker et al. 2019, without pretrained vectors."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Self
+
+import torch
+
+from parser_service.neural.batches import Example, sources
+from parser_service.neural.beam import Hypothesis, search
+from parser_service.neural.checkpoints import (
+    TENSORS,
+    TRAINING,
+    WEIGHTS,
+    load_training,
+    load_weights,
+    save_training,
+    save_weights,
+)
+from parser_service.neural.model import Seq2SeqModel
+from parser_service.neural.threads import threads
+from parser_service.neural.training import Result, Training, validation_loss
+from parser_service.neural.vocabulary import Vocabulary
+from parser_service.parsers.forms import canonical_or_same
+from parser_service.parsers.interface import (
+    Candidate,
+    Check,
+    EpochReport,
+    Knowledge,
+    Observer,
+    Pair,
+    Parser,
+    keep_going,
+)
+from parser_service.parsers.seq2seq_config import Seq2SeqConfig
+from parser_service.parsers.storage import open_sealed, read_json, seal, write_json
+from parser_service.parsers.words import words
+
+VOCABULARY = "vocabulary.json"
+PREDICTION_BATCH = 64
+SLACK = 10  # tokens that a form may be longer than the longest one seen
+
+
+class Seq2Seq(Parser):
+    """Reads words, writes the tokens of the form; both vocabularies come from the training pairs.
+
+    Adam on the cross entropy, early stopping on the exact match of the validation pairs under beam
+    search; the weights of the best epoch are the parser. Candidates are scored by log-probability.
+    """
+
+    name = "seq2seq"
+    version = 1
+    protocols = ("strict",)
+    Config = Seq2SeqConfig
+
+    def __init__(
+        self,
+        config: Seq2SeqConfig | None = None,
+        seed: int = 0,
+        knowledge: Knowledge | None = None,
+    ):
+        super().__init__(config, seed, knowledge)
+        self._generator = torch.Generator().manual_seed(seed)
+        self._prepare(Vocabulary(()), Vocabulary(()), longest=0)
+
+    def fit(
+        self,
+        train: Sequence[Pair],
+        validation: Sequence[Pair] = (),
+        observe: Observer | None = None,
+    ) -> None:
+        observe = observe or Observer()
+        if not train:
+            raise ValueError("There is no training pair, so there is nothing to learn from.")
+        self._read_vocabularies(train)
+        training = Training(self._model, self.config, self._generator)
+        self._resume(training, observe)
+        with threads(self.config.threads):
+            while not training.is_over():
+                self._train_epoch(training, train, validation, observe)
+        training.finish()
+        observe.log(f"The weights of epoch {training.best_epoch} are the parser.")
+
+    def predict(
+        self, utterances: Sequence[str], beam_width: int = 1, check: Check = keep_going
+    ) -> list[list[Candidate]]:
+        """The most probable forms by beam search; scores are log-probabilities in nats.
+
+        The search is as wide as the configuration says, or as ``beam_width`` where that is more.
+        """
+        width = max(beam_width, self.config.beam_width)
+        self._model.eval()
+        answers: list[list[Candidate]] = []
+        for begin in range(0, len(utterances), PREDICTION_BATCH):
+            check()
+            answers += self._parse(utterances[begin : begin + PREDICTION_BATCH], width, check)
+        return [candidates[:beam_width] for candidates in answers]
+
+    def save(self, folder: Path) -> None:
+        self._write(folder)
+        seal(folder, self, [VOCABULARY, WEIGHTS])
+
+    @classmethod
+    def load(cls, folder: Path, knowledge: Knowledge | None = None) -> Self:
+        saved = open_sealed(folder, cls, [VOCABULARY, WEIGHTS])
+        parser = cls(saved.config, saved.seed, knowledge)
+        text = read_json(folder / VOCABULARY)
+        parser._prepare(Vocabulary(text["source"]), Vocabulary(text["target"]), text["longest"])
+        load_weights(folder / WEIGHTS, parser._model)
+        parser._model.eval()
+        return parser
+
+    def parameters(self) -> int:
+        return sum(weights.numel() for weights in self._model.parameters())
+
+    def _prepare(self, source: Vocabulary, target: Vocabulary, longest: int) -> None:
+        """An untrained model for these vocabularies."""
+        self._generator.manual_seed(self.seed)
+        self._source, self._target, self._longest = source, target, longest
+        self._model = Seq2SeqModel(self.config, len(source), len(target), self._generator)
+
+    def _read_vocabularies(self, train: Sequence[Pair]) -> None:
+        source = Vocabulary.of([words(p.utterance) for p in train], self.config.minimum_count)
+        target = Vocabulary.of([pair.form.split() for pair in train])
+        self._prepare(source, target, max(len(pair.form.split()) for pair in train))
+
+    def _train_epoch(
+        self,
+        training: Training,
+        train: Sequence[Pair],
+        validation: Sequence[Pair],
+        observe: Observer,
+    ) -> None:
+        begin = time.monotonic()
+        loss = training.run_epoch(self._examples(train), observe.check)
+        result = self._validate(validation, observe.check) if validation else None
+        is_best = training.record(result)
+        found = (result.loss, result.accuracy) if result else (None, None)
+        observe.epoch(EpochReport(training.epoch, loss, *found, time.monotonic() - begin))
+        observe.checkpoint(
+            training.epoch, is_best, lambda folder: self._checkpoint(folder, training)
+        )
+        limit = self.config.epochs
+        observe.progress(training.epoch / limit, f"epoch {training.epoch} of at most {limit}")
+
+    def _validate(self, pairs: Sequence[Pair], check: Check) -> Result:
+        loss = validation_loss(self._model, self._examples(pairs), check)
+        answers = self.predict([pair.utterance for pair in pairs], check=check)
+        right = sum(
+            bool(candidates) and candidates[0].form == pair.form
+            for candidates, pair in zip(answers, pairs, strict=True)
+        )
+        return Result(right / len(pairs), loss)
+
+    def _examples(self, pairs: Sequence[Pair]) -> list[Example]:
+        return [
+            Example(
+                self._source.numbers(words(pair.utterance)),
+                self._target.numbers(pair.form.split()),
+            )
+            for pair in pairs
+        ]
+
+    def _parse(
+        self, utterances: Sequence[str], width: int, check: Check
+    ) -> Iterator[list[Candidate]]:
+        numbers = [self._source.numbers(words(utterance)) for utterance in utterances]
+        with torch.no_grad():
+            encoded = self._model.encoder(*sources(numbers))
+        longest = self._longest + SLACK
+        for found in search(self._model.decoder, encoded, width, longest, check):
+            yield self._candidates(found)
+
+    def _candidates(self, found: Sequence[Hypothesis]) -> list[Candidate]:
+        """Distinct canonical forms, at the score of their best spelling."""
+        scores: dict[str, float] = {}
+        for hypothesis in found:
+            text = " ".join(self._target.sentence(hypothesis.tokens))
+            scores.setdefault(canonical_or_same(text), hypothesis.score)
+        return [Candidate(form, score) for form, score in scores.items()]
+
+    def _write(self, folder: Path) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        vocabularies = {"source": self._source.words, "target": self._target.words}
+        write_json(folder / VOCABULARY, {**vocabularies, "longest": self._longest})
+        save_weights(folder / WEIGHTS, self._model)
+
+    def _checkpoint(self, folder: Path, training: Training) -> None:
+        """The parser as it is after this epoch, and the state from which to go on."""
+        self._write(folder)
+        save_training(folder, training)
+        seal(folder, self, [VOCABULARY, WEIGHTS, TRAINING, TENSORS])
+
+    def _resume(self, training: Training, observe: Observer) -> None:
+        """Goes on from the last checkpoint; from the start, to the same end, if it is unreadable."""
+        folder = observe.last_checkpoint()
+        if folder is None:
+            return
+        try:
+            open_sealed(folder, type(self), [VOCABULARY, WEIGHTS, TRAINING, TENSORS])
+        except ValueError as problem:
+            observe.log(f"Training starts again from the beginning. {problem}")
+            return
+        load_training(folder, training)
+        observe.log(f"Training goes on after epoch {training.epoch}.")

@@ -1,0 +1,57 @@
+"""The hyperparameters of the sequence-to-sequence parser, free of torch for the pages."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from parser_service.parsers.config_fields import hyperparameter, validate
+
+
+@dataclass(frozen=True)
+class Seq2SeqConfig:
+    """Sizes, optimisation and decoding.
+
+    Beam, dropout, epochs and patience are those of Walker et al. 2019; sizes, batch and learning
+    rate were chosen on the validation part of its paraphrases for training in minutes on two cores.
+    """
+
+    embedding_size: int = hyperparameter(
+        100, "Width of a word vector, in commands and in forms.", minimum=2, maximum=1024
+    )
+    hidden_size: int = hyperparameter(
+        256,
+        "Cells of the decoder; each direction of the encoder has half.",
+        minimum=2,
+        maximum=2048,
+    )
+    minimum_count: int = hyperparameter(
+        2, "Words seen less often in training are read as unknown.", minimum=1, maximum=100
+    )
+    dropout: float = hyperparameter(
+        0.1, "Share of the encoder's values dropped in training.", minimum=0.0, maximum=0.9
+    )
+    learning_rate: float = hyperparameter(
+        0.002, "Step of the Adam optimiser.", minimum=1e-6, maximum=1.0
+    )
+    batch_size: int = hyperparameter(32, "Pairs a training step.", minimum=1, maximum=4096)
+    clip: float = hyperparameter(
+        5.0, "Longest gradient; longer ones are shortened to it.", minimum=1e-3, maximum=1e6
+    )
+    epochs: int = hyperparameter(150, "Passes over the training pairs, at most.", 1, 10_000)
+    patience: int = hyperparameter(
+        10, "Epochs without a better validation result before training stops.", 1, 10_000
+    )
+    beam_width: int = hyperparameter(
+        5, "Forms kept while decoding, in validation and by default in prediction.", 1, 100
+    )
+    threads: int = hyperparameter(
+        0, "Processor cores to train on; 0 takes all. Another number may round differently.", 0, 256
+    )
+
+    def __post_init__(self) -> None:
+        validate(self)
+        if self.hidden_size % 2:
+            raise ValueError(
+                f"hidden_size is {self.hidden_size}, but it has to be even: the two directions of "
+                "the encoder share it."
+            )

@@ -1,0 +1,98 @@
+"""A toy language, small enough to be learned in seconds on one thread."""
+
+from dataclasses import replace
+from pathlib import Path
+from shutil import rmtree
+
+import pytest
+
+from parser_service.parsers.interface import Cancelled, Observer, Pair
+from parser_service.parsers.seq2seq_config import Seq2SeqConfig
+
+SMALL = Seq2SeqConfig(
+    embedding_size=16,
+    hidden_size=32,
+    minimum_count=1,
+    learning_rate=0.01,
+    batch_size=8,
+    epochs=12,
+    patience=12,
+    beam_width=3,
+    threads=1,
+)
+LONGER = replace(SMALL, epochs=80, patience=80)
+VERBS = {"bring": "bring", "fetch": "bring", "find": "find", "look for": "find"}
+HELD_OUT = "fetch the <object> in the <room>"
+PLACES = ("", " in the <room>", " at the <location>")
+
+
+def toy_pairs() -> list[Pair]:
+    """28 commands, 8 forms."""
+    return [
+        Pair(f"{verb} {word} <{kind}>{place}", form(action, kind, place))
+        for verb, action in VERBS.items()
+        for kind in ("object", "name")
+        for word in (("the",) if kind == "name" else ("a", "the"))
+        for place in PLACES
+        if kind == "object" or not place
+    ]
+
+
+def form(action: str, kind: str, place: str) -> str:
+    at = f' ( at $1 " {place.split()[-1]} " )' if place else ""
+    predicate = "is_a" if kind == "object" else "name"
+    return f'( {action} ( lambda $1 e ( {predicate} $1 " <{kind}> " ){at} ) )'
+
+
+class Recorder(Observer):
+    """Keeps what a run keeps: epochs, log, the last and the best checkpoint; stops when told."""
+
+    def __init__(self, folder: Path, stop_after_checks: int | None = None):
+        self.folder = folder
+        self.checks_left = stop_after_checks
+        self.epochs, self.lines, self.fractions = [], [], []
+
+    def check(self):
+        if self.checks_left is not None:
+            self.checks_left -= 1
+            if self.checks_left < 0:
+                raise Cancelled
+
+    def epoch(self, report):
+        self.epochs.append(report)
+
+    def log(self, message):
+        self.lines.append(message)
+
+    def progress(self, fraction, message=""):
+        self.fractions.append(fraction)
+
+    def checkpoint(self, epoch, is_best, write):
+        for name in ("last", "best") if is_best else ("last",):
+            rmtree(self.folder / name, ignore_errors=True)
+            (self.folder / name).mkdir(parents=True)
+            write(self.folder / name)
+
+    def last_checkpoint(self):
+        return self._kept("last")
+
+    def best_checkpoint(self):
+        return self._kept("best")
+
+    def _kept(self, name):
+        return self.folder / name if (self.folder / name).exists() else None
+
+
+@pytest.fixture(scope="session")
+def pairs():
+    return toy_pairs()
+
+
+@pytest.fixture(scope="session")
+def trained(pairs):
+    """A parser that knows the toy language, from all pairs but one."""
+    from parser_service.neural.seq2seq import Seq2Seq
+
+    parser = Seq2Seq(LONGER, seed=1)
+    parser.fit([pair for pair in pairs if pair.utterance != HELD_OUT])
+    return parser
