@@ -9,7 +9,7 @@ from torch import Tensor
 
 from parser_service.neural.decoder import Decoder
 from parser_service.neural.encoder import Encoded
-from parser_service.neural.vocabulary import END, PADDING, START
+from parser_service.neural.vocabulary import END, PADDING, START, UNKNOWN
 from parser_service.parsers.interface import Check, keep_going
 
 IMPOSSIBLE = float("-inf")
@@ -54,7 +54,7 @@ def _best(scores: Tensor, logits: Tensor, written: Tensor) -> tuple[Tensor, Tens
     continue and the tokens they add, each [batch, width]."""
     batch, width, words = logits.shape
     steps = torch.log_softmax(logits, dim=-1)  # [batch, width, words]
-    steps[:, :, PADDING] = IMPOSSIBLE
+    steps[:, :, [PADDING, UNKNOWN, START]] = IMPOSSIBLE
     only_padding = torch.full((words,), IMPOSSIBLE)  # [words]
     only_padding[PADDING] = 0.0
     steps = torch.where(_is_finished(written)[:, :, None], only_padding, steps)

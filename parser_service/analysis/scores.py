@@ -1,0 +1,76 @@
+"""How often a parser is right: exact match, equivalence, well-formedness and their intervals."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import sqrt
+
+from annotations.language.canonical import canonical_text, equivalent
+from annotations.language.errors import LanguageError
+from annotations.language.logic import read_form
+
+Z_95 = 1.959963984540054
+
+
+@dataclass(frozen=True, slots=True)
+class Judgement:
+    """One answer against the annotated form. Exact match is what accuracy counts."""
+
+    is_exact_match: bool = False
+    is_equivalent: bool = False
+    is_well_formed: bool = False
+
+
+NO_ANSWER = Judgement()
+
+
+@dataclass(frozen=True, slots=True)
+class Score:
+    """Answers to ``count`` utterances. Fractions of 1; the interval is Wilson's at 95 %."""
+
+    count: int
+    correct: int
+    accuracy: float
+    interval: tuple[float, float]
+    equivalent: float
+    well_formed: float
+
+
+def judge(answer: str, annotated: str) -> Judgement:
+    """Compares a parser's answer, a form or not, with a form. Equivalence also ignores the order of
+    conjuncts; an answer is well-formed where it reads as a form with every variable bound."""
+    try:
+        form = read_form(answer)
+    except LanguageError:
+        return NO_ANSWER
+    gold = read_form(annotated)
+    is_exact = canonical_text(form) == canonical_text(gold)
+    return Judgement(is_exact, is_exact or equivalent(form, gold), True)
+
+
+def score(judgements: Sequence[Judgement]) -> Score:
+    """The share of right answers. Raises ValueError where there is nothing to count."""
+    count = len(judgements)
+    if not count:
+        raise ValueError("There is no example to score.")
+    correct = sum(judgement.is_exact_match for judgement in judgements)
+    return Score(
+        count=count,
+        correct=correct,
+        accuracy=correct / count,
+        interval=wilson_interval(correct, count),
+        equivalent=sum(judgement.is_equivalent for judgement in judgements) / count,
+        well_formed=sum(judgement.is_well_formed for judgement in judgements) / count,
+    )
+
+
+def wilson_interval(correct: int, count: int) -> tuple[float, float]:
+    """The 95 % score interval of a proportion (Wilson 1927): honest near 0 and 1 and for few
+    examples, where the usual ± is not. Both ends lie in 0–1."""
+    share = correct / count
+    spread = Z_95**2 / count
+    centre = share + spread / 2
+    reach = sqrt(spread * (share * (1 - share) + spread / 4))
+    low, high = (centre - reach) / (1 + spread), (centre + reach) / (1 + spread)
+    return max(0.0, low), min(1.0, high)
