@@ -149,11 +149,15 @@ def _expand(category: TaskCategory) -> _Expanded:
     candidates: dict[str, list[tuple[int, str]]] = {}
     commands: list[tuple[str, ...]] = []
     for index, template in enumerate(category.templates):
-        pairs = dict.fromkeys(expander.pairs(template))
-        for command, form in pairs:
-            found = [each for each in candidates.get(command, ()) if each[1] != form]
-            candidates[command] = [*found, (index, form)]
-        commands.append(tuple(dict.fromkeys(command for command, _ in pairs)))
+        forms: dict[str, set[str]] = {}
+        for command, form in expander.pairs(template):
+            forms.setdefault(command, set()).add(form)
+        for command, alternatives in forms.items():
+            # An ambiguous template has no later form; the order of the texts decides.
+            for form in sorted(alternatives):
+                found = [each for each in candidates.get(command, ()) if each[1] != form]
+                candidates[command] = [*found, (index, form)]
+        commands.append(tuple(forms))
     inside = frozenset(filter(recognizer.accepts, candidates))
     return _Expanded(category, candidates, tuple(commands), inside)
 

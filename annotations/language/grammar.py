@@ -8,8 +8,13 @@ from functools import cached_property
 
 from annotations.language.derivations import Expander, anonymized
 from annotations.language.errors import LanguageError, Problem
-from annotations.language.grammar_graph import MAX_HEIGHT, Traversal, heights, reachable, traverse
-from annotations.language.grammar_problems import cycle_text, find_problems, place_of
+from annotations.language.grammar_graph import Traversal, reachable, traverse
+from annotations.language.grammar_problems import (
+    cycle_text,
+    find_problems,
+    find_too_high,
+    place_of,
+)
 from annotations.language.productions import (
     GrammarFile,
     Production,
@@ -18,7 +23,7 @@ from annotations.language.productions import (
     read_production,
     read_productions,
 )
-from annotations.language.symbols import Choice, Nonterminal, Sequence, Wildcard, walk
+from annotations.language.symbols import Choice, Nonterminal, Sequence, Text, Wildcard, walk
 
 __all__ = [
     "ROOT",
@@ -69,16 +74,11 @@ class Grammar:
         return traverse(self.edges)
 
     @cached_property
-    def height(self) -> int:
-        """How many nonterminals nest at most; of an acyclic grammar."""
-        return max(heights(self.edges, self.traversal.order).values(), default=0)
-
-    @cached_property
     def expander(self) -> Expander[str]:
         """Expands anything over this grammar into anonymized words.
 
         Raises:
-            LanguageError: the grammar has a cycle, or nests deeper than ``MAX_HEIGHT``.
+            LanguageError: the grammar has a cycle, or nests deeper than ``grammar_graph.MAX_HEIGHT``.
         """
         self.require_finite()
         return Expander(self.alternatives, anonymized)
@@ -93,7 +93,7 @@ class Grammar:
 
     def problems(self, root: str = ROOT) -> tuple[Problem, ...]:
         """Undefined and unreachable nonterminals (warnings), cycles and a missing root (errors)."""
-        return find_problems(self.productions, self.edges, self.traversal, root)
+        return find_problems(self.productions, self.rules, self.edges, self.traversal, root)
 
     def require_finite(self) -> None:
         """Raises LanguageError where expanding would not end, or would nest too deep."""
@@ -102,8 +102,9 @@ class Grammar:
                 f"the grammar has a cycle: {cycle_text(self.traversal.cycles[0])}",
                 place_of(self.productions, self.traversal.cycles[0][0]),
             )
-        if self.height > MAX_HEIGHT:
-            raise LanguageError(f"nonterminals nest {self.height} deep; {MAX_HEIGHT} is the limit")
+        too_high = find_too_high(self.productions, self.rules, self.traversal)
+        if too_high is not None:
+            raise LanguageError(too_high.message, too_high.position, too_high.hint)
 
     def size(self, root: str = ROOT) -> int:
         """At least the number of distinct anonymized commands, without enumerating them.
@@ -131,17 +132,21 @@ class Grammar:
             )
         return self._distinct(root)
 
-    def wildcards(self, sequence: Sequence) -> tuple[Wildcard, ...]:
-        """The distinct wildcards that a sequence can put into words, notes left out."""
-        found: dict[Wildcard, None] = {}
-        seen: set[str] = set()
+    def spoken(
+        self, sequence: Sequence, opaque: frozenset[str] = frozenset()
+    ) -> tuple[Nonterminal | Wildcard, ...]:
+        """The distinct nonterminals and wildcards that can take part in the words of a sequence.
+
+        What only notes mention is left out, and so is what lies below an ``opaque`` nonterminal.
+        """
+        found: dict[Nonterminal | Wildcard, None] = {}
         waiting = [sequence]
         while waiting:
             for symbol in walk(waiting.pop(), notes=False):
-                if isinstance(symbol, Wildcard):
-                    found[symbol] = None
-                elif isinstance(symbol, Nonterminal) and symbol.name not in seen:
-                    seen.add(symbol.name)
+                if isinstance(symbol, Text) or symbol in found:
+                    continue
+                found[symbol] = None
+                if isinstance(symbol, Nonterminal) and symbol.name not in opaque:
                     waiting.extend(self.alternatives(symbol.name))
         return tuple(found)
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
+from annotations.language.symbols import Choice, Nonterminal, Sequence
+
 # No grammar in the field passes 15; the limit keeps recursion over a grammar far from Python's own.
-MAX_HEIGHT = 100
+MAX_HEIGHT = 80
 
 Edges = Mapping[str, Iterable[str]]
 
@@ -61,9 +63,26 @@ def reachable(edges: Edges, root: str) -> frozenset[str]:
     return frozenset(found)
 
 
-def heights(edges: Edges, order: Iterable[str]) -> dict[str, int]:
-    """How many nonterminals nest at most below and including each one, from an acyclic order."""
+def heights(rules: Mapping[str, tuple[Sequence, ...]], order: Iterable[str]) -> dict[str, int]:
+    """How many nonterminals and choices nest at most in the words of each nonterminal.
+
+    Args:
+        rules: nonterminal → its alternatives, without a cycle.
+        order: the order of a ``Traversal`` over them.
+    """
     result: dict[str, int] = {}
     for name in order:
-        result[name] = 1 + max((result.get(child, 0) for child in edges[name]), default=0)
+        result[name] = 1 + max((_height(each, result) for each in rules[name]), default=0)
     return result
+
+
+def _height(sequence: Sequence, known: Mapping[str, int]) -> int:
+    """Recursion goes as deep as choices nest, which ``brackets`` limits."""
+    highest = 0
+    for symbol in sequence:
+        if isinstance(symbol, Nonterminal):
+            highest = max(highest, known.get(symbol.name, 0))
+        elif isinstance(symbol, Choice):
+            inner = max(_height(each, known) for each in symbol.alternatives)
+            highest = max(highest, 1 + inner)
+    return highest

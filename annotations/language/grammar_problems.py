@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from annotations.language.errors import Position, Problem, error, warning
 from annotations.language.grammar_graph import (
@@ -13,20 +13,26 @@ from annotations.language.grammar_graph import (
     reachable,
 )
 from annotations.language.productions import Production
+from annotations.language.symbols import Sequence
 
 
 def find_problems(
-    productions: tuple[Production, ...], edges: Edges, traversal: Traversal, root: str
+    productions: tuple[Production, ...],
+    rules: Mapping[str, tuple[Sequence, ...]],
+    edges: Edges,
+    traversal: Traversal,
+    root: str,
 ) -> tuple[Problem, ...]:
     """The findings about a grammar whose commands begin at ``root``.
 
     A missing root, a cycle and nesting beyond ``MAX_HEIGHT`` are errors; undefined and unreachable
     nonterminals are warnings, since real grammars have them.
     """
+    too_high = find_too_high(productions, rules, traversal)
     return (
         *_missing_root(productions, edges, root),
         *(_cycle(productions, cycle) for cycle in traversal.cycles),
-        *_too_high(productions, edges, traversal),
+        *((too_high,) if too_high is not None else ()),
         *_undefined(productions, edges),
         *_unreachable(productions, edges, root),
     )
@@ -72,19 +78,23 @@ def _cycle(productions: tuple[Production, ...], cycle: tuple[str, ...]) -> Probl
     )
 
 
-def _too_high(
-    productions: tuple[Production, ...], edges: Edges, traversal: Traversal
-) -> Iterator[Problem]:
+def find_too_high(
+    productions: tuple[Production, ...],
+    rules: Mapping[str, tuple[Sequence, ...]],
+    traversal: Traversal,
+) -> Problem | None:
+    """The highest nonterminal where one passes ``MAX_HEIGHT``; nothing to say where there is a cycle."""
     if traversal.cycles:
-        return
-    found = heights(edges, traversal.order)
+        return None
+    found = heights(rules, traversal.order)
     name = max(found, key=lambda each: found[each], default="")
-    if name and found[name] > MAX_HEIGHT:
-        yield error(
-            place_of(productions, name),
-            f"nonterminals nest {found[name]} deep below ${name}",
-            f"{MAX_HEIGHT} is the limit",
-        )
+    if not name or found[name] <= MAX_HEIGHT:
+        return None
+    return error(
+        place_of(productions, name),
+        f"nonterminals and choices nest {found[name]} deep below ${name}",
+        f"{MAX_HEIGHT} is the limit",
+    )
 
 
 def _undefined(productions: tuple[Production, ...], edges: Edges) -> Iterator[Problem]:
