@@ -1,0 +1,79 @@
+// Charts from data that the page or the server gives (see templates/_chart.html):
+// {kind: "lines" | "bars", x: {label, values}, y: {label, max, unit}, y_right: …,
+//  series: [{name, values, low, high, axis: "right", class}], done}
+import { BarChart, CustomChart, LineChart } from "echarts/charts";
+import { AriaComponent, GridComponent, TooltipComponent } from "echarts/components";
+import { init, use } from "echarts/core";
+import { CanvasRenderer } from "echarts/renderers";
+import { optionOf } from "./chart-options.js";
+import { showTable } from "./chart-table.js";
+
+use([BarChart, CustomChart, LineChart, AriaComponent, GridComponent, TooltipComponent, CanvasRenderer]);
+
+const EVERY = 5000;
+const reduced = matchMedia("(prefers-reduced-motion: reduce)");
+
+function readEmbedded(figure) {
+  const script = figure.querySelector('script[type="application/json"]');
+  return script ? JSON.parse(script.textContent) : null;
+}
+
+async function fetchData(address) {
+  const answer = await fetch(address, { headers: { Accept: "application/json" } });
+  const type = answer.headers.get("Content-Type") ?? "";
+  return answer.ok && type.includes("json") ? answer.json() : null;
+}
+
+class Chart {
+  constructor(figure) {
+    this.figure = figure;
+    this.canvas = figure.querySelector(".chart-canvas");
+    this.drawn = init(this.canvas, null, { renderer: "canvas" });
+    this.data = null;
+    this.text = "";
+    this.resizing = new ResizeObserver(() => this.drawn.resize());
+    this.resizing.observe(this.canvas);
+    this.redraw = () => this.draw();
+    document.documentElement.addEventListener("theme:change", this.redraw);
+  }
+
+  show(data) {
+    const text = JSON.stringify(data);
+    if (text === this.text) return;
+    this.text = text;
+    this.data = data;
+    this.draw();
+    showTable(this.figure, data);
+  }
+
+  draw() {
+    if (!this.data) return;
+    const animation = !reduced.matches;
+    this.drawn.setOption({ ...optionOf(this.data, this.canvas), animation, animationDuration: 120 }, { notMerge: true });
+  }
+
+  // A chart that htmx took away is let go.
+  isGone() {
+    if (this.figure.isConnected) return false;
+    this.resizing.disconnect();
+    document.documentElement.removeEventListener("theme:change", this.redraw);
+    this.drawn.dispose();
+    return true;
+  }
+
+  async follow(address) {
+    if (this.isGone()) return;
+    const data = document.hidden ? null : await fetchData(address).catch(() => null);
+    if (data) this.show(data);
+    if (!data?.done) setTimeout(() => this.follow(address), EVERY);
+  }
+}
+
+export function enhance(figure) {
+  if (figure.dataset.drawn) return;
+  figure.dataset.drawn = "";
+  const chart = new Chart(figure);
+  const embedded = readEmbedded(figure);
+  if (embedded) chart.show(embedded);
+  if (figure.dataset.chartUrl) chart.follow(figure.dataset.chartUrl);
+}

@@ -1,0 +1,81 @@
+// One line of a pattern, or a form: CodeMirror in the place of a textarea, which stays the field that
+// is sent. The server's checker is asked, debounced, and is the only authority.
+import { defaultKeymap, history, historyKeymap } from "@codemirror/commands";
+import { bracketMatching } from "@codemirror/language";
+import { EditorState } from "@codemirror/state";
+import { EditorView, drawSelection, keymap, placeholder } from "@codemirror/view";
+import { checkerOf } from "./editor-check.js";
+import { highlighting } from "./editor-highlight.js";
+
+const nonce = () => document.querySelector('meta[name="csp-nonce"]')?.nonce ?? "";
+
+// A pattern is one line: a line break in what is pasted becomes a space.
+const oneLine = EditorState.transactionFilter.of((transaction) => {
+  if (transaction.newDoc.lines === 1) return transaction;
+  const text = transaction.newDoc.toString().replace(/\s*\n\s*/g, " ");
+  return {
+    changes: { from: 0, to: transaction.startState.doc.length, insert: text },
+    selection: { anchor: Math.min(transaction.newSelection.main.head, text.length) },
+  };
+});
+
+function send(field) {
+  field.form?.requestSubmit();
+  return true;
+}
+
+function extensionsFor(field, checker) {
+  const isPattern = field.dataset.editor === "pattern";
+  return [
+    EditorView.cspNonce.of(nonce()),
+    EditorView.lineWrapping,
+    EditorView.contentAttributes.of({
+      "aria-label": field.labels[0]?.textContent.trim() ?? field.name,
+      spellcheck: "false",
+      autocapitalize: "off",
+    }),
+    history(),
+    drawSelection(),
+    bracketMatching(),
+    highlighting,
+    placeholder(field.placeholder),
+    isPattern ? oneLine : [],
+    checker.extension(field),
+    // Tab is left alone: it leaves the editor, as in any field.
+    keymap.of([
+      { key: "Mod-Enter", run: () => send(field) },
+      { key: "Enter", run: () => isPattern && send(field) },
+      { key: "Alt-Enter", run: (view) => checker.repair(field, view) },
+      ...historyKeymap,
+      ...defaultKeymap,
+    ]),
+    EditorView.updateListener.of((update) => {
+      if (!update.docChanged) return;
+      field.value = update.state.doc.toString();
+      field.dispatchEvent(new Event("input", { bubbles: true }));
+    }),
+  ];
+}
+
+function replaceText(view, text) {
+  if (view.state.doc.toString() === text) return;
+  view.dispatch({ changes: { from: 0, to: view.state.doc.length, insert: text } });
+}
+
+export function enhance(field) {
+  if (field.dataset.ready) return;
+  field.dataset.ready = "";
+  const checker = checkerOf(field.form ?? field);
+  const view = new EditorView({
+    state: EditorState.create({ doc: field.value, extensions: extensionsFor(field, checker) }),
+  });
+  const place = document.createElement("div");
+  place.className = "editor";
+  place.append(view.dom);
+  field.after(place);
+  field.hidden = true;
+  field.required = false; // a hidden field cannot be pointed at; the server says that it is missing
+  field.addEventListener("draft:restored", () => replaceText(view, field.value));
+  field.labels.forEach((label) => label.addEventListener("click", () => view.focus()));
+  checker.add(field, view, place);
+}

@@ -1,0 +1,70 @@
+// Keys: j and k move through the rows of a table, Enter opens, x selects, / searches, ? tells the keys.
+import { selectRow } from "./selection.js";
+import { copyForm } from "./forms.js";
+
+const TYPING = "input:not([type=checkbox], [type=radio]), textarea, select, [contenteditable], .cm-editor";
+
+const rows = () =>
+  [...document.querySelectorAll("table[data-rows] > tbody > tr")].filter((row) => row.offsetParent);
+const currentRow = () => document.activeElement?.closest?.("table[data-rows] > tbody > tr");
+
+function focusRow(row) {
+  if (!row) return;
+  row.tabIndex = -1;
+  row.focus({ preventScroll: true });
+  row.scrollIntoView({ block: "nearest" });
+}
+
+function moveBy(step) {
+  const all = rows();
+  const at = all.indexOf(currentRow());
+  focusRow(at < 0 ? all[step > 0 ? 0 : all.length - 1] : all[at + step]);
+}
+
+function open(row) {
+  (row.querySelector("a.row-link") ?? row.querySelector("a[href]"))?.click();
+}
+
+function search() {
+  const own = document.querySelector("main input[type=search]");
+  (own ?? document.querySelector("[data-search]"))?.focus();
+}
+
+function dialog(isOpen) {
+  const keys = document.getElementById("keys");
+  if (isOpen) keys?.showModal();
+  else keys?.close();
+}
+
+const turn = (direction) => document.querySelector(`.pagination a[rel=${direction}]`)?.click();
+
+const actions = {
+  j: () => moveBy(1),
+  k: () => moveBy(-1),
+  n: () => turn("next"),
+  p: () => turn("prev"),
+  "/": search,
+  "?": () => dialog(true),
+  x: () => currentRow() && selectRow(currentRow(), false),
+  X: () => currentRow() && selectRow(currentRow(), true),
+  c: () => copyForm(currentRow()?.querySelector("[data-form]") ?? document.querySelector("[data-tools]")),
+};
+
+function onKey(event) {
+  if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
+  if (event.key === "Escape" && event.target.matches("input[type=search]")) event.target.blur();
+  if (event.target.closest(TYPING) || document.querySelector("dialog[open]")) return;
+  if (event.key === "Enter" && event.target === currentRow()) {
+    event.preventDefault();
+    open(event.target);
+  } else if (Object.hasOwn(actions, event.key)) {
+    event.preventDefault();
+    actions[event.key]();
+  }
+}
+
+document.addEventListener("keydown", onKey);
+document.addEventListener("click", (event) => {
+  if (event.target.closest("[data-keys-open]")) dialog(true);
+  if (event.target.closest("[data-keys-close]") || event.target.id === "keys") dialog(false);
+});
