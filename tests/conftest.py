@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from django.conf import settings as site
+from django.db import connection
 
 from annotations.models import Membership, User, World
 from annotations.models.worlds import Role
@@ -19,6 +20,14 @@ def quick_and_plain(settings):
         "staticfiles": {"BACKEND": "django.contrib.staticfiles.storage.StaticFilesStorage"},
     }
     settings.PASSWORD_HASHERS = ["django.contrib.auth.hashers.MD5PasswordHasher"]
+
+
+@pytest.fixture(scope="session")
+def django_db_modify_db_settings(django_db_modify_db_settings_parallel_suffix):
+    """SQLite's test database is a file, which the workers and servers of a test can open too."""
+    database = connection.settings_dict
+    if connection.vendor == "sqlite" and not database["TEST"]["NAME"]:
+        database["TEST"]["NAME"] = str(site.VAR_DIR / "test.sqlite3")
 
 
 @pytest.fixture(scope="session")

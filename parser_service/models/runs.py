@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from django.db import models
 from django.utils import timezone
 
 from annotations.models import Split, User, World
+from annotations.models.splits import Source
+from parser_service.parsers.registry import PARSERS, config_fields
 
 
 class Status(models.TextChoices):
@@ -28,6 +32,26 @@ class Protocol(models.TextChoices):
 class Queue(models.TextChoices):
     CPU = "cpu"
     GPU = "gpu"
+
+
+class TrainSources(models.TextChoices):
+    """Which examples a parser learns from: generated commands, paraphrases, or both."""
+
+    GENERATED = "gen"
+    PARAPHRASED = "para"
+    BOTH = "gen+para"
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """The values of ``Example.source`` that this stands for."""
+        return SOURCES[self]
+
+
+SOURCES = {
+    TrainSources.GENERATED: (Source.GENERATED,),
+    TrainSources.PARAPHRASED: (Source.PARAPHRASED,),
+    TrainSources.BOTH: (Source.GENERATED, Source.PARAPHRASED),
+}
 
 
 ENDED = (Status.SUCCEEDED, Status.FAILED, Status.CANCELLED, Status.LOST)
@@ -58,13 +82,22 @@ class TrainingRunQuerySet(models.QuerySet["TrainingRun"]):
     def active(self) -> TrainingRunQuerySet:
         return self.exclude(status__in=ENDED)
 
+    def scored_or_active(self) -> TrainingRunQuerySet:
+        """What an accuracy table shows, or will."""
+        return self.exclude(status__in=[Status.FAILED, Status.CANCELLED, Status.LOST])
+
+    def for_table(self) -> TrainingRunQuerySet:
+        """With what a row of a list shows of each run: its split, who asked, its scores."""
+        return self.select_related("split", "created_by").prefetch_related("evaluations")
+
     def expired(self) -> TrainingRunQuerySet:
         """Running rows whose worker has not extended its lease."""
         return self.running().filter(lease_until__lt=timezone.now())
 
 
 class TrainingRun(models.Model):
-    """One parser trained once. ``attempt`` is the fencing token of whoever runs it now.
+    """One parser trained once. ``attempt`` is the fencing token of whoever runs it now; ``resumes``
+    counts how often a worker was lost with it (a worker that stops in good order does not count).
 
     ``train_sources`` is ``gen``, ``para`` or ``gen+para``. ``content_key`` hashes all that decides the
     result; a second request for the same is answered with this row.
@@ -83,6 +116,7 @@ class TrainingRun(models.Model):
 
     status = models.CharField(max_length=12, choices=status_choices, default=Status.QUEUED)
     attempt = models.PositiveIntegerField(default=0)
+    resumes = models.PositiveSmallIntegerField(default=0)
     lease_until = models.DateTimeField(null=True, blank=True)
     worker = models.CharField(max_length=200, blank=True)
     cancel_requested = models.BooleanField(default=False)
@@ -119,6 +153,16 @@ class TrainingRun(models.Model):
     @property
     def is_ended(self) -> bool:
         return self.status in ENDED
+
+    def changed_hyperparameters(self) -> tuple[tuple[str, Any], ...]:
+        """Name and value of each hyperparameter that is not the parser's default, in order."""
+        if self.parser not in PARSERS:
+            return tuple(self.config.items())
+        return tuple(
+            (field.name, self.config[field.name])
+            for field in config_fields(self.parser)
+            if self.config.get(field.name, field.default) != field.default
+        )
 
 
 class EpochMetric(models.Model):

@@ -1,0 +1,54 @@
+"""Celery's filesystem broker, with messages that appear whole.
+
+Kombu writes a message into a file that readers already see: one that is faster than the writer
+finds it empty, and its worker stops. And it takes a message by moving it to the system's temporary
+folder, which copies it where that is another file system. Here a message is renamed within its
+folder, once when it is complete and once by the one worker that takes it.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+import uuid
+from pathlib import Path
+from queue import Empty
+from typing import Any
+
+from kombu.exceptions import ChannelError
+from kombu.transport import filesystem
+from kombu.utils.json import dumps, loads
+
+
+class Channel(filesystem.Channel):
+    """A folder of messages, oldest first by name."""
+
+    def _get(self, queue: str) -> Any:
+        """Takes the oldest message of ``queue``: whoever renames it first has it. Raises Empty."""
+        for path in sorted(Path(self.data_folder_in).glob(f"*.{queue}.msg")):
+            taken = path.with_suffix(".reading")
+            try:
+                os.replace(path, taken)
+            except FileNotFoundError:
+                continue
+            text = taken.read_text(encoding="utf-8")
+            taken.unlink()
+            return loads(text)
+        raise Empty
+
+    def _put(self, queue: str, payload: Any, **kwargs: Any) -> None:
+        """Puts ``payload`` onto ``queue``. Raises ChannelError where the folder takes no file."""
+        folder = Path(self.data_folder_out)
+        name = f"{time.time_ns():020}_{uuid.uuid4()}"
+        unfinished = folder / f"{name}.writing"
+        try:
+            unfinished.write_text(dumps(payload), encoding="utf-8")
+            os.replace(unfinished, folder / f"{name}.{queue}.msg")
+        except OSError as error:
+            raise ChannelError(f"Cannot write a message into {folder}: {error}") from error
+
+
+class Transport(filesystem.Transport):
+    """What ``CELERY_BROKER_TRANSPORT`` names for the filesystem broker."""
+
+    Channel = Channel

@@ -1,0 +1,27 @@
+"""The Celery application: queues, one process for one run, and the timer in the worker's parent."""
+
+from __future__ import annotations
+
+import os
+
+from celery import Celery
+from kombu import Queue
+
+os.environ.setdefault("DJANGO_SETTINGS_MODULE", "gpsr_site.settings")
+
+app = Celery("gpsr_site")
+app.config_from_object("django.conf:settings", namespace="CELERY")
+app.conf.update(
+    task_queues=[Queue("cpu"), Queue("gpu")],
+    task_default_queue="cpu",
+    task_ignore_result=True,
+    worker_pool="prefork",
+    worker_concurrency=1,
+    worker_prefetch_multiplier=1,
+    worker_max_tasks_per_child=1,
+    worker_enable_remote_control=False,
+    worker_hijack_root_logger=False,
+    broker_connection_retry_on_startup=True,
+)
+app.autodiscover_tasks(["parser_service"], related_name="worker")
+app.steps["worker"].add("parser_service.worker:Service")

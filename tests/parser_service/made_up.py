@@ -1,0 +1,54 @@
+"""A small made-up split, and the parser that learns it in seconds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import product
+
+from annotations.models import Example, Split, World
+
+# A network that learns the made-up pairs in seconds, and one that is not done before it is stopped.
+TINY = {"embedding_size": 8, "hidden_size": 16, "minimum_count": 1, "threads": 1, "batch_size": 4}
+LONG = {**TINY, "epochs": 5000, "patience": 5000}
+
+VERBS = {"bring me": "bring", "find": "find", "go get": "bring", "look for": "find"}
+PLACES = {
+    "": "",
+    " in the <room>": ' ( at $1 " <room> " )',
+    " near the <location>": ' ( at $1 " <location> " )',
+}
+THINGS = {"the <object>": "<object>", "a <category>": "<category>", "my <object>": "<object>"}
+SAYINGS = {
+    "bring me": "please fetch",
+    "find": "where is",
+    "go get": "i would like",
+    "look for": "search for",
+}
+
+
+def made_up_pairs() -> Iterator[tuple[str, str, str]]:
+    """Generated command, paraphrase, and the form of both."""
+    for (verb, head), (thing, kind), (place, where) in product(
+        VERBS.items(), THINGS.items(), PLACES.items()
+    ):
+        form = f'( {head} ( lambda $1 e ( is_a $1 " {kind} " ){where} ) )'
+        yield f"{verb} {thing}{place}", f"{SAYINGS[verb]} {thing}{place} now", form
+
+
+def make_split(world: World, name: str = "home") -> Split:
+    """36 generated pairs and 36 paraphrased ones: of every six, four to train, one of each other part."""
+    split = Split.objects.create(
+        world=world, name=name, criterion="command", content_hash=f"{name:0>64}"
+    )
+    parts = ("train", "train", "validation", "train", "test", "train")
+    for position, (command, utterance, form) in enumerate(made_up_pairs()):
+        for source, text in (("generated", command), ("paraphrased", utterance)):
+            Example.objects.create(
+                split=split,
+                position=position,
+                part=parts[position % len(parts)],
+                source=source,
+                utterance=text,
+                logical_form=form,
+            )
+    return split
