@@ -19,6 +19,14 @@ class Ontology(models.Model):
         return f"ontology of {self.world}"
 
 
+class EntityQuerySet(models.QuerySet["Entity"]):
+    def count_by_class(self) -> dict[str, int]:
+        """How many entities each class has, in the order of the classes; those that have none are left out."""
+        counted = self.order_by().values_list("entity_class").annotate(models.Count("pk"))
+        found = dict(counted)
+        return {name: found[name] for name in ENTITY_CLASSES if name in found}
+
+
 class Entity(models.Model):
     """One row of an ontology file. Rows may repeat a text (a name of either gender, a sink in two rooms)."""
 
@@ -30,6 +38,8 @@ class Entity(models.Model):
     source = models.CharField(max_length=200, blank=True)
     line = models.PositiveIntegerField(default=0)
     position = models.PositiveIntegerField()
+
+    objects = EntityQuerySet.as_manager()
 
     class Meta:
         ordering = ["position"]

@@ -40,6 +40,18 @@ class PredictionQuerySet(models.QuerySet["Prediction"]):
         """The first-ranked prediction of each example."""
         return self.filter(rank=1)
 
+    def with_outcome(self, outcome: str) -> PredictionQuerySet:
+        """Those that came out as ``correct``, ``wrong``, ``equivalent`` (but not exact), ``malformed``
+        or ``none`` (no answer)."""
+        conditions = {
+            "correct": models.Q(is_exact_match=True),
+            "wrong": models.Q(is_exact_match=False),
+            "equivalent": models.Q(is_exact_match=False, is_equivalent=True),
+            "malformed": models.Q(is_well_formed=False) & ~models.Q(logical_form=""),
+            "none": models.Q(logical_form=""),
+        }
+        return self.filter(conditions[outcome])
+
 
 class Prediction(models.Model):
     """A ranked candidate for one example. An example without candidates has one row with an empty form."""

@@ -1,0 +1,66 @@
+"""How complex the commands of a world are: the table of FORMATS §3, computed by the database."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from django.db.models import Count, Sum
+
+from annotations.models import Command, LogicalForm, TaskCategory, World
+
+
+@dataclass(frozen=True, slots=True)
+class Complexity:
+    """One column of the table. Lengths are in tokens; a form counts in its first task category.
+
+    ``task_category`` is empty for all of them together. Sums rather than means are kept, so that
+    columns add up.
+    """
+
+    task_category: str
+    commands: int = 0
+    forms: int = 0
+    command_tokens: int = 0
+    form_tokens: int = 0
+
+    @property
+    def mean_command_length(self) -> float | None:
+        return self.command_tokens / self.commands if self.commands else None
+
+    @property
+    def mean_form_length(self) -> float | None:
+        """Over the distinct forms."""
+        return self.form_tokens / self.forms if self.forms else None
+
+    @property
+    def commands_per_form(self) -> float | None:
+        return self.commands / self.forms if self.forms else None
+
+
+def complexity(world: World) -> list[Complexity]:
+    """A column for each task category, in its order, and one for all. Two grouped queries."""
+    commands = _sums(Command.objects.filter(world=world))
+    forms = _sums(LogicalForm.objects.filter(world=world))
+    ordered = TaskCategory.objects.filter(grammar__world=world).values_list("name", flat=True)
+    names = dict.fromkeys([*ordered, *commands, *forms])
+    columns = [_column(name, commands.get(name, (0, 0)), forms.get(name, (0, 0))) for name in names]
+    return [*columns, _total(columns)]
+
+
+def _sums(rows: Any) -> dict[str, tuple[int, int]]:
+    """Task category → number of rows and of their tokens."""
+    grouped = rows.order_by().values("task_category").annotate(n=Count("id"), tokens=Sum("length"))
+    return {group["task_category"]: (group["n"], group["tokens"]) for group in grouped}
+
+
+def _column(name: str, commands: tuple[int, int], forms: tuple[int, int]) -> Complexity:
+    return Complexity(name, commands[0], forms[0], commands[1], forms[1])
+
+
+def _total(columns: list[Complexity]) -> Complexity:
+    sums = {key: sum(asdict(column)[key] for column in columns) for key in SUMMED}
+    return Complexity("", **sums)
+
+
+SUMMED = ("commands", "forms", "command_tokens", "form_tokens")

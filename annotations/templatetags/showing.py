@@ -1,0 +1,91 @@
+"""What templates say instead of spelling it out: forms, commands, figures."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from django import template
+from django.utils import timezone
+from django.utils.html import format_html
+from django.utils.safestring import SafeString
+from django.utils.timesince import timesince
+
+from annotations.showing import difference, form_of, gloss_of, pieces_of, shown
+
+register = template.Library()
+
+
+@register.inclusion_tag("_logical_form.html", takes_context=True)
+def logical_form(context: Any, text: str, gloss: bool = False, tools: bool = False) -> dict[str, Any]:
+    """A form in the notation that the page shows; with ``gloss`` its English sentence beneath."""
+    form = shown(text)
+    if gloss and form.corpus:
+        form = replace(form, gloss=gloss_of(context["world"], form_of(text)))
+    return {"form": form, "tools": tools}
+
+
+@register.inclusion_tag("_chips.html")
+def command(text: str) -> dict[str, Any]:
+    """A command with its class tokens as chips."""
+    return {"pieces": pieces_of(text)}
+
+
+@register.inclusion_tag("_form_diff.html")
+def expected_form(expected: str, predicted: str) -> dict[str, Any]:
+    """The annotated form, what the prediction lacks marked."""
+    return {"pieces": difference(expected, predicted)[0]}
+
+
+@register.inclusion_tag("_form_diff.html")
+def predicted_form(expected: str, predicted: str) -> dict[str, Any]:
+    """The predicted form, what it has beyond the annotated one marked."""
+    return {"pieces": difference(expected, predicted)[1]}
+
+
+@register.filter
+def percent(fraction: float | None) -> float | None:
+    """A fraction of 1 in percent."""
+    return None if fraction is None else 100 * fraction
+
+
+@register.filter
+def figure(number: float | None) -> str:
+    """A count with commas between thousands."""
+    return "" if number is None else f"{number:,}"
+
+
+@register.filter
+def decimals(number: float | None, digits: int = 2) -> str:
+    """A number with so many decimals; a dash where there is none."""
+    return "–" if number is None else f"{number:,.{digits}f}"
+
+
+@register.filter
+def duration(seconds: float | None) -> str:
+    """Seconds as ``48 s``, ``3 min 20 s`` or ``2 h 5 min``; nothing for None."""
+    if seconds is None:
+        return ""
+    if seconds < 10:
+        return f"{seconds:.1f} s"
+    whole = round(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    minutes, rest = divmod(whole, 60)
+    return f"{minutes} min {rest} s" if minutes < 60 else f"{minutes // 60} h {minutes % 60} min"
+
+
+@register.filter
+def ago(moment: Any) -> SafeString:
+    """How long ago, with the moment itself on hover."""
+    if moment is None:
+        return format_html("")
+    passed = timezone.now() - moment
+    words = f"{timesince(moment, depth=1)} ago" if passed.total_seconds() >= 60 else "just now"
+    absolute = timezone.localtime(moment)
+    return format_html(
+        '<time datetime="{}" title="{}">{}</time>',
+        absolute.isoformat(),
+        f"{absolute:%Y-%m-%d %H:%M:%S %Z}",
+        words.replace("\xa0", " "),
+    )

@@ -1,0 +1,248 @@
+"""The accuracy tables of a world: parsers down, settings across, one table a protocol."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from itertools import groupby
+from typing import Any, TypeAlias
+
+from django.urls import reverse
+from django.utils.http import urlencode
+
+from annotations.models import Split, World
+from annotations.models.splits import Source
+from parser_service.models import Evaluation, TrainingRun
+from parser_service.models.runs import Protocol
+from parser_service.parsers.registry import PARSERS
+from parser_service.published import published_accuracy, published_criteria
+
+# Train sources and test source, in the order of the paper; ``mixed`` tests on both sources together.
+SETTINGS = (
+    ("gen", "gen"),
+    ("gen", "para"),
+    ("para", "para"),
+    ("gen+para", "para"),
+    ("gen+para", "mixed"),
+)
+# Test source → the value of ``Example.source``; ``mixed`` has both.
+SOURCE_NAMES = {"gen": Source.GENERATED, "para": Source.PARAPHRASED}
+WHAT_IT_KNOWS = {
+    Protocol.STRICT: "Training pairs only.",
+    Protocol.DOMAIN: "The declared predicates and the ontology are known too, as on a robot.",
+    Protocol.GRAMMAR: "The annotated grammar and all its forms are known too.",
+}
+
+Changes: TypeAlias = "tuple[tuple[str, Any], ...]"
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One setting on one split; ``starts_group`` at the first split of a setting."""
+
+    train_sources: str
+    test_source: str
+    split: Split
+    starts_group: bool = False
+
+    @property
+    def setting(self) -> tuple[str, str]:
+        return self.train_sources, self.test_source
+
+    def shows(self, run: TrainingRun) -> bool:
+        """Whether a score of ``run`` belongs here."""
+        return run.split_id == self.split.pk and run.train_sources == self.train_sources
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A parser in a column: its newest score, or the run that will give one.
+
+    ``published`` is the paper's figure in percent; ``runs`` counts the scored runs behind the cell.
+    """
+
+    score: Evaluation | None
+    active: TrainingRun | None
+    published: float | None
+    url: str
+    runs: int = 0
+    is_best: bool = False
+
+    @property
+    def percent(self) -> float | None:
+        return 100 * self.score.accuracy if self.score else None
+
+    @property
+    def low(self) -> float | None:
+        return 100 * self.score.interval_low if self.score else None
+
+    @property
+    def high(self) -> float | None:
+        return 100 * self.score.interval_high if self.score else None
+
+    @property
+    def plus_minus(self) -> float | None:
+        """Half the width of the interval, which is not quite symmetric."""
+        return (self.high - self.low) / 2 if self.score else None
+
+    @property
+    def note(self) -> str:
+        if not self.score:
+            return ""
+        found = f"{self.score.correct} of {self.score.count} exact"
+        return f"{found}; the newest of {self.runs} runs" if self.runs > 1 else found
+
+    @property
+    def status(self) -> str:
+        return self.active.status if self.active else ""
+
+    @property
+    def progress_percent(self) -> float:
+        return 100 * self.active.progress if self.active else 0
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A parser with one configuration; ``changes`` are the hyperparameters that are not the default.
+
+    ``cells`` stand in the order of the table's columns, None where nobody has trained.
+    """
+
+    parser: str
+    changes: Changes
+    cells: tuple[Cell | None, ...]
+
+    @property
+    def title(self) -> str:
+        return PARSERS[self.parser].title if self.parser in PARSERS else self.parser
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """All rows of one protocol. The best of a column is the best among them."""
+
+    protocol: str
+    columns: tuple[Column, ...]
+    rows: tuple[Row, ...]
+
+    @property
+    def sentence(self) -> str:
+        return WHAT_IT_KNOWS[Protocol(self.protocol)]
+
+    @property
+    def settings(self) -> list[tuple[str, str, int]]:
+        """Train sources, test source and the number of columns of each setting."""
+        grouped = groupby(self.columns, key=lambda column: column.setting)
+        return [(*setting, len(list(columns))) for setting, columns in grouped]
+
+    @property
+    def is_active(self) -> bool:
+        return any(cell and cell.active for row in self.rows for cell in row.cells)
+
+    @property
+    def filled(self) -> list[tuple[Row, list[tuple[Column, Cell | None]]]]:
+        """Each row with its cells beside their columns."""
+        return [(row, list(zip(self.columns, row.cells, strict=True))) for row in self.rows]
+
+
+def accuracy_tables(world: World, part: str, splits: Iterable[Split]) -> list[Table]:
+    """The tables of ``world`` over ``splits`` for one ``part`` of them. Three queries."""
+    splits = sorted(splits, key=lambda split: split.pk)
+    runs = list(world.runs.filter(split__in=splits).scored_or_active().order_by("-id"))
+    scores = Evaluation.objects.filter(run__in=runs, part=part)
+    maker = _Maker(
+        world=world,
+        part=part,
+        columns=tuple(_columns(runs, splits)),
+        scores={(score.run_id, score.test_source): score for score in scores},
+        published=published_criteria(splits),
+    )
+    tables = (maker.table(protocol, runs) for protocol in Protocol)
+    return [table for table in tables if table.rows]
+
+
+def _columns(runs: list[TrainingRun], splits: list[Split]) -> Iterator[Column]:
+    """The settings that somebody has trained, in the order of the paper, split by split."""
+    trained = {(run.train_sources, run.split_id) for run in runs}
+    for train_sources, test_source in SETTINGS:
+        found = [split for split in splits if (train_sources, split.pk) in trained]
+        for split in found:
+            yield Column(train_sources, test_source, split, starts_group=split is found[0])
+
+
+@dataclass(frozen=True, slots=True)
+class _Maker:
+    """Sorts runs, newest first, into tables.
+
+    ``scores`` are by run and test source, ``published`` says which split is which published one.
+    """
+
+    world: World
+    part: str
+    columns: tuple[Column, ...]
+    scores: dict[tuple[int, str], Evaluation]
+    published: dict[int, str]
+
+    def table(self, protocol: str, runs: list[TrainingRun]) -> Table:
+        grouped = defaultdict(list)
+        for run in runs:
+            if run.protocol == protocol:
+                grouped[run.parser, run.changed_hyperparameters()].append(run)
+        ranked = sorted(grouped.items(), key=lambda item: _rank(*item[0]))
+        rows = [self.row(parser, changes, mine) for (parser, changes), mine in ranked]
+        return Table(protocol, self.columns, tuple(_with_best_marked(rows)))
+
+    def row(self, parser: str, changes: Changes, runs: list[TrainingRun]) -> Row:
+        cells = tuple(self.cell(parser, column, runs) for column in self.columns)
+        return Row(parser, changes, cells)
+
+    def cell(self, parser: str, column: Column, runs: list[TrainingRun]) -> Cell | None:
+        mine = [run for run in runs if column.shows(run)]
+        found = [self.scores.get((run.pk, column.test_source)) for run in mine]
+        scores = [score for score in found if score]
+        active = next((run for run in mine if not run.is_ended), None)
+        if not scores and not active:
+            return None
+        return Cell(
+            score=scores[0] if scores else None,
+            active=active,
+            published=self.published_figure(parser, column),
+            url=self.predictions_url(scores[0], column) if scores else self.url("run", active.pk),
+            runs=len(scores),
+        )
+
+    def published_figure(self, parser: str, column: Column) -> float | None:
+        criterion = self.published.get(column.split.pk, "")
+        return published_accuracy(parser, column.setting, criterion)
+
+    def predictions_url(self, score: Evaluation, column: Column) -> str:
+        """The predictions that ``score`` counts."""
+        chosen = {"part": self.part}
+        if source := SOURCE_NAMES.get(column.test_source):
+            chosen["source"] = source
+        return f"{self.url('predictions', score.run_id)}?{urlencode(chosen)}"
+
+    def url(self, name: str, key: int) -> str:
+        return reverse(name, kwargs={"world": self.world.name, "pk": key})
+
+
+def _rank(parser: str, changes: Changes) -> tuple[int, int, str]:
+    """The registry's order; the defaults before what departs from them."""
+    names = list(PARSERS)
+    place = names.index(parser) if parser in names else len(names)
+    return place, len(changes), str(changes)
+
+
+def _with_best_marked(rows: list[Row]) -> Iterator[Row]:
+    best = [max(map(_accuracy, cells)) for cells in zip(*(row.cells for row in rows), strict=True)]
+    for row in rows:
+        marked = (
+            replace(cell, is_best=_accuracy(cell) == top) if cell and cell.score else cell
+            for cell, top in zip(row.cells, best, strict=True)
+        )
+        yield replace(row, cells=tuple(marked))
+
+
+def _accuracy(cell: Cell | None) -> float:
+    return cell.score.accuracy if cell and cell.score else -1.0

@@ -1,0 +1,52 @@
+"""The accuracy tables as rows of a plain table."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from parser_service.accuracy import Column, Row, Table
+from parser_service.models import Evaluation
+
+SCORE_FIELDS = (
+    "part",
+    "run_id",
+    "count",
+    "correct",
+    "accuracy",
+    "interval_low",
+    "interval_high",
+    "equivalent",
+    "well_formed",
+)
+# The columns, in this order in every release.
+HEADER = (
+    "parser",
+    "configuration",
+    "protocol",
+    "train_sources",
+    "test_source",
+    "split",
+    "criterion",
+    *SCORE_FIELDS,
+)
+
+
+def rows_of(tables: Iterable[Table]) -> Iterator[tuple[Any, ...]]:
+    """One row for each cell that has been scored; accuracies are fractions of 1."""
+    for table in tables:
+        for row, cells in table.filled:
+            for column, cell in cells:
+                if cell and cell.score:
+                    yield (*_about(table, row, column), *_score(cell.score))
+
+
+def _about(table: Table, row: Row, column: Column) -> tuple[Any, ...]:
+    configuration = json.dumps(dict(row.changes))
+    split = column.split
+    return (row.parser, configuration, table.protocol, *column.setting, split.name, split.criterion)
+
+
+def _score(score: Evaluation) -> tuple[Any, ...]:
+    return tuple(getattr(score, name) for name in SCORE_FIELDS)

@@ -1,0 +1,67 @@
+"""What the lists of runs and predictions may be filtered by."""
+
+from __future__ import annotations
+
+import django_filters
+from django.db.models import QuerySet
+from django.http import HttpRequest
+
+from annotations.filters import (
+    Choices,
+    Head,
+    PageFilters,
+    Search,
+    predicate_choices,
+    task_category_choices,
+)
+from annotations.models import Split
+from annotations.models.splits import part_choices, source_choices
+from parser_service.models import Prediction, TrainingRun
+from parser_service.models.runs import status_choices
+from parser_service.parsers.registry import PARSERS
+
+OUTCOMES = [
+    ("correct", "correct"),
+    ("wrong", "wrong"),
+    ("equivalent", "equivalent but not exact"),
+    ("malformed", "not well formed"),
+    ("none", "no answer"),
+]
+
+
+def parser_choices() -> Choices:
+    return [(name, entry.title) for name, entry in PARSERS.items()]
+
+
+def split_choices(request: HttpRequest) -> Choices:
+    """The splits of the world that the page is about."""
+    names = Split.objects.filter(world=request.world).values_list("name", flat=True)
+    return [(name, name) for name in names]
+
+
+class RunFilters(PageFilters):
+    status = django_filters.ChoiceFilter(label="Status", choices=status_choices)
+    parser = django_filters.ChoiceFilter(label="Parser", choices=parser_choices)
+    split = django_filters.ChoiceFilter("split__name", label="Split")
+    world_choices = {"split": split_choices}
+
+    class Meta:
+        model = TrainingRun
+        fields: list[str] = []
+
+
+class PredictionFilters(PageFilters):
+    q = Search("example__utterance")
+    outcome = django_filters.ChoiceFilter(label="Outcome", choices=OUTCOMES, method="by_outcome")
+    part = django_filters.ChoiceFilter("example__part", label="Part", choices=part_choices)
+    source = django_filters.ChoiceFilter("example__source", label="Source", choices=source_choices)
+    task_category = django_filters.ChoiceFilter("example__task_category", label="Task category")
+    head = Head("example__logical_form", label="Head predicate")
+    world_choices = {"task_category": task_category_choices, "head": predicate_choices}
+
+    class Meta:
+        model = Prediction
+        fields: list[str] = []
+
+    def by_outcome(self, rows: QuerySet[Prediction], name: str, value: str) -> QuerySet[Prediction]:
+        return rows.with_outcome(value)

@@ -1,0 +1,87 @@
+"""The form that starts a run: its fields are the parser's hyperparameters."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from django import forms
+
+from annotations.models import World
+from parser_service.lifecycle import LARGEST_SEED
+from parser_service.models.runs import TrainSources
+from parser_service.parsers.config_fields import ConfigField
+from parser_service.parsers.registry import config_fields, entry, make_config
+
+SOURCE_LABELS = {
+    TrainSources.GENERATED: "generated",
+    TrainSources.PARAPHRASED: "paraphrased",
+    TrainSources.BOTH: "generated and paraphrased",
+}
+PREFIX = "config-"  # before the names of hyperparameters
+
+
+class RunForm(forms.Form):
+    """What to train, on what. ``config`` holds the hyperparameters once the form is valid."""
+
+    split = forms.ModelChoiceField(queryset=None, empty_label=None)
+    train_sources = forms.ChoiceField(
+        label="Train on", choices=list(SOURCE_LABELS.items()), widget=forms.RadioSelect
+    )
+    protocol = forms.ChoiceField(help_text="What training may know beside its pairs.")
+    seed = forms.IntegerField(min_value=0, max_value=LARGEST_SEED, initial=0)
+
+    def __init__(self, world: World, parser: str, *args: Any, **kwargs: Any):
+        super().__init__(*args, **kwargs)
+        self.parser = parser
+        self.fields["split"].queryset = world.splits.all()
+        self.fields["protocol"].choices = [(name, name) for name in entry(parser).protocols]
+        self.fields["protocol"].initial = entry(parser).protocols[0]
+        self.fields["train_sources"].initial = TrainSources.GENERATED
+        for declared in config_fields(parser):
+            self.fields[PREFIX + declared.name] = field_for(declared)
+
+    @property
+    def general(self) -> list[forms.BoundField]:
+        """The fields that every parser has."""
+        return [self[name] for name in ("split", "train_sources", "protocol", "seed")]
+
+    @property
+    def hyperparameters(self) -> list[forms.BoundField]:
+        return [self[name] for name in self.fields if name.startswith(PREFIX)]
+
+    def clean(self) -> dict[str, Any]:
+        cleaned = super().clean()
+        self.config = {
+            name.removeprefix(PREFIX): value
+            for name, value in cleaned.items()
+            if name.startswith(PREFIX)
+        }
+        if not self.errors:
+            self._check_config()
+        return cleaned
+
+    def _check_config(self) -> None:
+        """The parser has the last word on its hyperparameters."""
+        try:
+            make_config(self.parser, self.config)
+        except ValueError as error:
+            self.add_error(None, str(error))
+
+
+def field_for(declared: ConfigField) -> forms.Field:
+    """A form field for one hyperparameter, with its default and its bounds."""
+    common = {
+        "label": declared.name.replace("_", " "),
+        "initial": declared.default,
+        "help_text": declared.description,
+    }
+    if declared.type is bool:
+        return forms.BooleanField(required=False, **common)
+    if declared.choices:
+        return forms.ChoiceField(choices=[(name, name) for name in declared.choices], **common)
+    if declared.type is str:
+        return forms.CharField(required=False, **common)
+    bounds = {"min_value": declared.minimum, "max_value": declared.maximum}
+    if declared.type is int:
+        return forms.IntegerField(**common, **bounds)
+    return forms.FloatField(widget=forms.NumberInput(attrs={"step": "any"}), **common, **bounds)

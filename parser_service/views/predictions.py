@@ -1,0 +1,48 @@
+"""What a run says of each example, beside what it should have said."""
+
+from __future__ import annotations
+
+from django.http import Http404, HttpRequest, HttpResponse
+from django.shortcuts import get_object_or_404, render
+
+from annotations.access import world_view
+from annotations.listing import Listing, Sort
+from annotations.models import Duty, World
+from parser_service.filters import PredictionFilters
+from parser_service.models import TrainingRun
+
+SORTS = {
+    "position": Sort("No.", "example_id", is_number=True),
+    "utterance": Sort("Utterance", "example__utterance"),
+    "score": Sort("Score", "score", is_number=True),
+}
+
+
+@world_view(Duty.VIEW)
+def predictions(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """The first answer to every example, filtered by the URL."""
+    run = get_object_or_404(TrainingRun.objects.for_table(), world=world, pk=pk)
+    context = {"run": run, "listing": listing_of(request, run)}
+    return render(request, "parser_service/predictions.html", context)
+
+
+@world_view(Duty.VIEW)
+def prediction(request: HttpRequest, world: World, pk: int, example: int) -> HttpResponse:
+    """All candidates for one example; the neighbours are those of the filtered list."""
+    run = get_object_or_404(TrainingRun.objects.for_table(), world=world, pk=pk)
+    candidates = list(run.predictions.filter(example=example).select_related("example"))
+    if not candidates:
+        raise Http404("This run has no answer stored for that example.")
+    context = {
+        "run": run,
+        "example": candidates[0].example,
+        "candidates": candidates,
+        "neighbours": neighbours_of(listing_of(request, run), example),
+        "query": request.GET.urlencode(),
+    }
+    return render(request, "parser_service/prediction.html", context)
+
+
+def listing_of(request: HttpRequest, run: TrainingRun) -> Listing:
+    rows = run.predictions.best().select_related("example")
+    return Listing(request, PredictionFilters, rows, SORTS)
