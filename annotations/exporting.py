@@ -9,7 +9,7 @@ from typing import Any
 
 from django.db import models
 
-from annotations.models import Example, Split
+from annotations.models import Split
 
 # The keys of every export, in this order in every release.
 FIELDS = [

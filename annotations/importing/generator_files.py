@@ -1,0 +1,105 @@
+"""Reads the files of a command generator into one value. Nothing is stored here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from annotations.importing.predicates_file import PREDICATES_FILE, read_predicates
+from annotations.language.errors import LanguageError, Position, Problem, warning
+from annotations.language.expansion import Generated, TaskCategory, generate
+from annotations.language.generator_folder import GeneratorFolder, read_generator_files
+from annotations.language.grammar_files import TRIPLE_FILES, is_grammar_name
+from annotations.language.logic import read_form
+from annotations.language.ontology import ONTOLOGY_FILES, Ontology, read_ontology
+from annotations.language.predicates import Predicate, infer_signatures
+from annotations.language.task_categories import is_template_name
+from annotations.language.template_sets import set_problems
+from annotations.models.problems import Subject
+
+# Above this many pairs signatures are inferred from the templates as they are, unexpanded.
+INFERENCE_LIMIT = 100_000
+
+
+@dataclass(frozen=True)
+class Generator:
+    """What the files of one generator say. ``problems`` are by the part of a world they are about."""
+
+    texts: GeneratorFolder
+    ontology: Ontology
+    predicates: Mapping[str, Predicate]
+    problems: Mapping[Subject, tuple[Problem, ...]]
+
+    @property
+    def all_problems(self) -> tuple[Problem, ...]:
+        return tuple(problem for found in self.problems.values() for problem in found)
+
+
+def read_generator(
+    files: Mapping[str, bytes], edited: Mapping[str, Predicate] | None = None
+) -> Generator:
+    """Reads files given as name → bytes. Nothing is raised: what is wrong is among the problems.
+
+    Args:
+        edited: predicates that people have changed; they hold whatever the files say.
+    """
+    ontology, ontology_problems = read_ontology(files)
+    texts = read_generator_files(files)
+    problems = [*texts.problems, *_unread(files)]
+    declared, found = _declared(files)
+    problems += found
+    predicates = dict(declared or {})
+    if not texts.has_errors:
+        inferred, found = _examined(texts.categories(), declared, edited or {})
+        predicates = predicates or inferred
+        problems += found
+    return Generator(texts, ontology, predicates, _by_subject(problems, ontology_problems))
+
+
+def _declared(files: Mapping[str, bytes]) -> tuple[dict[str, Predicate] | None, list[Problem]]:
+    if PREDICATES_FILE not in files:
+        return None, []
+    try:
+        return read_predicates(files[PREDICATES_FILE]), []
+    except LanguageError as trouble:
+        return None, [trouble.problem]
+
+
+def _examined(
+    categories: tuple[TaskCategory, ...],
+    declared: Mapping[str, Predicate] | None,
+    edited: Mapping[str, Predicate],
+) -> tuple[dict[str, Predicate], list[Problem]]:
+    """The predicates that the forms use, and what the templates' commands and forms show wrong."""
+    try:
+        generated = generate(categories, INFERENCE_LIMIT)
+        forms = [read_form(text) for text in {each.form_text for each in generated.expansions}]
+    except LanguageError:
+        # Too many, or a template with an error that set_problems finds at its place.
+        generated = Generated((), (), ())
+        forms = [template.form for category in categories for template in category.templates]
+    inferred = infer_signatures(forms)
+    known = {**(inferred if declared is None else declared), **edited}
+    return inferred, list(set_problems(categories, generated, known))
+
+
+def _unread(files: Iterable[str]) -> Iterator[Problem]:
+    """A warning for each file that is none of a generator; a README is nobody's surprise."""
+    known = {*ONTOLOGY_FILES, *TRIPLE_FILES, PREDICATES_FILE}
+    for name in files:
+        is_read = name in known or is_grammar_name(name) or is_template_name(name)
+        if not is_read and not name.lower().startswith("readme"):
+            hint = f"known are *.txt, {', '.join(ONTOLOGY_FILES)} and {PREDICATES_FILE}"
+            yield warning(Position(name), "this file is none of a generator; it is left out", hint)
+
+
+def _by_subject(
+    texts: Iterable[Problem], ontology: Iterable[Problem]
+) -> dict[Subject, tuple[Problem, ...]]:
+    distinct = sorted(set(texts))
+    of_templates = {each for each in distinct if is_template_name(each.position.source)}
+    return {
+        Subject.ONTOLOGY: tuple(sorted(set(ontology))),
+        Subject.GRAMMAR: tuple(each for each in distinct if each not in of_templates),
+        Subject.TEMPLATES: tuple(each for each in distinct if each in of_templates),
+    }

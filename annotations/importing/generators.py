@@ -1,0 +1,86 @@
+"""Imports a command generator (FORMATS §1–§3) into a world."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from django.core.exceptions import ValidationError
+from django.db import transaction
+
+from annotations.composition import own_template_source
+from annotations.importing.files import gather
+from annotations.importing.generator_files import Generator, read_generator
+from annotations.importing.report import ImportReport
+from annotations.importing.storing import store
+from annotations.language.errors import LanguageError
+from annotations.language.predicates import Predicate
+from annotations.models import Membership, User, World
+from annotations.models.worlds import Role
+from annotations.reading import predicates_of
+
+
+def import_generator(
+    world_name: str, source: Path | str | Mapping[str, bytes], by: User | None = None
+) -> ImportReport:
+    """Makes a world's ontology, grammar, templates and predicates those of a generator.
+
+    Args:
+        world_name: the world to import into; it is made where there is none of that name.
+        source: a folder, or the files of an upload as name → bytes.
+        by: who asked. They become the admin of a world that this makes.
+
+    Returns:
+        What was found. With an error among its problems nothing was stored; warnings are stored
+        beside what they are about. Rows that are right already are not touched, and neither are
+        templates and predicates that people wrote or changed.
+    """
+    try:
+        _require_name(world_name)
+        files = gather(source)
+    except LanguageError as trouble:
+        return ImportReport(world_name, problems=(trouble.problem,))
+    generator = read_generator(files, _edited_predicates(world_name))
+    report = _report(world_name, generator)
+    if report.is_refused:
+        return report
+    with transaction.atomic():
+        return replace(report, changes=store(_locked_world(world_name, by), generator))
+
+
+def _require_name(name: str) -> None:
+    try:
+        World(name=name).clean_fields()
+    except ValidationError as trouble:
+        sentences = " ".join(trouble.messages)
+        raise LanguageError(f"“{name}” cannot be the name of a world: {sentences}") from trouble
+
+
+def _edited_predicates(world_name: str) -> dict[str, Predicate]:
+    world = World.objects.filter(name=world_name).first()
+    return predicates_of(world, world.predicates.filter(is_edited=True)) if world else {}
+
+
+def _locked_world(name: str, by: User | None) -> World:
+    """The world, held against a second import until this one is through."""
+    world, is_new = World.objects.select_for_update().get_or_create(name=name)
+    if is_new and by is not None:
+        Membership.objects.create(world=world, user=by, role=Role.ADMIN)
+    return world
+
+
+def _report(world_name: str, generator: Generator) -> ImportReport:
+    texts = generator.texts
+    return ImportReport(
+        world_name,
+        productions={name: len(file.productions) for name, file in texts.grammars.files.items()},
+        templates={
+            each.name: len(texts.templates.get(own_template_source(each), ()))
+            for each in texts.compositions
+        },
+        entities=dict(Counter(each.entity_class for each in generator.ontology.entities)),
+        predicates=len(generator.predicates),
+        problems=generator.all_problems,
+    )

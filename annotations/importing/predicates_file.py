@@ -1,0 +1,84 @@
+"""``predicates.json``: declared predicates beside a generator, read and written.
+
+A list of ``{"name", "kind", "signatures", "gloss"}``: the kind is ``action`` or ``description``, a
+signature a list of argument kinds, the gloss a pattern (``annotations.language.gloss_patterns``).
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from typing import Any
+
+from annotations.language.decoding import decode
+from annotations.language.errors import LanguageError, Position
+from annotations.language.predicates import ArgumentKind, Predicate, PredicateKind, Signature
+
+PREDICATES_FILE = "predicates.json"
+_EXAMPLE = '[{"name": "go", "kind": "action", "signatures": [["room"]], "gloss": "go to {1}"}]'
+
+
+def read_predicates(data: bytes, source: str = PREDICATES_FILE) -> dict[str, Predicate]:
+    """The predicates that a file declares, by name.
+
+    Raises:
+        LanguageError: with the position, where the file is no such list or a value is unknown.
+    """
+    text = decode(data, source)
+    try:
+        rows = json.loads(text)
+    except RecursionError:
+        raise LanguageError("the file nests too deep", Position(source), _EXAMPLE) from None
+    except json.JSONDecodeError as trouble:
+        place = Position(source, trouble.lineno, trouble.colno)
+        raise LanguageError(f"this is no JSON: {trouble.msg}", place, _EXAMPLE) from trouble
+    if not isinstance(rows, list):
+        raise LanguageError("this is no list of predicates", Position(source), _EXAMPLE)
+    found: dict[str, Predicate] = {}
+    for row in rows:
+        place = _place(text, row, source)
+        predicate = _predicate(row, place)
+        if predicate.name in found:
+            raise LanguageError(f"{predicate.name} is declared twice", place, "merge the two")
+        found[predicate.name] = predicate
+    return found
+
+
+def write_predicates(predicates: Iterable[Predicate]) -> str:
+    """The file that reads back as equal predicates, one a line."""
+    rows = [json.dumps(_row(predicate), ensure_ascii=False) for predicate in predicates]
+    return "[\n  " + ",\n  ".join(rows) + "\n]\n"
+
+
+def _row(predicate: Predicate) -> dict[str, Any]:
+    return {
+        "name": predicate.name,
+        "kind": str(predicate.kind),
+        "signatures": [list(map(str, each.arguments)) for each in predicate.signatures],
+        "gloss": predicate.gloss,
+    }
+
+
+def _predicate(row: Any, place: Position) -> Predicate:
+    if not (isinstance(row, dict) and isinstance(row.get("name"), str) and row["name"]):
+        raise LanguageError("this row has no name", place, _EXAMPLE)
+    signatures = row.get("signatures")
+    if not isinstance(signatures, list) or not all(isinstance(each, list) for each in signatures):
+        raise LanguageError(
+            f"the signatures of {row['name']} are no list of lists", place, _EXAMPLE
+        )
+    try:
+        kind = PredicateKind(row.get("kind", ""))
+        read = tuple(Signature(tuple(map(ArgumentKind, each))) for each in signatures)
+    except ValueError as trouble:
+        kinds = ", ".join(ArgumentKind)
+        hint = f"a predicate is an action or a description; kinds of arguments are {kinds}"
+        raise LanguageError(f"{row['name']}: {trouble}", place, hint) from trouble
+    return Predicate(row["name"], kind, read, str(row.get("gloss", "")))
+
+
+def _place(text: str, row: Any, source: str) -> Position:
+    """The line on which the row's name is first written, as JSON keeps no positions."""
+    name = row.get("name") if isinstance(row, dict) else None
+    start = text.find(f'"{name}"') if isinstance(name, str) else -1
+    return Position(source, text.count("\n", 0, start) + 1) if start >= 0 else Position(source)

@@ -1,0 +1,67 @@
+"""What an import found and did."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from annotations.language.errors import Problem
+from annotations.rows import Changes
+
+
+def as_json(problem: Problem) -> dict[str, Any]:
+    """A problem as the commands and pages show it."""
+    place = problem.position
+    return {
+        "file": place.source,
+        "line": place.line,
+        "column": place.column,
+        "severity": str(problem.severity),
+        "message": problem.message,
+        "hint": problem.hint,
+    }
+
+
+@dataclass(frozen=True, slots=True)
+class ImportReport:
+    """``productions`` counts lines by file, ``templates`` by task category, ``entities`` by class.
+
+    With an error among the ``problems`` the import was refused whole: nothing was stored, and the
+    counts say what could be read.
+    """
+
+    world: str
+    productions: Mapping[str, int] = field(default_factory=dict)
+    templates: Mapping[str, int] = field(default_factory=dict)
+    entities: Mapping[str, int] = field(default_factory=dict)
+    predicates: int = 0
+    problems: tuple[Problem, ...] = ()
+    changes: Changes = field(default_factory=Changes)
+
+    @property
+    def errors(self) -> tuple[Problem, ...]:
+        return tuple(problem for problem in self.problems if problem.is_error)
+
+    @property
+    def warnings(self) -> tuple[Problem, ...]:
+        return tuple(problem for problem in self.problems if not problem.is_error)
+
+    @property
+    def is_refused(self) -> bool:
+        return bool(self.errors)
+
+    def as_json(self) -> dict[str, Any]:
+        return {
+            "world": self.world,
+            "productions": dict(self.productions),
+            "templates": dict(self.templates),
+            "entities": dict(self.entities),
+            "predicates": self.predicates,
+            "problems": [as_json(problem) for problem in self.problems],
+            "changes": {
+                "added": self.changes.added,
+                "changed": self.changes.changed,
+                "removed": self.changes.removed,
+            },
+        }
