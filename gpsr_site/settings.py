@@ -122,9 +122,8 @@ DATA_UPLOAD_MAX_NUMBER_FILES = UPLOAD_MAX_FILES
 
 # --- background work ----------------------------------------------------------------------------
 
-CELERY_BROKER_URL = env.str("CELERY_BROKER_URL", default="filesystem://")
+CELERY_BROKER_URL = env.str("CELERY_BROKER_URL", default="filesystem://localhost")
 if CELERY_BROKER_URL.startswith("filesystem:"):
-    CELERY_BROKER_URL = "filesystem://localhost"
     for _name in ("messages", "control"):
         (VAR_DIR / "broker" / _name).mkdir(parents=True, exist_ok=True)
     CELERY_BROKER_TRANSPORT = "gpsr_site.broker:Transport"

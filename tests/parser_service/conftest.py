@@ -20,7 +20,7 @@ def split(world) -> Split:
 @pytest.fixture
 def broker() -> str:
     """The filesystem broker, or the one of TEST_BROKER_URL."""
-    return os.environ.get("TEST_BROKER_URL", "filesystem://")
+    return os.environ.get("TEST_BROKER_URL", "filesystem://localhost")
 
 
 @pytest.fixture
