@@ -1,0 +1,122 @@
+import os
+from pathlib import Path
+
+import pytest
+
+from annotations.language.expansion import TaskCategory, generate
+from annotations.language.generator_folder import read_generator_folder
+from annotations.language.grammar import Grammar, read_productions
+from annotations.language.templates import read_template
+from parser_service.parsers.interface import Cancelled, Knowledge
+from parser_service.parsers.oracle import GRAMMAR, GrammarOracle
+from tests.parser_service.parsers.pair_files import read_pairs
+
+SHARED = Path(os.environ.get("GPSR_SHARED_DATA", "../shared/data"))
+
+RULES = """
+$Main = $go | $vbfind $thing
+$go = ( go | walk ) to the {room}, please
+$vbfind = find | look for
+$thing = the {kobject} | the {name}
+"""
+
+
+def category(name, *templates):
+    grammar = Grammar(read_productions(RULES).productions)
+    return TaskCategory(name, grammar, tuple(read_template(line) for line in templates))
+
+
+@pytest.fixture
+def oracle():
+    one = category(
+        "1",
+        "( go | walk ) to the {room} , please = (go {room})",
+        "$vbfind the {kobject} = (find {kobject})",
+        "look for the {kobject} = (seek {kobject})",
+    )
+    two = category("2", "$vbfind $thing = (locate $thing)")
+    return GrammarOracle(knowledge=Knowledge(grammar=(one, two)))
+
+
+def forms(parser, utterance, beam_width=1):
+    return [candidate.form for candidate in parser.predict([utterance], beam_width)[0]]
+
+
+def test_a_command_gets_the_form_of_its_template(oracle):
+    assert forms(oracle, "find the <object>") == ['( find " <object> " )']
+
+
+def test_a_comma_may_stand_at_its_word(oracle):
+    for command in ("walk to the <room>, please", "go to the <room> , please"):
+        assert forms(oracle, command) == ['( go " <room> " )']
+
+
+@pytest.mark.parametrize("utterance", ["", "find", "find the cup", "please find the <object>"])
+def test_outside_the_grammar_there_is_no_answer(oracle, utterance):
+    assert forms(oracle, utterance, beam_width=5) == []
+
+
+def test_of_several_derivations_generation_and_the_oracle_keep_the_same(oracle):
+    candidates = forms(oracle, "look for the <object>", beam_width=9)
+    assert candidates[:2] == ['( seek " <object> " )', '( find " <object> " )']
+    assert len(candidates) == len(set(candidates))
+
+
+def test_every_generated_command_is_parsed_to_its_own_form(oracle):
+    for expansion in generate(oracle.knowledge.grammar).expansions:
+        assert forms(oracle, expansion.command) == [expansion.form_text]
+
+
+def test_saved_it_parses_without_the_world(oracle, tmp_path):
+    oracle.save(tmp_path)
+    loaded = GrammarOracle.load(tmp_path)
+    for expansion in generate(oracle.knowledge.grammar).expansions:
+        assert forms(loaded, expansion.command, 9) == forms(oracle, expansion.command, 9)
+
+
+def test_an_altered_grammar_is_refused(oracle, tmp_path):
+    oracle.save(tmp_path)
+    (tmp_path / GRAMMAR).write_text((tmp_path / GRAMMAR).read_text().replace("seek", "find"))
+    with pytest.raises(ValueError, match=r"grammar\.json is not the file that was saved"):
+        GrammarOracle.load(tmp_path)
+
+
+@pytest.mark.parametrize("knowledge", [Knowledge(), Knowledge(grammar=(category("1"),))])
+def test_without_templates_it_refuses(knowledge):
+    with pytest.raises(ValueError, match="it was given none"):
+        GrammarOracle(knowledge=knowledge).fit()
+
+
+def test_with_templates_there_is_nothing_to_learn(oracle):
+    oracle.fit()
+    assert oracle.parameters() == 0
+
+
+def test_a_cancelled_prediction_stops(oracle):
+    def cancel():
+        raise Cancelled
+
+    with pytest.raises(Cancelled):
+        oracle.predict(["find the <object>"], check=cancel)
+
+
+@pytest.mark.skipif(not SHARED.is_dir(), reason=f"{SHARED} (GPSR_SHARED_DATA) is absent")
+@pytest.mark.parametrize("split", ["gen", "gen_logical"])
+@pytest.mark.parametrize("part", ["train", "val"])
+def test_it_is_right_on_every_published_generated_pair(tmp_path, split, part):
+    grammar = read_generator_folder(SHARED / "generator-2018").categories()
+    oracle = GrammarOracle(knowledge=Knowledge(grammar=grammar))
+    oracle.save(tmp_path)
+    pairs = read_pairs(SHARED / "walker2019" / split / f"{part}.txt")
+    answers = GrammarOracle.load(tmp_path).predict([pair.utterance for pair in pairs])
+    assert [[pair.form] for pair in pairs] == [[c.form for c in answer] for answer in answers]
+
+
+@pytest.mark.skipif(not SHARED.is_dir(), reason=f"{SHARED} (GPSR_SHARED_DATA) is absent")
+def test_paraphrases_are_mostly_outside_the_grammar():
+    grammar = read_generator_folder(SHARED / "generator-2018").categories()
+    pairs = read_pairs(SHARED / "walker2019" / "para" / "val.txt")
+    answers = GrammarOracle(knowledge=Knowledge(grammar=grammar)).predict(
+        [pair.utterance for pair in pairs]
+    )
+    assert sum(map(bool, answers)) < 0.05 * len(pairs)
