@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict, deque
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from itertools import islice
 from typing import Any, TypeVar
 
@@ -21,6 +21,9 @@ class Changes:
     added: int = 0
     changed: int = 0
     removed: int = 0
+
+    def as_json(self) -> dict[str, int]:
+        return asdict(self)
 
     def __add__(self, other: Changes) -> Changes:
         return Changes(

@@ -7,20 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from annotations.language.errors import Problem
+from annotations.problems import as_json
 from annotations.rows import Changes
-
-
-def as_json(problem: Problem) -> dict[str, Any]:
-    """A problem as the commands and pages show it."""
-    place = problem.position
-    return {
-        "file": place.source,
-        "line": place.line,
-        "column": place.column,
-        "severity": str(problem.severity),
-        "message": problem.message,
-        "hint": problem.hint,
-    }
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,9 +47,5 @@ class ImportReport:
             "entities": dict(self.entities),
             "predicates": self.predicates,
             "problems": [as_json(problem) for problem in self.problems],
-            "changes": {
-                "added": self.changes.added,
-                "changed": self.changes.changed,
-                "removed": self.changes.removed,
-            },
+            "changes": self.changes.as_json(),
         }

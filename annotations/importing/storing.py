@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 
 from annotations import models
 from annotations.composition import owners, rule_sources, template_sources
 from annotations.importing.generator_files import Generator
-from annotations.language.errors import Problem
 from annotations.language.grammar_files import GrammarFolder
 from annotations.language.predicates import Predicate
 from annotations.language.printing import print_sequence
-from annotations.models.problems import Subject
 from annotations.models.templates import Status
+from annotations.problems import store_problems
 from annotations.rows import Changes, synchronise
 
 
@@ -141,25 +140,3 @@ def store_predicates(world: models.World, predicates: Iterable[Predicate]) -> Ch
         lambda row: row.name,
         ["kind", "signatures", "gloss"],
     )
-
-
-def store_problems(world: models.World, subject: Subject, problems: Sequence[Problem]) -> Changes:
-    """Makes the stored problems about one part of a world these."""
-    wanted = [
-        models.StoredProblem(
-            world=world,
-            subject=subject,
-            source=problem.position.source,
-            line=problem.position.line,
-            column=problem.position.column,
-            severity=problem.severity,
-            message=problem.message,
-            hint=problem.hint,
-        )
-        for problem in problems
-    ]
-    return synchronise(world.problems.filter(subject=subject), wanted, _text_of, [])
-
-
-def _text_of(row: models.StoredProblem) -> tuple[object, ...]:
-    return (row.source, row.line, row.column, row.severity, row.message, row.hint)
