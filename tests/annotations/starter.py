@@ -1,0 +1,61 @@
+"""The starter world as the language core reads it, once for all tests of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+from annotations.importing.predicates_file import read_predicates
+from annotations.language.expansion import Generated, TaskCategory, generate
+from annotations.language.generator_folder import GeneratorFolder, read_generator_folder
+from annotations.language.ontology import Ontology, read_ontology_folder
+from annotations.language.predicates import Predicate
+from annotations.language.productions import Production
+from annotations.language.symbols import Choice, Symbol, Wildcard
+
+STARTER = Path(__file__).parents[2] / "annotations" / "starter"
+
+
+@cache
+def folder() -> GeneratorFolder:
+    return read_generator_folder(STARTER)
+
+
+@cache
+def categories() -> tuple[TaskCategory, ...]:
+    return folder().categories()
+
+
+@cache
+def generated() -> Generated:
+    return generate(categories())
+
+
+@cache
+def ontology() -> Ontology:
+    return read_ontology_folder(STARTER)[0]
+
+
+@cache
+def predicates() -> dict[str, Predicate]:
+    return read_predicates((STARTER / "predicates.json").read_bytes())
+
+
+def productions() -> list[Production]:
+    return [each for file in folder().grammars.files.values() for each in file.productions]
+
+
+def wildcards() -> list[Wildcard]:
+    """Every wildcard of the grammar, those inside notes too."""
+    return [found for each in productions() for found in _wildcards(each.expansion)]
+
+
+def _wildcards(symbols: tuple[Symbol, ...]) -> Iterator[Wildcard]:
+    for symbol in symbols:
+        if isinstance(symbol, Wildcard):
+            yield symbol
+            yield from _wildcards(symbol.meta)
+        elif isinstance(symbol, Choice):
+            for alternative in symbol.alternatives:
+                yield from _wildcards(alternative)
