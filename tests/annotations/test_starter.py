@@ -6,11 +6,13 @@ import re
 
 import pytest
 
+from annotations.language.generator_folder import GeneratorFolder, read_generator_folder
 from annotations.language.logic import read_form
 from annotations.language.ontology import read_ontology_folder
 from annotations.language.predicates import check_form, gloss, infer_signatures
-from annotations.language.symbols import ALIASES, TYPES, Choice
+from annotations.language.symbols import ALIASES, TYPES, Choice, Sequence
 from annotations.language.template_sets import set_problems
+from tests.annotations.language.corpus import SHARED, needs_corpus
 from tests.annotations.starter import (
     STARTER,
     categories,
@@ -152,3 +154,20 @@ def test_glosses_are_english_without_traces_of_their_patterns():
     said = {gloss(read_form(text), predicates()) for text in form_texts()}
     assert "bring me something" in said
     assert not [each for each in said if re.search(r"[{}|_$]", each)]
+
+
+@needs_corpus
+def test_nothing_is_taken_from_the_published_generators_or_their_commands():
+    published = SHARED / "walker2019"
+    lines = [each.read_text("utf-8").splitlines() for each in published.glob("gen*/*.txt")]
+    said = {command.lower() for each in lines for command in each[::2]}
+    assert not {each.command.lower() for each in generated().expansions} & said
+    theirs = [read_generator_folder(SHARED / f"generator-{year}") for year in (2018, 2019)]
+    assert not sequences(folder()) & {each for other in theirs for each in sequences(other)}
+
+
+def sequences(of: GeneratorFolder) -> set[Sequence]:
+    """Expansions and patterns that say something: not a lone nonterminal, wildcard or word."""
+    rules = [each.expansion for file in of.grammars.files.values() for each in file.productions]
+    patterns = [each.pattern for file in of.templates.values() for each in file]
+    return {each for each in (*rules, *patterns) if len(each) > 1}
