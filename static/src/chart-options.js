@@ -1,5 +1,9 @@
 // From our chart data to ECharts' options, in the colours of the theme that holds now.
 
+// What the labels of the right axis take.
+const AXIS_WIDTH = 34;
+// Below this share of the axis a bar has no room for its name.
+const SHORT = 0.4;
 const HUES = ["--accent", "--class-object", "--class-location", "--class-gesture", "--class-category", "--class-name"];
 
 // Custom properties keep light-dark() unresolved, so that an element is asked for the colour.
@@ -35,6 +39,7 @@ function valueAxis(axis, palette, position) {
     nameTextStyle: { color: palette.quiet, align: position === "right" ? "right" : "left" },
     min: axis?.min ?? 0, // bars and losses start at zero
     max: axis?.max,
+    interval: axis?.max === 100 ? 25 : undefined,
     splitNumber: 4,
     axisLabel: { color: palette.quiet, fontSize: 12 },
     splitLine: { show: position === "left", lineStyle: { color: palette.line } },
@@ -57,7 +62,7 @@ function categoryAxis(axis, palette) {
 
 const isRight = (one) => one.axis === "right";
 
-function lineOf(one, colour, palette) {
+function lineOf(one, colour, shift) {
   return {
     type: "line",
     name: one.name,
@@ -68,27 +73,36 @@ function lineOf(one, colour, palette) {
     showSymbol: one.values.length < 40,
     lineStyle: { width: 2, color: colour, type: isRight(one) ? [5, 3] : "solid" },
     itemStyle: { color: colour },
-    // The name stands at the end of its line.
-    endLabel: { show: true, formatter: "{a}", color: colour, fontSize: 12, fontFamily: palette.font },
+    // The name stands at the end of its line, beyond the right axis where there is one.
+    endLabel: { show: true, formatter: "{a}", color: colour, fontSize: 12, lineHeight: 16, offset: [shift, 0] },
     labelLayout: { moveOverlap: "shiftY" },
     emphasis: { disabled: true },
   };
 }
 
-function barOf(one, colour, palette) {
-  const interval = one.low && one.high;
+// A bar carries its series' name and value, upright; a short one has them above itself.
+function labelOf(value, top, palette) {
+  const isShort = value / top < SHORT;
+  return {
+    show: value != null,
+    position: isShort ? "top" : "insideBottom",
+    distance: isShort ? 16 : 8,
+    rotate: 90,
+    align: "left",
+    verticalAlign: "middle",
+    formatter: "{a}  {c}",
+    color: isShort ? palette.ink : palette.surface,
+    fontSize: 12,
+  };
+}
+
+function barOf(one, colour, top, palette) {
   return {
     type: "bar",
     name: one.name,
-    data: one.values,
+    data: one.values.map((value) => ({ value, label: labelOf(value, top, palette) })),
     barMaxWidth: 36,
-    itemStyle: { color: colour, borderRadius: [3, 3, 0, 0], opacity: 0.85 },
-    label: {
-      show: !interval,
-      position: "top",
-      color: palette.ink,
-      fontSize: 12,
-    },
+    itemStyle: { color: colour, borderRadius: [3, 3, 0, 0] },
     emphasis: { disabled: true },
   };
 }
@@ -121,8 +135,9 @@ function intervalOf(one, at, count, palette) {
   };
 }
 
-function barsOf(series, palette) {
-  const bars = series.map((one, at) => barOf(one, palette.series[at], palette));
+function barsOf({ series, y }, palette) {
+  const top = y?.max ?? Math.max(...series.flatMap((one) => one.values));
+  const bars = series.map((one, at) => barOf(one, palette.series[at], top, palette));
   const intervals = series
     .map((one, at) => one.low && one.high && intervalOf(one, at, series.length, palette))
     .filter(Boolean);
@@ -150,12 +165,12 @@ export function optionOf(data, element) {
   return {
     textStyle: { fontFamily: palette.font, color: palette.ink },
     aria: { enabled: true },
-    grid: { left: 8, right: isBars ? 8 : longest * 7 + 16, top: 32, bottom: data.x.label ? 32 : 8, containLabel: true },
+    grid: { left: 8, right: isBars ? 8 : longest * 6.5 + 12, top: 32, bottom: data.x.label ? 32 : 8, containLabel: true },
     tooltip: tooltipOf(palette),
     xAxis: categoryAxis(data.x, palette),
     yAxis: [valueAxis(data.y, palette, "left"), ...(hasRight ? [valueAxis(data.y_right, palette, "right")] : [])],
     series: isBars
-      ? barsOf(data.series, palette)
-      : data.series.map((one, at) => lineOf(one, palette.series[at], palette)),
+      ? barsOf(data, palette)
+      : data.series.map((one, at) => lineOf(one, palette.series[at], hasRight ? AXIS_WIDTH : 0)),
   };
 }

@@ -1,6 +1,7 @@
 // What was typed into a form with data-draft outlives a reload and a lost session. It is kept in
-// this browser under the form's name, offered again when the page differs from it, and dropped
-// when the form is sent. Passwords and hidden fields are never kept.
+// this browser under the form's name and comes back when the page differs from it. Sending the form
+// only marks the draft, because a lost session may swallow it; it is dropped when the server has shown
+// another page of the workbench, or the same with the same words. Only text is kept, never a password.
 import { onContent } from "./content.js";
 
 const key = (form) => `draft:${form.dataset.draft}`;
@@ -14,10 +15,10 @@ function read(form) {
   }
 }
 
-function write(form) {
-  const draft = Object.fromEntries(fieldsOf(form).map((field) => [field.name, field.value]));
+function write(form, isSent = false) {
+  const fields = Object.fromEntries(fieldsOf(form).map((field) => [field.name, field.value]));
   try {
-    localStorage.setItem(key(form), JSON.stringify(draft));
+    localStorage.setItem(key(form), JSON.stringify({ fields, isSent }));
   } catch {
     // A full or forbidden storage loses the draft, not the form.
   }
@@ -31,10 +32,10 @@ function drop(form) {
   }
 }
 
-function restore(form, draft) {
+function restore(form, fields) {
   for (const field of fieldsOf(form)) {
-    if (draft[field.name] === undefined) continue;
-    field.value = draft[field.name];
+    if (fields[field.name] === undefined) continue;
+    field.value = fields[field.name];
     field.dispatchEvent(new CustomEvent("draft:restored"));
   }
 }
@@ -57,19 +58,37 @@ function note(form) {
   form.prepend(line);
 }
 
+function differs(form, fields) {
+  return fieldsOf(form).some((field) => (fields[field.name] ?? field.value) !== field.value);
+}
+
 function enhance(form) {
   const draft = read(form);
-  if (draft && fieldsOf(form).some((field) => draft[field.name] !== undefined && draft[field.name] !== field.value)) {
-    restore(form, draft);
+  if (draft && differs(form, draft.fields)) {
+    restore(form, draft.fields);
     note(form);
+  } else if (draft) {
+    drop(form);
   }
   form.addEventListener("input", () => write(form));
 }
 
-// A sent draft is dropped once its page has been left for another: a form that comes back with
-// errors holds what was typed anyway.
+// The sent drafts of forms that this page does not hold have arrived.
+function dropArrived() {
+  const here = new Set([...document.querySelectorAll("form[data-draft]")].map(key));
+  for (const name of Object.keys(localStorage)) {
+    if (!name.startsWith("draft:") || here.has(name)) continue;
+    if (JSON.parse(localStorage.getItem(name)).isSent) localStorage.removeItem(name);
+  }
+}
+
 document.addEventListener("submit", (event) => {
-  if (event.target.matches("form[data-draft]")) drop(event.target);
+  if (event.target.matches("form[data-draft]")) write(event.target, true);
 });
 
+try {
+  dropArrived();
+} catch {
+  // see write()
+}
 onContent((root) => root.querySelectorAll("form[data-draft]").forEach(enhance));

@@ -16,7 +16,7 @@ function slotMark(text) {
 }
 
 function markOf(groups, text) {
-  if (groups.slot) return slotMark(text);
+  if (groups.slot || groups.token) return slotMark(text);
   const name = Object.keys(marks).find((key) => groups[key]);
   return name && marks[name];
 }

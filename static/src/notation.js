@@ -12,7 +12,7 @@ function span(className, text, dataset = {}) {
 function pieceOf(match, brackets) {
   const groups = match.groups;
   const text = match[0];
-  if (groups.slot) return span("lf-slot", text, { class: classOf(text) });
+  if (groups.slot || groups.token) return span("lf-slot", text, { class: classOf(text) });
   if (groups.nonterminal) return span("lf-nonterminal", text);
   if (groups.variable || groups.letter) return span("lf-variable", text);
   if (groups.lambda) return span("lf-variable", text);
