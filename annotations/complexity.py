@@ -7,18 +7,19 @@ from typing import Any
 
 from django.db.models import Count, Sum
 
-from annotations.models import Command, LogicalForm, TaskCategory, World
+from annotations.models import Command, LogicalForm, SemanticTemplate, TaskCategory, World
 
 
 @dataclass(frozen=True, slots=True)
 class Complexity:
     """One column of the table. Lengths are in tokens; a form counts in its first task category.
 
-    ``task_category`` is empty for all of them together. Sums rather than means are kept, so that
-    columns add up.
+    ``task_category`` is empty for all of them together; templates count in the category that they were
+    written for. Sums rather than means are kept, so that columns add up.
     """
 
     task_category: str
+    templates: int = 0
     commands: int = 0
     forms: int = 0
     command_tokens: int = 0
@@ -39,12 +40,21 @@ class Complexity:
 
 
 def complexity(world: World) -> list[Complexity]:
-    """A column for each task category, in its order, and one for all. Two grouped queries."""
+    """A column for each task category, in its order, and one for all. Three grouped queries."""
     commands = _sums(Command.objects.filter(world=world))
     forms = _sums(LogicalForm.objects.filter(world=world))
+    templates = _template_counts(world)
     ordered = TaskCategory.objects.filter(grammar__world=world).values_list("name", flat=True)
     names = dict.fromkeys([*ordered, *commands, *forms])
-    columns = [_column(name, commands.get(name, (0, 0)), forms.get(name, (0, 0))) for name in names]
+    columns = [
+        Complexity(
+            name,
+            templates.get(name, 0),
+            *(sums.get(name, (0, 0))[0] for sums in (commands, forms)),
+            *(sums.get(name, (0, 0))[1] for sums in (commands, forms)),
+        )
+        for name in names
+    ]
     return [*columns, _total(columns)]
 
 
@@ -54,8 +64,9 @@ def _sums(rows: Any) -> dict[str, tuple[int, int]]:
     return {group["task_category"]: (group["n"], group["tokens"]) for group in grouped}
 
 
-def _column(name: str, commands: tuple[int, int], forms: tuple[int, int]) -> Complexity:
-    return Complexity(name, commands[0], forms[0], commands[1], forms[1])
+def _template_counts(world: World) -> dict[str, int]:
+    rows = SemanticTemplate.objects.filter(grammar__world=world).order_by()
+    return dict(rows.values_list("task_category").annotate(Count("id")))
 
 
 def _total(columns: list[Complexity]) -> Complexity:
@@ -63,4 +74,4 @@ def _total(columns: list[Complexity]) -> Complexity:
     return Complexity("", **sums)
 
 
-SUMMED = ("commands", "forms", "command_tokens", "form_tokens")
+SUMMED = ("templates", "commands", "forms", "command_tokens", "form_tokens")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import django_filters
+from django import forms
 from django.db.models import Q, QuerySet
 from django.http import HttpRequest
 
@@ -16,6 +17,7 @@ from annotations.models import (
     LogicalForm,
     Paraphrase,
     Predicate,
+    Production,
     SemanticTemplate,
 )
 from annotations.models.corpus import paraphrase_status_choices
@@ -48,13 +50,16 @@ class PageFilters(django_filters.FilterSet):
         super().__init__(*args, **kwargs)
         for name, choices in self.world_choices.items():
             self.filters[name].extra["choices"] = choices(self.request)
+        for each in self.filters.values():
+            if isinstance(each, django_filters.ChoiceFilter):
+                each.extra["empty_label"] = f"{each.label}: any"
 
 
 class Search(django_filters.CharFilter):
     """A text somewhere in one of ``fields``, whatever its case."""
 
     def __init__(self, *fields: str, label: str = "Search"):
-        super().__init__(label=label)
+        super().__init__(label=label, widget=forms.SearchInput(attrs={"placeholder": label}))
         self.searched = fields
 
     def filter(self, rows: QuerySet[Any], value: str) -> QuerySet[Any]:
@@ -104,8 +109,14 @@ class CommandFilters(PageFilters):
     task_category = django_filters.ChoiceFilter(label="Task category")
     head = django_filters.ChoiceFilter("logical_form__head_predicate", label="Head predicate")
     mentions = Mentions("logical_form__text", label="Predicate")
-    in_grammar = django_filters.BooleanFilter("is_in_grammar", label="In the grammar")
-    template = django_filters.NumberFilter("template_id", label="Template")
+    in_grammar = django_filters.ChoiceFilter(
+        "is_in_grammar",
+        label="Grammar",
+        choices=[("True", "in the grammar"), ("False", "outside it")],
+    )
+    template = django_filters.NumberFilter(
+        "template_id", label="Template", widget=forms.HiddenInput
+    )
     world_choices = {
         "task_category": task_category_choices,
         "head": predicate_choices,
@@ -154,4 +165,13 @@ class ExampleFilters(PageFilters):
 
     class Meta:
         model = Example
+        fields: list[str] = []
+
+
+class ProductionFilters(PageFilters):
+    q = Search("nonterminal", "expansion")
+    source = django_filters.AllValuesFilter(label="File")
+
+    class Meta:
+        model = Production
         fields: list[str] = []

@@ -11,9 +11,11 @@ from annotations.language.difference import Change, diff
 from annotations.language.errors import LanguageError
 from annotations.language.form_printing import to_corpus, to_reading, to_template
 from annotations.language.logic import Form, read_form
-from annotations.language.predicates import Predicate, PredicateKind, gloss
+from annotations.language.predicates import gloss
 from annotations.language.symbols import ENTITY_CLASSES
+from annotations.language.wildcards import read_wildcard
 from annotations.models import World
+from annotations.reading import predicates_of
 
 CLASS_TOKEN = re.compile(rf"<({'|'.join(ENTITY_CLASSES)})(\d*)>")
 
@@ -56,12 +58,9 @@ def shown(text: str) -> ShownForm:
 
 def gloss_of(world: World, form: Form) -> str:
     """``form`` as an English sentence, said as the world's predicates are."""
-    if not hasattr(world, "glossed"):  # one query a page, however many forms it shows
-        rows = world.predicates.exclude(gloss="")
-        world.glossed = {
-            row.name: Predicate(row.name, PredicateKind(row.kind), (), row.gloss) for row in rows
-        }
-    return gloss(form, world.glossed)
+    if not hasattr(world, "declared"):  # one query a page, however many forms it shows
+        world.declared = predicates_of(world)
+    return gloss(form, world.declared)
 
 
 @lru_cache(maxsize=8192)
@@ -76,7 +75,18 @@ def pieces_of(command: str) -> tuple[Piece, ...]:
     return (*pieces, Piece(command[end:])) if end < len(command) else tuple(pieces)
 
 
-def difference(expected: str, predicted: str) -> tuple[list[tuple[str, str]], list[tuple[str, str]]]:
+@lru_cache(maxsize=1024)
+def wildcard_class(text: str) -> str:
+    """The entity class of a wildcard as written, ``{placement 1}`` for one; empty where it has none."""
+    try:
+        return read_wildcard(text).entity_class
+    except LanguageError:
+        return ""
+
+
+def difference(
+    expected: str, predicted: str
+) -> tuple[list[tuple[str, str]], list[tuple[str, str]]]:
     """Both forms in reading notation as (change, text), what only one has marked.
 
     Where one of them is no form there is nothing to compare, and both stand unmarked.

@@ -34,7 +34,14 @@ class Place:
 # In the order of the flow.
 PLACES = (
     Place("Overview", "world", below=("import",)),
-    Place("World", "ontology", "entities", "ontology_problems", "{n} remarks to read"),
+    Place(
+        "World",
+        "ontology",
+        "entities",
+        "ontology_problems",
+        "{n} remarks to read",
+        below=("predicates",),
+    ),
     Place("Grammar", "grammar", "productions", "grammar_problems", "{n} remarks to read"),
     Place(
         "Templates",

@@ -83,8 +83,7 @@ class Cell:
 
     @property
     def plus_minus(self) -> float | None:
-        """Half the width of the interval, which is not quite symmetric."""
-        return (self.high - self.low) / 2 if self.score else None
+        return 100 * self.score.half_width if self.score else None
 
     @property
     def note(self) -> str:

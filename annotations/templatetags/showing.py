@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import Any
 
 from django import template
 from django.utils import timezone
-from django.utils.html import format_html
+from django.utils.html import format_html, format_html_join
 from django.utils.safestring import SafeString
 from django.utils.timesince import timesince
 
-from annotations.showing import difference, form_of, gloss_of, pieces_of, shown
+from annotations.showing import difference, form_of, gloss_of, pieces_of, shown, wildcard_class
 
 register = template.Library()
+
+PATTERN_TOKEN = re.compile(r"(\$\w+|\{[^{}]*\})")
 
 
 @register.inclusion_tag("_logical_form.html", takes_context=True)
@@ -29,6 +32,21 @@ def logical_form(context: Any, text: str, gloss: bool = False, tools: bool = Fal
 def command(text: str) -> dict[str, Any]:
     """A command with its class tokens as chips."""
     return {"pieces": pieces_of(text)}
+
+
+@register.simple_tag
+def pattern(text: str) -> SafeString:
+    """A pattern or an expansion with its nonterminals and wildcards marked."""
+    return format_html_join("", "{}", ((_marked(token),) for token in PATTERN_TOKEN.split(text)))
+
+
+def _marked(token: str) -> str:
+    if token.startswith("$"):
+        return format_html('<span class="lf-nonterminal">{}</span>', token)
+    if token.startswith("{"):
+        hue = wildcard_class(token)
+        return format_html('<span class="lf-slot" data-class="{}">{}</span>', hue, token)
+    return token
 
 
 @register.inclusion_tag("_form_diff.html")

@@ -6,7 +6,7 @@ from django.http import HttpRequest, HttpResponse
 from django.shortcuts import render
 
 from annotations.access import world_view
-from annotations.complexity import complexity_of
+from annotations.complexity import complexity as complexity_of
 from annotations.filters import CommandFilters
 from annotations.listing import Listing, Sort
 from annotations.models import Duty, World

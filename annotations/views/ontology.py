@@ -26,6 +26,12 @@ def ontology(request: HttpRequest, world: World) -> HttpResponse:
         "listing": Listing(request, EntityFilters, entities, SORTS, size=100),
         "classes": entities.count_by_class(),
         "problems": world.problems.filter(subject=Subject.ONTOLOGY),
-        "predicates": world.predicates.all(),
     }
     return render(request, "annotations/ontology.html", context)
+
+
+@world_view(Duty.VIEW)
+def predicates(request: HttpRequest, world: World) -> HttpResponse:
+    """What logical forms are made of."""
+    context = {"predicates": world.predicates.all()}
+    return render(request, "annotations/predicates.html", context)

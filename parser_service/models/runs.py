@@ -154,6 +154,16 @@ class TrainingRun(models.Model):
     def is_ended(self) -> bool:
         return self.status in ENDED
 
+    @property
+    def progress_percent(self) -> float:
+        return 100 * self.progress
+
+    @property
+    def scores_shown(self) -> dict[str, float]:
+        """Test source → accuracy on the test part, or on validation where there is no test part."""
+        found = sorted(self.evaluations.all(), key=lambda each: each.part == "test")
+        return {each.test_source: each.accuracy for each in found}
+
     def changed_hyperparameters(self) -> tuple[tuple[str, Any], ...]:
         """Name and value of each hyperparameter that is not the parser's default, in order."""
         if self.parser not in PARSERS:

@@ -46,3 +46,12 @@ def prediction(request: HttpRequest, world: World, pk: int, example: int) -> Htt
 def listing_of(request: HttpRequest, run: TrainingRun) -> Listing:
     rows = run.predictions.best().select_related("example")
     return Listing(request, PredictionFilters, rows, SORTS)
+
+
+def neighbours_of(listing: Listing, example: int) -> dict[str, int | None]:
+    """The examples before and after this one among those that pass the list's filters."""
+    rows = listing.matching.order_by("example_id").values_list("example_id", flat=True)
+    return {
+        "before": rows.filter(example_id__lt=example).last(),
+        "after": rows.filter(example_id__gt=example).first(),
+    }

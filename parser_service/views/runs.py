@@ -12,6 +12,7 @@ from annotations.listing import Listing, Sort
 from annotations.models import Duty, World
 from annotations.rates import STARTED_RUNS
 from parser_service import lifecycle
+from parser_service.curves import CURVES, loss_curves
 from parser_service.filters import RunFilters
 from parser_service.forms import RunForm
 from parser_service.models import TrainingRun
@@ -110,10 +111,10 @@ def state_of(world: World, pk: int) -> dict[str, object]:
 @never_cache
 @world_view(Duty.VIEW)
 def run_curves(request: HttpRequest, world: World, pk: int) -> JsonResponse:
-    """Loss and accuracy by epoch, as the charts read them."""
+    """Loss or accuracy by epoch, as the charts read them."""
     run = get_object_or_404(TrainingRun, world=world, pk=pk)
-    fields = ("epoch", "train_loss", "validation_loss", "validation_accuracy", "seconds")
-    return JsonResponse({"is_ended": run.is_ended, "epochs": list(run.epochs.values(*fields))})
+    draw = CURVES.get(request.GET.get("show", ""), loss_curves)
+    return JsonResponse({**draw(list(run.epochs.all())), "done": run.is_ended})
 
 
 @world_view(Duty.MANAGE, WRITE)
