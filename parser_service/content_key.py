@@ -8,6 +8,7 @@ from hashlib import sha256
 from typing import Any
 
 from annotations.models import Split, World
+from annotations.models.templates import Status
 from parser_service.parsers.registry import entry
 
 
@@ -66,7 +67,9 @@ def _grammar(world: World) -> dict[str, Any]:
             grammar.productions.order_by("position").values("source", "nonterminal", "expansion")
         ),
         "templates": list(
-            grammar.templates.order_by("position").values("source", "pattern", "form", "status")
+            grammar.templates.filter(status=Status.READY)
+            .order_by("position")
+            .values("source", "pattern", "form")
         ),
     }
 

@@ -23,15 +23,20 @@ PROGRESS_EVERY = 1.0
 TRAINING_SHARE = 0.9
 
 
+def tell_nobody(message: str) -> None:
+    """For a run that nobody sits in front of."""
+
+
 class RunObserver(Observer):
     """Writes epochs, log, progress and checkpoints of the run that ``lease`` holds.
 
     Training is the first ``TRAINING_SHARE`` of a run's progress, evaluation the rest.
-    Raises Fenced from everything that writes.
+    ``tell`` hears what happens as well. Raises Fenced from everything that writes.
     """
 
-    def __init__(self, lease: Lease):
+    def __init__(self, lease: Lease, tell: Callable[[str], None] = tell_nobody):
         self.run = lease.run
+        self.tell = tell
         self.check = lease.check  # type: ignore[method-assign]
         self._told = 0.0
 
@@ -50,9 +55,13 @@ class RunObserver(Observer):
 
     def epoch(self, report: EpochReport) -> None:
         lifecycle.record_epoch(self.run, report)
+        accuracy = report.validation_accuracy
+        found = "" if accuracy is None else f", {accuracy:.1%} of the validation part right"
+        self.tell(f"Epoch {report.epoch}: loss {report.train_loss:.3f}{found}.")
 
     def log(self, message: str) -> None:
         lifecycle.log(self.run, message)
+        self.tell(message)
 
     def checkpoint(self, epoch: int, is_best: bool, write: Callable[[Path], None]) -> None:
         name = f"epoch-{epoch:04}-attempt-{self.run.attempt}"

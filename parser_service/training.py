@@ -15,37 +15,40 @@ from parser_service.examples import pairs_of
 from parser_service.knowledge import knowledge_of
 from parser_service.leasing import Lease
 from parser_service.models import TrainingRun
-from parser_service.observing import TRAINING_SHARE, RunObserver
+from parser_service.observing import TRAINING_SHARE, RunObserver, tell_nobody
 from parser_service.parsers import registry
 from parser_service.parsers.interface import Cancelled, Parser
 
 logger = logging.getLogger(__name__)
 
 
-def train(run: TrainingRun, give_up: Callable[[], None] | None = None) -> None:
+def train(
+    run: TrainingRun,
+    give_up: Callable[[], None] | None = None,
+    tell: Callable[[str], None] = tell_nobody,
+) -> None:
     """Trains ``run``, which this process has claimed, to its end: evaluated, or failed with a reason.
 
-    ``give_up`` is called where training does not notice in time that it is to stop. Whatever
-    happens is in the row; nothing is raised but what ends the process.
+    ``give_up`` is called where training does not notice in time that it is to stop; ``tell`` hears
+    what the log says. Whatever happens is in the row; nothing is raised but what ends the process.
     """
     try:
         with Lease(run, give_up) as lease:
-            _train(run, lease)
+            _train(run, lease, RunObserver(lease, tell))
     except lifecycle.Fenced as fenced:
         logger.warning("%s", fenced)
 
 
-def _train(run: TrainingRun, lease: Lease) -> None:
+def _train(run: TrainingRun, lease: Lease, observe: RunObserver) -> None:
     try:
-        _fit_and_evaluate(run, RunObserver(lease))
+        _fit_and_evaluate(run, observe)
     except lifecycle.Fenced:
         raise
     except Cancelled:
         if not lease.is_lost:
             lifecycle.acknowledge_cancel(run)
     except Exception as error:
-        if not isinstance(error, ValueError):
-            logger.exception("Run %s failed.", run.pk)
+        logger.exception("Run %s failed.", run.pk)
         lifecycle.fail(run, sentence_of(error))
 
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 import time
 
 import pytest
@@ -10,7 +13,7 @@ from parser_service import lifecycle
 from parser_service.models import Worker
 from parser_service.waking import send_wake_up
 from tests.parser_service.made_up import LONG, TINY
-from tests.parser_service.running import wait_for, wait_for_epochs, wait_for_status
+from tests.parser_service.running import ROOT, wait_for, wait_for_epochs, wait_for_status
 
 pytestmark = [pytest.mark.processes, pytest.mark.django_db(transaction=True)]
 
@@ -94,3 +97,22 @@ def test_of_two_workers_racing_for_one_run_one_wins(world, split, start_worker):
         wait_for_status(run, "succeeded", 15)
         assert run.attempt == 1
         assert run.events.filter(message__contains="begins on").count() == 1
+
+
+def test_a_broker_that_is_away_costs_a_line_in_the_log():
+    script = (
+        "import django; django.setup(); from parser_service.waking import send_wake_up; "
+        "send_wake_up('cpu')"
+    )
+    nobody = {"CELERY_BROKER_URL": "amqp://guest@127.0.0.1:1//"}
+    settings = {"DJANGO_SETTINGS_MODULE": "gpsr_site.settings"}
+    told = subprocess.run(
+        [sys.executable, "-c", script],
+        cwd=ROOT,
+        env={**os.environ, **settings, **nobody},
+        capture_output=True,
+        text=True,
+        timeout=15,
+        check=True,
+    )
+    assert "No wake-up went to queue cpu" in told.stderr

@@ -1,0 +1,126 @@
+"""``train PARSER --world W --split N``: one run in the foreground."""
+
+from __future__ import annotations
+
+import os
+import socket
+import time
+from collections.abc import Mapping
+from typing import Any
+
+from django.core.management.base import CommandError, CommandParser
+
+from annotations.management.base import Refused, ReportingCommand, find_world
+from annotations.models import Split, World
+from annotations.models.splits import Criterion
+from parser_service import lifecycle
+from parser_service.management.options import read_hyperparameters, read_sources
+from parser_service.models import Evaluation, TrainingRun
+from parser_service.models.runs import Protocol, Status
+from parser_service.parsers.registry import PARSERS
+from parser_service.training import train
+
+LOOK_EVERY = 1.0
+
+
+class Command(ReportingCommand):
+    help = (
+        "Trains and evaluates a parser here and now, with the code of the workers. What has been "
+        "trained already is not trained again. Exit status 1 where the run fails."
+    )
+
+    def add_options(self, parser: CommandParser) -> None:
+        parser.add_argument("parser", choices=PARSERS)
+        parser.add_argument("--world", required=True)
+        parser.add_argument("--split", required=True, help="name of a frozen or imported split")
+        parser.add_argument(
+            "--criterion",
+            choices=Criterion.values,
+            default=Criterion.COMMAND,
+            help="which of the splits of this name (default: command)",
+        )
+        parser.add_argument("--sources", default="gen,para", help="gen, para or gen,para")
+        parser.add_argument(
+            "--protocol", choices=Protocol.values, help="default: the least that the parser has"
+        )
+        parser.add_argument("--seed", type=int, default=0)
+        parser.add_argument(
+            "--config", nargs="*", default=[], metavar="KEY=VALUE", help="hyperparameters"
+        )
+
+    def report(self, *, parser: str, world: str, **options: Any) -> Mapping[str, Any]:
+        found = find_world(world)
+        run, _ = lifecycle.request(
+            found,
+            find_split(found, options["split"], options["criterion"]),
+            parser,
+            read_hyperparameters(parser, options["config"]),
+            options["protocol"] or PARSERS[parser].protocols[0],
+            read_sources(options["sources"]),
+            options["seed"],
+            send=False,
+        )
+        self._carry_out(run)
+        if run.status != Status.SUCCEEDED:
+            raise Refused(as_report(run), [run.failure or f"Run {run.pk} is {run.status}."])
+        return as_report(run)
+
+    def _carry_out(self, run: TrainingRun) -> None:
+        """Trains the run here, or waits for the worker that has it."""
+        name = f"foreground-{os.getpid()}@{socket.gethostname()}"
+        try:
+            while not run.is_ended:
+                if claimed := lifecycle.claim(name, run.queue, run):
+                    train(claimed, tell=self.stderr.write)
+                else:
+                    time.sleep(LOOK_EVERY)
+                run.refresh_from_db()
+        except KeyboardInterrupt:
+            run.refresh_from_db()
+            if run.worker != name:
+                raise CommandError(f"Run {run.pk} goes on without this command.") from None
+            lifecycle.acknowledge_cancel(run)
+            raise CommandError(f"Run {run.pk} was cancelled.") from None
+
+
+def find_split(world: World, name: str, criterion: str) -> Split:
+    """The split called ``name`` under ``criterion``. Raises CommandError with the names there are."""
+    split = world.splits.named(name, criterion)
+    if split is None:
+        names = ", ".join(world.splits.values_list("name", flat=True)) or "none"
+        raise CommandError(f"There is no split “{name}” in {world}. Splits there: {names}.")
+    return split
+
+
+def as_report(run: TrainingRun) -> dict[str, Any]:
+    """A run and its figures, accuracies as fractions of 1."""
+    return {
+        "run": run.pk,
+        "status": run.status,
+        "failure": run.failure,
+        "parser": run.parser,
+        "version": run.parser_version,
+        "configuration": run.config,
+        "protocol": run.protocol,
+        "split": run.split.name,
+        "criterion": run.split.criterion,
+        "train_sources": run.train_sources,
+        "seed": run.seed,
+        "attempts": run.attempt,
+        "parameters": run.parameters,
+        "seconds_trained": round(run.seconds_trained, 2),
+        "evaluations": [_figures(evaluation) for evaluation in run.evaluations.all()],
+    }
+
+
+def _figures(evaluation: Evaluation) -> dict[str, Any]:
+    return {
+        "test_source": evaluation.test_source,
+        "part": evaluation.part,
+        "count": evaluation.count,
+        "correct": evaluation.correct,
+        "accuracy": evaluation.accuracy,
+        "interval": [evaluation.interval_low, evaluation.interval_high],
+        "equivalent": evaluation.equivalent,
+        "well_formed": evaluation.well_formed,
+    }

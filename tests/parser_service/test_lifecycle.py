@@ -1,0 +1,297 @@
+"""Who may change what of a run, and when."""
+
+from __future__ import annotations
+
+from datetime import timedelta
+
+import pytest
+from django.utils import timezone
+
+from annotations.models import Entity, Ontology
+from parser_service import lifecycle
+from parser_service.lifecycle import Fenced
+from parser_service.models import Checkpoint, TrainingRun
+from parser_service.parsers.interface import EpochReport
+from parser_service.waking import wake_for_forgotten
+from tests.parser_service.made_up import make_split
+
+REPORT = EpochReport(1, 0.5, 0.4, 0.75, 1.0)
+
+
+def ask(split, **changes) -> TrainingRun:
+    return lifecycle.request(split.world, split, changes.pop("parser", "knn"), **changes)[0]
+
+
+def claim(name: str = "cpu-1@here", queue: str = "cpu") -> TrainingRun:
+    run = lifecycle.claim(name, queue)
+    assert run is not None
+    return run
+
+
+def expire(run: TrainingRun) -> None:
+    TrainingRun.objects.filter(pk=run.pk).update(lease_until=timezone.now() - timedelta(seconds=1))
+
+
+# --- asking ---------------------------------------------------------------------------------------
+
+
+def test_what_decides_the_result_is_trained_once(split):
+    first, is_new = lifecycle.request(split.world, split, "knn", seed=1)
+    again, is_new_again = lifecycle.request(split.world, split, "knn", seed=1)
+    assert (is_new, is_new_again) == (True, False)
+    assert again == first
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"seed": 2},
+        {"train_sources": "gen+para"},
+        {"config": {"least_overlap": 0.5}},
+        {"parser": "grammar-oracle", "protocol": "grammar"},
+    ],
+)
+def test_anything_that_decides_the_result_makes_another_run(split, changes):
+    assert ask(split, seed=1) != ask(split, **{"seed": 1, **changes})
+
+
+def test_a_default_that_is_written_out_is_the_same_run(split):
+    assert ask(split) == ask(split, config={"least_overlap": 0.0})
+
+
+def test_other_examples_are_another_run(split):
+    other = make_split(split.world, "away")
+    assert ask(split) != ask(other)
+
+
+def test_an_edit_of_the_world_counts_only_where_the_protocol_reads_it(split):
+    strict = ask(split)
+    oracle = ask(split, parser="grammar-oracle", protocol="grammar")
+    ontology = Ontology.objects.create(world=split.world)
+    Entity.objects.create(ontology=ontology, entity_class="object", text="cup", position=0)
+    assert ask(split) == strict
+    assert ask(split, parser="grammar-oracle", protocol="grammar") != oracle
+
+
+def test_a_failed_run_may_be_asked_for_again(split):
+    first = ask(split)
+    lifecycle.fail(claim(), "It broke. Mend it.")
+    assert ask(split) != first
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"parser": "oracle"}, "No parser is called 'oracle'"),
+        ({"protocol": "grammar"}, "knn has no protocol 'grammar'; it has: strict"),
+        ({"train_sources": "all"}, "No train sources are called 'all'"),
+        ({"config": {"least_overlap": 2.0}}, "least_overlap is 2.0, but it has to be at most 1"),
+        ({"config": {"k": 1}}, "No hyperparameter is called k"),
+        ({"seed": -1}, "The seed -1 has to lie between"),
+    ],
+)
+def test_what_cannot_be_trained_is_refused_with_a_sentence(split, changes, sentence):
+    with pytest.raises(ValueError, match="^" + sentence):
+        ask(split, **changes)
+    assert not TrainingRun.objects.exists()
+
+
+def test_a_split_of_another_world_is_refused(split, other_world):
+    with pytest.raises(ValueError, match="belongs to another world"):
+        lifecycle.request(other_world, split, "knn")
+
+
+def test_train_sources_without_examples_are_refused(split):
+    split.examples.filter(source="paraphrased").delete()
+    with pytest.raises(ValueError, match="has no paraphrased examples to train on"):
+        ask(split, train_sources="gen+para")
+
+
+# --- claiming -------------------------------------------------------------------------------------
+
+
+def test_the_oldest_queued_run_is_claimed_first_and_once(split):
+    first, second = ask(split, seed=1), ask(split, seed=2)
+    assert [claim(), claim()] == [first, second]
+    assert lifecycle.claim("cpu-2@here", "cpu") is None
+
+
+def test_a_claim_raises_the_attempt_and_begins_a_lease(split):
+    ask(split)
+    run = claim()
+    assert (run.status, run.attempt, run.worker) == ("running", 1, "cpu-1@here")
+    assert timezone.now() < run.lease_until <= timezone.now() + lifecycle.LEASE
+    assert run.events.get().message == "Attempt 1 begins on cpu-1@here."
+
+
+def test_a_worker_claims_from_its_own_queue_only(split):
+    ask(split)
+    assert lifecycle.claim("gpu-1@here", "gpu") is None
+
+
+# --- fencing --------------------------------------------------------------------------------------
+
+
+WRITES = {
+    "extend": lifecycle.extend,
+    "progress": lambda run: lifecycle.progress(run, 0.5, "training"),
+    "log": lambda run: lifecycle.log(run, "hello"),
+    "epoch": lambda run: lifecycle.record_epoch(run, REPORT),
+    "checkpoint": lambda run: lifecycle.record_checkpoint(run, 1, "runs/1", "0" * 64, True),
+    "finish": lambda run: lifecycle.finish(run, 0, 1.0),
+    "fail": lambda run: lifecycle.fail(run, "no"),
+    "acknowledge cancel": lifecycle.acknowledge_cancel,
+    "read the cancel flag": lifecycle.is_cancel_requested,
+}
+
+
+@pytest.mark.parametrize("write", WRITES.values(), ids=WRITES)
+def test_a_worker_that_lost_its_lease_writes_nothing(split, write):
+    ask(split)
+    late = claim("cpu-1@here")
+    expire(late)
+    lifecycle.requeue_expired()
+    claim("cpu-2@here")
+    before = TrainingRun.objects.values().get()
+    with pytest.raises(Fenced, match="no longer belongs to attempt 1 of cpu-1@here"):
+        write(late)
+    assert TrainingRun.objects.values().get() == before
+    assert not late.epochs.exists()
+    assert not late.checkpoints.exists()
+    assert late.events.filter(attempt=1, message="hello").count() == 0
+
+
+@pytest.mark.parametrize("write", WRITES.values(), ids=WRITES)
+def test_a_run_that_has_ended_is_written_by_nobody(split, write):
+    ask(split)
+    run = claim()
+    lifecycle.finish(run, 0, 1.0)
+    with pytest.raises(Fenced):
+        write(run)
+
+
+# --- what is recorded -----------------------------------------------------------------------------
+
+
+def test_an_epoch_that_is_trained_again_replaces_its_row_and_all_later_ones(split):
+    ask(split)
+    run = claim()
+    for epoch in (1, 2, 3):
+        lifecycle.record_epoch(run, EpochReport(epoch, 1.0, None, None, 1.0))
+    lifecycle.record_epoch(run, EpochReport(2, 0.5, None, None, 1.0))
+    assert list(run.epochs.values_list("epoch", "train_loss")) == [(1, 1.0), (2, 0.5)]
+
+
+def test_the_last_and_the_best_checkpoint_are_kept(split):
+    ask(split)
+    run = claim()
+    forgotten = [
+        lifecycle.record_checkpoint(run, epoch, f"e{epoch}", "0" * 64, epoch in (1, 3))
+        for epoch in (1, 2, 3, 4, 5)
+    ]
+    assert forgotten == [[], [], ["e1", "e2"], [], ["e4"]]
+    kept = Checkpoint.objects.values_list("folder", "is_best")
+    assert list(kept) == [("e3", True), ("e5", False)]
+
+
+def test_progress_stays_between_nothing_and_everything(split):
+    ask(split)
+    run = claim()
+    lifecycle.progress(run, 1.7, "x" * 500)
+    run.refresh_from_db()
+    assert (run.progress, len(run.activity)) == (1.0, 200)
+
+
+# --- cancelling -----------------------------------------------------------------------------------
+
+
+def test_a_queued_run_is_cancelled_at_once(split):
+    run = ask(split)
+    lifecycle.cancel(run)
+    run.refresh_from_db()
+    assert run.status == "cancelled"
+    assert run.finished_at is not None
+    assert lifecycle.claim("cpu-1@here", "cpu") is None
+
+
+def test_a_running_run_is_asked_to_stop(split):
+    ask(split)
+    run = claim()
+    lifecycle.cancel(run)
+    assert lifecycle.is_cancel_requested(run)
+    lifecycle.acknowledge_cancel(run)
+    run.refresh_from_db()
+    assert run.status == "cancelled"
+
+
+def test_a_run_whose_worker_is_gone_is_cancelled_at_once(split):
+    ask(split)
+    run = claim()
+    expire(run)
+    lifecycle.cancel(run)
+    run.refresh_from_db()
+    assert run.status == "cancelled"
+
+
+def test_a_run_that_has_ended_cannot_be_cancelled(split):
+    ask(split)
+    run = claim()
+    lifecycle.finish(run, 0, 1.0)
+    with pytest.raises(ValueError, match=f"Run {run.pk} has already ended: succeeded"):
+        lifecycle.cancel(run)
+
+
+def test_a_run_that_was_to_be_cancelled_is_not_resumed(split):
+    ask(split)
+    run = claim()
+    lifecycle.cancel(run)
+    expire(run)
+    lifecycle.requeue_expired()
+    run.refresh_from_db()
+    assert run.status == "cancelled"
+
+
+# --- losing workers -------------------------------------------------------------------------------
+
+
+def test_a_run_is_resumed_twice_and_lost_the_third_time(split):
+    run = ask(split)
+    for resumes in (1, 2):
+        expire(claim())
+        assert lifecycle.requeue_expired() == [run]
+        run.refresh_from_db()
+        assert (run.status, run.resumes) == ("queued", resumes)
+    expire(claim())
+    lifecycle.requeue_expired()
+    run.refresh_from_db()
+    assert run.status == "lost"
+    assert "start the run again" in run.failure
+
+
+def test_a_living_worker_keeps_its_run(split):
+    ask(split)
+    claim()
+    assert lifecycle.requeue_expired() == []
+
+
+def test_a_service_that_stops_hands_back_its_own_runs_and_loses_no_resumption(split):
+    ask(split, seed=1)
+    ask(split, seed=2)
+    mine, others = claim("cpu-1@here"), claim("cpu-2@here")
+    assert lifecycle.hand_back("cpu-1@here") == [mine]
+    mine.refresh_from_db()
+    others.refresh_from_db()
+    assert (mine.status, mine.resumes, mine.worker) == ("queued", 0, "")
+    assert others.status == "running"
+
+
+def test_only_an_idle_worker_wakes_the_others_for_runs_that_were_forgotten(split):
+    ask(split, seed=1)
+    ask(split, seed=2)
+    assert wake_for_forgotten("cpu-1@here", ["cpu"]) == 0
+    TrainingRun.objects.update(queued_at=timezone.now() - timedelta(minutes=1))
+    assert wake_for_forgotten("cpu-1@here", ["gpu"]) == 0
+    assert wake_for_forgotten("cpu-1@here", ["cpu"]) == 2
+    claim("cpu-1@here")
+    assert wake_for_forgotten("cpu-1@here", ["cpu"]) == 0
+    assert wake_for_forgotten("cpu-2@here", ["cpu"]) == 1
