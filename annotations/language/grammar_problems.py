@@ -116,7 +116,10 @@ def _unreachable(productions: tuple[Production, ...], edges: Edges, root: str) -
     if root not in edges:
         return
     found = reachable(edges, root)
-    for name in edges:
-        if name not in found:
-            place = place_of(productions, name)
-            yield warning(place, f"${root} never reaches ${name}", "use it or take it out")
+    seen = set(found)
+    for production in productions:
+        name = production.nonterminal
+        if name not in seen:
+            seen.add(name)
+            message = f"${root} never reaches ${name}"
+            yield warning(production.position, message, "use it or take it out")

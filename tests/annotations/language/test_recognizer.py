@@ -1,0 +1,39 @@
+"""The chart recogniser accepts exactly what a grammar can say, and fast."""
+
+import time
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from annotations.language.grammar import Grammar, read_productions
+from annotations.language.recognizer import Recognizer
+from tests.annotations.language.grammars import TOKENS, small_grammars, unhurried
+from tests.annotations.language.test_grammar import huge_grammar
+
+
+@unhurried
+@given(small_grammars(), st.lists(st.lists(st.sampled_from(TOKENS), max_size=5), max_size=20))
+def test_it_accepts_exactly_the_stream_of_the_grammar(grammar, others):
+    commands = set(grammar.commands())
+    recognizer = Recognizer(grammar)
+    assert all(map(recognizer.accepts, commands))
+    for words in [*others, *(command.split()[:-1] for command in commands)]:
+        assert recognizer.accepts(" ".join(words)) == (" ".join(words) in commands)
+
+
+def test_a_grammar_of_a_trillion_recognises_at_once():
+    start = time.process_time()
+    recognizer = Recognizer(huge_grammar())
+    assert recognizer.accepts("go " + " ".join(f"w{n % 10}" for n in range(12)))
+    assert not recognizer.accepts("go " + " ".join(["w1"] * 11))
+    assert not recognizer.accepts("")
+    assert time.process_time() - start < 0.5
+
+
+def test_ambiguity_that_doubles_with_each_word_costs_no_time():
+    lines = ["$Main = " + "$some " * 30, "$some = a | a a | {void}"]
+    grammar = Grammar(read_productions("\n".join(lines)).productions)
+    start = time.process_time()
+    assert Recognizer(grammar).accepts(" ".join("a" * 60))
+    assert not Recognizer(grammar).accepts(" ".join("a" * 61))
+    assert time.process_time() - start < 1
