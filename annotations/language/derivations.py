@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from itertools import chain, product
-from math import prod
+from math import log10, prod
 from typing import Generic, TypeAlias, TypeVar
 
 from annotations.language.symbols import Choice, Nonterminal, Sequence, Text, Wildcard
@@ -141,6 +141,14 @@ def anonymized(symbol: Text | Wildcard) -> tuple[str, ...]:
 def intact(symbol: Text | Wildcard) -> tuple[Text | Wildcard, ...]:
     """The leaf itself: void wildcards stay too, for the note they carry."""
     return (symbol,)
+
+
+def readable(size: int) -> str:
+    """A size for a sentence: exact up to 10¹⁵, a power of ten above (sizes may have thousands of
+    digits, which Python refuses to print)."""
+    if size <= 10**15:
+        return f"{size:,}"
+    return f"about 10^{int(size.bit_length() * log10(2))}"
 
 
 def _joined(pieces: tuple[Derived[Item], ...]) -> Derived[Item] | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from annotations.language.derivations import readable
 from annotations.language.errors import LanguageError
 from annotations.language.grammar import Grammar
 from annotations.language.recognizer import Recognizer
@@ -106,7 +107,7 @@ def generate(categories: Sequence[TaskCategory], limit: int | None = DEFAULT_LIM
     size = generation_size(categories)
     if limit is not None and size > limit:
         raise LanguageError(
-            f"the templates make up to {size:,} commands, more than the limit of {limit:,}",
+            f"the templates make up to {readable(size)} commands, more than the limit of {limit:,}",
             hint="raise the limit, or use narrower patterns",
         )
     expansions: dict[str, Expansion] = {}

@@ -61,7 +61,7 @@ def read_generator_files(contents: Mapping[str, bytes]) -> GeneratorFolder:
         *_lonely_templates(templates, compositions),
         *_grammar_problems(grammars, compositions),
     ]
-    if grammars.files and not compositions:
+    if grammars.files and not compositions and not any(problem.is_error for problem in found):
         found.append(error(Position(min(grammars.files)), "no grammar here defines $Main"))
     return GeneratorFolder(grammars, templates, compositions, tuple(sorted(found)))
 

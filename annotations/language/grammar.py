@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
-from annotations.language.derivations import Expander, anonymized
+from annotations.language.derivations import Expander, anonymized, readable
 from annotations.language.errors import LanguageError, Problem
 from annotations.language.grammar_graph import Traversal, reachable, traverse
 from annotations.language.grammar_problems import (
@@ -126,7 +126,7 @@ class Grammar:
         size = self.size(root)
         if limit is not None and size > limit:
             raise LanguageError(
-                f"${root} has up to {size:,} commands, more than the limit of {limit:,}",
+                f"${root} has up to {readable(size)} commands, more than the limit of {limit:,}",
                 place_of(self.productions, root),
                 "raise the limit, or expand a nonterminal further down",
             )

@@ -200,6 +200,13 @@ def test_a_grammar_of_a_trillion_answers_at_once_and_refuses_to_be_enumerated():
     assert time.process_time() - start < 0.5
 
 
+def test_a_size_of_thousands_of_digits_is_counted_exactly_and_said_as_a_power():
+    grammar = grammar_of("$Main = " + "(a | b) " * 20_000)
+    assert grammar.size() == 2**20_000
+    with pytest.raises(LanguageError, match=r"about 10\^6020 commands"):
+        grammar.commands(limit=10)
+
+
 def test_nothing_is_streamed_out_of_a_trillion_times_nothing():
     grammar = grammar_of(
         "$Main = " + "$digit " * 12 + "$lost | b", "$digit = " + " | ".join("abcdefghij")
