@@ -26,6 +26,7 @@ const builds = [
     entryPoints: ["main", "charts", "tree", "editor"].map((name) => here(`src/${name}.js`)),
   },
   { ...common, entryPoints: [here("css/main.css")] },
+  { ...common, loader: { ".svg": "copy" }, entryPoints: [here("favicon.svg")] },
 ];
 
 await rm(here("dist"), { recursive: true, force: true });

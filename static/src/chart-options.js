@@ -4,7 +4,8 @@
 const AXIS_WIDTH = 34;
 // Below this share of the axis a bar has no room for its name.
 const SHORT = 0.4;
-const HUES = ["--accent", "--class-object", "--class-location", "--class-gesture", "--class-category", "--class-name"];
+// Not the hues of the entity classes, which mean something.
+const HUES = ["--accent", "--ink-2", "--good", "--warn", "--bad", "--ink-3"];
 
 // Custom properties keep light-dark() unresolved, so that an element is asked for the colour.
 function colourReader(element) {
@@ -107,6 +108,11 @@ function barOf(one, colour, top, palette) {
   };
 }
 
+function whisker(x, low, high, style) {
+  const line = (x1, y1, x2, y2) => ({ type: "line", shape: { x1, y1, x2, y2 }, style });
+  return [line(x, low, x, high), line(x - 4, low, x + 4, low), line(x - 4, high, x + 4, high)];
+}
+
 // Intervals are drawn over their bars; the bars of several series stand side by side.
 function intervalOf(one, at, count, palette) {
   return {
@@ -121,16 +127,11 @@ function intervalOf(one, at, count, palette) {
       const high = api.coord([api.value(0), api.value(2)])[1];
       const band = Math.min(api.size([1, 0])[0] * 0.8, 36 * 1.3 * count);
       const centre = x + (at - (count - 1) / 2) * (band / count);
-      const style = { stroke: palette.ink, lineWidth: 1.5 };
-      const line = (x1, y1, x2, y2) => ({ type: "line", shape: { x1, y1, x2, y2 }, style });
-      return {
-        type: "group",
-        children: [
-          line(centre, low, centre, high),
-          line(centre - 4, low, centre + 4, low),
-          line(centre - 4, high, centre + 4, high),
-        ],
-      };
+      // An edge in the colour of the ground keeps the mark legible over its bar.
+      return { type: "group", children: [
+        ...whisker(centre, low, high, { stroke: palette.surface, lineWidth: 4 }),
+        ...whisker(centre, low, high, { stroke: palette.ink, lineWidth: 1.5 }),
+      ] };
     },
   };
 }
@@ -161,14 +162,22 @@ export function optionOf(data, element) {
   const palette = paletteOf(element, data.series);
   const hasRight = data.series.some(isRight);
   const isBars = data.kind === "bars";
+  const yAxes = [valueAxis(data.y, palette, "left")];
+  if (hasRight) yAxes.push(valueAxis(data.y_right, palette, "right"));
   const longest = Math.max(...data.series.map((one) => one.name.length));
   return {
     textStyle: { fontFamily: palette.font, color: palette.ink },
     aria: { enabled: true },
-    grid: { left: 8, right: isBars ? 8 : longest * 6.5 + 12, top: 32, bottom: data.x.label ? 32 : 8, containLabel: true },
+    grid: {
+      left: 8,
+      right: isBars ? 8 : longest * 6.5 + 12,
+      top: 32,
+      bottom: data.x.label ? 32 : 8,
+      containLabel: true,
+    },
     tooltip: tooltipOf(palette),
     xAxis: categoryAxis(data.x, palette),
-    yAxis: [valueAxis(data.y, palette, "left"), ...(hasRight ? [valueAxis(data.y_right, palette, "right")] : [])],
+    yAxis: yAxes,
     series: isBars
       ? barsOf(data, palette)
       : data.series.map((one, at) => lineOf(one, palette.series[at], hasRight ? AXIS_WIDTH : 0)),

@@ -49,8 +49,8 @@ class Chart {
 
   draw() {
     if (!this.data) return;
-    const animation = !reduced.matches;
-    this.drawn.setOption({ ...optionOf(this.data, this.canvas), animation, animationDuration: 120 }, { notMerge: true });
+    const motion = { animation: !reduced.matches, animationDuration: 120 };
+    this.drawn.setOption({ ...optionOf(this.data, this.canvas), ...motion }, { notMerge: true });
   }
 
   // A chart that htmx took away is let go.

@@ -5,7 +5,8 @@
 import { onContent } from "./content.js";
 
 const key = (form) => `draft:${form.dataset.draft}`;
-const fieldsOf = (form) => [...form.elements].filter((field) => field.matches("textarea[name], input[type=text][name]"));
+const KEPT = "textarea[name], input[type=text][name]";
+const fieldsOf = (form) => [...form.elements].filter((field) => field.matches(KEPT));
 
 function read(form) {
   try {

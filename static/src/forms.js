@@ -118,7 +118,7 @@ document.addEventListener("click", (event) => {
   else if (notation) setPreferred(notation.dataset.notation);
   else if (event.target.closest("[data-copy]")) copyForm(form);
   else if (event.target.closest("[data-tree-toggle]")) toggleTree(form, event.target);
-  else if (form && event.target.closest("code") && !event.target.closest("a") && getSelection().isCollapsed) copyForm(form);
+  else if (form && event.target.closest("code") && getSelection().isCollapsed) copyForm(form);
 });
 
 document.addEventListener("mouseover", (event) => {

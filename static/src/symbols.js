@@ -19,7 +19,18 @@ export function classOf(slot) {
   return CLASSES.has(name) ? name : "";
 }
 
-// In order: a slot, a class token in quotes (corpus notation), a nonterminal, a numbered variable, a λ, the unknown form, a bracket, a quoted
-// constant, a variable of the reading notation, any other name.
-export const TOKEN =
-  /(?<slot>\{[^{}]*\}|<\w+>|⟨\w+⟩)|(?<token>"\s*<\w+>\s*")|(?<nonterminal>\$[A-Za-z]\w*)|(?<variable>\$\d+)|(?<lambda>λ|\blambda\b)|(?<unknown>\bUNKNOWN\b)|(?<bracket>[()[\]])|(?<quoted>"[^"]*"|“[^”]*”)|(?<letter>\b[a-z]\d?\b(?!\s*\())|(?<name>[A-Za-z_][\w-]*)/g;
+// What comes first in this list wins where two could begin at one place.
+const PARTS = [
+  /(?<slot>\{[^{}]*\}|<\w+>|⟨\w+⟩)/,
+  /(?<token>"\s*<\w+>\s*")/, // a class token as corpus notation writes it
+  /(?<nonterminal>\$[A-Za-z]\w*)/,
+  /(?<variable>\$\d+)/,
+  /(?<lambda>λ|\blambda\b)/,
+  /(?<unknown>\bUNKNOWN\b)/,
+  /(?<bracket>[()[\]])/,
+  /(?<quoted>"[^"]*"|“[^”]*”)/,
+  /(?<letter>\b[a-z]\d?\b(?!\s*\())/, // a variable of the reading notation
+  /(?<name>[A-Za-z_][\w-]*)/,
+];
+
+export const TOKEN = new RegExp(PARTS.map((part) => part.source).join("|"), "g");

@@ -85,9 +85,10 @@ function draw(root) {
   const left = Math.min(...nodes.map((node) => node.x - widthOf(node) / 2)) - 1;
   const right = Math.max(...nodes.map((node) => node.x + widthOf(node) / 2)) + 1;
   const height = placed.height * ROW_HEIGHT + NODE_HEIGHT + 2;
+  const width = right - left;
   return element(
     "svg",
-    { width: right - left, height, viewBox: `${left} ${-NODE_HEIGHT / 2 - 1} ${right - left} ${height}`, "aria-hidden": "true" },
+    { width, height, viewBox: `${left} ${-NODE_HEIGHT / 2 - 1} ${width} ${height}`, "aria-hidden": "true" },
     ...placed.links().map(drawEdge),
     ...nodes.map(drawNode),
   );
