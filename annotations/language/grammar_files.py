@@ -34,7 +34,7 @@ class GrammarFolder:
 
     def grammar(self, name: str) -> Grammar:
         """The productions of the file ``name`` behind those it imports, each file taken once."""
-        return Grammar(tuple(_with_imports(self.files, name, set())))
+        return Grammar(tuple(_with_imports(self.files, name, "", set())))
 
     def roots(self) -> tuple[str, ...]:
         """The names of the files that define ``$Main``, sorted."""
@@ -118,21 +118,20 @@ def _import_problems(
 
 
 def _with_imports(
-    files: Mapping[str, GrammarFile], name: str, taken: set[tuple[str, str]]
+    files: Mapping[str, GrammarFile], name: str, alias: str, taken: set[tuple[str, str]]
 ) -> Iterator[Production]:
-    file = files[name]
-    for directive in file.imports:
+    """The file's productions behind its imports'; ``$Main`` is ``$alias`` where one is given.
+
+    An alias holds for the whole of what is imported, until an import further down gives another.
+    """
+    taken.add((name, alias))
+    for directive in files[name].imports:
         target = _imported(files, directive)
-        if target is None or (target, directive.alias) in taken:
-            continue
-        taken.add((target, directive.alias))
-        for production in _with_imports(files, target, taken):
-            yield (
-                renamed_production(production, ROOT, directive.alias)
-                if directive.alias
-                else production
-            )
-    yield from file.productions
+        inner = directive.alias or alias
+        if target is not None and (target, inner) not in taken:
+            yield from _with_imports(files, target, inner, taken)
+    for production in files[name].productions:
+        yield renamed_production(production, ROOT, alias) if alias else production
 
 
 def _imported(files: Mapping[str, GrammarFile], directive: Import) -> str | None:

@@ -36,10 +36,20 @@ def test_an_import_as_renames_the_root_of_the_imported_file():
     assert "$task" not in folder.files["task.txt"].productions[0].nonterminal
 
 
+def test_a_file_under_two_names_is_taken_under_both():
+    folder = folder_of(
+        main="; import task.txt as $one\n; import task.txt as $two\n$Main = $one then $two",
+        task="; import more.txt\n$Main = go",
+        more="$Main = stay",
+    )
+    commands = set(folder.grammar("main.txt").commands())
+    assert commands == {f"{one} then {two}" for one in ("go", "stay") for two in ("go", "stay")}
+
+
 def test_files_that_import_each_other_are_taken_once():
     folder = folder_of(a="; import b.txt\n$Main = $x", b="; import a.txt\n; import b.txt\n$x = y")
     assert folder.problems == ()
-    assert len(folder.grammar("a.txt").productions) == 3
+    assert len(folder.grammar("a.txt").productions) == 2
     assert list(folder.grammar("a.txt").commands()) == ["y"]
 
 
