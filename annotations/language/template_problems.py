@@ -18,8 +18,8 @@ from annotations.language.symbols import Nonterminal, Wildcard
 from annotations.language.synchronous import TemplateExpander
 from annotations.language.templates import SemanticTemplate
 
-# Commands that are looked at for the checks that need commands; ample for an annotated grammar.
-CHECKED_COMMANDS = 20_000
+# A template is checked as it is typed, so only this many of its pairs are looked at.
+CHECKED_PAIRS = 2_000
 
 
 @dataclass(frozen=True)
@@ -48,10 +48,10 @@ class TemplateChecker:
         if any(problem.is_error for problem in found):
             return tuple(found)
         try:
-            pairs = list(islice(self.expander.pairs(template), CHECKED_COMMANDS))
+            pairs = list(islice(self.expander.pairs(template), CHECKED_PAIRS))
         except LanguageError as trouble:
             return (*found, trouble.problem)
-        found.extend(self._membership(template, [command for command, _ in pairs]))
+        found.extend(self._membership(template, pairs))
         found.extend(self._predicates(template, dict.fromkeys(form for _, form in pairs)))
         return tuple(found)
 
@@ -91,8 +91,10 @@ class TemplateChecker:
                     "what reaches it yields no command",
                 )
 
-    def _membership(self, template: SemanticTemplate, commands: list[str]) -> Iterator[Problem]:
-        distinct = dict.fromkeys(commands)
+    def _membership(
+        self, template: SemanticTemplate, pairs: list[tuple[str, str]]
+    ) -> Iterator[Problem]:
+        distinct = dict.fromkeys(command for command, _ in pairs)
         outside = [command for command in distinct if not self.recognizer.accepts(command)]
         if not distinct:
             yield warning(template.position, "the template makes no command", "check its pattern")
@@ -103,9 +105,10 @@ class TemplateChecker:
                 "compare it with the productions",
             )
         elif outside:
+            first = "the first " if len(pairs) == CHECKED_PAIRS else ""
             yield warning(
                 template.position,
-                f"{len(outside)} of {len(distinct)} commands are outside the grammar, "
+                f"{len(outside)} of {first}{len(distinct)} commands are outside the grammar, "
                 f'such as "{outside[0]}"',
                 "they are kept; narrow the pattern if they are not meant",
             )

@@ -1,5 +1,7 @@
 """Semantic templates: reading their lines, and the problems of one and of many together."""
 
+import time
+
 import pytest
 
 from annotations.language.errors import LanguageError, Position
@@ -16,6 +18,7 @@ from annotations.language.templates import (
     read_template,
     read_templates,
 )
+from tests.annotations.language.test_grammar import huge_grammar
 
 GRAMMAR = Grammar(
     read_productions(
@@ -146,6 +149,14 @@ def test_commands_outside_the_grammar_are_counted_with_an_example():
     problem = only("(find | seek) {name} = (find {name})")
     assert '1 of 2 commands are outside the grammar, such as "seek <name>"' in problem
     assert "matches nothing in the grammar" in only("seek {name} = (find {name})")
+
+
+def test_a_template_of_a_trillion_commands_is_checked_at_once():
+    start = time.process_time()
+    template = read_template("$Main $Main = (go)")
+    (problem,) = problems(template, huge_grammar())
+    assert "matches nothing in the grammar" in problem.message
+    assert time.process_time() - start < 2
 
 
 def test_an_undefined_nonterminal_in_a_pattern_is_a_warning():
