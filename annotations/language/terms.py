@@ -11,9 +11,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from annotations.language.symbols import Nonterminal, Wildcard
+from annotations.language.symbols import ENTITY_CLASSES, Nonterminal, Wildcard
 
 CLASS_TOKEN = re.compile(r"<([^\W\d]\w*)>")
+_BARE_TOKEN = re.compile(rf"({'|'.join(ENTITY_CLASSES)})[0-9]+")
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,8 +40,10 @@ class Constant:
 
     @property
     def token_class(self) -> str:
-        """``object`` for ``<object>`` and for ``<object0>``; empty for any other constant."""
-        match = CLASS_TOKEN.fullmatch(self.value) if isinstance(self.value, str) else None
+        """``object`` for ``<object>``, ``<object0>`` and ``object0``; empty for anything else."""
+        if not isinstance(self.value, str):
+            return ""
+        match = CLASS_TOKEN.fullmatch(self.value) or _BARE_TOKEN.fullmatch(self.value)
         return match[1].rstrip("0123456789") if match else ""
 
 
