@@ -41,7 +41,9 @@ class TemplateForm(forms.Form):
         for problem in checked.problems:
             if problem.is_error:
                 side = "form" if problem.position.source == "form" else "pattern"
-                self.add_error(side, f"{problem.message} ({problem.hint})" if problem.hint else problem.message)
+                self.add_error(
+                    side, f"{problem.message} ({problem.hint})" if problem.hint else problem.message
+                )
         return cleaned
 
 

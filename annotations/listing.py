@@ -139,7 +139,9 @@ class Listing:
         """The filters that are active, each with the way to drop it."""
         values = self.form.cleaned_data if self.form.is_valid() else {}
         return [
-            Chip(str(self.form.fields[name].label), self._label(name, value), self.url(**{name: ""}))
+            Chip(
+                str(self.form.fields[name].label), self._label(name, value), self.url(**{name: ""})
+            )
             for name, value in values.items()
             if value not in (None, "", [])
         ]

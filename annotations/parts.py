@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from django.db.models import Count
+from django.db.models import Count, Q
 
 from annotations.models import Example, Split
 from annotations.models.splits import Part, Source
@@ -62,7 +62,9 @@ def counts_of(splits: Iterable[Split]) -> dict[int, list[PartCounts]]:
     return {
         split.pk: [
             PartCounts(
-                source, *(sizes[split.pk].get((source, part), 0) for part in Part), forms[split.pk, source]
+                source,
+                *(sizes[split.pk].get((source, part), 0) for part in Part),
+                forms[split.pk, source],
             )
             for source in Source
             if (split.pk, source) in forms
@@ -90,5 +92,6 @@ def leakage_of(split: Split) -> list[Leak]:
 
 def _leak(split: Split, part: str, field: str, what: str) -> Leak:
     seen = split.examples.of(Part.TRAIN).exclude(**{field: ""}).order_by().values(field)
-    pairs = split.examples.of(part).exclude(**{field: ""})
-    return Leak(part, what, pairs.count(), pairs.filter(**{f"{field}__in": seen}).count())
+    shared = Count("pk", filter=Q(**{f"{field}__in": seen}))
+    rows = split.examples.of(part).exclude(**{field: ""})
+    return Leak(part, what, **rows.aggregate(pairs=Count("pk"), shared=shared))

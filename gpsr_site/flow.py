@@ -55,7 +55,9 @@ def next_steps(counts: Counts, duties: frozenset[Duty]) -> list[Step]:
 
 def _steps(counts: Counts) -> Iterator[tuple[Duty, Step]]:
     if not counts.productions and not counts.templates:
-        reason = "This world is empty. A generator folder brings its ontology, grammar and templates."
+        reason = (
+            "This world is empty. A generator folder brings its ontology, grammar and templates."
+        )
         yield Duty.MANAGE, Step(reason, "Import files", "import")
         return
     if not counts.templates:

@@ -22,12 +22,10 @@ class Workers:
     @property
     def summary(self) -> str:
         """The state in two or three words, for the top bar."""
-        waiting = f"{self.queued} waiting" if self.queued else ""
+        waiting = f", {self.queued} waiting" if self.queued else ""
         if not self.alive:
-            found = "No worker"
-        else:
-            found = f"{self.running} training" if self.running else "Worker idle"
-        return f"{found}, {waiting}" if waiting else found
+            return f"No worker{waiting}"
+        return f"{self.running} training{waiting}" if self.running else f"Worker idle{waiting}"
 
     @property
     def sentence(self) -> str:

@@ -39,11 +39,15 @@ Changes: TypeAlias = "tuple[tuple[str, Any], ...]"
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """One setting on one split; ``starts_group`` at the first split of a setting."""
+    """One setting on one split; ``starts_group`` at the first split of a setting.
+
+    ``label`` names the split: by its criterion where that tells the splits of the table apart.
+    """
 
     train_sources: str
     test_source: str
     split: Split
+    label: str
     starts_group: bool = False
 
     @property
@@ -164,10 +168,20 @@ def accuracy_tables(world: World, part: str, splits: Iterable[Split]) -> list[Ta
 def _columns(runs: list[TrainingRun], splits: list[Split]) -> Iterator[Column]:
     """The settings that somebody has trained, in the order of the paper, split by split."""
     trained = {(run.train_sources, run.split_id) for run in runs}
+    labels = _labels(splits)
     for train_sources, test_source in SETTINGS:
         found = [split for split in splits if (train_sources, split.pk) in trained]
         for split in found:
-            yield Column(train_sources, test_source, split, starts_group=split is found[0])
+            label = labels[split.pk]
+            yield Column(train_sources, test_source, split, label, starts_group=split is found[0])
+
+
+def _labels(splits: list[Split]) -> dict[int, str]:
+    is_telling = len({split.criterion for split in splits}) == len(splits)
+    return {
+        split.pk: f"by {split.get_criterion_display().lower()}" if is_telling else split.name
+        for split in splits
+    }
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,7 +251,7 @@ def _with_best_marked(rows: list[Row]) -> Iterator[Row]:
     best = [max(map(_accuracy, cells)) for cells in zip(*(row.cells for row in rows), strict=True)]
     for row in rows:
         marked = (
-            replace(cell, is_best=_accuracy(cell) == top) if cell and cell.score else cell
+            replace(cell, is_best=_accuracy(cell) == top > 0) if cell and cell.score else cell
             for cell, top in zip(row.cells, best, strict=True)
         )
         yield replace(row, cells=tuple(marked))

@@ -24,9 +24,7 @@ class RunForm(forms.Form):
     """What to train, on what. ``config`` holds the hyperparameters once the form is valid."""
 
     split = forms.ModelChoiceField(queryset=None, empty_label=None)
-    train_sources = forms.ChoiceField(
-        label="Train on", choices=list(SOURCE_LABELS.items()), widget=forms.RadioSelect
-    )
+    train_sources = forms.ChoiceField(label="Train on", choices=list(SOURCE_LABELS.items()))
     protocol = forms.ChoiceField(help_text="What training may know beside its pairs.")
     seed = forms.IntegerField(min_value=0, max_value=LARGEST_SEED, initial=0)
 

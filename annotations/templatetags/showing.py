@@ -20,7 +20,9 @@ PATTERN_TOKEN = re.compile(r"(\$\w+|\{[^{}]*\})")
 
 
 @register.inclusion_tag("_logical_form.html", takes_context=True)
-def logical_form(context: Any, text: str, gloss: bool = False, tools: bool = False) -> dict[str, Any]:
+def logical_form(
+    context: Any, text: str, gloss: bool = False, tools: bool = False
+) -> dict[str, Any]:
     """A form in the notation that the page shows; with ``gloss`` its English sentence beneath."""
     form = shown(text)
     if gloss and form.corpus:
@@ -63,8 +65,8 @@ def predicted_form(expected: str, predicted: str) -> dict[str, Any]:
 
 @register.filter
 def percent(fraction: float | None) -> float | None:
-    """A fraction of 1 in percent."""
-    return None if fraction is None else 100 * fraction
+    """A fraction of 1 in percent; None for what is no number."""
+    return 100 * fraction if isinstance(fraction, float | int) else None
 
 
 @register.filter

@@ -12,7 +12,7 @@ from annotations.models import Duty, Entity, World
 from annotations.models.problems import Subject
 
 SORTS = {
-    "position": Sort("Order", "position"),
+    "position": Sort("File", "position"),
     "text": Sort("Name", "text"),
     "class": Sort("Class", "entity_class"),
 }

@@ -6,10 +6,10 @@ from django.http import HttpRequest, HttpResponse
 from django.shortcuts import get_object_or_404, render
 
 from annotations.access import world_view
-from annotations.parts import counts_of, leakage_of
 from annotations.filters import ExampleFilters
 from annotations.listing import Listing, Sort
 from annotations.models import Duty, Split, World
+from annotations.parts import counts_of, leakage_of
 
 SORTS = {
     "position": Sort("No.", "id", is_number=True),

@@ -19,7 +19,7 @@ from annotations.models import Duty, SemanticTemplate, StoredProblem, TaskCatego
 from annotations.models.problems import Subject
 
 SORTS = {
-    "position": Sort("Place", "position"),
+    "position": Sort("Task category", "position"),
     "pattern": Sort("Pattern", "pattern"),
     "commands": Sort("Commands", "n_commands", is_number=True),
     "status": Sort("Status", "status"),
@@ -54,7 +54,9 @@ def template_new(request: HttpRequest, world: World) -> HttpResponse:
     """A new template."""
     form = TemplateForm(world, request.POST or None)
     if request.method == "POST" and form.is_valid():
-        made = add_template(by=request.user, category=form.cleaned_data["task_category"], **sides(form))
+        made = add_template(
+            by=request.user, category=form.cleaned_data["task_category"], **sides(form)
+        )
         messages.success(request, "Saved. Generate commands to see it in the tables.")
         return redirect("template", world=world.name, pk=made.pk)
     context = {"form": form, "checked": checked_of(world, form)}
@@ -64,13 +66,17 @@ def template_new(request: HttpRequest, world: World) -> HttpResponse:
 @world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.ANNOTATE)
 def template(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     """One template: what it says, makes and lacks; annotators change it."""
-    row = get_object_or_404(SemanticTemplate.objects.select_related("author"), grammar__world=world, pk=pk)
+    row = get_object_or_404(
+        SemanticTemplate.objects.select_related("author"), grammar__world=world, pk=pk
+    )
     form = TemplateForm(world, request.POST or None, initial=initial_of(world, row))
     form.fields["task_category"].disabled = True
     context = {"row": row, "form": form}
     if request.method == "POST" and form.is_valid():
         try:
-            change_template(row, by=request.user, version=form.cleaned_data["version"] or 0, **sides(form))
+            change_template(
+                row, by=request.user, version=form.cleaned_data["version"] or 0, **sides(form)
+            )
         except Overtaken as clash:
             context["clash"] = clash
             form.data = {**form.data.dict(), "version": clash.current.version}

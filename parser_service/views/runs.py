@@ -69,7 +69,9 @@ def start(request: HttpRequest, world: World, form: RunForm) -> TrainingRun | No
     if STARTED_RUNS.is_spent(key):
         form.add_error(None, TOO_MANY)
         return None
-    asked = {name: form.cleaned_data[name] for name in ("split", "protocol", "train_sources", "seed")}
+    asked = {
+        name: form.cleaned_data[name] for name in ("split", "protocol", "train_sources", "seed")
+    }
     try:
         run, is_new = lifecycle.request(
             world, parser=form.parser, config=form.config, by=request.user, **asked

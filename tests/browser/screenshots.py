@@ -1,0 +1,119 @@
+"""Pictures of every page of a running installation, at two widths and in both themes.
+
+    python -m tests.browser.screenshots OUT --url http://127.0.0.1:8000 --user NAME --world WORLD
+
+The password is read from GPSR_PASSWORD.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+from playwright.sync_api import Browser, Page, sync_playwright
+
+from tests.browser.variants import VARIANTS, Variant
+
+CHROMIUM = os.environ.get("CHROMIUM", "/usr/bin/chromium")
+
+# Name of the picture → path below the world. A path in braces is the first link of that page that
+# the selector finds.
+PAGES = {
+    "overview": "",
+    "ontology": "ontology/",
+    "predicates": "predicates/",
+    "grammar": "grammar/",
+    "templates": "templates/",
+    "template-new": "templates/new/",
+    "commands": "commands/",
+    "forms": "forms/",
+    "complexity": "commands/complexity/",
+    "paraphrases": "paraphrases/",
+    "import": "import/",
+    "splits": "splits/",
+    "split-new": "splits/new/",
+    "runs": "runs/",
+    "run-new": "runs/new/?parser=seq2seq",
+    "results": "results/",
+}
+# Name of the picture → the page and the link on it that leads there.
+DETAILS = {
+    "template": ("templates/", "#list a.row-link"),
+    "form": ("forms/", "#list a.row-link"),
+    "split": ("splits/", "a.row-link"),
+    "run": ("runs/?status=succeeded&parser=seq2seq", "#runs-table a.row-link"),
+    "predictions": ("results/", "a.accuracy"),
+}
+
+
+def log_in(page: Page, url: str, user: str, password: str) -> None:
+    """Logs ``user`` in through the page."""
+    page.goto(f"{url}/login/")
+    page.fill("#id_username", user)
+    page.fill("#id_password", password)
+    page.click("button[type=submit]")
+    page.wait_for_url(lambda found: "/login/" not in found)
+
+
+def addresses(page: Page, url: str, world: str) -> Iterator[tuple[str, str]]:
+    """Name and address of every page to look at; details that have nothing to show are left out."""
+    yield "worlds", f"{url}/"
+    base = f"{url}/w/{world}/"
+    for name, path in PAGES.items():
+        yield name, base + path
+    for name, (path, selector) in DETAILS.items():
+        page.goto(base + path)
+        if link := page.query_selector(selector):
+            yield name, url + link.get_attribute("href")
+    page.goto(base + "results/")
+    if link := page.query_selector("a.accuracy"):
+        page.goto(url + link.get_attribute("href") + "&outcome=wrong")
+        if link := page.query_selector("#list a.row-link"):
+            yield "prediction", url + link.get_attribute("href")
+
+
+def shoot(browser: Browser, variant: Variant, args: argparse.Namespace) -> None:
+    """All pages in one variant."""
+    context = browser.new_context(**variant.options)
+    page = context.new_page()
+    page.goto(f"{args.url}/login/")
+    page.screenshot(path=args.out / f"login-{variant}.png")
+    log_in(page, args.url, args.user, os.environ["GPSR_PASSWORD"])
+    chosen = args.only.split(",") if args.only else []
+    for name, address in list(addresses(page, args.url, args.world)):
+        if chosen and name not in chosen:
+            continue
+        page.goto(address)
+        page.wait_for_selector("#coverage:not([aria-busy])") if name == "grammar" else None
+        page.wait_for_timeout(args.settle)
+        page.screenshot(path=args.out / f"{name}-{variant}.png", full_page=args.full)
+    context.close()
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("out", type=Path)
+    parser.add_argument("--url", default="http://127.0.0.1:8000")
+    parser.add_argument("--user", default="admin")
+    parser.add_argument("--world", required=True)
+    parser.add_argument("--only", default="", help="names of pages, comma-separated")
+    parser.add_argument("--variants", default="", help="such as 1280-light, comma-separated")
+    parser.add_argument("--full", action="store_true", help="the whole length of each page")
+    parser.add_argument(
+        "--settle", type=int, default=600, help="milliseconds for charts to be drawn"
+    )
+    args = parser.parse_args()
+    args.out.mkdir(parents=True, exist_ok=True)
+    wanted = args.variants.split(",") if args.variants else [str(each) for each in VARIANTS]
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        for variant in VARIANTS:
+            if str(variant) in wanted:
+                shoot(browser, variant, args)
+        browser.close()
+
+
+if __name__ == "__main__":
+    main()
