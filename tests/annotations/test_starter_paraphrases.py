@@ -10,6 +10,7 @@ from functools import cache
 from random import Random
 from typing import NamedTuple
 
+from annotations.language.anonymizer import Anonymizer
 from annotations.language.canonical import canonical_text
 from annotations.language.entities import Entity, Ontology
 from annotations.language.errors import LanguageError
@@ -67,10 +68,9 @@ def mentioned(prompt: str) -> Ontology:
 
 def is_mentioned(entity: Entity, prompt: str) -> bool:
     category = entity.text if entity.entity_class == "category" else entity.attribute("category")
-    return (
-        entity.entity_class == "question"  # said as "question", whichever it is
-        or f" {entity.text} " in f" {prompt} "
-        or f"any {ontology().singular(category or 'category')}" in prompt
+    kind = ontology().singular(category or "category")  # what {object?} says
+    return entity.entity_class == "question" or any(
+        f" {words} " in f" {prompt} " for words in (entity.text, kind)
     )
 
 
@@ -133,15 +133,21 @@ def test_no_utterance_is_written_twice_or_repeats_its_prompt():
     assert not [record for record in records() if record.utterance.lower() == record.prompt]
 
 
-def test_an_utterance_says_everything_that_its_form_mentions():
+def test_an_anonymized_prompt_is_its_command():
+    anonymizer = Anonymizer(ontology())
+    for prompt, found in produced().items():
+        commands = {derivation.anonymized_text for derivation, _ in found}
+        assert commands == {anonymizer.anonymize(prompt).command}
+
+
+def test_an_utterance_names_what_its_form_names_and_nothing_else():
+    anonymizer = Anonymizer(ontology())
     for record in records():
-        for constant in walk(read_form(record.form)):
-            if isinstance(constant, Constant) and isinstance(constant.value, str):
-                assert is_said(constant.value, record.utterance.lower()), record
+        spans = anonymizer.anonymize(record.utterance).spans
+        if record.form != "UNKNOWN":
+            assert {span.value for span in spans} == texts(record.form), record
 
 
-def is_said(text: str, utterance: str) -> bool:
-    rows = [each for each in ontology().entities if each.text == text]
-    aliases = [alias for row in rows for alias in row.aliases]
-    names = [text, *aliases, *(row.attribute("singular") or text for row in rows)]
-    return any(name.lower() in utterance for name in names)
+def texts(form: str) -> set[str]:
+    values = (each.value for each in walk(read_form(form)) if isinstance(each, Constant))
+    return {value for value in values if isinstance(value, str)}
