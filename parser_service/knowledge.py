@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+from annotations.language.anonymizer import Anonymizer
 from annotations.models import World
 from annotations.reading import ontology_of, predicates_of, task_categories
 from parser_service.parsers.interface import Knowledge
@@ -19,3 +22,9 @@ def knowledge_of(world: World, protocol: str) -> Knowledge:
     if protocol == "domain":
         return Knowledge(predicates, ontology)
     return Knowledge(predicates, ontology, task_categories(world))
+
+
+def anonymizer_of(world: World) -> Callable[[str], str]:
+    """Writes a text with the world's entities as its generated commands are written."""
+    anonymizer = Anonymizer(ontology_of(world))
+    return lambda text: anonymizer.anonymize(text).command

@@ -1,0 +1,162 @@
+"""Cells of an accuracy table: a parser, trained and tested once under stated conditions."""
+
+from __future__ import annotations
+
+import json
+import os
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from hashlib import sha256
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+from parser_service.analysis.scores import NO_ANSWER, Judgement, judge, score
+from parser_service.code_version import code_version
+from parser_service.corpus import Corpus
+from parser_service.evaluating import BEAM_WIDTH, TEST_SOURCES
+from parser_service.models.runs import TrainSources
+from parser_service.parsers.interface import Knowledge, Pair, Parser
+from parser_service.parsers.registry import config_values, entry, load_class, make_config
+
+Cell = dict[str, Any]
+SETTINGS = ("gen-gen", "gen-para", "para-para", "gen+para-para", "gen+para-mixed")
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """What one cell measures. ``setting`` is train sources and test source: ``gen+para-mixed``."""
+
+    parser: str
+    configuration: tuple[tuple[str, Any], ...]
+    setting: str
+    criterion: str
+    protocol: str
+    seed: int
+
+    @property
+    def train_sources(self) -> tuple[str, ...]:
+        return TrainSources(self.setting.rpartition("-")[0]).sources
+
+    @property
+    def test_sources(self) -> tuple[str, ...]:
+        return TEST_SOURCES[self.setting.rpartition("-")[2]]
+
+
+def jobs(
+    parsers: Sequence[str],
+    settings: Sequence[str],
+    criteria: Sequence[str],
+    protocols: Sequence[str],
+    seeds: int,
+    configurations: Mapping[str, Mapping[str, Any]] | None = None,
+) -> Iterator[Job]:
+    """All that is to be measured; a parser only under the protocols that it has.
+
+    ``configurations`` changes hyperparameters of some parsers. Raises ValueError, a sentence.
+    """
+    changed = configurations or {}
+    configured = {
+        name: tuple(config_values(make_config(name, changed.get(name))).items()) for name in parsers
+    }
+    for criterion, name, protocol, setting, seed in product(
+        criteria, parsers, protocols, settings, range(seeds)
+    ):
+        if protocol in entry(name).protocols:
+            yield Job(name, configured[name], setting, criterion, protocol, seed)
+
+
+def measure(job: Job, corpus: Corpus, knowledge: Knowledge) -> Cell:
+    """Trains and tests. Accuracies are fractions of 1; ``accuracy_test`` is None without a test part.
+
+    Well-formedness and speed are those of the test part, or of the validation part where there is
+    none. Raises ValueError, a sentence, where there is nothing to train on or to test with.
+    """
+    train = corpus.pairs("train", job.train_sources)
+    validation = corpus.pairs("validation", job.train_sources)
+    asked = {part: corpus.pairs(part, job.test_sources) for part in ("validation", "test")}
+    if not train or not asked["validation"]:
+        raise ValueError(
+            f"{job.setting} by {job.criterion}: the folder has {len(train)} pairs to train on and "
+            f"{len(asked['validation'])} to validate with."
+        )
+    config = make_config(job.parser, dict(job.configuration))
+    parser = load_class(job.parser)(config, job.seed, knowledge.limited_to(job.protocol))
+    began = time.perf_counter()
+    parser.fit(train, validation)
+    seconds = time.perf_counter() - began
+    on_validation, validation_ms = _judged(parser, asked["validation"])
+    on_test, test_ms = _judged(parser.for_test_part(validation), asked["test"])
+    return {
+        **asdict(job),
+        "configuration": dict(job.configuration),
+        "n_train": len(train),
+        "n_test": len(asked["test"]),
+        "n_validation": len(asked["validation"]),
+        "accuracy_validation": score(on_validation).accuracy,
+        "accuracy_test": score(on_test).accuracy if on_test else None,
+        "well_formed": score(on_test or on_validation).well_formed,
+        "seconds_train": round(seconds, 3),
+        "milliseconds_per_command": round(test_ms if on_test else validation_ms, 3),
+        "parameters": parser.parameters(),
+        "code_version": code_version(),
+    }
+
+
+def _judged(parser: Parser, pairs: Sequence[Pair]) -> tuple[list[Judgement], float]:
+    """How the first answers compare with the forms, and the milliseconds an answer took."""
+    if not pairs:
+        return [], 0.0
+    began = time.perf_counter()
+    answers = parser.predict([pair.utterance for pair in pairs], BEAM_WIDTH)
+    milliseconds = (time.perf_counter() - began) * 1000 / len(pairs)
+    judgements = [
+        judge(ranked[0].form, pair.form) if ranked else NO_ANSWER
+        for ranked, pair in zip(answers, pairs, strict=True)
+    ]
+    return judgements, milliseconds
+
+
+def cell_key(job: Job, corpus: Corpus, knowledge_hash: str) -> str:
+    """SHA-256 of all that decides a cell: conditions, pairs, knowledge and code."""
+    used = {*job.train_sources, *job.test_sources}
+    pairs = [
+        [part, pair.source, pair.utterance, pair.form, pair.task_category]
+        for part in ("train", "validation", "test")
+        for pair in corpus.pairs(part, sorted(used))
+    ]
+    conditions = [asdict(job), entry(job.parser).version, knowledge_hash, code_version(), pairs]
+    return sha256(json.dumps(conditions, ensure_ascii=False).encode()).hexdigest()
+
+
+class CellFile:
+    """A JSON list of cells that grows by one whenever one is finished, and survives being killed."""
+
+    def __init__(self, path: Path):
+        """Raises ValueError, a sentence, where the file is there and holds something else."""
+        self.path = path
+        self.cells: list[Cell] = _read_cells(path)
+
+    def has(self, key: str) -> bool:
+        return any(cell["key"] == key for cell in self.cells)
+
+    def append(self, cell: Cell) -> None:
+        """Writes the file anew beside itself and renames it."""
+        self.cells.append(cell)
+        unfinished = self.path.with_name(f".{self.path.name}.{os.getpid()}")
+        text = json.dumps(self.cells, ensure_ascii=False, indent=1)
+        unfinished.write_text(text + "\n", encoding="utf-8")
+        os.replace(unfinished, self.path)
+
+
+def _read_cells(path: Path) -> list[Cell]:
+    if not path.exists():
+        return []
+    try:
+        cells = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError:
+        cells = None
+    if not isinstance(cells, list) or any("key" not in cell for cell in cells):
+        raise ValueError(f"{path} holds something else than cells; name another file.")
+    return cells

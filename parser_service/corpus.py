@@ -1,0 +1,101 @@
+"""A folder of published pairs (FORMATS §5, §6) as parts to train and test on, without a database."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from annotations.language.errors import LanguageError
+from annotations.language.pairs import (
+    CORPUS_FOLDERS,
+    PART_FILES,
+    TRIPLES_FILE,
+    Record,
+    RecordFile,
+    read_pairs,
+    read_triples,
+)
+from annotations.language.splitting import Criterion, SplitItem, split
+from parser_service.parsers.interface import Pair
+
+SOURCE_SPLIT_SEED = 0
+
+
+@dataclass(frozen=True)
+class Corpus:
+    """The pairs of a folder under one criterion, by part and source in the order of the files."""
+
+    criterion: str
+    parts: Mapping[tuple[str, str], tuple[Pair, ...]]
+
+    def pairs(self, part: str, sources: Iterable[str]) -> list[Pair]:
+        """The pairs of a part from some sources; none where the folder has none."""
+        return [pair for source in sources for pair in self.parts.get((part, source), ())]
+
+
+def read_corpus(folder: Path, criterion: str) -> Corpus:
+    """The published split of ``folder`` by ``command`` or ``logical_form``.
+
+    Raises LanguageError at the first fault of a file, ValueError where there is no such split.
+    """
+    parts = {
+        (part, source): tuple(
+            Pair(record.utterance, record.canonical_form, source)  # type: ignore[arg-type]
+            for record in _sound(read_pairs, folder / name / file)
+        )
+        for name, (source, kind) in CORPUS_FOLDERS.items()
+        for part, file in PART_FILES.items()
+        if kind == criterion and (folder / name / file).is_file()
+    }
+    if not parts:
+        names = ", ".join(name for name, (_, kind) in CORPUS_FOLDERS.items() if kind == criterion)
+        raise ValueError(f"{folder} has no split by {criterion}: it holds none of {names}.")
+    return Corpus(criterion, parts)
+
+
+def split_by_source_command(folder: Path, anonymize: Callable[[str], str]) -> Corpus:
+    """A new split of the train and validation pairs whose source command is known.
+
+    A generated command is its own source; a paraphrase's is the command of ``paraphrasings.txt``
+    that it rewrites, as ``anonymize`` writes it. Always the same split for the same folder.
+    Raises LanguageError and ValueError as ``read_corpus`` does.
+    """
+    published = read_corpus(folder, Criterion.COMMAND)
+    prompts = _prompts(folder)
+    pool = [
+        pair
+        for (part, _), pairs in published.parts.items()
+        for pair in pairs
+        if part != "test" and (pair.source == "generated" or pair.utterance in prompts)
+    ]
+    sources = (
+        pair.utterance if pair.source == "generated" else anonymize(prompts[pair.utterance])
+        for pair in pool
+    )
+    items = [
+        SplitItem(pair.source, pair.utterance, source, pair.form)
+        for pair, source in zip(pool, sources, strict=True)
+    ]
+    chosen = split(items, Criterion.SOURCE_COMMAND, seed=SOURCE_SPLIT_SEED)
+    parts: dict[tuple[str, str], list[Pair]] = defaultdict(list)
+    for pair, part in zip(pool, chosen, strict=True):
+        parts[part, pair.source].append(pair)
+    return Corpus(Criterion.SOURCE_COMMAND, {key: tuple(pairs) for key, pairs in parts.items()})
+
+
+def _prompts(folder: Path) -> dict[str, str]:
+    """Paraphrase → the grounded command that it rewrites."""
+    path = folder / TRIPLES_FILE
+    if not path.is_file():
+        raise ValueError(f"{folder} has no {TRIPLES_FILE}, so no source command is known.")
+    return {record.paraphrase: record.command for record in _sound(read_triples, path)}
+
+
+def _sound(read: Callable[[bytes, str], RecordFile[Record]], path: Path) -> tuple[Record, ...]:
+    """The records of a file. Raises LanguageError with the first of its problems."""
+    file = read(path.read_bytes(), str(path))
+    for problem in file.problems:
+        raise LanguageError(problem.message, problem.position, problem.hint)
+    return file.records

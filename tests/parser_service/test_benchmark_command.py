@@ -1,0 +1,192 @@
+"""``manage.py benchmark``: cells over a folder of pair files."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from django.conf import settings as site
+from django.core.management import CommandError, call_command
+
+from annotations.importing import import_generator
+from annotations.language.pairs import by_length, write_pairs
+from parser_service import benchmarking
+from parser_service.corpus import read_corpus, split_by_source_command
+from tests.parser_service.made_up import made_up_pairs
+from tests.parser_service.running import ROOT
+
+KEYS = {
+    "parser", "configuration", "setting", "criterion", "protocol", "seed", "n_train", "n_test",
+    "accuracy_validation", "accuracy_test", "well_formed", "seconds_train",
+    "milliseconds_per_command", "parameters", "code_version",
+}  # fmt: skip
+
+
+@pytest.fixture
+def folder(tmp_path) -> Path:
+    """Pair files by command with train and validation parts, and where the paraphrases come from."""
+    triples = []
+    for name, place in (("gen", 0), ("para", 1)):
+        rows = {"train.txt": [], "val.txt": []}
+        for number, made in enumerate(made_up_pairs()):
+            rows["val.txt" if number % 4 == 3 else "train.txt"].append((made[place], made[2]))
+        for file, pairs in rows.items():
+            path = tmp_path / "pairs" / name / file
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text("".join(write_pairs(by_length(pairs))), encoding="utf-8")
+    triples = [f"{said}\n{command}\n{form}\n" for command, said, form in made_up_pairs()]
+    (tmp_path / "pairs" / "paraphrasings.txt").write_text("".join(triples), encoding="utf-8")
+    return tmp_path / "pairs"
+
+
+def run(folder: Path, file: Path, **options) -> list[dict]:
+    given = {"criteria": "command", "protocols": "strict", "parsers": "knn", **options}
+    call_command("benchmark", str(folder), json=file, **given)
+    return json.loads(file.read_text(encoding="utf-8"))
+
+
+def test_a_cell_says_all_that_the_table_needs(folder, tmp_path):
+    cells = run(folder, tmp_path / "cells.json")
+    assert [cell["setting"] for cell in cells] == list(benchmarking.SETTINGS)
+    for cell in cells:
+        assert cell.keys() >= KEYS
+        assert 0 <= cell["accuracy_validation"] <= 1
+        assert (cell["accuracy_test"], cell["n_test"]) == (None, 0)
+        assert cell["milliseconds_per_command"] > 0
+
+
+def test_train_and_test_sources_are_those_of_the_setting(folder, tmp_path):
+    counts = {
+        cell["setting"]: (cell["n_train"], cell["n_validation"])
+        for cell in run(folder, tmp_path / "cells.json")
+    }
+    assert counts == {
+        "gen-gen": (27, 9),
+        "gen-para": (27, 9),
+        "para-para": (27, 9),
+        "gen+para-para": (54, 9),
+        "gen+para-mixed": (54, 18),
+    }
+
+
+def test_cells_are_appended_and_measured_once(folder, tmp_path, monkeypatch):
+    file = tmp_path / "cells.json"
+    first = run(folder, file, train_test="gen-gen")
+    assert len(first) == 1
+    both = run(folder, file, train_test="gen-gen,para-para")
+    assert both[0] == first[0]
+    assert [cell["setting"] for cell in both] == ["gen-gen", "para-para"]
+    monkeypatch.setattr(benchmarking, "measure", None)
+    assert run(folder, file, train_test="gen-gen,para-para") == both
+
+
+@pytest.mark.parametrize("change", ["code", "configuration", "seed", "pairs"])
+def test_whatever_decides_a_cell_makes_another_one(folder, tmp_path, monkeypatch, change):
+    file = tmp_path / "cells.json"
+    run(folder, file, train_test="gen-gen")
+    options = {"train_test": "gen-gen"}
+    if change == "code":
+        monkeypatch.setattr(benchmarking, "code_version", lambda: "another")
+    elif change == "configuration":
+        options["config"] = ["knn.least_overlap=0.5"]
+    elif change == "seed":
+        options["seeds"] = 2
+    else:
+        path = folder / "gen" / "train.txt"
+        path.write_text(path.read_text().replace("bring me", "give me"), encoding="utf-8")
+    assert len(run(folder, file, **options)) == 2
+
+
+def test_a_test_part_is_scored_with_the_validation_pairs_as_neighbours(folder, tmp_path):
+    (folder / "gen" / "test.txt").write_bytes((folder / "gen" / "val.txt").read_bytes())
+    (cell,) = run(folder, tmp_path / "cells.json", train_test="gen-gen")
+    assert cell["n_test"] == 9
+    assert cell["accuracy_test"] == 1.0
+    assert cell["accuracy_validation"] < 1.0
+
+
+def test_no_source_command_is_in_two_parts(folder):
+    corpus = split_by_source_command(folder, lambda prompt: prompt)
+    source = {said: command for command, said, _ in made_up_pairs()}
+    parts: dict[str, set[str]] = {}
+    for (part, _), pairs in corpus.parts.items():
+        for pair in pairs:
+            parts.setdefault(source.get(pair.utterance, pair.utterance), set()).add(part)
+    assert len(parts) == 36
+    assert all(len(found) == 1 for found in parts.values())
+    assert {part for part, _ in corpus.parts} == {"train", "validation", "test"}
+
+
+def test_a_paraphrase_of_unknown_origin_is_left_out(folder):
+    (folder / "paraphrasings.txt").write_text(
+        "".join((folder / "paraphrasings.txt").read_text().splitlines(keepends=True)[:30])
+    )
+    corpus = split_by_source_command(folder, lambda prompt: prompt)
+    sources = [pair.source for pairs in corpus.parts.values() for pair in pairs]
+    assert (sources.count("generated"), sources.count("paraphrased")) == (36, 10)
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        ({"parsers": "knn,elmo"}, "'elmo' is none of grammar-oracle, knn"),
+        ({"train_test": "para-gen"}, "'para-gen' is none of gen-gen"),
+        ({"criteria": "logical_form"}, "has no split by logical_form"),
+        ({"criteria": "source_command"}, "needs the ontology of a --world"),
+        ({"config": ["least_overlap=0.5"]}, "has to be PARSER.KEY=VALUE"),
+        ({"parsers": "grammar-oracle", "protocols": "grammar"}, "The grammar oracle parses with"),
+    ],
+)
+def test_bad_input_is_a_sentence(folder, tmp_path, options, sentence):
+    with pytest.raises(CommandError) as refused:
+        run(folder, tmp_path / "cells.json", **options)
+    assert sentence in str(refused.value)
+
+
+def test_a_broken_pair_file_is_named_with_its_line(folder, tmp_path):
+    with (folder / "gen" / "val.txt").open("a") as file:
+        file.write("one line too many\n")
+    with pytest.raises(CommandError, match=r"val\.txt:19:1: .*no multiple of 2"):
+        run(folder, tmp_path / "cells.json")
+
+
+def test_a_file_that_holds_something_else_is_not_overwritten(folder, tmp_path):
+    file = tmp_path / "notes.json"
+    file.write_text('{"note": 1}')
+    with pytest.raises(CommandError, match="holds something else than cells"):
+        run(folder, file)
+    assert file.read_text() == '{"note": 1}'
+
+
+def test_the_option_is_called_settings_on_the_command_line(folder, tmp_path):
+    file = tmp_path / "cells.json"
+    command = ["manage.py", "benchmark", str(folder), "--parsers", "knn", "--json", str(file)]
+    chosen = ["--settings", "gen-gen", "--criteria=command"]
+    environment = {**os.environ, "GPSR_VAR_DIR": str(site.VAR_DIR)}
+    subprocess.run([sys.executable, *command, *chosen], cwd=ROOT, env=environment, check=True)
+    assert [cell["setting"] for cell in json.loads(file.read_text())] == ["gen-gen"]
+
+
+def test_the_oracle_is_right_on_every_published_generated_pair(shared_data, tmp_path, db):
+    import_generator("gpsr2018", shared_data / "generator-2018")
+    cells = run(
+        shared_data / "walker2019",
+        tmp_path / "cells.json",
+        world="gpsr2018",
+        parsers="grammar-oracle",
+        protocols="grammar",
+        criteria="command,logical_form",
+        train_test="gen-gen",
+    )
+    assert [cell["accuracy_validation"] for cell in cells] == [1.0, 1.0]
+
+
+def test_the_published_parts_have_the_published_sizes(shared_data):
+    for criterion, sizes in (("command", (847, 121)), ("logical_form", (850, 129))):
+        corpus = read_corpus(shared_data / "walker2019", criterion)
+        parts = [corpus.pairs(part, ["generated"]) for part in ("train", "validation")]
+        assert tuple(map(len, parts)) == sizes
