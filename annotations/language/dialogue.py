@@ -143,8 +143,8 @@ class Dialogue:
     def _prompt(self, state: State) -> str:
         slot = state.asked
         if slot is None:
-            words = gloss(state.form, self.predicates)
-            return f"Shall I {re.sub(r'\bme\b', 'you', words)}?"
+            words = re.sub(r"\bme\b", "you", gloss(state.form, self.predicates))
+            return f"Shall I {words}?"
         words = gloss(filled(state.form, slot.path, BLANK), self.predicates)
         offered = _listed(slot.candidates) if len(slot.candidates) <= _OFFERED else ""
         return f"Which {_noun(slot)} is {BLANK} in “{words}”?" + (f" {offered}?" if offered else "")
