@@ -19,7 +19,7 @@ class Seq2SeqConfig:
         100, "Width of a word vector, in commands and in forms.", minimum=2, maximum=1024
     )
     hidden_size: int = hyperparameter(
-        256,
+        128,
         "Cells of the decoder; each direction of the encoder has half.",
         minimum=2,
         maximum=2048,
@@ -31,7 +31,7 @@ class Seq2SeqConfig:
         0.1, "Share of the encoder's values dropped in training.", minimum=0.0, maximum=0.9
     )
     learning_rate: float = hyperparameter(
-        0.002, "Step of the Adam optimiser.", minimum=1e-6, maximum=1.0
+        0.004, "Step of the Adam optimiser.", minimum=1e-6, maximum=1.0
     )
     batch_size: int = hyperparameter(32, "Pairs a training step.", minimum=1, maximum=4096)
     clip: float = hyperparameter(
