@@ -1,7 +1,5 @@
 """Synchronous expansion: commands with their forms, anonymized or with their wildcards intact."""
 
-import time
-
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
@@ -172,12 +170,10 @@ def test_a_template_is_matched_where_any_category_with_it_derives_a_command():
 
 def test_a_trillion_pairs_are_refused_with_their_number_before_any_is_made():
     huge = category("1", "$Main = (go)", grammar=huge_grammar())
-    start = time.process_time()
     assert generation_size([huge]) == 10**12
     with pytest.raises(LanguageError, match="1,000,000,000,000 commands"):
         generate([huge], limit=1_000_000)
     assert next(TemplateExpander(huge.grammar).pairs(huge.templates[0]))[1] == "( go )"
-    assert time.process_time() - start < 0.5
 
 
 def test_a_cycle_is_refused():

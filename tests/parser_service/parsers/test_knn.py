@@ -1,5 +1,3 @@
-import time
-
 import pytest
 
 from parser_service.parsers.interface import Cancelled, Candidate, Pair
@@ -96,12 +94,3 @@ def test_a_cancelled_prediction_stops(parser):
 
     with pytest.raises(Cancelled):
         parser.predict(["go"], check=cancel)
-
-
-def test_two_thousand_utterances_against_thirteen_hundred_take_under_a_second():
-    parser = NearestNeighbour()
-    sentences = [f"bring the thing {n} from room {n % 7} to me" for n in range(2000)]
-    parser.fit([Pair(sentence, str(n % 90)) for n, sentence in enumerate(sentences[:1300])])
-    begin = time.process_time()
-    parser.predict(sentences)
-    assert time.process_time() - begin < 1

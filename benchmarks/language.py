@@ -1,0 +1,78 @@
+"""How long the language core takes, in seconds of processor time.
+
+    GPSR_SHARED_DATA=… .venv/bin/python benchmarks/language.py
+
+Reads and expands the published 2018 generator, parses its commands with the chart, expands the 2019
+generator, reads the published forms, and asks a grammar of 10^12 commands for its size and a parse.
+The bound beside a figure is the one the project promises; a figure without one is for comparison.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeVar
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))
+
+from annotations.language.expansion import generate  # noqa: E402
+from annotations.language.generator_folder import read_generator_folder  # noqa: E402
+from annotations.language.grammar import Grammar, read_productions  # noqa: E402
+from annotations.language.logic import read_form  # noqa: E402
+from annotations.language.pairs import read_pairs  # noqa: E402
+from annotations.language.recognizer import Recognizer  # noqa: E402
+from annotations.language.template_chart import TemplateChart  # noqa: E402
+
+DATA = Path(os.environ.get("GPSR_SHARED_DATA", ROOT.parent / "shared" / "data"))
+T = TypeVar("T")
+
+
+def timed(name: str, work: Callable[[], T], bound: float | None = None) -> T:
+    """Does ``work`` once, prints what it took and whether that is within ``bound``."""
+    start = time.process_time()
+    result = work()
+    took = time.process_time() - start
+    verdict = (
+        "" if bound is None else f"   (bound {bound:g} s: {'held' if took < bound else 'MISSED'})"
+    )
+    print(f"{took:8.3f} s  {name}{verdict}")
+    return result
+
+
+def huge_grammar() -> Grammar:
+    words = " | ".join(f"w{number}" for number in range(10))
+    return Grammar(read_productions(f"$Main = go{' $word' * 12}\n$word = {words}").productions)
+
+
+def main() -> None:
+    folder = DATA / "generator-2018"
+    categories = timed("read generator-2018", lambda: read_generator_folder(folder).categories())
+    generated = timed("expand generator-2018 with its templates", lambda: generate(categories), 0.5)
+    chart = timed("compile the chart", lambda: TemplateChart(categories))
+    commands = [each.command for each in generated.expansions]
+    timed(f"chart-parse {len(commands)} commands", lambda: list(map(chart.parse, commands)))
+
+    later = read_generator_folder(DATA / "generator-2019").grammars
+    gpsr = later.grammar("gpsr.txt")
+    timed("expand generator-2019 gpsr", lambda: list(gpsr.commands()))
+    timed("size of generator-2019 egpsr", later.grammar("egpsr.txt").size)
+
+    text = (DATA / "walker2019" / "para" / "train.txt").read_bytes()
+    timed("read para/train.txt, 1,265 pairs", lambda: read_pairs(text, "train.txt"))
+    line = '( bring ( lambda $1 e ( is_a $1 " <object{}> " ) ( at $1 " <location> " ) ) )'
+    timed(
+        "read 3,000 different forms", lambda: [read_form(line.format(n)) for n in range(3000)], 1.0
+    )
+
+    huge = huge_grammar()
+    timed("size of a grammar of 10^12", huge.size)
+    sentence = "go " + " ".join(f"w{number % 10}" for number in range(12))
+    timed("recognise a sentence of it", lambda: Recognizer(huge).accepts(sentence))
+
+
+if __name__ == "__main__":
+    main()
