@@ -79,18 +79,29 @@ def generate_pairs(world: models.World, limit: int = DEFAULT_LIMIT) -> Generatio
         models.World.objects.select_for_update().get(pk=world.pk)
         changes = _store_forms(world, generated)
         changes += _store_commands(world, generated, categories)
+        changes += _remove_unused_forms(world)
         store_problems(world, Subject.COMMANDS, list(_conflict_problems(generated, categories)))
     return GenerationReport(generated, tuple(complexity(world)), categories, changes)
 
 
 def _store_forms(world: models.World, generated: Generated) -> Changes:
-    """Distinct forms in order of their first command. Those that no command has go."""
+    """Distinct forms, in order of their first command. Old ones stay while commands have them."""
     first: dict[str, Expansion] = {}
     for expansion in generated.expansions:
         first.setdefault(expansion.form_text, expansion)
     wanted = [_form_row(world, text, each.task_category) for text, each in first.items()]
     fields = ["head_predicate", "depth", "length", "task_category"]
-    return synchronise(world.logical_forms.all(), wanted, lambda row: row.text, fields)
+    return synchronise(
+        world.logical_forms.all(), wanted, lambda row: row.text, fields, is_kept=lambda row: True
+    )
+
+
+def _remove_unused_forms(world: models.World) -> Changes:
+    unused = world.logical_forms.filter(commands__isnull=True)
+    removed = unused.count()
+    if removed:
+        unused.delete()
+    return Changes(removed=removed)
 
 
 def _form_row(world: models.World, text: str, task_category: str) -> models.LogicalForm:

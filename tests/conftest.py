@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,8 @@ from django.db import connection
 
 from annotations.models import Membership, User, World
 from annotations.models.worlds import Role
+
+ROOT = Path(__file__).resolve().parent.parent
 
 
 @pytest.fixture(autouse=True)
@@ -33,7 +36,7 @@ def django_db_modify_db_settings(django_db_modify_db_settings_parallel_suffix):
 @pytest.fixture(scope="session")
 def shared_data() -> Path:
     """The folder of real generator files and published pairs; the test is skipped without it."""
-    folder = Path(site.SHARED_DATA_DIR)
+    folder = Path(os.environ.get("GPSR_SHARED_DATA") or ROOT.parent / "shared" / "data")
     if not (folder / "generator-2018").is_dir():
         pytest.skip(f"needs the real files (GPSR_SHARED_DATA), and {folder} does not hold them")
     return folder

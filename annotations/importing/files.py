@@ -19,12 +19,11 @@ def gather(source: Path | str | Mapping[str, bytes]) -> dict[str, bytes]:
             upload is a path.
     """
     files = dict(source) if isinstance(source, Mapping) else read_folder(Path(source))
-    files = {name: data for name, data in files.items() if not name.startswith(".")}
     for name in files:
         if "/" in name or "\\" in name:
             raise LanguageError("a file name may not be a path", Position(name), "rename the file")
     _refuse_too_much(files)
-    return files
+    return {name: data for name, data in files.items() if not name.startswith(".")}
 
 
 def _refuse_too_much(files: Mapping[str, bytes]) -> None:

@@ -1,0 +1,53 @@
+"""A generator small enough to read, for tests that store things."""
+
+from __future__ import annotations
+
+import pytest
+
+from annotations.importing import import_generator
+
+TINY = {
+    "common_rules.txt": "; grammar name Common\n$vbfind = find | locate\n$object = {kobject}\n",
+    "tiny_category_1_grammar.txt": (
+        "; import common.txt\n$Main = $vbfind the $object\n$Main = go to the {room}\n"
+    ),
+    "tiny_category_1_semantics.txt": (
+        "# What to find, where to go\n"
+        "$vbfind the $object = (find (λ$1:e (is_a $1 $object)))\n"
+        "go to the {room} = (go {room})\n"
+    ),
+    "objects.xml": (
+        '<categories><category name="drinks" room="kitchen">\n'
+        '<object name="tea"/>\n<object name="milk" type="alike"/>\n</category></categories>'
+    ),
+    "locations.xml": (
+        '<rooms>\n<room name="kitchen"><location name="sink" isPlacement="true"/></room>\n'
+        '<room name="bath"><location name="sink" isPlacement="true"/></room>\n</rooms>'
+    ),
+}
+
+
+def as_bytes(files):
+    return {
+        name: text if isinstance(text, bytes) else text.encode() for name, text in files.items()
+    }
+
+
+@pytest.fixture
+def tiny() -> dict[str, bytes]:
+    """The files of a generator with one task category, four commands and two forms."""
+    return as_bytes(TINY)
+
+
+@pytest.fixture
+def tiny_folder(tmp_path, tiny):
+    for name, data in tiny.items():
+        (tmp_path / name).write_bytes(data)
+    return tmp_path
+
+
+@pytest.fixture
+def tiny_world(world, tiny):
+    """``world`` with the tiny generator in it."""
+    assert not import_generator(world.name, tiny).problems
+    return world
