@@ -108,11 +108,11 @@ _PREPOSITIONS = {
 # The predicates of the published corpus and their neighbours.
 KNOWN_PATTERNS = {
     "bring": "bring me {1} | bring {1} to {2:lambda} | bring me {1} from {2}",
-    "put": "take {1} and put it on {2}",
+    "put": "take {1} and put it on {2} | take {1} and put it somewhere{2=UNKNOWN}",
     "pour": "pour {1} into {2}",
     "find": "find {1} | find {2} {1:plural}",
-    "follow": "follow {1} | follow {1} to {2}",
-    "go": "go to {1}",
+    "follow": "follow {1} | follow someone{1=UNKNOWN} | follow {1} to {2}",
+    "go": "go to {1} | go somewhere{1=UNKNOWN}",
     "guide": "guide {1} | guide {1} to {2} | guide {1} somewhere{2=UNKNOWN} | "
     "guide {1} back{2=current}",
     "say": "tell me {1} | say {1} | say {1} to {2} | {1:form} for {2} | tell {2} {1:text}",
@@ -124,7 +124,7 @@ KNOWN_PATTERNS = {
     "is_a": "{2} | object of {2:category}",
     "name": "_ named {2:text} | _ with the given {2:name}",
     "at": "_ that is at {2} | _ that is in {2:room}",
-    "is": "_ that is {2:text} | _ that is making {2}",
+    **dict.fromkeys(("is", "gesture"), "_ that is {2:text} | _ that is making {2}"),
     "male": "male _",
     "female": "female _",
     "lying": "_ that is lying down",

@@ -194,7 +194,7 @@ def _phrase(form: Form, scope: _Scope, is_plural: bool = False) -> str:
     if isinstance(form, Variable):
         return _described(form.index, scope) if scope.about(form.index) else "them"
     if isinstance(form, Unknown):
-        return "something unspecified"
+        return "something"
     return _bare(form) if argument_kind(form) is ArgumentKind.NUMBER else f"the {_bare(form)}"
 
 
