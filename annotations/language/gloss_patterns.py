@@ -116,7 +116,7 @@ KNOWN_PATTERNS = {
     "guide": "guide {1} | guide {1} to {2} | guide {1} somewhere{2=UNKNOWN} | "
     "guide {1} back{2=current}",
     "say": "tell me {1} | say {1} | say {1} to {2} | {1:form} for {2} | tell {2} {1:text}",
-    "answer": "answer {1}",
+    "answer": "answer {1} | answer {1} for {2}",
     "count": "count {1:plural} | = the number of {1:plural}",
     "sequence": "{*}",
     "and": "{*}",

@@ -215,20 +215,35 @@ def _explained(error: UnexpectedInput, text: str) -> LanguageError:
     offset = error.pos_in_stream or 0
     place = _place(text, offset)
     if isinstance(error, UnexpectedCharacters):
-        found = text[offset]
-        unclosed = {'"': "quotation mark", "{": "brace", "⟨": "angle bracket", "<": "angle bracket"}
-        if found in unclosed:
-            return LanguageError(f"the {unclosed[found]} {found} is not closed", place, "close it")
-        return LanguageError(f"{found} cannot stand here", place, _EXAMPLE)
+        return _unreadable(text, offset, place)
     token: Token = error.token  # type: ignore[attr-defined]
     if token.type == "$END":
         end = _place(text, len(text.rstrip()))
         return LanguageError("the form ends too early", end, "close every parenthesis")
+    found = token if len(token) <= _SHOWN else f"{token[:_SHOWN]}…"
     if not error.expected:  # type: ignore[attr-defined]
-        return LanguageError(f"{token} follows the end of the form", place, "remove it")
-    return LanguageError(f"{token} cannot stand here", place, _EXAMPLE)
+        return LanguageError(f"{found} follows the end of the form", place, "remove it")
+    is_class = token.type == "CLASS_TOKEN"
+    hint = f'put it in quotation marks: "{found}"' if is_class else _EXAMPLE
+    return LanguageError(f"{found} cannot stand here", place, hint)
 
 
+def _unreadable(text: str, offset: int, place: Position) -> LanguageError:
+    """What the character at ``offset`` is, where no token begins."""
+    found = text[offset]
+    name, closing = _BRACKETS.get(found, ("", ""))
+    if name and closing not in text[offset + 1 :]:
+        return LanguageError(f"the {name} {found} is not closed", place, "close it")
+    return LanguageError(f"{found} cannot stand here", place, _EXAMPLE)
+
+
+_SHOWN = 40
+_BRACKETS = {
+    '"': ("quotation mark", '"'),
+    "{": ("brace", "}"),
+    "<": ("angle bracket", ">"),
+    "⟨": ("angle bracket", "⟩"),
+}
 _EXAMPLE = 'write a form like (find (λ$1:e (is_a $1 "cereal")))'
 
 
