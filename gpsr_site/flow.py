@@ -73,19 +73,21 @@ def _steps(counts: Counts) -> Iterator[tuple[Duty, Step]]:
         reason = "A split is frozen and no parser has been trained on it."
         yield Duty.MANAGE, Step(reason, "Start a run", "run_new")
     if counts.runs_active:
-        yield Duty.VIEW, Step(f"{_active(counts)}.", "Watch the runs", "runs")
+        reason = f"{counts.runs_active} run{'s' if counts.runs_active > 1 else ''} queued or running."
+        yield Duty.VIEW, Step(reason, "Watch the runs", "runs")
     if counts.evaluated:
         reason = "Parsers have been scored. Read where they go wrong."
         yield Duty.VIEW, Step(reason, "Open the results", "results")
     if counts.templates_waiting:
-        yield Duty.ANNOTATE, Step(f"{_unready(counts)}.", "Review templates", "templates")
+        reason = f"{counts.templates_waiting} templates are drafts or disputed."
+        yield Duty.ANNOTATE, Step(reason, "Review templates", "templates")
     if counts.grammar_problems:
-        reason = f"The checker has {counts.grammar_problems} remarks on the grammar."
+        reason = f"The checker has {_remarks(counts.grammar_problems)} on the grammar."
         yield Duty.ANNOTATE, Step(reason, "Read them", "grammar")
 
 
 def _remarks(problems: int) -> str:
-    return f"{problems} remarks" if problems else ""
+    return f"{problems} remark{'s' if problems > 1 else ''}" if problems else ""
 
 
 def _unready(counts: Counts) -> str:

@@ -10,7 +10,6 @@ from django import template
 from django.utils import timezone
 from django.utils.html import format_html, format_html_join
 from django.utils.safestring import SafeString
-from django.utils.timesince import timesince
 
 from annotations.showing import difference, form_of, gloss_of, pieces_of, shown, wildcard_class
 
@@ -100,12 +99,17 @@ def ago(moment: Any) -> SafeString:
     """How long ago, with the moment itself on hover."""
     if moment is None:
         return format_html("")
-    passed = timezone.now() - moment
-    words = f"{timesince(moment, depth=1)} ago" if passed.total_seconds() >= 60 else "just now"
     absolute = timezone.localtime(moment)
     return format_html(
         '<time datetime="{}" title="{}">{}</time>',
         absolute.isoformat(),
         f"{absolute:%Y-%m-%d %H:%M:%S %Z}",
-        words.replace("\xa0", " "),
+        _passed((timezone.now() - moment).total_seconds()),
     )
+
+
+def _passed(seconds: float) -> str:
+    for size, unit in ((86400, "d"), (3600, "h"), (60, "min")):
+        if seconds >= size:
+            return f"{int(seconds // size)} {unit} ago"
+    return "just now"
