@@ -17,9 +17,10 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from lark import Lark, Token, Transformer, UnexpectedCharacters, UnexpectedInput, v_args
+from lark import Lark, Token, Transformer, UnexpectedInput, v_args
 
 from annotations.language.errors import LanguageError, Position
+from annotations.language.form_errors import explained, place_of
 from annotations.language.form_printing import letter, to_corpus, to_reading, to_template, tokens
 from annotations.language.symbols import Nonterminal, Wildcard
 from annotations.language.terms import (
@@ -96,12 +97,12 @@ def _read(text: str) -> Form:
     try:
         form: Form = _LARK.parse(text, start=start)  # type: ignore[assignment]
     except UnexpectedInput as error:
-        raise _explained(error, text) from None
+        raise explained(error, text) from None
     _refuse_unbound(form, text, start)
     if not isinstance(form, Lambda | Application | Unknown):
         raise LanguageError(
             "this is an argument, not a logical form",
-            _place(text, len(text) - len(text.lstrip())),
+            place_of(text, len(text) - len(text.lstrip())),
             'write a predicate around it, as in (go "kitchen"), or UNKNOWN',
         )
     return form
@@ -177,7 +178,7 @@ def _refuse_deep(text: str, start: str) -> None:
         if level > DEEPEST:
             raise LanguageError(
                 f"the form nests more than {DEEPEST} deep",
-                _place(text, match.start()),
+                place_of(text, match.start()),
                 "split it, or close a parenthesis earlier",
             )
 
@@ -208,52 +209,8 @@ def _occurrences(form: Form, bound: frozenset[int] = frozenset()) -> Iterator[bo
         yield from _occurrences(child, bound)
 
 
-def _explained(error: UnexpectedInput, text: str) -> LanguageError:
-    """What lark met, as a sentence with the place and what to do."""
-    if not text.strip():
-        return LanguageError("there is no form here", Position(), "write one, or UNKNOWN")
-    offset = error.pos_in_stream or 0
-    place = _place(text, offset)
-    if isinstance(error, UnexpectedCharacters):
-        return _unreadable(text, offset, place)
-    token: Token = error.token  # type: ignore[attr-defined]
-    if token.type == "$END":
-        end = _place(text, len(text.rstrip()))
-        return LanguageError("the form ends too early", end, "close every parenthesis")
-    found = token if len(token) <= _SHOWN else f"{token[:_SHOWN]}…"
-    if not error.expected:  # type: ignore[attr-defined]
-        return LanguageError(f"{found} follows the end of the form", place, "remove it")
-    is_class = token.type == "CLASS_TOKEN"
-    hint = f'put it in quotation marks: "{found}"' if is_class else _EXAMPLE
-    return LanguageError(f"{found} cannot stand here", place, hint)
-
-
-def _unreadable(text: str, offset: int, place: Position) -> LanguageError:
-    """What the character at ``offset`` is, where no token begins."""
-    found = text[offset]
-    name, closing = _BRACKETS.get(found, ("", ""))
-    if name and closing not in text[offset + 1 :]:
-        return LanguageError(f"the {name} {found} is not closed", place, "close it")
-    return LanguageError(f"{found} cannot stand here", place, _EXAMPLE)
-
-
-_SHOWN = 40
-_BRACKETS = {
-    '"': ("quotation mark", '"'),
-    "{": ("brace", "}"),
-    "<": ("angle bracket", ">"),
-    "⟨": ("angle bracket", "⟩"),
-}
-_EXAMPLE = 'write a form like (find (λ$1:e (is_a $1 "cereal")))'
-
-
 def _start(token: Token) -> Position:
     return Position("", token.line or 1, token.column or 1)
-
-
-def _place(text: str, offset: int) -> Position:
-    before = text[:offset]
-    return Position("", before.count("\n") + 1, offset - (before.rfind("\n") + 1) + 1)
 
 
 def _moved(inner: Position, outer: Position | None) -> Position:

@@ -123,6 +123,8 @@ def test_depth_counts_lambdas_and_applications() -> None:
         ("(find <object>)", 7, "<object> cannot stand here"),
         ("(find {{{{{{room}}}}}})", 7, "{ cannot stand here"),
         (f"(find {'bowl' * 30})", 7, "bowlbowl… cannot stand here"),
+        (f"(find {'1' * 5000})", 7, "1 cannot stand here"),
+        (f"(find ${'1' * 5000})", 7, "$ cannot stand here"),
         ("(find bowl)", 7, "bowl cannot stand here"),
         ("(find % 3)", 7, "% cannot stand here"),
         ("(λ$1:e)", 7, ") cannot stand here"),
