@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
+from annotations.language.ambiguity import repetitions
 from annotations.language.derivations import Expander, anonymized, readable
 from annotations.language.errors import LanguageError, Problem
 from annotations.language.grammar_graph import Traversal, reachable, traverse
@@ -92,8 +93,12 @@ class Grammar:
         return reachable(self.edges, name)
 
     def problems(self, root: str = ROOT) -> tuple[Problem, ...]:
-        """Undefined and unreachable nonterminals (warnings), cycles and a missing root (errors)."""
-        return find_problems(self.productions, self.rules, self.edges, self.traversal, root)
+        """A missing root, a cycle and too deep nesting (errors); undefined and unreachable
+        nonterminals and lines that repeat one another (warnings)."""
+        found = find_problems(self.productions, self.rules, self.edges, self.traversal, root)
+        if any(problem.is_error for problem in found):
+            return found
+        return (*found, *repetitions(self.productions, self.alternatives))
 
     def require_finite(self) -> None:
         """Raises LanguageError where expanding would not end, or would nest too deep."""
