@@ -9,7 +9,7 @@ import pytest
 from django.test import Client
 from django.urls import URLPattern, URLResolver, get_resolver, reverse
 
-from tests.furnishing import House, furnish
+from tests.furnishing import House
 
 PEOPLE = ("anonymous", "stranger", "annotator", "reviewer", "admin")
 LOG_IN, NOWHERE, NO, YES, GONE_ON, WRONG = 302, 404, 403, 200, 302, 405
@@ -99,16 +99,6 @@ POLICY = [
     Rule("api:schema", YES, YES, YES, YES, YES),
     Rule("api:split-export", 401, NOWHERE, YES, YES, YES),
 ]
-
-
-@pytest.fixture
-def house(world) -> House:
-    return furnish(world)
-
-
-@pytest.fixture
-def other_house(other_world) -> House:
-    return furnish(other_world)
 
 
 def address(name: str, world: House, things: House | None = None) -> str:
