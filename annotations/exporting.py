@@ -5,11 +5,15 @@ from __future__ import annotations
 import csv
 import json
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 from django.db import models
+from django.db.models import Count
 
+from annotations.language.pairs import CORPUS_FOLDERS, PART_FILES, write_pairs
 from annotations.models import Split
+from annotations.models.splits import Criterion
 
 # The keys of every export, in this order in every release.
 FIELDS = [
@@ -50,9 +54,41 @@ def export_lines(
     return WRITERS[Format(as_)](rows)
 
 
+def export_split(split: Split, as_: str, target: Path) -> dict[str, int]:
+    """Writes a whole split; returns the number of examples by path.
+
+    ``txt`` makes a folder of pair files, laid out as ``import_pairs`` reads it (``gen_logical/val.txt``);
+    the other formats make the file ``target``. Raises OSError where that cannot be written.
+    """
+    counts = split.examples.order_by().values_list("source", "part").annotate(n=Count("pk"))
+    if as_ != Format.TXT:
+        _write(target, export_lines(split, as_))
+        return {str(target): sum(count for _, _, count in counts)}
+    files: dict[str, int] = {}
+    for source, part, count in sorted(counts):
+        path = target / folder_of(split, source) / PART_FILES[part]
+        _write(path, export_lines(split, as_, part, source))
+        files[str(path)] = count
+    return files
+
+
+def folder_of(split: Split, source: str) -> str:
+    """``gen``, ``para_logical``, …: the folder of a source, by the criterion of the split."""
+    kinds = {kind: folder for folder, kind in CORPUS_FOLDERS.items()}
+    plain = kinds[source, Criterion.COMMAND]
+    return kinds.get((source, split.criterion), f"{plain}_{split.criterion}")
+
+
+def _write(path: Path, lines: Iterator[str]) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.open("w", encoding="utf-8", newline="") as file:
+        file.writelines(lines)
+
+
 def _pair_lines(rows: Iterator[dict[str, Any]]) -> Iterator[str]:
-    for row in rows:
-        yield f"{row['utterance']}\n{row['written_form'] or row['logical_form']}\n"
+    return write_pairs(
+        (row["utterance"], row["written_form"] or row["logical_form"]) for row in rows
+    )
 
 
 def _json_lines(rows: Iterator[dict[str, Any]]) -> Iterator[str]:

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from django.core.exceptions import ValidationError
 from django.db import transaction
 
 from annotations.composition import own_template_source
@@ -15,10 +14,10 @@ from annotations.importing.files import gather
 from annotations.importing.generator_files import Generator, read_generator
 from annotations.importing.report import ImportReport
 from annotations.importing.storing import store
+from annotations.importing.worlds import locked_world, require_world_name
 from annotations.language.errors import LanguageError
 from annotations.language.predicates import Predicate
-from annotations.models import Membership, User, World
-from annotations.models.worlds import Role
+from annotations.models import User, World
 from annotations.reading import predicates_of
 
 
@@ -38,7 +37,7 @@ def import_generator(
         templates and predicates that people wrote or changed.
     """
     try:
-        _require_name(world_name)
+        require_world_name(world_name)
         files = gather(source)
     except LanguageError as trouble:
         return ImportReport(world_name, problems=(trouble.problem,))
@@ -47,28 +46,12 @@ def import_generator(
     if report.is_refused:
         return report
     with transaction.atomic():
-        return replace(report, changes=store(_locked_world(world_name, by), generator))
-
-
-def _require_name(name: str) -> None:
-    try:
-        World(name=name).clean_fields()
-    except ValidationError as trouble:
-        sentences = " ".join(trouble.messages)
-        raise LanguageError(f"“{name}” cannot be the name of a world: {sentences}") from trouble
+        return replace(report, changes=store(locked_world(world_name, by), generator))
 
 
 def _edited_predicates(world_name: str) -> dict[str, Predicate]:
     world = World.objects.filter(name=world_name).first()
     return predicates_of(world, world.predicates.filter(is_edited=True)) if world else {}
-
-
-def _locked_world(name: str, by: User | None) -> World:
-    """The world, held against a second import until this one is through."""
-    world, is_new = World.objects.select_for_update().get_or_create(name=name)
-    if is_new and by is not None:
-        Membership.objects.create(world=world, user=by, role=Role.ADMIN)
-    return world
 
 
 def _report(world_name: str, generator: Generator) -> ImportReport:

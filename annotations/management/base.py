@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 from django.db import DatabaseError
 
-from annotations.language.errors import LanguageError
+from annotations.language.errors import LanguageError, Problem
 from annotations.models import World
 
 
@@ -19,6 +19,12 @@ class Refused(Exception):
     def __init__(self, report: Mapping[str, Any], sentences: list[str]):
         super().__init__("\n".join(sentences))
         self.report = report
+
+    @classmethod
+    def because(cls, errors: Sequence[Problem], report: Mapping[str, Any]) -> Refused:
+        """An import that was refused for its errors."""
+        count = f"{len(errors)} error{'s' if len(errors) > 1 else ''}"
+        return cls(report, [*map(str, errors), f"Nothing was imported: {count}."])
 
 
 class ReportingCommand(BaseCommand):
@@ -59,13 +65,22 @@ class ReportingCommand(BaseCommand):
             raise CommandError(
                 f"The database answered: {failure}. Has “manage.py migrate” been run?"
             ) from failure
-        except (LanguageError, ValueError, OSError) as failure:
+        except LanguageError as failure:
+            raise CommandError(_sentence(failure)) from failure
+        except (ValueError, OSError) as failure:
             raise CommandError(str(failure)) from failure
         self._print(report, options["json"])
 
     def _print(self, report: Mapping[str, Any], as_json: bool) -> None:
         text = json.dumps(report, ensure_ascii=False) if as_json else self.describe(report)
         self.stdout.write(text)
+
+
+def _sentence(failure: LanguageError) -> str:
+    """With its position where there is one: what is about no file has no line either."""
+    if failure.source:
+        return str(failure)
+    return f"{failure.message} ({failure.hint})" if failure.hint else failure.message
 
 
 def _in_words(value: Any) -> str:

@@ -25,7 +25,5 @@ class Command(ReportingCommand):
     def report(self, *, folder: Path, world: str, **options: Any) -> Mapping[str, Any]:
         report = import_generator(world, folder)
         if report.is_refused:
-            count = len(report.errors)
-            sentence = f"Nothing was imported: {count} error{'s' if count > 1 else ''}."
-            raise Refused(report.as_json(), [*map(str, report.errors), sentence])
+            raise Refused.because(report.errors, report.as_json())
         return report.as_json()

@@ -1,0 +1,76 @@
+"""Reads a folder of published pairs (FORMATS §5, §6). Nothing is stored here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from annotations.language.decoding import read_folder
+from annotations.language.errors import LanguageError, Position, Problem, error, warning
+from annotations.language.grammar_files import TRIPLE_FILES
+from annotations.language.pairs import (
+    CORPUS_FOLDERS,
+    PART_FILES,
+    GroundedTriple,
+    WrittenPair,
+    read_pairs,
+    read_triples,
+)
+
+PARTS = {file: part for part, file in PART_FILES.items()}
+
+
+@dataclass(frozen=True)
+class PairFolder:
+    """``pairs`` are by criterion, source and part, each file's in its order."""
+
+    pairs: Mapping[tuple[str, str, str], tuple[WrittenPair, ...]]
+    triples: tuple[GroundedTriple, ...]
+    problems: tuple[Problem, ...]
+
+    @property
+    def criteria(self) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(criterion for criterion, _, _ in self.pairs))
+
+
+def read_pair_folder(folder: Path) -> PairFolder:
+    """Reads ``gen para gen_logical para_logical`` and the grounded triples, those that are there.
+
+    Nothing is raised; a folder with none of them is a problem too.
+    """
+    pairs: dict[tuple[str, str, str], tuple[WrittenPair, ...]] = {}
+    triples: list[GroundedTriple] = []
+    problems: list[Problem] = []
+    for path, data in _contents(folder, problems):
+        directory, _, name = path.rpartition("/")
+        if not directory:
+            records = read_triples(data, path)
+            triples += records.records
+        elif name in PARTS:
+            records = read_pairs(data, path)
+            source, criterion = CORPUS_FOLDERS[directory]
+            pairs[criterion, source, PARTS[name]] = records.records
+        else:
+            hint = f"known are {', '.join(PARTS)}"
+            problems.append(warning(Position(path), "this file is left out", hint))
+            continue
+        problems += records.problems
+    if not (pairs or triples or problems):
+        names = ", ".join([*CORPUS_FOLDERS, *sorted(TRIPLE_FILES)])
+        problems.append(error(Position(folder.name), "no pairs are here", f"known are {names}"))
+    return PairFolder(pairs, tuple(triples), tuple(sorted(problems)))
+
+
+def _contents(folder: Path, problems: list[Problem]) -> Iterator[tuple[str, bytes]]:
+    """Path inside the folder → bytes, for every file that may be one of a corpus."""
+    try:
+        for name, data in read_folder(folder, "paraphras*.txt").items():
+            if name in TRIPLE_FILES:
+                yield name, data
+        for directory in CORPUS_FOLDERS:
+            if (folder / directory).is_dir():
+                for name, data in read_folder(folder / directory, "*.txt").items():
+                    yield f"{directory}/{name}", data
+    except LanguageError as trouble:
+        problems.append(trouble.problem)

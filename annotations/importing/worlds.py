@@ -1,0 +1,29 @@
+"""The world that an import goes into."""
+
+from __future__ import annotations
+
+from django.core.exceptions import ValidationError
+
+from annotations.language.errors import LanguageError
+from annotations.models import Membership, User, World
+from annotations.models.worlds import Role
+
+
+def require_world_name(name: str) -> None:
+    """Raises LanguageError, a sentence, where no world can have this name."""
+    try:
+        World(name=name).clean_fields()
+    except ValidationError as trouble:
+        sentences = " ".join(trouble.messages)
+        raise LanguageError(f"“{name}” cannot be the name of a world: {sentences}") from trouble
+
+
+def locked_world(name: str, by: User | None = None) -> World:
+    """The world, made where there is none, held against a second import until this one is through.
+
+    To be called inside a transaction. ``by`` becomes the admin of a world that this makes.
+    """
+    world, is_new = World.objects.select_for_update().get_or_create(name=name)
+    if is_new and by is not None:
+        Membership.objects.create(world=world, user=by, role=Role.ADMIN)
+    return world

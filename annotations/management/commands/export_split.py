@@ -1,0 +1,42 @@
+"""``export_split W NAME --as txt|jsonl|csv --output PATH``: gives a frozen split out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from django.core.management.base import CommandError, CommandParser
+
+from annotations.exporting import Format, export_split
+from annotations.management.base import ReportingCommand, find_world
+from annotations.models import Split, World
+
+
+class Command(ReportingCommand):
+    help = "Writes a split as a folder of pair files (txt) or as one file (jsonl, csv)."
+
+    def add_options(self, parser: CommandParser) -> None:
+        parser.add_argument("world")
+        parser.add_argument("name")
+        parser.add_argument("--as", dest="as_", choices=Format.values, default=Format.TXT)
+        parser.add_argument("--output", type=Path, required=True, help="a folder (txt) or file")
+
+    def report(
+        self, *, world: str, name: str, as_: str, output: Path, **options: Any
+    ) -> Mapping[str, Any]:
+        split = _find_split(find_world(world), name)
+        return {
+            "split": split.name,
+            "criterion": split.criterion,
+            "content_hash": split.content_hash,
+            "files": export_split(split, as_, output),
+        }
+
+
+def _find_split(world: World, name: str) -> Split:
+    split = world.splits.named(name)
+    if split is None:
+        names = ", ".join(world.splits.values_list("name", flat=True)) or "none"
+        raise CommandError(f"“{world}” has no split “{name}”. It has: {names}.")
+    return split

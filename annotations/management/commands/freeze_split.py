@@ -1,0 +1,78 @@
+"""``freeze_split W --name N``: parts a world's commands and paraphrases once and for all."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from django.core.management.base import CommandError, CommandParser
+from django.db import transaction
+
+from annotations.freezing import freeze_split
+from annotations.language.splitting import Criterion
+from annotations.management.base import ReportingCommand, find_world
+from annotations.models import Split
+from annotations.parts import counts_of
+
+
+class Command(ReportingCommand):
+    help = (
+        "Freezes the commands and accepted paraphrases of a world as splits. With several criteria "
+        "each split is named NAME-CRITERION."
+    )
+
+    def add_options(self, parser: CommandParser) -> None:
+        parser.add_argument("world")
+        parser.add_argument("--name", required=True)
+        parser.add_argument(
+            "--criterion", default="command", help=f"any of {','.join(Criterion)}, by commas"
+        )
+        parser.add_argument("--seed", type=int, default=0)
+        parser.add_argument(
+            "--parts", default="70,10,20", help="percentages of train, validation and test"
+        )
+
+    def report(
+        self, *, world: str, name: str, criterion: str, seed: int, parts: str, **options: Any
+    ) -> Mapping[str, Any]:
+        found = find_world(world)
+        criteria = _criteria(criterion)
+        names = {each: name if len(criteria) == 1 else f"{name}-{each}" for each in criteria}
+        shares = _shares(parts)
+        with transaction.atomic():
+            splits = [freeze_split(found, names[each], each, seed, shares) for each in criteria]
+        return {"world": world, "splits": _described(splits)}
+
+
+def _criteria(text: str) -> list[str]:
+    criteria = list(dict.fromkeys(each.strip() for each in text.split(",")))
+    for each in criteria:
+        if each not in set(Criterion):
+            raise CommandError(f"“{each}” is no criterion. There are: {', '.join(Criterion)}.")
+    return criteria
+
+
+def _shares(text: str) -> list[float]:
+    try:
+        return [float(each) / 100 for each in text.split(",")]
+    except ValueError:
+        raise CommandError(f"“{text}” is not three percentages, such as 70,10,20.") from None
+
+
+def _described(splits: Sequence[Split]) -> list[dict[str, Any]]:
+    counts = counts_of(splits)
+    return [
+        {
+            "name": split.name,
+            "criterion": split.criterion,
+            "seed": split.seed,
+            "content_hash": split.content_hash,
+            "counts": {each.source: _without_source(asdict(each)) for each in counts[split.pk]},
+        }
+        for split in splits
+    ]
+
+
+def _without_source(counts: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in counts.items() if key != "source"}

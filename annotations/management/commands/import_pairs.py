@@ -1,0 +1,30 @@
+"""``import_pairs DIR --world W --name N``: takes published pairs in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from django.core.management.base import CommandParser
+
+from annotations.importing import import_pairs
+from annotations.management.base import Refused, ReportingCommand
+
+
+class Command(ReportingCommand):
+    help = (
+        "Imports the splits gen, para, gen_logical and para_logical of a folder, as the splits "
+        "NAME-command and NAME-logical_form, and the paraphrases of paraphrasings.txt."
+    )
+
+    def add_options(self, parser: CommandParser) -> None:
+        parser.add_argument("folder", type=Path)
+        parser.add_argument("--world", required=True, help="made where there is none")
+        parser.add_argument("--name", required=True, help="what the splits are called")
+
+    def report(self, *, folder: Path, world: str, name: str, **options: Any) -> Mapping[str, Any]:
+        report = import_pairs(world, name, folder)
+        if report.is_refused:
+            raise Refused.because(report.errors, report.as_json())
+        return report.as_json()

@@ -1,0 +1,68 @@
+"""A grounded prompt → the generated command behind it, and its form with class tokens."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from annotations.language.anonymizer import Anonymizer
+from annotations.language.canonical import canonical_text
+from annotations.language.logic import Application, Constant, Form, Lambda
+from annotations.models import Command, World
+from annotations.reading import ontology_of
+
+# What ``{category?}`` says; it is the name of no entity, so no anonymizer finds it.
+ANY_CATEGORY, CATEGORY_TOKEN = "objects", "<category>"
+_ANY_CATEGORY = re.compile(rf"\b{ANY_CATEGORY}\b")
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """Where a paraphrase comes from. ``command`` is None where no generated command is known."""
+
+    command: Command | None
+    anonymized_text: str
+    logical_form: str
+
+    @property
+    def task_category(self) -> str:
+        return self.command.task_category if self.command else ""
+
+
+class SourceFinder:
+    """Finds the sources of prompts in one world. Two queries, whatever the number of prompts."""
+
+    def __init__(self, world: World) -> None:
+        self._anonymizer = Anonymizer(ontology_of(world))
+        self._commands = {row.anonymized_text: row for row in world.commands.all()}
+
+    def command(self, anonymized_text: str) -> Command | None:
+        """The generated command of this very text."""
+        return self._commands.get(anonymized_text)
+
+    def source(self, prompt: str, grounded_form: Form) -> Source:
+        """The source of a prompt with its grounded form.
+
+        The form is what the record says with class tokens for the values of the prompt, whatever
+        the generated command's own form: labels are shown, not repaired, on import.
+        """
+        anonymized = self._anonymizer.anonymize(prompt)
+        tokens = {span.value: span.token for span in anonymized.spans}
+        text = anonymized.command
+        if text not in self._commands:
+            obfuscated = _ANY_CATEGORY.sub(CATEGORY_TOKEN, text)
+            text = obfuscated if obfuscated in self._commands else text
+        form = _with_tokens(grounded_form, {ANY_CATEGORY: CATEGORY_TOKEN, **tokens})
+        return Source(self._commands.get(text), text, canonical_text(form))
+
+
+def _with_tokens(form: Form, tokens: Mapping[str, str]) -> Form:
+    if isinstance(form, Lambda):
+        return replace(form, bodies=tuple(_with_tokens(each, tokens) for each in form.bodies))
+    if isinstance(form, Application):
+        arguments = tuple(_with_tokens(each, tokens) for each in form.arguments)
+        return replace(form, arguments=arguments)
+    if isinstance(form, Constant) and isinstance(form.value, str):
+        return Constant(tokens.get(form.value, form.value))
+    return form
