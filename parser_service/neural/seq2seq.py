@@ -94,9 +94,10 @@ class Seq2Seq(Parser):
         width = max(beam_width, self.config.beam_width)
         self._model.eval()
         answers: list[list[Candidate]] = []
-        for begin in range(0, len(utterances), PREDICTION_BATCH):
-            check()
-            answers += self._parse(utterances[begin : begin + PREDICTION_BATCH], width, check)
+        with threads(self.config.threads):
+            for begin in range(0, len(utterances), PREDICTION_BATCH):
+                check()
+                answers += self._parse(utterances[begin : begin + PREDICTION_BATCH], width, check)
         return [candidates[:beam_width] for candidates in answers]
 
     def save(self, folder: Path) -> None:

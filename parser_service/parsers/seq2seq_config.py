@@ -44,8 +44,10 @@ class Seq2SeqConfig:
     beam_width: int = hyperparameter(
         5, "Forms kept while decoding, in validation and by default in prediction.", 1, 100
     )
+    # More threads than free cores wait for each other: beside other work two were ten times slower
+    # than one. And another number rounds differently, so that one is the same on every machine.
     threads: int = hyperparameter(
-        0, "Processor cores to train on; 0 takes all. Another number may round differently.", 0, 256
+        1, "Processor cores to compute on; 0 takes all. Another number rounds differently.", 0, 256
     )
 
     def __post_init__(self) -> None:

@@ -2,6 +2,7 @@ import pytest
 
 from parser_service.parsers.interface import Cancelled, Candidate, Pair
 from parser_service.parsers.knn import NearestNeighbour, NearestNeighbourConfig
+from tests.parser_service.parsers.pair_files import read_pairs
 
 GO, FIND, BRING = '( go " <room> " )', '( find " <object> " )', '( bring " <object> " )'
 TRAIN = [
@@ -94,3 +95,33 @@ def test_a_cancelled_prediction_stops(parser):
 
     with pytest.raises(Cancelled):
         parser.predict(["go"], check=cancel)
+
+
+@pytest.mark.parametrize(
+    ("train", "test", "at_least"),
+    [
+        (["gen"], "gen", 0.63),
+        (["gen"], "para", 0.40),
+        (["para"], "para", 0.42),
+        (["gen", "para"], "para", 0.49),
+    ],
+)
+def test_on_the_published_pairs_it_is_as_good_as_published(shared_data, train, test, at_least):
+    parser = NearestNeighbour()
+    parser.fit([pair for name in train for pair in published(shared_data, name, "train")])
+    held_out = published(shared_data, test, "val")
+    answers = parser.predict([pair.utterance for pair in held_out])
+    right = sum(a[0].form == p.form for a, p in zip(answers, held_out, strict=True))
+    assert right / len(held_out) >= at_least
+
+
+def test_on_the_published_split_by_form_it_is_never_right(shared_data):
+    parser = NearestNeighbour()
+    parser.fit(published(shared_data, "para_logical", "train"))
+    held_out = published(shared_data, "para_logical", "val")
+    answers = parser.predict([pair.utterance for pair in held_out])
+    assert not any(a[0].form == p.form for a, p in zip(answers, held_out, strict=True))
+
+
+def published(shared_data, name, part):
+    return read_pairs(shared_data / "walker2019" / name / f"{part}.txt")

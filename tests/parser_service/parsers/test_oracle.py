@@ -1,6 +1,3 @@
-import os
-from pathlib import Path
-
 import pytest
 
 from annotations.language.expansion import TaskCategory, generate
@@ -10,8 +7,6 @@ from annotations.language.templates import read_template
 from parser_service.parsers.interface import Cancelled, Knowledge
 from parser_service.parsers.oracle import GRAMMAR, GrammarOracle
 from tests.parser_service.parsers.pair_files import read_pairs
-
-SHARED = Path(os.environ.get("GPSR_SHARED_DATA", "../shared/data"))
 
 RULES = """
 $Main = $go | $vbfind $thing
@@ -100,22 +95,20 @@ def test_a_cancelled_prediction_stops(oracle):
         oracle.predict(["find the <object>"], check=cancel)
 
 
-@pytest.mark.skipif(not SHARED.is_dir(), reason=f"{SHARED} (GPSR_SHARED_DATA) is absent")
 @pytest.mark.parametrize("split", ["gen", "gen_logical"])
 @pytest.mark.parametrize("part", ["train", "val"])
-def test_it_is_right_on_every_published_generated_pair(tmp_path, split, part):
-    grammar = read_generator_folder(SHARED / "generator-2018").categories()
+def test_it_is_right_on_every_published_generated_pair(shared_data, tmp_path, split, part):
+    grammar = read_generator_folder(shared_data / "generator-2018").categories()
     oracle = GrammarOracle(knowledge=Knowledge(grammar=grammar))
     oracle.save(tmp_path)
-    pairs = read_pairs(SHARED / "walker2019" / split / f"{part}.txt")
+    pairs = read_pairs(shared_data / "walker2019" / split / f"{part}.txt")
     answers = GrammarOracle.load(tmp_path).predict([pair.utterance for pair in pairs])
     assert [[pair.form] for pair in pairs] == [[c.form for c in answer] for answer in answers]
 
 
-@pytest.mark.skipif(not SHARED.is_dir(), reason=f"{SHARED} (GPSR_SHARED_DATA) is absent")
-def test_paraphrases_are_mostly_outside_the_grammar():
-    grammar = read_generator_folder(SHARED / "generator-2018").categories()
-    pairs = read_pairs(SHARED / "walker2019" / "para" / "val.txt")
+def test_paraphrases_are_mostly_outside_the_grammar(shared_data):
+    grammar = read_generator_folder(shared_data / "generator-2018").categories()
+    pairs = read_pairs(shared_data / "walker2019" / "para" / "val.txt")
     answers = GrammarOracle(knowledge=Knowledge(grammar=grammar)).predict(
         [pair.utterance for pair in pairs]
     )
