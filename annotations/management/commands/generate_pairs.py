@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
-from django.core.management.base import CommandParser
+from django.core.management.base import CommandError, CommandParser
 
 from annotations.generating import generate_pairs
+from annotations.grounded_pairs import grounded_pairs
 from annotations.language.expansion import DEFAULT_LIMIT
+from annotations.language.pairs import by_length, write_pairs
 from annotations.management.base import ReportingCommand, find_world
+from annotations.models import World
 
 
 class Command(ReportingCommand):
@@ -18,6 +22,33 @@ class Command(ReportingCommand):
     def add_options(self, parser: CommandParser) -> None:
         parser.add_argument("world")
         parser.add_argument("--limit", type=int, default=DEFAULT_LIMIT, help="refuse more commands")
+        parser.add_argument("--output", type=Path, help="write a pair file")
+        parser.add_argument(
+            "--grounded", type=int, metavar="N", help="write N grounded pairs instead of all"
+        )
+        parser.add_argument("--seed", type=int, default=0, help="of the grounded pairs")
 
-    def report(self, *, world: str, limit: int, **options: Any) -> Mapping[str, Any]:
-        return generate_pairs(find_world(world), limit).as_json()
+    def report(
+        self,
+        *,
+        world: str,
+        limit: int,
+        output: Path | None,
+        grounded: int | None,
+        seed: int,
+        **options: Any,
+    ) -> Mapping[str, Any]:
+        if grounded is not None and (grounded < 1 or output is None):
+            raise CommandError("--grounded takes a number above 0, and --output for its file.")
+        found = find_world(world)
+        report = generate_pairs(found, limit).as_json()
+        if output is None:
+            return report
+        pairs = grounded_pairs(found, grounded, seed) if grounded else _pairs_of(found)
+        with output.open("w", encoding="utf-8", newline="") as file:
+            file.writelines(write_pairs(by_length(pairs)))
+        return {**report, "output": {"path": str(output), "pairs": len(pairs)}}
+
+
+def _pairs_of(world: World) -> list[tuple[str, str]]:
+    return list(world.commands.values_list("anonymized_text", "logical_form__text"))

@@ -1,0 +1,81 @@
+"""manage.py import_generator DIR --world NAME --json"""
+
+from __future__ import annotations
+
+import io
+import json
+import time
+
+import pytest
+from django.core.management import CommandError, call_command
+
+from annotations.models import World
+from tests.annotations.commands.bad_inputs import FAULTS
+from tests.annotations.rows_of import counts, rows_of
+
+
+def run(*arguments):
+    """The object printed and the error, if any."""
+    out, failure = io.StringIO(), None
+    try:
+        call_command(*map(str, arguments), "--json", stdout=out)
+    except CommandError as error:
+        failure = error
+    return json.loads(out.getvalue() or "null"), failure
+
+
+def test_the_report_is_one_object_with_the_documented_keys(db, tiny_folder):
+    report, failure = run("import_generator", tiny_folder, "--world", "new")
+    assert failure is None
+    assert report["templates"] == {"1": 2}
+    assert report["productions"] == {"common_rules.txt": 2, "tiny_category_1_grammar.txt": 2}
+    assert report["entities"] == {"category": 1, "object": 2, "room": 2, "location": 2}
+    assert report["problems"] == []
+
+
+def test_a_problem_has_its_place_and_a_hint(db, tiny_folder):
+    with (tiny_folder / "common_rules.txt").open("a") as file:
+        file.write("$vbfind = spot | $nowhere\n")
+    report, _ = run("import_generator", tiny_folder, "--world", "new")
+    problem = next(each for each in report["problems"] if "$nowhere" in each["message"])
+    assert problem["hint"]
+    assert {key: problem[key] for key in ("file", "line", "column", "severity")} == {
+        "file": "common_rules.txt",
+        "line": 4,
+        "column": 18,
+        "severity": "warning",
+    }
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_fault_is_refused_at_its_place_and_nothing_is_stored(tiny_world, tiny, tmp_path, name):
+    fault, before = FAULTS[name], (counts(), rows_of(tiny_world))
+    fault.put_into(tiny)
+    for file, data in tiny.items():
+        (tmp_path / file).write_bytes(data)
+    started = time.monotonic()
+    report, failure = run("import_generator", tmp_path, "--world", tiny_world.name)
+    assert time.monotonic() - started < 2
+    errors = [each for each in report["problems"] if each["severity"] == "error"]
+    assert any(
+        (each["file"], each["line"]) == (fault.name, fault.line) and fault.cause in each["message"]
+        for each in errors
+    ), errors
+    assert failure.returncode == 1
+    assert "Nothing was imported" in str(failure)
+    assert (counts(), rows_of(tiny_world)) == before
+
+
+def test_a_folder_that_is_not_there_is_refused(db, tmp_path):
+    report, failure = run("import_generator", tmp_path / "nowhere", "--world", "new")
+    assert "there is no such folder" in report["problems"][0]["message"]
+    assert failure.returncode == 1
+    assert not World.objects.exists()
+
+
+def test_a_link_out_of_the_folder_is_refused(db, tiny_folder, tmp_path_factory):
+    outside = tmp_path_factory.mktemp("outside") / "secret.txt"
+    outside.write_text("$Main = secret\n")
+    (tiny_folder / "linked.txt").symlink_to(outside)
+    report, _ = run("import_generator", tiny_folder, "--world", "new")
+    assert "leads out of its folder" in report["problems"][0]["message"]
