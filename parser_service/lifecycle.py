@@ -269,21 +269,31 @@ def _note(pk: int, message: str) -> None:
 def hand_back(worker: str) -> list[TrainingRun]:
     """Queues what ``worker`` runs, because it stops in good order; this counts as no resumption."""
     runs = list(TrainingRun.objects.running().filter(worker=worker))
-    return [run for run in runs if _take_back(run, "The worker was stopped", run.resumes)]
+    return [
+        run for run in runs if _take_back(run, _ours(run), "The worker was stopped", run.resumes)
+    ]
 
 
 def requeue_expired() -> list[TrainingRun]:
     """Queues again, or gives up as lost, what no living worker extends; the runs that were taken."""
-    runs = list(TrainingRun.objects.expired())
-    return [run for run in runs if _take_back(run, "The worker was lost", run.resumes + 1)]
+    return [
+        run
+        for run in list(TrainingRun.objects.expired())
+        # Unless its worker has extended the lease in the meantime.
+        if _take_back(
+            run,
+            _ours(run).filter(lease_until=run.lease_until),
+            "The worker was lost",
+            run.resumes + 1,
+        )
+    ]
 
 
-def _take_back(run: TrainingRun, reason: str, resumes: int) -> bool:
-    """Takes a running run from its worker, unless that has extended its lease in the meantime."""
+def _take_back(run: TrainingRun, row: QuerySet[TrainingRun], reason: str, resumes: int) -> bool:
+    """Takes a run from its worker where ``row`` still finds it; whether it did."""
     values, message = _after_interruption(run, reason, resumes)
     with transaction.atomic():
-        taken = _ours(run).filter(lease_until=run.lease_until)
-        if not taken.update(lease_until=None, worker="", activity="", **values):
+        if not row.update(lease_until=None, worker="", activity="", **values):
             return False
         _add_event(run, message)
     if values["status"] == Status.QUEUED:

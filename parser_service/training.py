@@ -7,6 +7,8 @@ import logging
 import time
 from collections.abc import Callable
 
+from django.db import InterfaceError, OperationalError
+
 from annotations.models.splits import Part
 from parser_service import lifecycle
 from parser_service.checkpoints import model_folder, write_folder
@@ -31,18 +33,21 @@ def train(
 
     ``give_up`` is called where training does not notice in time that it is to stop; ``tell`` hears
     what the log says. Whatever happens is in the row; nothing is raised but what ends the process.
+    While the database is away nothing can be recorded: the run goes on when its lease is over.
     """
     try:
         with Lease(run, give_up) as lease:
             _train(run, lease, RunObserver(lease, tell))
     except lifecycle.Fenced as fenced:
         logger.warning("%s", fenced)
+    except (InterfaceError, OperationalError) as error:
+        logger.warning("The database was away, so run %s goes on later: %s", run.pk, error)
 
 
 def _train(run: TrainingRun, lease: Lease, observe: RunObserver) -> None:
     try:
         _fit_and_evaluate(run, observe)
-    except lifecycle.Fenced:
+    except (lifecycle.Fenced, InterfaceError, OperationalError):
         raise
     except Cancelled:
         if not lease.is_lost:

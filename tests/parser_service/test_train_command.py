@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 import json
+import os
+import signal
+import subprocess
+import sys
 from io import StringIO
 
 import pytest
+from django.conf import settings as site
 from django.core.management import CommandError, call_command
+from django.utils import timezone
 
+from parser_service import lifecycle
 from parser_service.models import TrainingRun
-from tests.parser_service.made_up import make_split
+from tests.parser_service.made_up import LONG, make_split
+from tests.parser_service.running import ROOT, database_url, wait_for, wait_for_epochs
 
 
 @pytest.fixture
@@ -79,3 +87,33 @@ def test_the_split_is_found_by_its_name_and_criterion(split):
     split.save()
     report = call("knn", *HERE, "--criterion", "logical_form")
     assert (report["split"], report["criterion"]) == ("home-logical_form", "logical_form")
+
+
+@pytest.mark.processes
+def test_ctrl_c_cancels_the_run(split):
+    options = [f"{name}={value}" for name, value in LONG.items()]
+    command = ["manage.py", "train", "seq2seq", *HERE, "--sources", "gen", "--config", *options]
+    process = subprocess.Popen(
+        [sys.executable, *command],
+        cwd=ROOT,
+        env={**os.environ, "DATABASE_URL": database_url(), "GPSR_VAR_DIR": str(site.VAR_DIR)},
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    wait_for(TrainingRun.objects.exists, 15, "the run is asked for")
+    run = TrainingRun.objects.get()
+    wait_for_epochs(run, 1)
+    process.send_signal(signal.SIGINT)
+    _, told = process.communicate(timeout=10)
+    run.refresh_from_db()
+    assert (process.returncode, run.status) == (1, "cancelled")
+    assert "Epoch 1: loss" in told
+    assert f"Run {run.pk} was cancelled." in told
+    assert "Traceback" not in told
+
+
+def test_a_run_whose_worker_is_gone_is_finished_here(split):
+    run, _ = lifecycle.request(split.world, split, "knn", train_sources="gen+para", send=False)
+    lifecycle.claim("cpu-1@elsewhere", "cpu", run)
+    TrainingRun.objects.update(lease_until=timezone.now())
+    assert call("knn", *HERE)["attempts"] == 2

@@ -6,6 +6,8 @@ import errno
 import threading
 
 import pytest
+from django.db import OperationalError
+from django.utils import timezone
 
 from parser_service import lifecycle
 from parser_service.checkpoints import model_folder, stored_folder
@@ -140,6 +142,19 @@ def test_an_altered_checkpoint_is_not_used_and_the_log_says_so(split):
     assert run.status == "succeeded"
     assert run.events.filter(message__contains="epoch 3 is missing or altered").exists()
     assert list(run.epochs.values_list("epoch", flat=True)) == [1, 2, 3, 4, 5, 6, 7, 8]
+
+
+def test_a_database_that_was_away_costs_no_run(split):
+    run = claimed(split, "seq2seq", config=SHORT)
+
+    def away(message: str) -> None:
+        raise OperationalError("the connection is closed")
+
+    train(run, tell=away)
+    run.refresh_from_db()
+    assert (run.status, run.failure) == ("running", "")
+    TrainingRun.objects.update(lease_until=timezone.now())
+    assert lifecycle.requeue_expired() == [run]
 
 
 def test_only_the_last_and_the_best_checkpoint_stay_on_the_disk(split):

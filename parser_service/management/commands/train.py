@@ -74,6 +74,7 @@ class Command(ReportingCommand):
                     train(claimed, tell=self.stderr.write)
                 else:
                     time.sleep(LOOK_EVERY)
+                    lifecycle.requeue_expired()
                 run.refresh_from_db()
         except KeyboardInterrupt:
             run.refresh_from_db()
