@@ -31,13 +31,13 @@ class Evaluation(models.Model):
             models.UniqueConstraint(fields=["run", "test_source", "part"], name="evaluated_once")
         ]
 
+    def __str__(self) -> str:
+        return f"{self.run}: {self.accuracy:.3f} on {self.test_source} {self.part}"
+
     @property
     def half_width(self) -> float:
         """Half the width of the interval, which is not quite symmetric."""
         return (self.interval_high - self.interval_low) / 2
-
-    def __str__(self) -> str:
-        return f"{self.run}: {self.accuracy:.3f} on {self.test_source} {self.part}"
 
 
 class PredictionQuerySet(models.QuerySet["Prediction"]):
