@@ -5,10 +5,17 @@ from __future__ import annotations
 from typing import Any
 
 from django import forms
+from django.http import HttpRequest, QueryDict
 
 from annotations.checking import check_template
 from annotations.models import TaskCategory, World
+from annotations.models.splits import criterion_choices
 from annotations.models.templates import Status, template_status_choices
+
+
+def posted(request: HttpRequest) -> QueryDict | None:
+    """What a form is bound to; None while nothing has been sent."""
+    return request.POST if request.method == "POST" else None
 
 
 class TemplateForm(forms.Form):
@@ -47,6 +54,32 @@ class TemplateForm(forms.Form):
         return cleaned
 
 
+class SplitForm(forms.Form):
+    """How to part the pairs. Shares are in percent and sum to 100."""
+
+    name = forms.SlugField(
+        max_length=80, help_text="Letters, digits, _ and -. It stands in tables and addresses."
+    )
+    criterion = forms.ChoiceField(
+        label="No two parts share a",
+        choices=lambda: [(name, label.lower()) for name, label in criterion_choices()],
+        help_text="A logical form in one part only is the harder test.",
+    )
+    train = forms.FloatField(label="Train, %", initial=70, min_value=0, max_value=100)
+    validation = forms.FloatField(label="Validation, %", initial=10, min_value=0, max_value=100)
+    test = forms.FloatField(label="Test, %", initial=20, min_value=0, max_value=100)
+    seed = forms.IntegerField(
+        initial=0, min_value=0, max_value=2**32 - 1, help_text="The same seed, the same split."
+    )
+
+    @property
+    def choice(self) -> dict[str, Any]:
+        """What the verb wants, once the form is valid."""
+        shares = [self.cleaned_data[part] / 100 for part in ("train", "validation", "test")]
+        chosen = {name: self.cleaned_data[name] for name in ("criterion", "seed")}
+        return {**chosen, "proportions": shares}
+
+
 class ManyFiles(forms.ClearableFileInput):
     allow_multiple_selected = True
 
@@ -57,7 +90,7 @@ class FilesField(forms.FileField):
     widget = ManyFiles
 
     def clean(self, data: Any, initial: Any = None) -> list[Any]:
-        files = data if isinstance(data, list | tuple) else [data]
+        files = (data if isinstance(data, list | tuple) else [data]) or [None]
         return [super(FilesField, self).clean(file, initial) for file in files]
 
 

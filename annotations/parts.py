@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Iterable
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from django.db.models import Count, Q
@@ -71,6 +71,17 @@ def counts_of(splits: Iterable[Split]) -> dict[int, list[PartCounts]]:
         ]
         for split in splits
     }
+
+
+def counts_of_planned(examples: Sequence[Example]) -> list[PartCounts]:
+    """The counts of examples that are not stored."""
+    sizes = Counter((example.source, example.part) for example in examples)
+    forms = Counter(source for source, _ in {(each.source, each.logical_form) for each in examples})
+    return [
+        PartCounts(source, *(sizes[source, part] for part in Part), forms[source])
+        for source in Source
+        if forms[source]
+    ]
 
 
 LEAKS = {

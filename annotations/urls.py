@@ -31,5 +31,6 @@ urlpatterns = [
     path("forms/<int:pk>/", forms.form, name="form"),
     path("paraphrases/", paraphrases.paraphrases, name="paraphrases"),
     path("splits/", splits.splits, name="splits"),
+    path("splits/new/", splits.split_new, name="split_new"),
     path("splits/<int:pk>/", splits.split, name="split"),
 ]

@@ -48,7 +48,7 @@ def scored_run(world: World, split: Split, parser: str = "knn", right: int = 3) 
     TrainingRun.objects.filter(pk=run.pk).update(status=Status.SUCCEEDED, progress=1)
     examples = list(split.examples.filter(part="validation"))
     for number, example in enumerate(examples):
-        answer(run, example, example.logical_form if number < right else "( go \" <room> \" )")
+        answer(run, example, example.logical_form if number < right else '( go " <room> " )')
     Evaluation.objects.create(
         run=run,
         test_source="gen",

@@ -18,9 +18,10 @@ from annotations.uploads import files_of
 @world_view(Duty.MANAGE, READ_AND_WRITE)
 def import_files(request: HttpRequest, world: World) -> HttpResponse:
     """Uploads the files of a generator; all of them are taken in, or nothing."""
-    form = ImportForm(request.POST or None, request.FILES or None)
+    is_sent = request.method == "POST"
+    form = ImportForm(request.POST, request.FILES) if is_sent else ImportForm()
     context = {"form": form}
-    if request.method == "POST" and form.is_valid():
+    if is_sent and form.is_valid():
         try:
             files = files_of(form.cleaned_data["files"])
             context["report"] = import_generator(world.name, files, request.user)

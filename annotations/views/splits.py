@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from django.http import HttpRequest, HttpResponse
-from django.shortcuts import get_object_or_404, render
+from django.shortcuts import get_object_or_404, redirect, render
 
-from annotations.access import world_view
+from annotations.access import READ_AND_WRITE, world_view
 from annotations.filters import ExampleFilters
+from annotations.forms import SplitForm, posted
+from annotations.freezing import freeze_split, plan_split
+from annotations.language.errors import LanguageError
 from annotations.listing import Listing, Sort
 from annotations.models import Duty, Split, World
-from annotations.parts import counts_of, leakage_of
+from annotations.parts import counts_of, counts_of_planned, leakage_of
 
 SORTS = {
     "position": Sort("No.", "id", is_number=True),
@@ -25,6 +28,25 @@ def splits(request: HttpRequest, world: World) -> HttpResponse:
     counts = counts_of(rows)
     context = {"rows": [(row, counts[row.pk]) for row in rows]}
     return render(request, "annotations/splits.html", context)
+
+
+@world_view(Duty.ANNOTATE, READ_AND_WRITE)
+def split_new(request: HttpRequest, world: World) -> HttpResponse:
+    """The form that freezes a split; its other button only counts what would come out."""
+    initial = {"name": f"{world.name}-{world.splits.count() + 1}"}
+    form = SplitForm(posted(request), initial=initial)
+    context = {"form": form}
+    if form.is_bound and form.is_valid():
+        try:
+            if "preview" in request.POST:
+                context["counts"] = counts_of_planned(plan_split(world, **form.choice))
+            else:
+                name = form.cleaned_data["name"]
+                made = freeze_split(world, name, by=request.user, **form.choice)
+                return redirect("split", world=world.name, pk=made.pk)
+        except LanguageError as error:
+            form.add_error(None, str(error))
+    return render(request, "annotations/split_new.html", context)
 
 
 @world_view(Duty.VIEW)

@@ -13,7 +13,7 @@ from annotations.access import READ_AND_WRITE, WRITE, world_view
 from annotations.checking import Checked, check_template
 from annotations.editing import Overtaken, add_template, change_template
 from annotations.filters import TemplateFilters
-from annotations.forms import TemplateForm
+from annotations.forms import TemplateForm, posted
 from annotations.listing import Listing, Sort
 from annotations.models import Duty, SemanticTemplate, StoredProblem, TaskCategory, World
 from annotations.models.problems import Subject
@@ -52,7 +52,7 @@ def by_place(problems: list[StoredProblem]) -> dict[tuple[str, int], list[Stored
 @world_view(Duty.ANNOTATE, READ_AND_WRITE)
 def template_new(request: HttpRequest, world: World) -> HttpResponse:
     """A new template."""
-    form = TemplateForm(world, request.POST or None)
+    form = TemplateForm(world, posted(request))
     if request.method == "POST" and form.is_valid():
         made = add_template(
             by=request.user, category=form.cleaned_data["task_category"], **sides(form)
@@ -69,7 +69,7 @@ def template(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     row = get_object_or_404(
         SemanticTemplate.objects.select_related("author"), grammar__world=world, pk=pk
     )
-    form = TemplateForm(world, request.POST or None, initial=initial_of(world, row))
+    form = TemplateForm(world, posted(request), initial=initial_of(world, row))
     form.fields["task_category"].disabled = True
     context = {"row": row, "form": form}
     if request.method == "POST" and form.is_valid():

@@ -8,6 +8,7 @@ from django.shortcuts import get_object_or_404, redirect, render
 from django.views.decorators.cache import never_cache
 
 from annotations.access import READ_AND_WRITE, WRITE, world_view
+from annotations.forms import posted
 from annotations.listing import Listing, Sort
 from annotations.models import Duty, World
 from annotations.rates import STARTED_RUNS
@@ -53,7 +54,7 @@ def run_new(request: HttpRequest, world: World) -> HttpResponse:
     parser = request.GET.get("parser", "")
     parser = parser if parser in PARSERS else next(iter(PARSERS))
     initial = {"split": request.GET.get("split")}
-    form = RunForm(world, parser, request.POST or None, initial=initial)
+    form = RunForm(world, parser, posted(request), initial=initial)
     if request.method == "POST" and form.is_valid():
         run = start(request, world, form)
         if run:

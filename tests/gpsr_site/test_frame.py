@@ -7,10 +7,10 @@ from datetime import timedelta
 import pytest
 from django.utils import timezone
 
-from gpsr_site.counts import counts_of, counts_of_all
-from gpsr_site.flow import next_steps
 from annotations.models import Duty, StoredProblem, World
 from annotations.models.worlds import DUTIES, Role
+from gpsr_site.counts import counts_of, counts_of_all
+from gpsr_site.flow import next_steps
 from gpsr_site.workers import workers_now
 from parser_service import lifecycle
 from parser_service.models import Worker

@@ -159,7 +159,11 @@ def test_an_id_of_another_world_is_not_found(name, method, house, other_house, a
     if method in ("get", "post") and answer.status_code == 405:
         assert (name, method) in {
             ("run_cancel", "get"),
-            *((each, "post") for each in ROUTES_OF_THINGS if each not in ("template", "run_cancel")),
+            *(
+                (each, "post")
+                for each in ROUTES_OF_THINGS
+                if each not in ("template", "run_cancel")
+            ),
         }
 
 

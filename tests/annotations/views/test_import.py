@@ -1,0 +1,93 @@
+"""Importing by upload: several files or an archive, all or nothing."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+
+import pytest
+from django.core.files.uploadedfile import SimpleUploadedFile
+
+from annotations.models import SemanticTemplate
+from tests.annotations.conftest import TINY, as_bytes
+
+
+def uploads(files):
+    return [SimpleUploadedFile(name, data) for name, data in files.items()]
+
+
+def archive(files, name="generator.zip"):
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w") as archive:
+        for member, data in files.items():
+            archive.writestr(member, data)
+    return SimpleUploadedFile(name, packed.getvalue())
+
+
+@pytest.fixture
+def tiny():
+    return as_bytes(TINY)
+
+
+def send(client, files):
+    return client.post("/w/home/import/", {"files": files})
+
+
+def test_several_files_are_one_import(world, adam, tiny):
+    answer = send(adam, uploads(tiny))
+    assert answer.status_code == 200
+    assert SemanticTemplate.objects.filter(grammar__world=world).count() == 2
+
+
+def test_an_archive_is_one_import_whatever_its_folders(world, adam, tiny):
+    nested = {f"generator/{name}": data for name, data in tiny.items()}
+    assert send(adam, [archive(nested)]).status_code == 200
+    assert SemanticTemplate.objects.filter(grammar__world=world).count() == 2
+
+
+def test_the_same_files_again_change_nothing(world, adam, tiny):
+    send(adam, uploads(tiny))
+    page = send(adam, uploads(tiny)).content.decode()
+    assert "0 added, 0 changed, 0 removed" in page
+
+
+def test_one_error_refuses_everything_and_is_shown_with_its_place(world, adam, tiny):
+    tiny["tiny_category_1_semantics.txt"] = b"go to the {room} = (go $1)\n"
+    answer = send(adam, uploads(tiny))
+    page = answer.content.decode()
+    assert answer.status_code == 422
+    assert "Nothing was imported" in page
+    assert "tiny_category_1_semantics.txt:1:" in page
+    assert not hasattr(world, "grammar")
+
+
+def test_no_file_is_told(world, adam):
+    assert "This field is required" in adam.post("/w/home/import/").content.decode()
+
+
+@pytest.mark.parametrize(
+    ("files", "sentence"),
+    [
+        ([SimpleUploadedFile("x.zip", b"PK no archive")], "no zip archive that can be read"),
+        ([archive({f"{n}.txt": b"x" for n in range(80)})], "64 is the limit"),
+        ([archive({"a/x.txt": b"$Main = a\n", "b/x.txt": b"$Main = b\n"})], "have this name"),
+    ],
+)
+def test_an_upload_that_cannot_be_taken_is_told_in_a_sentence(files, sentence, world, adam):
+    for file in files:
+        file.seek(0)
+    answer = send(adam, files)
+    assert answer.status_code == 422
+    assert sentence in answer.content.decode()
+
+
+def test_an_archive_that_swells_is_refused_before_it_is_unpacked(world, adam, settings):
+    settings.UPLOAD_MAX_BYTES = 1000
+    bomb = archive({"x.txt": b"a" * 1001})
+    assert "more than 1,000 bytes" in send(adam, [bomb]).content.decode()
+
+
+def test_a_name_that_leaves_its_folder_is_no_way_out(world, adam, tiny, tmp_path):
+    escaping = {f"../../../{name}": data for name, data in tiny.items()}
+    assert send(adam, [archive(escaping)]).status_code == 200
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,188 @@
+"""The lists of a world: what they show, filter, sort, and what a page of them costs."""
+
+from __future__ import annotations
+
+import pytest
+
+from annotations.models import Command, Entity, LogicalForm, Paraphrase, StoredProblem
+
+LISTS = ["ontology", "grammar", "templates", "commands", "forms", "paraphrases", "predicates"]
+# A page of a list never costs more: session, user, world, roles, worlds, rail, worker and runs (3),
+# the filters' choices, rows, count, problems.
+MOST_QUERIES = 17
+
+
+def texts(page, field="anonymized_text"):
+    return [getattr(row, field) for row in page.context["listing"].rows]
+
+
+def many_commands(world, count):
+    form = world.logical_forms.first()
+    first = world.commands.count()
+    Command.objects.bulk_create(
+        Command(
+            world=world,
+            logical_form=form,
+            anonymized_text=f"go to room {number}",
+            length=4,
+            task_category="1",
+            position=first + number,
+        )
+        for number in range(count)
+    )
+
+
+@pytest.mark.parametrize("path", LISTS)
+def test_an_empty_list_says_what_would_be_there(path, world, anna):
+    page = anna.get(f"/w/home/{path}/").content.decode()
+    assert 'class="empty"' in page
+
+
+@pytest.mark.parametrize("path", LISTS)
+def test_no_list_costs_a_query_a_row(path, house, anna, django_assert_max_num_queries):
+    many_commands(house.world, 40)
+    LogicalForm.objects.bulk_create(
+        LogicalForm(world=house.world, text=f"( go {n} )", head_predicate="go", depth=1, length=4)
+        for n in range(40)
+    )
+    with django_assert_max_num_queries(MOST_QUERIES):
+        assert anna.get(f"/w/home/{path}/").status_code == 200
+
+
+def test_commands_are_found_by_a_word(house, anna):
+    page = anna.get("/w/home/commands/", {"q": "LOCATE"})
+    assert texts(page) == ["locate the <object>"]
+    assert [(chip.label, chip.value) for chip in page.context["listing"].chips] == [
+        ("Search", "LOCATE")
+    ]
+
+
+def test_commands_are_filtered_by_their_head_predicate(house, anna):
+    assert texts(anna.get("/w/home/commands/", {"head": "go"})) == ["go to the <room>"]
+
+
+def test_commands_are_filtered_by_a_predicate_anywhere(house, anna):
+    assert len(texts(anna.get("/w/home/commands/", {"mentions": "is_a"}))) == 2
+
+
+def test_commands_are_filtered_by_their_template(house, anna):
+    chosen = house.world.commands.exclude(template=house.template)
+    page = anna.get("/w/home/commands/", {"template": chosen.first().template_id})
+    assert texts(page) == ["go to the <room>"]
+
+
+def test_commands_are_sorted_by_the_url(house, anna):
+    shown = texts(anna.get("/w/home/commands/", {"sort": "-command"}))
+    assert shown == sorted(shown, reverse=True)
+
+
+def test_an_unknown_order_is_the_usual_one(house, anna):
+    page = anna.get("/w/home/commands/", {"sort": "password"})
+    assert [row.position for row in page.context["listing"].rows] == [0, 1, 2]
+
+
+def test_a_value_that_no_filter_offers_is_told_and_filters_nothing(house, anna):
+    page = anna.get("/w/home/commands/", {"head": "nothing"})
+    assert page.status_code == 200
+
+
+def test_a_long_list_is_paged_and_keeps_its_filters(house, anna):
+    many_commands(house.world, 70)
+    first = anna.get("/w/home/commands/", {"q": "go to", "sort": "command"}).context["listing"]
+    assert (len(first.rows), first.total) == (50, 71)
+    assert first.previous_url == ""
+    second = anna.get(f"/w/home/commands/{first.next_url}").context["listing"]
+    assert len(second.rows) == 21
+    assert second.form.cleaned_data["q"] == "go to"
+    assert anna.get(f"/w/home/commands/{second.previous_url}").context["listing"].rows == first.rows
+
+
+def test_dropping_a_filter_goes_back_to_the_first_page(house, anna):
+    page = anna.get("/w/home/commands/", {"q": "go", "sort": "command", "after": '["go",1]'})
+    (chip,) = page.context["listing"].chips
+    assert chip.remove_url == "?sort=command"
+
+
+def test_text_of_any_origin_is_escaped(house, anna):
+    evil = house.world.commands.first()
+    evil.anonymized_text = "<script>alert(1)</script> the <object>"
+    evil.save()
+    Entity.objects.filter(text="tea").update(text='<img src=x onerror="alert(1)">')
+    Paraphrase.objects.create(
+        world=house.world,
+        prompt="go",
+        utterance="<b>go</b>",
+        grounded_form="<i>( go )</i>",
+        logical_form="( go )",
+        edit_distance=1,
+        jaccard_distance=0.5,
+        position=0,
+    )
+    for path in ("commands", "ontology", "paraphrases"):
+        page = anna.get(f"/w/home/{path}/").content.decode()
+        assert "<script>alert" not in page and "<img" not in page and "<b>go" not in page
+        assert "<i>( go" not in page
+
+
+def test_entities_are_counted_by_class(house, anna):
+    classes = anna.get("/w/home/ontology/").context["classes"]
+    assert classes == {"object": 2, "category": 1, "location": 2, "room": 2}
+
+
+def test_remarks_of_the_checker_stand_on_the_page_that_they_are_about(house, anna):
+    StoredProblem.objects.create(
+        world=house.world,
+        subject="ontology",
+        source="objects.xml",
+        line=3,
+        column=5,
+        severity="warning",
+        message="no such place",
+        hint="name another",
+    )
+    page = anna.get("/w/home/ontology/").content.decode()
+    assert "1 remark of the checker" in page
+    assert "objects.xml:3:5" in page and "no such place" in page and "name another" in page
+
+
+def test_a_remark_stands_beside_its_template(house, anna):
+    StoredProblem.objects.create(
+        world=house.world,
+        subject="templates",
+        source=house.template.source,
+        line=house.template.line,
+        severity="warning",
+        message="matches nothing",
+    )
+    rows = anna.get("/w/home/templates/").context["rows"]
+    assert [len(remarks) for _, remarks in rows] == [1, 0]
+
+
+def test_complexity_counts_what_is_there(house, anna):
+    *_, all_of_them = anna.get("/w/home/commands/complexity/").context["columns"]
+    assert (all_of_them.templates, all_of_them.commands, all_of_them.forms) == (2, 3, 2)
+    assert all_of_them.commands_per_form == 1.5
+
+
+def test_coverage_compares_the_grammar_with_what_templates_make(house, anna):
+    Command.objects.filter(anonymized_text="go to the <room>").delete()
+    (category,) = anna.get("/w/home/grammar/coverage/").context["categories"]
+    assert (category.size, category.commands, category.covered) == (3, 3, 2)
+    assert category.uncovered == ("go to the <room>",)
+
+
+def test_a_form_shows_its_commands_and_how_people_say_them(house, anna):
+    Paraphrase.objects.create(
+        world=house.world,
+        prompt="go to the kitchen",
+        utterance="off you go",
+        grounded_form=house.form.text,
+        logical_form=house.form.text,
+        edit_distance=1,
+        jaccard_distance=0.5,
+        position=0,
+    )
+    page = anna.get(f"/w/home/forms/{house.form.pk}/")
+    assert len(texts(page)) == 2
+    assert "off you go" in page.content.decode()
+    assert "find the object" in page.content.decode()

@@ -1,0 +1,104 @@
+"""Freezing a split by page, and what its page says about it."""
+
+from __future__ import annotations
+
+import pytest
+
+from annotations.models import Split
+from annotations.parts import counts_of, leakage_of
+from tests.parser_service.made_up import make_split
+
+GOOD = {
+    "name": "mine",
+    "criterion": "logical_form",
+    "train": "50",
+    "validation": "0",
+    "test": "50",
+    "seed": "1",
+}
+
+
+def test_counting_first_stores_nothing(house, anna):
+    page = anna.post("/w/home/splits/new/", {**GOOD, "preview": "1"})
+    (counts,) = page.context["counts"]
+    assert (counts.source, counts.train + counts.test, counts.forms) == ("generated", 3, 2)
+    assert Split.objects.count() == 1
+
+
+def test_freezing_leads_to_the_split(house, anna, annotator):
+    answer = anna.post("/w/home/splits/new/", {**GOOD, "freeze": "1"})
+    made = Split.objects.get(name="mine")
+    assert answer.url == f"/w/home/splits/{made.pk}/"
+    assert (made.criterion, made.seed, made.created_by) == ("logical_form", 1, annotator)
+
+
+def test_what_was_counted_is_what_is_frozen(house, anna):
+    counted = anna.post("/w/home/splits/new/", {**GOOD, "preview": "1"}).context["counts"]
+    anna.post("/w/home/splits/new/", {**GOOD, "freeze": "1"})
+    made = Split.objects.get(name="mine")
+    assert counts_of([made])[made.pk] == counted
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"train": "90"}, "share"),
+        ({"name": "home-split"}, "there is a split home-split already"),
+        ({"name": "two words"}, "letters, numbers, underscores or hyphens"),
+        ({"seed": "-1"}, "greater than or equal to 0"),
+    ],
+)
+def test_what_cannot_be_frozen_is_told_in_a_sentence(changes, sentence, house, anna):
+    answer = anna.post("/w/home/splits/new/", {**GOOD, **changes, "freeze": "1"})
+    assert sentence in answer.content.decode()
+    assert Split.objects.count() == 1
+
+
+def test_a_world_without_commands_cannot_be_split(world, anna):
+    answer = anna.post("/w/home/splits/new/", {**GOOD, "freeze": "1"})
+    assert "there is nothing to split" in answer.content.decode()
+
+
+def test_the_list_counts_pairs_by_part_and_source(house, anna):
+    ((split, counts),) = anna.get("/w/home/splits/").context["rows"]
+    assert split == house.split
+    assert [(each.source, each.train, each.validation, each.test) for each in counts] == [
+        ("generated", 24, 6, 6),
+        ("paraphrased", 24, 6, 6),
+    ]
+
+
+def test_the_list_costs_no_query_a_split(house, anna, django_assert_max_num_queries):
+    for number in range(5):
+        make_split(house.world, f"split-{number}")
+    with django_assert_max_num_queries(12):
+        anna.get("/w/home/splits/")
+
+
+def test_what_parts_share_is_shown_as_it_is(house):
+    for part, text in (("train", "go get the <object>"), ("test", "go get the <object>")):
+        house.split.examples.create(
+            part=part,
+            source="generated",
+            utterance=text,
+            source_command=text,
+            logical_form="( go )",
+            position=100,
+        )
+    found = {(leak.part, leak.what): (leak.shared, leak.pairs) for leak in leakage_of(house.split)}
+    assert found["test", "source commands"] == (1, 1)
+    assert found["test", "utterances"][0] >= 1
+    assert found["validation", "utterances"] == (0, 12)
+
+
+def test_examples_are_filtered_by_part_and_source(house, anna):
+    chosen = {"part": "test", "source": "paraphrased"}
+    listing = anna.get(f"/w/home/splits/{house.split.pk}/", chosen).context["listing"]
+    assert listing.total == 6
+    assert {row.part for row in listing.rows} == {"test"}
+
+
+def test_the_page_of_a_split_leads_to_its_exports(house, anna):
+    page = anna.get(f"/w/home/splits/{house.split.pk}/").content.decode()
+    for end in ("?as=jsonl", "?as=csv", "?as=txt&amp;source=generated&amp;part=train"):
+        assert f"/api/v1/worlds/home/splits/{house.split.pk}/export/{end}" in page

@@ -1,0 +1,108 @@
+"""Reading what a run says: filters, the difference of two forms, the neighbours in the list."""
+
+from __future__ import annotations
+
+import pytest
+
+from parser_service.models import Prediction
+
+
+def predictions(client, house, **chosen):
+    return client.get(f"/w/home/runs/{house.run.pk}/predictions/", chosen)
+
+
+def totals(client, house, **chosen):
+    return predictions(client, house, **chosen).context["listing"].total
+
+
+def test_every_example_has_one_line(house, anna):
+    assert totals(anna, house) == 12
+
+
+@pytest.mark.parametrize(
+    ("chosen", "count"),
+    [
+        ({"outcome": "correct"}, 3),
+        ({"outcome": "wrong"}, 9),
+        ({"outcome": "malformed"}, 0),
+        ({"outcome": "none"}, 0),
+        ({"part": "test"}, 0),
+        ({"part": "validation", "source": "generated"}, 6),
+        ({"q": "FETCH"}, 2),
+    ],
+)
+def test_predictions_are_filtered_by_the_url(chosen, count, house, anna):
+    assert totals(anna, house, **chosen) == count
+
+
+def test_an_answer_that_is_right_but_for_the_order_is_found(house, anna):
+    wrong = Prediction.objects.filter(is_exact_match=False).first()
+    Prediction.objects.filter(pk=wrong.pk).update(is_equivalent=True)
+    assert totals(anna, house, outcome="equivalent") == 1
+    assert "equivalent" in predictions(anna, house, outcome="equivalent").content.decode()
+
+
+def test_the_head_predicate_of_the_annotated_form_filters(house, anna):
+    found = predictions(anna, house, head="find").context["listing"]
+    assert found.total == sum("( find " in row.example.logical_form for row in found.rows)
+    assert 0 < found.total < 12
+
+
+def test_a_wrong_answer_shows_the_difference(house, anna):
+    page = predictions(anna, house, outcome="wrong").content.decode()
+    assert "<mark" in page or "<del" in page
+    assert "✗ wrong" in page
+
+
+def test_no_answer_is_told_as_such(house, anna):
+    Prediction.objects.filter(is_exact_match=False).update(logical_form="", is_well_formed=False)
+    assert "no answer" in predictions(anna, house, outcome="none").content.decode()
+
+
+def test_text_that_is_no_form_is_shown_as_it_is(house, anna):
+    Prediction.objects.filter(is_exact_match=False).update(
+        logical_form="( bring <b> (", is_well_formed=False
+    )
+    page = predictions(anna, house, outcome="malformed").content.decode()
+    assert "( bring &lt;b&gt; (" in page
+    assert "malformed" in page
+
+
+def test_the_list_costs_no_query_a_row(house, anna, django_assert_max_num_queries):
+    with django_assert_max_num_queries(16):
+        predictions(anna, house)
+
+
+def test_one_goes_on_to_the_next_that_passes_the_filters(house, anna):
+    wrong = list(Prediction.objects.filter(is_exact_match=False).order_by("example_id"))
+    base = f"/w/home/runs/{house.run.pk}/predictions"
+    page = anna.get(f"{base}/{wrong[1].example_id}/?outcome=wrong")
+    assert page.context["neighbours"] == {
+        "before": wrong[0].example_id,
+        "after": wrong[2].example_id,
+    }
+    first = anna.get(f"{base}/{wrong[0].example_id}/?outcome=wrong")
+    assert first.context["neighbours"]["before"] is None
+
+
+def test_all_candidates_are_shown_in_order(house, anna):
+    best = house.run.predictions.first()
+    Prediction.objects.create(
+        run=house.run,
+        example=best.example,
+        rank=2,
+        logical_form="( follow UNKNOWN )",
+        score=0.25,
+        is_exact_match=False,
+        is_equivalent=False,
+        is_well_formed=True,
+    )
+    page = anna.get(f"/w/home/runs/{house.run.pk}/predictions/{best.example_id}/")
+    assert [each.rank for each in page.context["candidates"]] == [1, 2]
+    assert "0.250" in page.content.decode()
+
+
+def test_an_example_without_an_answer_of_this_run_is_not_found(house, anna):
+    other = house.split.examples.filter(part="train").first()
+    answer = anna.get(f"/w/home/runs/{house.run.pk}/predictions/{other.pk}/")
+    assert answer.status_code == 404

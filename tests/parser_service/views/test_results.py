@@ -1,0 +1,179 @@
+"""The accuracy tables: what stands in which cell, what is best, what is on its way."""
+
+from __future__ import annotations
+
+import csv
+import io
+
+import pytest
+
+from annotations.models import Example, Split
+from parser_service import lifecycle
+from parser_service.accuracy import accuracy_tables
+from parser_service.models import TrainingRun
+from parser_service.published import SIZES, published_accuracy, published_criteria
+from tests.furnishing import scored_run
+from tests.parser_service.made_up import make_split
+
+
+def tables(house, part="validation", splits=None):
+    return accuracy_tables(house.world, part, splits or [house.split])
+
+
+def test_a_cell_shows_percent_and_interval_and_leads_to_its_predictions(house):
+    (table,) = tables(house)
+    cell = table.rows[0].cells[0]
+    assert (cell.percent, cell.low, cell.high, cell.plus_minus) == (25.0, 10.0, 60.0, 25.0)
+    assert cell.url == f"/w/home/runs/{house.run.pk}/predictions/?part=validation&source=generated"
+
+
+def test_the_figure_and_the_list_behind_it_agree(house, anna):
+    (table,) = tables(house)
+    url = table.rows[0].cells[0].url
+    listing = anna.get(f"{url}&outcome=correct").context["listing"]
+    assert listing.total <= table.rows[0].cells[0].score.correct
+
+
+def test_the_best_of_a_column_is_marked(house):
+    scored_run(house.world, house.split, "seq2seq", right=5)
+    (table,) = tables(house)
+    assert [(row.parser, row.cells[0].is_best) for row in table.rows] == [
+        ("knn", False),
+        ("seq2seq", True),
+    ]
+
+
+def test_nothing_right_is_not_the_best(house):
+    house.run.evaluations.update(accuracy=0)
+    (table,) = tables(house)
+    assert not table.rows[0].cells[0].is_best
+
+
+def test_protocols_never_share_a_table(house):
+    TrainingRun.objects.filter(pk=scored_run(house.world, house.split, "seq2seq").pk).update(
+        protocol="grammar"
+    )
+    assert [table.protocol for table in tables(house)] == ["strict", "grammar"]
+
+
+def test_other_hyperparameters_are_another_row(house):
+    run = scored_run(house.world, house.split, "seq2seq")
+    TrainingRun.objects.filter(pk=run.pk).update(config={**run.config, "epochs": 3})
+    lifecycle.request(house.world, house.split, "seq2seq", seed=1, send=False)
+    (table,) = tables(house)
+    assert [(row.parser, row.changes) for row in table.rows] == [
+        ("knn", ()),
+        ("seq2seq", ()),
+        ("seq2seq", (("epochs", 3),)),
+    ]
+
+
+def test_the_newest_of_several_seeds_is_shown_and_the_others_are_counted(house):
+    run, _ = lifecycle.request(house.world, house.split, "knn", seed=1, send=False)
+    score = house.run.evaluations.get()
+    score.pk, score.run, score.accuracy = None, run, 0.75
+    score.save()
+    TrainingRun.objects.filter(pk=run.pk).update(status="succeeded")
+    (table,) = tables(house)
+    cell = table.rows[0].cells[0]
+    assert cell.percent == 75.0
+    assert "the newest of 2 runs" in cell.note
+
+
+def test_a_run_at_work_shows_its_progress(house):
+    run, _ = lifecycle.request(house.world, house.split, "seq2seq", send=False)
+    TrainingRun.objects.filter(pk=run.pk).update(status="running", progress=0.3)
+    (table,) = tables(house)
+    cell = table.rows[1].cells[0]
+    assert (cell.status, cell.progress_percent, cell.percent) == ("running", 30.0, None)
+    assert cell.url == f"/w/home/runs/{run.pk}/"
+    assert table.is_active
+
+
+@pytest.mark.parametrize("status", ["failed", "cancelled", "lost"])
+def test_what_came_to_nothing_is_not_in_the_table(status, house):
+    TrainingRun.objects.update(status=status)
+    assert tables(house) == []
+
+
+def test_columns_are_the_settings_that_somebody_trained(house):
+    lifecycle.request(house.world, house.split, "seq2seq", train_sources="gen+para", send=False)
+    (table,) = tables(house)
+    assert [column.setting for column in table.columns] == [
+        ("gen", "gen"),
+        ("gen", "para"),
+        ("gen+para", "para"),
+        ("gen+para", "mixed"),
+    ]
+
+
+def test_columns_are_named_by_criterion_where_that_tells_them_apart(house):
+    other = make_split(house.world, "other")
+    lifecycle.request(house.world, other, "knn", send=False)
+    both = [house.split, other]
+    assert {column.label for column in tables(house, splits=both)[0].columns} == {
+        "home-split",
+        "other",
+    }
+    Split.objects.filter(pk=other.pk).update(criterion="logical_form")
+    both[1].refresh_from_db()
+    assert {column.label for column in tables(house, splits=both)[0].columns} == {
+        "by command",
+        "by logical form",
+    }
+
+
+def test_the_tables_cost_three_queries(house, django_assert_num_queries):
+    for seed in range(6):
+        lifecycle.request(house.world, house.split, "seq2seq", seed=seed, send=False)
+    with django_assert_num_queries(3):
+        tables(house)
+
+
+def test_the_page_shows_the_part_that_was_scored(house, anna):
+    page = anna.get("/w/home/results/")
+    assert page.context["part"] == "validation"
+    assert "25.0" in page.content.decode()
+    assert anna.get("/w/home/results/", {"part": "test"}).context["part"] == "test"
+    assert anna.get("/w/home/results/", {"part": "train"}).context["part"] == "validation"
+
+
+def test_an_empty_page_says_what_would_be_there(world, anna, adam):
+    assert "admins start runs" in anna.get("/w/home/results/").content.decode()
+    assert "Start a run" in adam.get("/w/home/results/").content.decode()
+
+
+def test_the_download_holds_one_line_a_scored_cell(house, anna):
+    answer = anna.get("/w/home/results.csv")
+    (row,) = csv.DictReader(io.StringIO(answer.content.decode()))
+    assert answer["Content-Disposition"] == 'attachment; filename="home-results.csv"'
+    assert (row["parser"], row["train_sources"], row["test_source"]) == ("knn", "gen", "gen")
+    assert (row["accuracy"], row["part"], row["split"]) == ("0.25", "validation", "home-split")
+
+
+def test_a_split_of_the_published_sizes_is_known_as_published(world):
+    split = Split.objects.create(
+        world=world, name="w", criterion="command", content_hash="w", seed=None
+    )
+    Example.objects.bulk_create(
+        Example(
+            split=split,
+            part=part,
+            source=source,
+            position=position,
+            utterance="u",
+            logical_form="f",
+        )
+        for (source, part), count in SIZES["command"].items()
+        for position in range(count)
+    )
+    assert published_criteria([split]) == {split.pk: "command"}
+    split.seed = 0
+    assert published_criteria([split]) == {}
+
+
+def test_published_figures_are_those_of_the_paper():
+    assert published_accuracy("seq2seq", ("para", "para"), "command") == 64.4
+    assert published_accuracy("knn", ("gen", "gen"), "logical_form") == 0.0
+    assert published_accuracy("seq2seq", ("gen+para", "mixed"), "command") is None
+    assert published_accuracy("seq2seq", ("gen", "gen"), "") is None

@@ -1,0 +1,168 @@
+"""Starting, watching and cancelling runs by page."""
+
+from __future__ import annotations
+
+import pytest
+from django.core.cache import cache
+
+from annotations.rates import STARTED_RUNS
+from parser_service import lifecycle
+from parser_service.models import RunEvent, TrainingRun
+from parser_service.parsers.registry import PARSERS, config_fields
+from tests.furnishing import scored_run
+from tests.parser_service.made_up import make_split
+
+
+@pytest.fixture(autouse=True)
+def no_earlier_runs():
+    cache.clear()
+
+
+@pytest.fixture
+def no_messages(monkeypatch):
+    """Starting a run sends a message to a broker, which these tests need not have."""
+    monkeypatch.setattr("parser_service.waking.send_wake_up", lambda queue: None)
+
+
+def defaults(parser, **changes):
+    values = {f"config-{each.name}": each.default for each in config_fields(parser)}
+    return {**{k: v for k, v in values.items() if v is not False}, **changes}
+
+
+def form(house, parser="seq2seq", **changes):
+    general = {"split": house.split.pk, "train_sources": "para", "seed": 7}
+    general["protocol"] = PARSERS[parser].protocols[0]
+    return {**general, **defaults(parser, **changes)}
+
+
+@pytest.mark.parametrize("parser", PARSERS)
+def test_every_parser_has_a_form_with_its_hyperparameters(parser, house, adam):
+    page = adam.get("/w/home/runs/new/", {"parser": parser})
+    shown = page.context["form"]
+    assert [field.name for field in shown.hyperparameters] == [
+        f"config-{each.name}" for each in config_fields(parser)
+    ]
+    for each in config_fields(parser):
+        assert each.description in page.content.decode().replace("&#x27;", "'")
+
+
+def test_an_admin_starts_a_run(house, adam, admin, no_messages):
+    answer = adam.post("/w/home/runs/new/?parser=seq2seq", form(house, **{"config-epochs": 3}))
+    run = TrainingRun.objects.latest("pk")
+    assert answer.url == f"/w/home/runs/{run.pk}/"
+    assert (run.parser, run.train_sources, run.seed, run.status) == ("seq2seq", "para", 7, "queued")
+    assert run.config["epochs"] == 3
+    assert run.created_by == admin
+    assert run.changed_hyperparameters() == (("epochs", 3),)
+
+
+def test_the_same_is_trained_once(house, adam, no_messages):
+    first = adam.post("/w/home/runs/new/?parser=seq2seq", form(house))
+    again = adam.post("/w/home/runs/new/?parser=seq2seq", form(house), follow=True)
+    assert again.redirect_chain[-1][0] == first.url
+    assert "This has been trained already" in again.content.decode()
+    assert TrainingRun.objects.filter(parser="seq2seq").count() == 1
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"config-epochs": 0}, "greater than or equal to 1"),
+        ({"config-dropout": "much"}, "Enter a number"),
+        ({"config-dropout": "nan"}, "Enter a number"),
+        ({"split": 999999}, "Select a valid choice"),
+        ({"train_sources": "all"}, "Select a valid choice"),
+        ({"protocol": "grammar"}, "Select a valid choice"),
+        ({"seed": -1}, "greater than or equal to 0"),
+    ],
+)
+def test_what_cannot_be_trained_is_told_beside_its_field(changes, sentence, house, adam):
+    answer = adam.post("/w/home/runs/new/?parser=seq2seq", {**form(house), **changes})
+    assert sentence in answer.content.decode()
+    assert TrainingRun.objects.count() == 1
+
+
+def test_a_source_that_the_split_lacks_is_told_in_a_sentence(house, adam):
+    house.split.examples.filter(source="paraphrased").delete()
+    answer = adam.post("/w/home/runs/new/?parser=seq2seq", form(house))
+    assert "has no paraphrased examples to train on" in answer.content.decode()
+
+
+def test_a_split_of_another_world_is_no_choice(house, other_world, adam):
+    foreign = make_split(other_world, "foreign")
+    answer = adam.post("/w/home/runs/new/?parser=seq2seq", {**form(house), "split": foreign.pk})
+    assert "Select a valid choice" in answer.content.decode()
+
+
+def test_there_is_a_limit_to_the_runs_of_an_hour(house, adam, admin, no_messages):
+    for _ in range(STARTED_RUNS.limit):
+        STARTED_RUNS.count(str(admin.pk))
+    answer = adam.post("/w/home/runs/new/?parser=seq2seq", form(house))
+    assert f"You have started {STARTED_RUNS.limit} runs within the hour" in answer.content.decode()
+
+
+def test_a_run_that_waits_asks_for_itself_again(house, anna):
+    run, _ = lifecycle.request(house.world, house.split, "seq2seq", send=False)
+    page = anna.get(f"/w/home/runs/{run.pk}/").content.decode()
+    assert f'hx-get="/w/home/runs/{run.pk}/state/"' in page
+    assert "The run waits for a worker." in page
+
+
+def test_a_run_that_has_ended_does_not(house, anna):
+    page = anna.get(f"/w/home/runs/{house.run.pk}/state/").content.decode()
+    assert "hx-get" not in page
+
+
+def test_the_state_shows_progress_log_and_failure(house, anna):
+    TrainingRun.objects.filter(pk=house.run.pk).update(
+        status="running", progress=0.42, activity="epoch 3 of 8", failure="The disk is full."
+    )
+    RunEvent.objects.create(run=house.run, attempt=1, message="Attempt 1 begins.")
+    page = anna.get(f"/w/home/runs/{house.run.pk}/state/").content.decode()
+    for text in ("42 %", "epoch 3 of 8", "Attempt 1 begins.", "The disk is full."):
+        assert text in page
+
+
+def test_only_admins_see_what_only_admins_may_do(house, anna, adam):
+    run, _ = lifecycle.request(house.world, house.split, "seq2seq", send=False)
+    assert "Cancel" not in anna.get(f"/w/home/runs/{run.pk}/").content.decode()
+    assert "Cancel" in adam.get(f"/w/home/runs/{run.pk}/").content.decode()
+
+
+def test_cancelling_a_run_that_waits_ends_it_at_once(house, adam):
+    run, _ = lifecycle.request(house.world, house.split, "seq2seq", send=False)
+    adam.post(f"/w/home/runs/{run.pk}/cancel/")
+    run.refresh_from_db()
+    assert run.status == "cancelled"
+
+
+def test_cancelling_a_run_that_has_ended_is_told(house, adam):
+    answer = adam.post(f"/w/home/runs/{house.run.pk}/cancel/", follow=True)
+    assert "has already ended" in answer.content.decode()
+
+
+def test_the_curves_are_what_the_charts_read(house, anna):
+    loss = anna.get(f"/w/home/runs/{house.run.pk}/curves/?show=loss").json()
+    assert loss["done"] is True
+    assert loss["x"]["values"] == [1]
+    assert [(each["name"], each["values"]) for each in loss["series"]] == [
+        ("training", [2.5]),
+        ("validation", [2.0]),
+    ]
+    accuracy = anna.get(f"/w/home/runs/{house.run.pk}/curves/?show=accuracy").json()
+    assert accuracy["series"][0]["values"] == [25.0]
+
+
+def test_the_table_of_runs_costs_no_query_a_run(house, anna, django_assert_max_num_queries):
+    for seed in range(8):
+        lifecycle.request(house.world, house.split, "seq2seq", seed=seed, send=False)
+    with django_assert_max_num_queries(9):
+        anna.get("/w/home/runs/table/")
+
+
+def test_runs_are_filtered_and_newest_first(house, anna):
+    scored_run(house.world, house.split, "seq2seq")
+    rows = anna.get("/w/home/runs/").context["listing"].rows
+    assert [run.parser for run in rows] == ["seq2seq", "knn"]
+    rows = anna.get("/w/home/runs/", {"parser": "knn"}).context["listing"].rows
+    assert [run.parser for run in rows] == ["knn"]
