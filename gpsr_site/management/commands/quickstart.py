@@ -33,8 +33,7 @@ class Command(BaseCommand):
         call_command("migrate", interactive=False, verbosity=0)
         call_command("collectstatic", interactive=False, verbosity=0)
         self.create_admin()
-        split = load_starter_world(self.say)
-        request_first_runs(split)
+        request_first_runs(load_starter_world(self.say))
         commands = {
             "web server": web_server_command(settings.HOST, settings.PORT),
             "worker": worker_command(),
