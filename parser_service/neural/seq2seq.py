@@ -139,8 +139,15 @@ class Seq2Seq(Parser):
         loss = training.run_epoch(self._examples(train), observe.check)
         result = self._validate(validation, observe.check) if validation else None
         is_best = training.record(result)
-        found = (result.loss, result.accuracy) if result else (None, None)
-        observe.epoch(EpochReport(training.epoch, loss, *found, time.monotonic() - begin))
+        observe.epoch(
+            EpochReport(
+                epoch=training.epoch,
+                train_loss=loss,
+                validation_loss=result.loss if result else None,
+                validation_accuracy=result.accuracy if result else None,
+                seconds=time.monotonic() - begin,
+            )
+        )
         observe.checkpoint(
             training.epoch, is_best, lambda folder: self._checkpoint(folder, training)
         )

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import MISSING, Field, dataclass, field, fields
-from typing import Any, TypeVar
+from dataclasses import Field, dataclass, field, fields
+from typing import Any, TypeAlias, TypeVar
 
 C = TypeVar("C")
-Value = bool | int | float | str
+Value: TypeAlias = "bool | int | float | str"
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,10 +37,7 @@ def hyperparameter(
 
 def describe(config_class: type) -> tuple[ConfigField, ...]:
     """The hyperparameters of a config dataclass, in order."""
-    return tuple(
-        ConfigField(item.name, type(item.default), item.default, **item.metadata)
-        for item in _declared(config_class)
-    )
+    return tuple(map(_described, _declared(config_class)))
 
 
 def validate(config: Any) -> None:
@@ -68,7 +65,12 @@ def read_config(config_class: type[C], values: Mapping[str, Any]) -> C:
 
 
 def _declared(config_class: type) -> list[Field[Any]]:
-    return [item for item in fields(config_class) if item.default is not MISSING]
+    return [item for item in fields(config_class) if "description" in item.metadata]
+
+
+def _described(item: Field[Any]) -> ConfigField:
+    default: Any = item.default
+    return ConfigField(item.name, type(default), default, **item.metadata)
 
 
 def _fault(declared: ConfigField, value: Any) -> str:
@@ -78,6 +80,10 @@ def _fault(declared: ConfigField, value: Any) -> str:
         return f"it has to be {kinds[declared.type]}"
     if declared.choices and value not in declared.choices:
         return f"it has to be one of {', '.join(declared.choices)}"
+    return "" if isinstance(value, str) else _out_of_bounds(declared, value)
+
+
+def _out_of_bounds(declared: ConfigField, value: float) -> str:
     # Written this way round, NaN is outside every bound.
     if declared.minimum is not None and not value >= declared.minimum:
         return f"it has to be at least {declared.minimum:g}"

@@ -55,8 +55,8 @@ def open_sealed(folder: Path, parser: type[Parser], files: Sequence[str]) -> Sav
     about = read_json(folder / CONFIG)
     try:
         found = (about["parser"], about["version"])
-        hashes, config, seed = about["sha256"], about["config"], about["seed"]
-    except (KeyError, TypeError):
+        hashes, config, seed = dict(about["sha256"]), dict(about["config"]), int(about["seed"])
+    except (KeyError, TypeError, ValueError):
         raise ValueError(f"{folder / CONFIG} does not describe a parser.") from None
     if found != (parser.name, parser.version):
         raise ValueError(
