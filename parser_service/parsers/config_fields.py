@@ -73,7 +73,7 @@ def _described(item: Field[Any]) -> ConfigField:
     return ConfigField(item.name, type(default), default, **item.metadata)
 
 
-def _fault(declared: ConfigField, value: Any) -> str:
+def _fault(declared: ConfigField, value: Value) -> str:
     """What ``value`` violates, as the end of a sentence; empty where it is allowed."""
     if type(value) is not declared.type:
         kinds = {bool: "true or false", int: "a whole number", float: "a number", str: "a text"}
