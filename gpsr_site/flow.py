@@ -73,7 +73,9 @@ def _steps(counts: Counts) -> Iterator[tuple[Duty, Step]]:
         reason = "A split is frozen and no parser has been trained on it."
         yield Duty.MANAGE, Step(reason, "Start a run", "run_new")
     if counts.runs_active:
-        reason = f"{counts.runs_active} run{'s' if counts.runs_active > 1 else ''} queued or running."
+        reason = (
+            f"{counts.runs_active} run{'s' if counts.runs_active > 1 else ''} queued or running."
+        )
         yield Duty.VIEW, Step(reason, "Watch the runs", "runs")
     if counts.evaluated:
         reason = "Parsers have been scored. Read where they go wrong."

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -48,10 +49,8 @@ class Supervisor:
                 child.terminate()
         deadline = time.monotonic() + PATIENCE_SECONDS
         for child in self.children.values():
-            try:
+            with contextlib.suppress(subprocess.TimeoutExpired):
                 child.wait(max(0.0, deadline - time.monotonic()))
-            except subprocess.TimeoutExpired:
-                pass
             _kill_group(child.pid)
             child.wait()
 
@@ -77,10 +76,8 @@ class Supervisor:
 
 def _kill_group(process_group: int) -> None:
     """End what is left of a child's process group; an empty group is fine."""
-    try:
+    with contextlib.suppress(ProcessLookupError, PermissionError):
         os.killpg(process_group, signal.SIGKILL)
-    except (ProcessLookupError, PermissionError):
-        pass
 
 
 def web_server_command(host: str, port: int) -> list[str]:

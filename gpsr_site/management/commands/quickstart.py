@@ -10,14 +10,14 @@ import urllib.error
 import urllib.request
 from typing import Any
 
-from annotations.starting import load_starter_world
 from django.conf import settings
 from django.core.management import call_command
 from django.core.management.base import BaseCommand, CommandError
-from parser_service.first_runs import request_first_runs
 
 from annotations.models import User
+from annotations.starting import load_starter_world
 from gpsr_site.processes import Supervisor, web_server_command, worker_command
+from parser_service.first_runs import request_first_runs
 
 HEALTH_PATIENCE_SECONDS = 60
 
