@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from datetime import timedelta
+from typing import Any
 
 import pytest
+from django.db import connections
 from django.utils import timezone
 
 from annotations.models import Entity, Ontology
@@ -12,7 +16,7 @@ from parser_service import lifecycle
 from parser_service.lifecycle import Fenced
 from parser_service.models import Checkpoint, TrainingRun
 from parser_service.parsers.interface import EpochReport
-from parser_service.waking import wake_for_forgotten
+from parser_service.waking import send_wake_up, wake_for_forgotten
 from tests.parser_service.made_up import make_split
 
 REPORT = EpochReport(1, 0.5, 0.4, 0.75, 1.0)
@@ -107,6 +111,17 @@ def test_train_sources_without_examples_are_refused(split):
         ask(split, train_sources="gen+para")
 
 
+def test_a_worker_is_woken_when_the_request_is_stored_and_not_before(
+    split, django_capture_on_commit_callbacks
+):
+    with django_capture_on_commit_callbacks() as waiting:
+        ask(split)
+    assert [callback.func for callback in waiting] == [send_wake_up]
+    with django_capture_on_commit_callbacks() as waiting:
+        ask(split)
+    assert waiting == []
+
+
 # --- claiming -------------------------------------------------------------------------------------
 
 
@@ -127,6 +142,34 @@ def test_a_claim_raises_the_attempt_and_begins_a_lease(split):
 def test_a_worker_claims_from_its_own_queue_only(split):
     ask(split)
     assert lifecycle.claim("gpu-1@here", "gpu") is None
+
+
+@pytest.mark.django_db(transaction=True)
+def test_of_many_who_claim_one_run_one_wins(split):
+    ask(split)
+    claims = at_once(lambda number: lifecycle.claim(f"cpu-{number}@here", "cpu"))
+    assert len([run for run in claims if run]) == 1
+    assert TrainingRun.objects.get().attempt == 1
+
+
+@pytest.mark.django_db(transaction=True)
+def test_of_many_who_ask_for_the_same_all_get_one_run(split):
+    asked = at_once(lambda _: lifecycle.request(split.world, split, "knn", send=False))
+    assert len({run.pk for run, _ in asked}) == 1
+    assert sum(is_new for _, is_new in asked) == 1
+
+
+def at_once(work: Callable[[int], Any], number: int = 6) -> list[Any]:
+    """What ``work`` gives in threads of their own, each with its own connection."""
+
+    def connected(name: int) -> Any:
+        try:
+            return work(name)
+        finally:
+            connections.close_all()
+
+    with ThreadPoolExecutor(number) as pool:
+        return list(pool.map(connected, range(number)))
 
 
 # --- fencing --------------------------------------------------------------------------------------

@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
@@ -48,6 +49,8 @@ def test_a_second_run_waits_for_the_first(world, split, worker):
     first.refresh_from_db()
     assert first.status == "succeeded"
     assert first.finished_at < second.started_at
+    if Path("/proc").is_dir():  # where the system tells what a process has loaded
+        assert "libtorch" not in Path(f"/proc/{worker.pid}/maps").read_text()
 
 
 def test_cancelling_a_running_run_takes_effect_within_five_seconds(world, split, worker):
