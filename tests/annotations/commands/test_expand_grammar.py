@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 
 from annotations.importing import import_generator
-from tests.annotations.commands.test_import_generator import run
+from tests.annotations.commands.running import run
 
 
 def test_2019_expands_to_the_commands_of_the_published_reader(db, shared_data):

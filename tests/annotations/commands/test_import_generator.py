@@ -2,26 +2,14 @@
 
 from __future__ import annotations
 
-import io
-import json
 import time
 
 import pytest
-from django.core.management import CommandError, call_command
 
 from annotations.models import World
 from tests.annotations.commands.bad_inputs import FAULTS
+from tests.annotations.commands.running import run
 from tests.annotations.rows_of import counts, rows_of
-
-
-def run(*arguments):
-    """The object printed and the error, if any."""
-    out, failure = io.StringIO(), None
-    try:
-        call_command(*map(str, arguments), "--json", stdout=out)
-    except CommandError as error:
-        failure = error
-    return json.loads(out.getvalue() or "null"), failure
 
 
 def test_the_report_is_one_object_with_the_documented_keys(db, tiny_folder):

@@ -1,0 +1,63 @@
+"""The commands as processes: streams, exit status, no traceback, processor time."""
+
+from __future__ import annotations
+
+import json
+import resource
+import sqlite3
+
+import pytest
+
+from tests.annotations.commands.bad_inputs import FAULTS
+from tests.annotations.commands.running import run_process
+
+
+@pytest.fixture(scope="module")
+def var_dir(tmp_path_factory):
+    """A fresh installation's folder, its database migrated."""
+    folder = tmp_path_factory.mktemp("var")
+    migrated = run_process(folder, "migrate", "--verbosity", "0")
+    assert migrated.returncode == 0, migrated.stderr
+    return folder
+
+
+def processor_seconds():
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
+def test_2018_imports_and_generates_in_five_seconds_of_processor_time(var_dir, shared_data):
+    before = processor_seconds()
+    folder = shared_data / "generator-2018"
+    imported = run_process(var_dir, "import_generator", folder, "--world", "gpsr2018", "--json")
+    generated = run_process(var_dir, "generate_pairs", "gpsr2018", "--json")
+    assert processor_seconds() - before < 5
+    assert (imported.returncode, imported.stderr) == (0, "")
+    assert json.loads(imported.stdout)["templates"] == {"1": 28, "2": 53, "3": 44}
+    assert json.loads(generated.stdout)["commands"]["all"] == 1211
+
+
+@pytest.mark.parametrize(
+    "name", ["a cycle", "a form 5,000 deep", "an entity bomb", "a UTF-16 file"]
+)
+def test_a_refused_import_prints_its_object_a_sentence_and_status_1(var_dir, tiny, tmp_path, name):
+    fault = FAULTS[name]
+    fault.put_into(tiny)
+    for file, data in tiny.items():
+        (tmp_path / file).write_bytes(data)
+    answer = run_process(var_dir, "import_generator", tmp_path, "--world", "bad", "--json")
+    assert answer.returncode == 1
+    assert any(each["file"] == fault.name for each in json.loads(answer.stdout)["problems"])
+    assert "Traceback" not in answer.stderr
+    assert f"{fault.name}:{fault.line}" in answer.stderr
+    with sqlite3.connect(var_dir / "db.sqlite3") as database:
+        query = "SELECT count(*) FROM annotations_world WHERE name = 'bad'"
+        assert database.execute(query).fetchone() == (0,)
+
+
+def test_a_database_without_tables_is_a_sentence(tmp_path):
+    answer = run_process(tmp_path, "generate_pairs", "home", "--json")
+    assert answer.returncode == 1
+    assert "migrate" in answer.stderr
+    assert "Traceback" not in answer.stderr
+    assert answer.stdout == ""
