@@ -1,0 +1,81 @@
+"""A browser, a server with a furnished world, and somebody logged in."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from django.test import Client
+from playwright.sync_api import Browser, BrowserContext, Page
+
+from annotations.models import User
+from parser_service import lifecycle
+from tests.browser.screenshots import CHROMIUM
+from tests.browser.variants import Variant
+from tests.furnishing import House, furnish
+from tests.parser_service.running import RunningWorker
+
+# Playwright keeps an event loop in this thread, in which Django would refuse to ask its database.
+os.environ["DJANGO_ALLOW_ASYNC_UNSAFE"] = "true"
+
+BUNDLE = Path(__file__).resolve().parents[2] / "static" / "dist" / "main.js"
+
+
+@pytest.fixture(scope="session")
+def browser_type_launch_args() -> dict[str, object]:
+    """The machine's Chromium; the tests are skipped without it or without the built front end."""
+    if not Path(CHROMIUM).exists():
+        pytest.skip(
+            f"needs Chromium, and there is none at {CHROMIUM} (CHROMIUM names another place)"
+        )
+    if not BUNDLE.exists():
+        pytest.skip("needs the built front end: make install")
+    return {"executable_path": CHROMIUM, "args": ["--no-sandbox"]}
+
+
+@pytest.fixture
+def house(transactional_db, world) -> House:
+    return furnish(world)
+
+
+@pytest.fixture
+def logged_in(browser: Browser, live_server) -> Iterator[Callable[..., BrowserContext]]:
+    """Makes browser windows in which somebody is logged in already."""
+    made: list[BrowserContext] = []
+
+    def log_in(user: User, variant: Variant | None = None, **options: object) -> BrowserContext:
+        client = Client()
+        client.force_login(user)
+        context = browser.new_context(**(variant.options if variant else {}), **options)
+        cookie = {"name": "sessionid", "value": client.cookies["sessionid"].value}
+        context.add_cookies([{**cookie, "url": live_server.url}])
+        context.set_default_timeout(15_000)
+        made.append(context)
+        return context
+
+    yield log_in
+    for context in made:
+        context.close()
+
+
+@pytest.fixture
+def page_of(logged_in, house) -> Callable[..., Page]:
+    """A page in such a window."""
+    return lambda user, **options: logged_in(user, **options).new_page()
+
+
+@pytest.fixture
+def worker(house, tmp_path) -> Iterator[RunningWorker]:
+    """A real worker on the filesystem broker."""
+    started = RunningWorker("filesystem://", tmp_path / "worker.log")
+    yield started
+    started.remove()
+    print(started.log.read_text(encoding="utf-8"))
+
+
+@pytest.fixture
+def waiting_run(house):
+    """A run that nobody has begun."""
+    return lifecycle.request(house.world, house.split, "seq2seq", send=False)[0]

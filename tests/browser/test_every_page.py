@@ -1,0 +1,95 @@
+"""Every page in both widths and themes: no error, nothing unnamed, nothing beside the screen."""
+
+from __future__ import annotations
+
+import pytest
+from playwright.sync_api import Page
+
+from tests.browser.screenshots import PAGES
+from tests.browser.variants import VARIANTS
+from tests.furnishing import House
+
+pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
+
+SETTLE = 150  # milliseconds for modules, charts and the first fragments
+
+# Visible elements that one can use, and that have no name to call them by.
+NAMELESS = """() => {
+  const named = (element) => [
+    element.getAttribute("aria-label"),
+    element.title,
+    element.innerText,
+    ...[...(element.labels ?? [])].map((label) => label.textContent),
+    document.getElementById(element.getAttribute("aria-labelledby") ?? "")?.textContent,
+    element.querySelector?.("svg[aria-label], img[alt]") ? "drawn" : "",
+  ].some((text) => text?.trim());
+  return [...document.querySelectorAll("a[href], button, input, select, textarea, summary")]
+    .filter((element) => element.type !== "hidden" && element.checkVisibility({visibilityProperty: true}) && !named(element))
+    .map((element) => element.outerHTML.slice(0, 160));
+}"""
+TWICE = """() => {
+  const ids = [...document.querySelectorAll("[id]")].map((element) => element.id);
+  return ids.filter((id, place) => ids.indexOf(id) !== place);
+}"""
+BESIDE = """() => {
+  const width = document.documentElement.clientWidth;
+  if (document.documentElement.scrollWidth <= width) return [];
+  return [...document.querySelectorAll("main *")]
+    .filter((element) => element.getBoundingClientRect().right > width + 1)
+    .map((element) => element.outerHTML.slice(0, 120)).slice(0, 3);
+}"""
+
+
+def addresses(house: House) -> list[str]:
+    """Every page there is about the furnished world."""
+    run = f"runs/{house.run.pk}"
+    about = [
+        f"templates/{house.template.pk}/",
+        f"forms/{house.form.pk}/",
+        f"splits/{house.split.pk}/",
+        f"{run}/",
+        f"{run}/predictions/",
+        f"{run}/predictions/{house.example.pk}/",
+    ]
+    return ["/", *(f"/w/home/{path}" for path in [*PAGES.values(), *about])]
+
+
+def listen(page: Page) -> list[str]:
+    """What the page complains of, scripts refused by its policy included."""
+    complaints: list[str] = []
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on(
+        "console",
+        lambda message: message.type in ("error", "warning") and complaints.append(message.text),
+    )
+    page.on(
+        "response",
+        lambda answer: answer.status >= 400 and complaints.append(f"{answer.status} {answer.url}"),
+    )
+    return complaints
+
+
+@pytest.mark.parametrize("variant", VARIANTS, ids=str)
+def test_every_page_is_whole(variant, house, waiting_run, admin, page_of, live_server):
+    page = page_of(admin, variant=variant)
+    complaints = listen(page)
+    for path in [*addresses(house), f"/w/home/runs/{waiting_run.pk}/"]:
+        page.goto(f"{live_server.url}{path}")
+        page.wait_for_load_state("load")
+        page.wait_for_timeout(SETTLE)
+        found = {
+            "complaints": list(complaints),
+            "without a name": page.evaluate(NAMELESS),
+            "ids given twice": page.evaluate(TWICE),
+            "beside the screen": page.evaluate(BESIDE),
+        }
+        assert not any(found.values()), f"{path}: {found}"
+        assert page.locator("h1").count() == 1, path
+        assert page.locator("html").get_attribute("lang") == "en"
+
+
+def test_the_log_in_page_is_whole(page, live_server, db):
+    complaints = listen(page)
+    page.goto(f"{live_server.url}/login/")
+    assert page.evaluate(NAMELESS) == []
+    assert complaints == []

@@ -1,0 +1,78 @@
+"""Pages under the hand: keys, filters while one types, the checking editor, life without scripts."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from playwright.sync_api import expect
+
+pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
+
+
+def test_rows_are_walked_and_opened_by_keys(page_of, live_server, annotator):
+    page = page_of(annotator)
+    page.goto(f"{live_server.url}/w/home/commands/")
+    page.keyboard.press("j")
+    page.keyboard.press("j")
+    page.keyboard.press("k")
+    page.keyboard.press("j")
+    expect(page.locator("tbody tr").nth(1)).to_be_focused()
+    page.keyboard.press("Enter")
+    expect(page.locator("h1")).to_have_text("Logical form")
+
+
+def test_a_slash_leads_to_the_search_of_every_page(page_of, live_server, annotator):
+    page = page_of(annotator)
+    page.goto(f"{live_server.url}/w/home/results/")
+    page.keyboard.press("/")
+    page.keyboard.type("locate")
+    page.keyboard.press("Enter")
+    expect(page).to_have_url(re.compile("/commands/.q=locate"))
+    expect(page.locator("#list tbody tr")).to_have_count(1)
+
+
+def test_a_list_follows_what_one_types_and_so_does_the_address(page_of, live_server, annotator):
+    page = page_of(annotator)
+    page.goto(f"{live_server.url}/w/home/commands/")
+    page.fill("main input[type=search]", "locate")
+    expect(page.locator("#list tbody tr")).to_have_count(1)
+    expect(page).to_have_url(re.compile("q=locate"))
+    page.locator(".filter-chip").click()
+    expect(page.locator("#list tbody tr")).to_have_count(3)
+
+
+def test_the_editor_says_what_the_checker_finds_and_shows_what_comes_out(
+    page_of, live_server, annotator
+):
+    page = page_of(annotator)
+    page.goto(f"{live_server.url}/w/home/templates/new/")
+    page.get_by_role("textbox", name="Pattern").fill("$vbfind the {kobject} now")
+    form = page.get_by_role("textbox", name="Logical form")
+    form.fill("(find {room})")
+    expect(page.locator(".editor-report").nth(1)).to_contain_text("the pattern never produces")
+    form.fill("(find {kobject})")
+    expect(page.locator("#preview")).to_contain_text("2 commands")
+    page.keyboard.press("Control+Enter")
+    expect(page.locator(".message.success")).to_contain_text("Saved")
+
+
+def test_light_and_dark_are_a_choice_that_stays(page_of, live_server, annotator):
+    page = page_of(annotator)
+    page.goto(f"{live_server.url}/w/home/")
+    page.click("[data-theme-toggle]")
+    page.reload()
+    expect(page.locator("html")).to_have_attribute("data-theme", "dark")
+
+
+def test_without_scripts_one_logs_in_and_filters(browser, live_server, house, annotator):
+    context = browser.new_context(java_script_enabled=False)
+    page = context.new_page()
+    page.goto(f"{live_server.url}/w/home/commands/")
+    page.fill("#id_username", annotator.username)
+    page.fill("#id_password", "correct horse")
+    page.click("button[type=submit]")
+    page.fill("main input[type=search]", "locate")
+    page.click("main button:has-text('Filter')")
+    expect(page.locator("#list tbody tr")).to_have_count(1)
+    context.close()
