@@ -96,9 +96,12 @@ class Expander(Generic[Item]):
         if len(parts) == 1:
             yield from self._derived(parts[0])
             return
-        if self._size_of_parts(parts) == 0:
+        size = self._size_of_parts(parts)
+        if size == 0:
             return
-        if all(self._is_kept(part) for part in parts):
+        # Many combinations may disagree about a tracked nonterminal: halves drop those early.
+        is_small = size <= KEPT_EXPANSIONS or not self._tracked
+        if is_small and all(self._is_kept(part) for part in parts):
             for combination in product(*(self._derived(part) for part in parts)):
                 joined = _joined(combination)
                 if joined is not None:

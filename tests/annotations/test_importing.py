@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import time
+
 import pytest
 
 from annotations.importing import import_generator
@@ -229,3 +231,15 @@ def test_templates_of_a_grammar_too_large_to_enumerate_import_too(db):
     }
     report = import_generator("huge", files)
     assert not report.is_refused and report.predicates == 1
+
+
+def test_a_template_whose_expansions_nearly_all_disagree_imports_at_once(db):
+    digits = " | ".join("abcdefghij")
+    line = " ".join(["$d"] * 8)
+    files = {
+        "huge.txt": f"$Main = say {line}\n$d = {digits}\n".encode(),
+        "huge_semantics.txt": f"say {line} = (say $d)\n".encode(),
+    }
+    started = time.monotonic()
+    assert not import_generator("huge", files).is_refused
+    assert time.monotonic() - started < 3
