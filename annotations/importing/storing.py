@@ -18,8 +18,8 @@ from annotations.rows import Changes, synchronise
 def store(world: models.World, generator: Generator) -> Changes:
     """Makes the world's ontology, grammar, templates and predicates those of ``generator``.
 
-    Templates that a person wrote or changed stay, behind those of the files. To be called inside a
-    transaction.
+    A template that a person has changed keeps what it says; one that a person wrote stays, behind
+    those of the files. To be called inside a transaction.
     """
     grammar, _ = models.Grammar.objects.get_or_create(world=world)
     ontology, _ = models.Ontology.objects.get_or_create(world=world)
@@ -85,6 +85,7 @@ def _store_templates(
             task_category=of_file.get(line.position.source, ""),
             pattern=line.pattern_text,
             form=line.form_text,
+            imported_text=f"{line.pattern_text} = {line.form_text}",
             position=position,
         )
         for position, line in enumerate(lines)
@@ -92,7 +93,7 @@ def _store_templates(
     return synchronise(
         grammar.templates.all(),
         wanted,
-        lambda row: (row.source, row.pattern, row.form),
+        lambda row: (row.source, row.imported_text),
         ["line", "task_category", "position"],
         is_kept=lambda row: row.author_id is not None or row.status != Status.READY,
     )

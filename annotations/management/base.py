@@ -13,6 +13,9 @@ from annotations.language.errors import LanguageError, Problem
 from annotations.models import World
 
 
+PROBLEM = "  {file}:{line}:{column}: {severity}: {message} ({hint})"
+
+
 class Refused(Exception):
     """Work that was refused, with the report that is printed all the same."""
 
@@ -52,8 +55,10 @@ class ReportingCommand(BaseCommand):
         raise NotImplementedError
 
     def describe(self, report: Mapping[str, Any]) -> str:
-        """The report for a person, one figure a line."""
-        return "\n".join(f"{key}: {_in_words(value)}" for key, value in report.items())
+        """The report for a person: one figure a line, then the problems, one a line."""
+        figures = [f"{key}: {_in_words(value)}" for key, value in report.items()]
+        problems = report.get("problems", ())
+        return "\n".join([*figures, *(PROBLEM.format(**problem) for problem in problems)])
 
     def handle(self, *args: Any, **options: Any) -> None:
         try:

@@ -123,6 +123,15 @@ def test_drafts_and_templates_of_people_stay_behind_those_of_the_files(tiny_worl
     assert "drive to the {room}" not in ready
 
 
+def test_a_line_that_a_person_has_corrected_is_not_brought_back(tiny_world, tiny, annotator):
+    row = tiny_world.grammar.templates.get(pattern="go to the {room}")
+    row.form, row.author, row.version = "(visit {room})", annotator, 2
+    row.save()
+    before = rows_of(tiny_world)["SemanticTemplate"]
+    import_generator(tiny_world.name, tiny)
+    assert rows_of(tiny_world)["SemanticTemplate"] == before
+
+
 def test_signatures_are_inferred_from_what_the_forms_become(tiny_world):
     is_a = predicates_of(tiny_world)["is_a"]
     assert is_a.signatures[0].arguments == (ArgumentKind.VARIABLE, ArgumentKind.OBJECT)

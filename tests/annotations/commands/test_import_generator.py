@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 
 import pytest
+from django.core.management import call_command
 
 from annotations.models import World
 from tests.annotations.commands.bad_inputs import FAULTS
@@ -67,3 +68,11 @@ def test_a_link_out_of_the_folder_is_refused(db, tiny_folder, tmp_path_factory):
     (tiny_folder / "linked.txt").symlink_to(outside)
     report, _ = run("import_generator", tiny_folder, "--world", "new")
     assert "leads out of its folder" in report["problems"][0]["message"]
+
+
+def test_without_json_a_person_reads_figures_and_problems(db, tiny_folder, capsys):
+    (tiny_folder / "notes.pdf").write_bytes(b"%PDF")
+    call_command("import_generator", tiny_folder, "--world", "new")
+    lines = capsys.readouterr().out.splitlines()
+    assert "templates: 1 2" in lines
+    assert lines[-1].startswith("  notes.pdf:1:1: warning: ")
