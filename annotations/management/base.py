@@ -12,7 +12,6 @@ from django.db import DatabaseError
 from annotations.language.errors import LanguageError, Problem
 from annotations.models import World
 
-
 PROBLEM = "  {file}:{line}:{column}: {severity}: {message} ({hint})"
 
 
