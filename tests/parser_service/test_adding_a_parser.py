@@ -1,0 +1,65 @@
+"""A parser of one's own is a module, a registry line and a test: this is all of it (docs/parsers.md)."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+
+import pytest
+
+from parser_service.parsers import registry
+from parser_service.parsers.interface import Candidate, Parser
+from parser_service.parsers.storage import open_sealed, read_json, seal, write_json
+from tests.parser_service.made_up import make_split
+from tests.parser_service.test_training import trained
+
+
+@dataclass(frozen=True)
+class MostFrequentConfig:
+    pass
+
+
+class MostFrequent(Parser):
+    """Answers the most frequent form of training, whatever one says."""
+
+    name, version, protocols, Config = "most-frequent", 1, ("strict",), MostFrequentConfig
+
+    def fit(self, train, validation=(), observe=None):
+        self.form = Counter(pair.form for pair in train).most_common(1)[0][0]
+
+    def predict(self, utterances, beam_width=1, check=lambda: None):
+        return [[Candidate(self.form, 1.0)] for _ in utterances]
+
+    def save(self, folder):
+        folder.mkdir(parents=True, exist_ok=True)
+        write_json(folder / "form.json", self.form)
+        seal(folder, self, ["form.json"])
+
+    @classmethod
+    def load(cls, folder, knowledge=None):
+        saved = open_sealed(folder, cls, ["form.json"])
+        parser = cls(saved.config, saved.seed, knowledge)
+        parser.form = read_json(folder / "form.json")
+        return parser
+
+    def parameters(self):
+        return 0
+
+
+@pytest.fixture
+def registered(monkeypatch):
+    entry = registry.Entry(
+        dotted=f"{__name__}.MostFrequent",
+        config=f"{__name__}.MostFrequentConfig",
+        title="Most frequent",
+        description="Answers the most frequent form of training.",
+        version=1,
+        protocols=("strict",),
+    )
+    monkeypatch.setitem(registry.PARSERS, "most-frequent", entry)
+
+
+def test_a_parser_that_is_registered_trains_and_is_scored(registered, world, transactional_db):
+    run = trained(make_split(world), "most-frequent")
+    assert (run.status, run.failure) == ("succeeded", "")
+    assert {each.test_source for each in run.evaluations.all()} >= {"gen"}
