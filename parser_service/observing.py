@@ -37,8 +37,11 @@ class RunObserver(Observer):
     def __init__(self, lease: Lease, tell: Callable[[str], None] = tell_nobody):
         self.run = lease.run
         self.tell = tell
-        self.check = lease.check  # type: ignore[method-assign]
+        self._lease = lease
         self._told = 0.0
+
+    def check(self) -> None:
+        self._lease.check()
 
     def progress(self, fraction: float, message: str = "") -> None:
         self._progress(fraction * TRAINING_SHARE, message)

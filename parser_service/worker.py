@@ -86,7 +86,7 @@ class Service(bootsteps.StartStopStep):
             after_in_parent=self._quiet.release,
             after_in_child=self._quiet.release,
         )
-        for number in (signal.SIGTERM, signal.SIGINT, signal.SIGQUIT):
+        for number in (signal.SIGTERM, signal.SIGINT, signal.SIGQUIT, signal.SIGHUP):
             signal.signal(number, lambda *_: self._stopping.set())
         threading.Thread(target=self._keep_ticking, name="timer", daemon=True).start()
 

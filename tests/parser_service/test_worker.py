@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -76,6 +77,13 @@ def test_stopping_the_service_hands_the_run_back_and_the_next_start_goes_on(
     start_worker()
     wait_for_epochs(run, epoch + 1, seconds=15)
     assert run.events.filter(message=f"Training goes on after epoch {epoch}.").exists()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGHUP, signal.SIGQUIT])
+def test_every_way_to_stop_a_worker_is_a_stop_in_good_order(worker, number):
+    worker.process.send_signal(number)
+    assert worker.process.wait(timeout=5) == 0
+    assert not Worker.objects.exists()
 
 
 def test_a_run_whose_message_was_lost_is_picked_up_by_the_timer(world, split, worker):
