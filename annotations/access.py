@@ -54,6 +54,21 @@ def world_view(
     return decorate
 
 
+def site_view(methods: tuple[str, ...] = READ) -> Callable[[View], View]:
+    """A view outside of any world, for the administrators of the site."""
+
+    def decorate(view: View) -> View:
+        @wraps(view)
+        def guarded(request: HttpRequest, **kwargs: Any) -> HttpResponse:
+            if not request.user.is_superuser:
+                raise PermissionDenied("Only administrators of this installation may do this.")
+            return view(request, **kwargs)
+
+        return require_http_methods(methods)(guarded)
+
+    return decorate
+
+
 def world_of(request: HttpRequest, name: str) -> World:
     """The world called ``name``. Raises Http404 for whoever is no member of it."""
     return get_object_or_404(World.objects.visible_to(request.user), name=name)

@@ -18,14 +18,24 @@ def posted(request: HttpRequest) -> QueryDict | None:
     return request.POST if request.method == "POST" else None
 
 
+PATTERN_EDITOR = {
+    "rows": 2,
+    "data-editor": "pattern",
+    "placeholder": "$vbfind the {kobject} in the {room}",
+}
+FORM_EDITOR = {
+    "rows": 4,
+    "data-editor": "form",
+    "placeholder": "(find (λ$1:e (is_a $1 {kobject}) (at $1 {room})))",
+}
+
+
 class TemplateForm(forms.Form):
     """A pattern and its form. What the checker calls an error keeps a template from being ready."""
 
     task_category = forms.ModelChoiceField(queryset=None, empty_label=None)
-    pattern = forms.CharField(widget=forms.Textarea(attrs={"rows": 2, "data-editor": "pattern"}))
-    form = forms.CharField(
-        label="Logical form", widget=forms.Textarea(attrs={"rows": 4, "data-editor": "form"})
-    )
+    pattern = forms.CharField(widget=forms.Textarea(attrs=PATTERN_EDITOR))
+    form = forms.CharField(label="Logical form", widget=forms.Textarea(attrs=FORM_EDITOR))
     status = forms.ChoiceField(
         choices=template_status_choices,
         initial=Status.READY,
@@ -54,8 +64,23 @@ class TemplateForm(forms.Form):
         return cleaned
 
 
+class WorldForm(forms.ModelForm):
+    """The name of a world stands in its addresses and does not change."""
+
+    class Meta:
+        model = World
+        fields = ["name", "description"]
+        widgets = {"description": forms.Textarea(attrs={"rows": 2})}
+        help_texts = {
+            "name": "Lower-case letters, digits, _ and -. It stands in addresses and commands.",
+            "description": "A sentence for those who see it in the list.",
+        }
+
+
 class SplitForm(forms.Form):
     """How to part the pairs. Shares are in percent and sum to 100."""
+
+    SHARES = ("train", "validation", "test")
 
     name = forms.SlugField(
         max_length=80, help_text="Letters, digits, _ and -. It stands in tables and addresses."
@@ -65,17 +90,25 @@ class SplitForm(forms.Form):
         choices=lambda: [(name, label.lower()) for name, label in criterion_choices()],
         help_text="A logical form in one part only is the harder test.",
     )
-    train = forms.FloatField(label="Train, %", initial=70, min_value=0, max_value=100)
-    validation = forms.FloatField(label="Validation, %", initial=10, min_value=0, max_value=100)
-    test = forms.FloatField(label="Test, %", initial=20, min_value=0, max_value=100)
     seed = forms.IntegerField(
         initial=0, min_value=0, max_value=2**32 - 1, help_text="The same seed, the same split."
     )
+    train = forms.FloatField(label="Train, %", initial=70, min_value=0, max_value=100)
+    validation = forms.FloatField(label="Validation, %", initial=10, min_value=0, max_value=100)
+    test = forms.FloatField(label="Test, %", initial=20, min_value=0, max_value=100)
+
+    @property
+    def what(self) -> list[forms.BoundField]:
+        return [field for field in self if field.name not in self.SHARES]
+
+    @property
+    def shares(self) -> list[forms.BoundField]:
+        return [self[name] for name in self.SHARES]
 
     @property
     def choice(self) -> dict[str, Any]:
         """What the verb wants, once the form is valid."""
-        shares = [self.cleaned_data[part] / 100 for part in ("train", "validation", "test")]
+        shares = [self.cleaned_data[part] / 100 for part in self.SHARES]
         chosen = {name: self.cleaned_data[name] for name in ("criterion", "seed")}
         return {**chosen, "proportions": shares}
 

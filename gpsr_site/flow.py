@@ -43,7 +43,7 @@ def stages(counts: Counts) -> list[Stage]:
         Stage("Commands", "commands", counts.commands, f"{counts.forms} forms", "collect"),
         Stage("Paraphrases", "paraphrases", counts.paraphrases, "utterances", "freeze"),
         Stage("Splits", "splits", counts.splits, "frozen", "train"),
-        Stage("Runs", "runs", counts.runs, "runs", "evaluate", _active(counts)),
+        Stage("Runs", "runs", counts.runs, "started", "evaluate", _active(counts)),
         Stage("Results", "results", counts.evaluated, "evaluated"),
     ]
 

@@ -144,6 +144,12 @@ class Table:
         return any(cell and cell.active for row in self.rows for cell in row.cells)
 
     @property
+    def is_published(self) -> bool:
+        """Whether the paper has a figure for one of the cells."""
+        cells = (cell for row in self.rows for cell in row.cells)
+        return any(cell and cell.published is not None for cell in cells)
+
+    @property
     def filled(self) -> list[tuple[Row, list[tuple[Column, Cell | None]]]]:
         """Each row with its cells beside their columns."""
         return [(row, list(zip(self.columns, row.cells, strict=True))) for row in self.rows]
@@ -179,7 +185,7 @@ def _columns(runs: list[TrainingRun], splits: list[Split]) -> Iterator[Column]:
 def _labels(splits: list[Split]) -> dict[int, str]:
     is_telling = len({split.criterion for split in splits}) == len(splits)
     return {
-        split.pk: f"by {split.get_criterion_display().lower()}" if is_telling else split.name
+        split.pk: split.get_criterion_display().lower() if is_telling else split.name
         for split in splits
     }
 

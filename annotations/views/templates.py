@@ -21,7 +21,7 @@ from annotations.models.problems import Subject
 SORTS = {
     "position": Sort("Task category", "position"),
     "pattern": Sort("Pattern", "pattern"),
-    "commands": Sort("Commands", "n_commands", is_number=True),
+    "commands": Sort("Commands kept", "n_commands", is_number=True),
     "status": Sort("Status", "status"),
 }
 

@@ -16,7 +16,7 @@ from parser_service import lifecycle
 from parser_service.curves import CURVES, loss_curves
 from parser_service.filters import RunFilters
 from parser_service.forms import RunForm
-from parser_service.models import TrainingRun
+from parser_service.models import Evaluation, TrainingRun
 from parser_service.parsers.registry import PARSERS
 
 SORTS = {
@@ -25,6 +25,7 @@ SORTS = {
     "status": Sort("Status", "status"),
     "seconds": Sort("Trained", "seconds_trained", is_number=True),
 }
+TEST_SOURCES = ("gen", "para", "mixed")
 TOO_MANY = (
     f"You have started {STARTED_RUNS.limit} runs within the hour. "
     "Wait for some of them before you start more."
@@ -96,7 +97,8 @@ def run(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 @world_view(Duty.VIEW)
 def run_state(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     """What changes on the page of a run while it works."""
-    return render(request, "parser_service/_run_state.html", state_of(world, pk))
+    context = {**state_of(world, pk), "is_update": True}
+    return render(request, "parser_service/_run_state.html", context)
 
 
 def state_of(world: World, pk: int) -> dict[str, object]:
@@ -104,11 +106,16 @@ def state_of(world: World, pk: int) -> dict[str, object]:
     return {
         "run": run,
         "entry": PARSERS.get(run.parser),
-        "changes": run.changed_hyperparameters(),
+        "evaluations": sorted(run.evaluations.all(), key=order_of),
         "epochs": list(run.epochs.all()),
         "events": list(run.events.order_by("-id")[:200])[::-1],
         "checkpoints": run.checkpoints.all(),
     }
+
+
+def order_of(score: Evaluation) -> tuple[str, int]:
+    """Parts together, the sources in the order in which they are named everywhere."""
+    return score.part, TEST_SOURCES.index(score.test_source)
 
 
 @never_cache

@@ -60,6 +60,7 @@ def log_in(page: Page, url: str, user: str, password: str) -> None:
 def addresses(page: Page, url: str, world: str) -> Iterator[tuple[str, str]]:
     """Name and address of every page to look at; details that have nothing to show are left out."""
     yield "worlds", f"{url}/"
+    yield "world-new", f"{url}/worlds/new/"
     base = f"{url}/w/{world}/"
     for name, path in PAGES.items():
         yield name, base + path

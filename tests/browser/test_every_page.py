@@ -24,7 +24,8 @@ NAMELESS = """() => {
     element.querySelector?.("svg[aria-label], img[alt]") ? "drawn" : "",
   ].some((text) => text?.trim());
   return [...document.querySelectorAll("a[href], button, input, select, textarea, summary")]
-    .filter((element) => element.type !== "hidden" && element.checkVisibility({visibilityProperty: true}) && !named(element))
+    .filter((element) => element.type !== "hidden" && !named(element))
+    .filter((element) => element.checkVisibility({visibilityProperty: true}))
     .map((element) => element.outerHTML.slice(0, 160));
 }"""
 TWICE = """() => {

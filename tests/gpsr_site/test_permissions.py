@@ -46,6 +46,8 @@ POLICY = [
     Rule("home", LOG_IN, YES, YES, YES, YES),
     Rule("banner", LOG_IN, YES, YES, YES, YES),
     Rule("admin:index", LOG_IN, LOG_IN, LOG_IN, LOG_IN, LOG_IN),
+    Rule("world_new", LOG_IN, NO, NO, NO, NO),
+    Rule("world_new", LOG_IN, NO, NO, NO, NO, method="post"),
     # What members look at
     *(
         Rule(name, *MEMBERS)

@@ -118,8 +118,8 @@ def test_columns_are_named_by_criterion_where_that_tells_them_apart(house):
     Split.objects.filter(pk=other.pk).update(criterion="logical_form")
     both[1].refresh_from_db()
     assert {column.label for column in tables(house, splits=both)[0].columns} == {
-        "by command",
-        "by logical form",
+        "command",
+        "logical form",
     }
 
 
