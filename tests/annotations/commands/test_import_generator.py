@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 
 import pytest
 from django.core.management import call_command
@@ -42,9 +41,7 @@ def test_a_fault_is_refused_at_its_place_and_nothing_is_stored(tiny_world, tiny,
     fault.put_into(tiny)
     for file, data in tiny.items():
         (tmp_path / file).write_bytes(data)
-    started = time.monotonic()
     report, failure = run("import_generator", tmp_path, "--world", tiny_world.name)
-    assert time.monotonic() - started < 2
     errors = [each for each in report["problems"] if each["severity"] == "error"]
     assert any(
         (each["file"], each["line"]) == (fault.name, fault.line) and fault.cause in each["message"]
