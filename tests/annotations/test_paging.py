@@ -57,7 +57,9 @@ def test_the_first_page_has_none_before_and_the_last_none_after(commands):
 
 
 def test_what_a_query_counts_can_be_an_order(world, commands):
-    other = LogicalForm.objects.create(world=world, text="g", head_predicate="go", depth=1, length=3)
+    other = LogicalForm.objects.create(
+        world=world, text="g", head_predicate="go", depth=1, length=3
+    )
     rows = LogicalForm.objects.filter(world=world).annotate(n=Count("commands"))
     first = page_of(rows, "-n", size=1)
     assert page_of(rows, "-n", after=first.after, size=1).rows == [other]

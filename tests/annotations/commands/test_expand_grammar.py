@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-
 from annotations.importing import import_generator
 from tests.annotations.commands.running import run
 
