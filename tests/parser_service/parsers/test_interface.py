@@ -1,6 +1,6 @@
 import pytest
-from annotations.language.ontology import Ontology
 
+from annotations.language.ontology import Ontology
 from parser_service.parsers.interface import Knowledge
 
 EVERYTHING = Knowledge(predicates={}, ontology=Ontology(()), grammar=())
