@@ -12,7 +12,7 @@ from django.urls import reverse
 from django.utils.http import urlencode
 
 from annotations.models import Split, World
-from annotations.models.splits import Source
+from annotations.models.splits import Criterion, Source
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.models.runs import Protocol
 from parser_service.parsers.registry import PARSERS
@@ -26,6 +26,12 @@ SETTINGS = (
     ("gen+para", "para"),
     ("gen+para", "mixed"),
 )
+# What distinguishes the splits of one corpus, in a word.
+SHORT_CRITERIA = {
+    Criterion.COMMAND: "command",
+    Criterion.SOURCE_COMMAND: "source",
+    Criterion.LOGICAL_FORM: "form",
+}
 # Test source → the value of ``Example.source``; ``mixed`` has both.
 SOURCE_NAMES = {"gen": Source.GENERATED, "para": Source.PARAPHRASED}
 WHAT_IT_KNOWS = {
@@ -144,6 +150,10 @@ class Table:
         return any(cell and cell.active for row in self.rows for cell in row.cells)
 
     @property
+    def is_scored(self) -> bool:
+        return any(cell and cell.score for row in self.rows for cell in row.cells)
+
+    @property
     def is_published(self) -> bool:
         """Whether the paper has a figure for one of the cells."""
         cells = (cell for row in self.rows for cell in row.cells)
@@ -185,7 +195,7 @@ def _columns(runs: list[TrainingRun], splits: list[Split]) -> Iterator[Column]:
 def _labels(splits: list[Split]) -> dict[int, str]:
     is_telling = len({split.criterion for split in splits}) == len(splits)
     return {
-        split.pk: split.get_criterion_display().lower() if is_telling else split.name
+        split.pk: SHORT_CRITERIA[split.criterion] if is_telling else split.name
         for split in splits
     }
 

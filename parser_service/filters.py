@@ -23,8 +23,8 @@ from parser_service.parsers.registry import PARSERS
 OUTCOMES = [
     ("correct", "correct"),
     ("wrong", "wrong"),
-    ("equivalent", "equivalent but not exact"),
-    ("malformed", "not well formed"),
+    ("equivalent", "equivalent only"),
+    ("malformed", "malformed"),
     ("none", "no answer"),
 ]
 

@@ -55,6 +55,7 @@ def results_of(request: HttpRequest, world: World) -> dict[str, object]:
     return {
         "tables": tables,
         "is_active": any(table.is_active for table in tables),
+        "is_scored": any(table.is_scored for table in tables),
         "is_published": any(table.is_published for table in tables),
         "parts": PARTS,
         "part": part,

@@ -53,7 +53,11 @@ document.addEventListener("htmx:beforeSwap", (event) => {
 document.addEventListener("htmx:sendError", () => showConnection(true));
 document.addEventListener("htmx:timeout", () => showConnection(true));
 document.addEventListener("htmx:responseError", (event) => {
-  if (event.detail.xhr.status >= 502) showConnection(true);
+  const { xhr, target } = event.detail;
+  if (xhr.status >= 502) showConnection(true);
+  if (!target?.hasAttribute("aria-busy")) return;
+  target.removeAttribute("aria-busy");
+  target.textContent = "The server could not give this part of the page. Reload the page to ask again.";
 });
 
 export { htmx };

@@ -119,7 +119,7 @@ def test_columns_are_named_by_criterion_where_that_tells_them_apart(house):
     both[1].refresh_from_db()
     assert {column.label for column in tables(house, splits=both)[0].columns} == {
         "command",
-        "logical form",
+        "form",
     }
 
 
@@ -134,7 +134,9 @@ def test_the_page_shows_the_part_that_was_scored(house, anna):
     page = anna.get("/w/home/results/")
     assert page.context["part"] == "validation"
     assert "25.0" in page.content.decode()
-    assert anna.get("/w/home/results/", {"part": "test"}).context["part"] == "test"
+    page = anna.get("/w/home/results/", {"part": "test"})
+    assert page.context["part"] == "test"
+    assert "No run has been scored on the test part" in page.content.decode()
     assert anna.get("/w/home/results/", {"part": "train"}).context["part"] == "validation"
 
 
