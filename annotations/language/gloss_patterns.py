@@ -51,9 +51,12 @@ def read_pattern(pattern: str) -> tuple[Alternative, ...]:
 
 
 def default_pattern(name: str, is_action: bool, signatures: tuple[Signature, ...]) -> str:
-    """A pattern made from the name and what the predicate takes."""
-    if name in KNOWN_PATTERNS:
-        return KNOWN_PATTERNS[name]
+    """The pattern of a predicate of the published corpus, else one made from the name."""
+    return KNOWN_PATTERNS.get(name) or pattern_of_name(name, is_action, signatures)
+
+
+def pattern_of_name(name: str, is_action: bool, signatures: tuple[Signature, ...]) -> str:
+    """A pattern made from the words of the name and what the predicate takes, and nothing else."""
     words = name.replace("_", " ").replace("-", " ").strip() or name
     arities = sorted({len(each.arguments) for each in signatures}) or [1]
     if is_action:
