@@ -3,7 +3,9 @@
 import os
 import tempfile
 
-os.environ["GPSR_VAR_DIR"] = tempfile.mkdtemp(prefix="gpsr-tests-")
+var = tempfile.mkdtemp(prefix="gpsr-tests-")
+os.mkdir(os.path.join(var, "static"))  # where collectstatic would write, and whitenoise looks
+os.environ["GPSR_VAR_DIR"] = var
 os.environ["DEBUG"] = "false"
 os.environ["HOST"] = "127.0.0.1"
 os.environ.pop("CELERY_BROKER_URL", None)
