@@ -127,6 +127,18 @@ class FilesField(forms.FileField):
         return [super(FilesField, self).clean(file, initial) for file in files]
 
 
+class PairsForm(forms.Form):
+    """The pair files of a published corpus, in one archive."""
+
+    name = forms.SlugField(
+        max_length=60, help_text="The splits are called by it: name-command, name-logical_form."
+    )
+    archive = forms.FileField(
+        help_text="A zip archive with any of the folders gen, para, gen_logical and para_logical "
+        "(train.txt, val.txt, test.txt in each) and paraphrasings.txt."
+    )
+
+
 class ImportForm(forms.Form):
     """The files of a generator, as they are or in one zip archive."""
 

@@ -15,6 +15,7 @@ from annotations.views import (
 
 urlpatterns = [
     path("import/", importing.import_files, name="import"),
+    path("import/pairs/", importing.import_pair_files, name="import_pairs"),
     path("generate/", importing.generate, name="generate"),
     path("ontology/", ontology.ontology, name="ontology"),
     path("predicates/", ontology.predicates, name="predicates"),

@@ -33,7 +33,7 @@ class Place:
 
 # In the order of the flow.
 PLACES = (
-    Place("Overview", "world", below=("import",)),
+    Place("Overview", "world", below=("import", "import_pairs")),
     Place(
         "World",
         "ontology",

@@ -32,6 +32,7 @@ PAGES = {
     "complexity": "commands/complexity/",
     "paraphrases": "paraphrases/",
     "import": "import/",
+    "import-pairs": "import/pairs/",
     "splits": "splits/",
     "split-new": "splits/new/",
     "runs": "runs/",
@@ -41,7 +42,7 @@ PAGES = {
 # Name of the picture → the page and the link on it that leads there.
 DETAILS = {
     "template": ("templates/", "#list a.row-link"),
-    "form": ("forms/", "#list a.row-link"),
+    "form": ("forms/", "#list td a"),
     "split": ("splits/", "a.row-link"),
     "run": ("runs/?status=succeeded&parser=seq2seq", "#runs-table a.row-link"),
     "predictions": ("results/", "a.accuracy"),

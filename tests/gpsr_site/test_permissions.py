@@ -89,6 +89,7 @@ POLICY = [
     Rule("split_new", *ANNOTATORS, method="post"),
     # What admins decide
     Rule("import", *ADMINS),
+    Rule("import_pairs", *ADMINS),
     Rule("run_new", *ADMINS),
     Rule("run_new", *ADMINS, method="post"),
     Rule("run_cancel", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),

@@ -91,3 +91,36 @@ def test_a_name_that_leaves_its_folder_is_no_way_out(world, adam, tiny, tmp_path
     escaping = {f"../../../{name}": data for name, data in tiny.items()}
     assert send(adam, [archive(escaping)]).status_code == 200
     assert list(tmp_path.iterdir()) == []
+
+
+PAIRS = {
+    "walker/gen/train.txt": b'go to the <room>\n( go " <room> " )\n',
+    "walker/gen/val.txt": b'find the <object>\n( find ( lambda $1 e ( is_a $1 " <object> " ) ) )\n',
+    "walker/README.md": b"not a pair file",
+    "__MACOSX/._train.txt": b"\0",
+}
+
+
+def send_pairs(client, files, name="walker"):
+    return client.post("/w/home/import/pairs/", {"name": name, "archive": archive(files)})
+
+
+def test_published_pairs_become_a_frozen_split(house, adam):
+    answer = send_pairs(adam, PAIRS)
+    assert answer.status_code == 200
+    made = house.world.splits.get(name="walker-command")
+    assert [example.part for example in made.examples.all()] == ["train", "validation"]
+
+
+def test_a_fault_in_the_pairs_refuses_them_with_its_place(house, adam):
+    answer = send_pairs(adam, {"gen/train.txt": b"go to the <room>\n"})
+    page = answer.content.decode()
+    assert answer.status_code == 422
+    assert "Nothing was imported" in page and "train.txt:1" in page
+    assert house.world.splits.count() == 1
+
+
+def test_an_archive_without_pairs_is_told(house, adam):
+    answer = send_pairs(adam, {"notes/train.txt": b"x"})
+    assert answer.status_code == 422
+    assert "Nothing was imported" in answer.content.decode()
