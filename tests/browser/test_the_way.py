@@ -33,7 +33,7 @@ def test_log_in_start_a_run_watch_it_finish_open_a_prediction(
     start_run(page, live_server.url)
     expect(page.locator("#run-state .status")).to_have_text(re.compile("queued|running|succeeded"))
     expect(page.locator("#run-state .status").first).to_have_text("succeeded", timeout=60_000)
-    expect(page.locator("#run-state .log")).to_contain_text("Finished.")
+    expect(page.locator("#run-log .log")).to_contain_text("Finished.")
     expect(page.locator("#loss canvas, #loss svg").first).to_be_visible()
     page.click("#run-state >> text=gen >> nth=0")
     expect(page.locator("h1")).to_contain_text("Predictions")
