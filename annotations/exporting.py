@@ -109,11 +109,11 @@ def _csv_lines(rows: Iterator[dict[str, Any]]) -> Iterator[str]:
     writer.writerow(FIELDS)
     yield line.text
     for row in rows:
-        writer.writerow([_formula_safe(row[key]) for key in FIELDS])
+        writer.writerow([formula_safe(row[key]) for key in FIELDS])
         yield line.text
 
 
-def _formula_safe(cell: Any) -> Any:
+def formula_safe(cell: Any) -> Any:
     """``cell`` with an apostrophe before anything that a spreadsheet would execute."""
     return f"'{cell}" if isinstance(cell, str) and cell.startswith(FORMULA_STARTS) else cell
 

@@ -134,10 +134,16 @@ class Listing:
     def previous_url(self) -> str:
         return self.url(before=self.page.before) if self.page.before else ""
 
+    @property
+    def has_unknown_filters(self) -> bool:
+        """Whether the URL asks for something that no filter knows; the list leaves that out."""
+        return not self.form.is_valid()
+
     @cached_property
     def chips(self) -> list[Chip]:
         """The filters that are active, each with the way to drop it."""
-        values = self.form.cleaned_data if self.form.is_valid() else {}
+        self.form.is_valid()  # fills cleaned_data with what is valid
+        values = self.form.cleaned_data
         return [
             Chip(
                 str(self.form.fields[name].label), self._label(name, value), self.url(**{name: ""})

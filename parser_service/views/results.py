@@ -9,6 +9,7 @@ from django.shortcuts import render
 from django.views.decorators.cache import never_cache
 
 from annotations.access import world_view
+from annotations.exporting import formula_safe
 from annotations.models import Duty, World
 from annotations.models.splits import Part
 from parser_service.accuracy import accuracy_tables
@@ -40,7 +41,8 @@ def results_csv(request: HttpRequest, world: World) -> HttpResponse:
     )
     writer = csv.writer(response)
     writer.writerow(HEADER)
-    writer.writerows(rows_of(results_of(request, world)["tables"]))
+    rows = rows_of(results_of(request, world)["tables"])
+    writer.writerows([formula_safe(cell) for cell in row] for row in rows)
     return response
 
 

@@ -36,7 +36,7 @@ function dialog(isOpen) {
   else keys?.close();
 }
 
-const turn = (direction) => document.querySelector(`.pagination a[rel=${direction}]`)?.click();
+const turn = (direction) => document.querySelector(`main a[rel=${direction}]`)?.click();
 
 const actions = {
   j: () => moveBy(1),

@@ -76,3 +76,15 @@ def test_without_scripts_one_logs_in_and_filters(browser, live_server, house, an
     page.click("main button:has-text('Filter')")
     expect(page.locator("#list tbody tr")).to_have_count(1)
     context.close()
+
+
+def test_one_reads_prediction_after_prediction_by_key(page_of, live_server, house, annotator):
+    page = page_of(annotator)
+    page.goto(f"{live_server.url}/w/home/runs/{house.run.pk}/predictions/?outcome=wrong")
+    page.keyboard.press("j")
+    page.keyboard.press("Enter")
+    first = page.locator("h1").inner_text()
+    page.keyboard.press("n")
+    expect(page.locator("h1")).not_to_have_text(first)
+    page.keyboard.press("p")
+    expect(page.locator("h1")).to_have_text(first)

@@ -81,9 +81,10 @@ def test_an_unknown_order_is_the_usual_one(house, anna):
     assert [row.position for row in page.context["listing"].rows] == [0, 1, 2]
 
 
-def test_a_value_that_no_filter_offers_is_told_and_filters_nothing(house, anna):
-    page = anna.get("/w/home/commands/", {"head": "nothing"})
-    assert page.status_code == 200
+def test_a_value_that_no_filter_offers_is_told_and_left_out(house, anna):
+    page = anna.get("/w/home/commands/", {"head": "nothing", "q": "go"})
+    assert texts(page) == ["go to the <room>"]
+    assert "it is left out" in page.content.decode()
 
 
 def test_a_long_list_is_paged_and_keeps_its_filters(house, anna):

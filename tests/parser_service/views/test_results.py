@@ -153,6 +153,11 @@ def test_the_download_holds_one_line_a_scored_cell(house, anna):
     assert (row["accuracy"], row["part"], row["split"]) == ("0.25", "validation", "home-split")
 
 
+def test_no_cell_of_the_download_is_taken_for_a_formula(house, anna):
+    Split.objects.update(name="-1-1")
+    assert "'-1-1" in anna.get("/w/home/results.csv").content.decode()
+
+
 def test_a_split_of_the_published_sizes_is_known_as_published(world):
     split = Split.objects.create(
         world=world, name="w", criterion="command", content_hash="w", seed=None
