@@ -6,7 +6,7 @@ import json
 import os
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from hashlib import sha256
 from itertools import product
 from pathlib import Path
@@ -37,7 +37,7 @@ class Job:
 
     @property
     def train_sources(self) -> tuple[str, ...]:
-        return TrainSources(self.setting.rpartition("-")[0]).sources
+        return TrainSources(_train_sources(self.setting)).sources
 
     @property
     def test_sources(self) -> tuple[str, ...]:
@@ -60,44 +60,78 @@ def jobs(
     configured = {
         name: tuple(config_values(make_config(name, changed.get(name))).items()) for name in parsers
     }
-    for criterion, name, protocol, setting, seed in product(
-        criteria, parsers, protocols, settings, range(seeds)
+    # Settings last: those that train alike stand together, and the parser is trained once for both.
+    for criterion, name, protocol, seed, setting in product(
+        criteria, parsers, protocols, range(seeds), sorted(settings, key=_train_sources)
     ):
         if protocol in entry(name).protocols:
             yield Job(name, configured[name], setting, criterion, protocol, seed)
 
 
-def measure(job: Job, corpus: Corpus, knowledge: Knowledge) -> Cell:
+@dataclass(frozen=True, slots=True)
+class Fitted:
+    """A trained parser, the seconds it took, and the number of pairs it learned from."""
+
+    parser: Parser
+    seconds: float
+    n_train: int
+
+
+class Training:
+    """Trains what jobs ask for, and keeps the last parser: the next job may only test it elsewhere."""
+
+    def __init__(self) -> None:
+        self._conditions: tuple[Any, ...] = ()
+        self._fitted: Fitted | None = None
+
+    def fitted(self, job: Job, corpus: Corpus, knowledge: Knowledge) -> Fitted:
+        """The parser of ``job``. Raises ValueError, a sentence, where there is nothing to train on."""
+        conditions = (replace(job, setting=_train_sources(job.setting)), id(corpus))
+        if self._fitted is None or self._conditions != conditions:
+            self._fitted = _fit(job, corpus, knowledge)
+            self._conditions = conditions
+        return self._fitted
+
+
+def _train_sources(setting: str) -> str:
+    return setting.rpartition("-")[0]
+
+
+def _fit(job: Job, corpus: Corpus, knowledge: Knowledge) -> Fitted:
+    train = corpus.pairs("train", job.train_sources)
+    if not train:
+        raise ValueError(f"{job.setting} by {job.criterion}: the folder has no pairs to train on.")
+    config = make_config(job.parser, dict(job.configuration))
+    parser = load_class(job.parser)(config, job.seed, knowledge.limited_to(job.protocol))
+    began = time.perf_counter()
+    parser.fit(train, corpus.pairs("validation", job.train_sources))
+    return Fitted(parser, time.perf_counter() - began, len(train))
+
+
+def measure(job: Job, corpus: Corpus, knowledge: Knowledge, training: Training) -> Cell:
     """Trains and tests. Accuracies are fractions of 1; ``accuracy_test`` is None without a test part.
 
     Well-formedness and speed are those of the test part, or of the validation part where there is
     none. Raises ValueError, a sentence, where there is nothing to train on or to test with.
     """
-    train = corpus.pairs("train", job.train_sources)
-    validation = corpus.pairs("validation", job.train_sources)
     asked = {part: corpus.pairs(part, job.test_sources) for part in ("validation", "test")}
-    if not train or not asked["validation"]:
-        raise ValueError(
-            f"{job.setting} by {job.criterion}: the folder has {len(train)} pairs to train on and "
-            f"{len(asked['validation'])} to validate with."
-        )
-    config = make_config(job.parser, dict(job.configuration))
-    parser = load_class(job.parser)(config, job.seed, knowledge.limited_to(job.protocol))
-    began = time.perf_counter()
-    parser.fit(train, validation)
-    seconds = time.perf_counter() - began
+    if not asked["validation"]:
+        raise ValueError(f"{job.setting} by {job.criterion}: there are no pairs to validate with.")
+    fitted = training.fitted(job, corpus, knowledge)
+    parser = fitted.parser
     on_validation, validation_ms = _judged(parser, asked["validation"])
+    validation = corpus.pairs("validation", job.train_sources)
     on_test, test_ms = _judged(parser.for_test_part(validation), asked["test"])
     return {
         **asdict(job),
         "configuration": dict(job.configuration),
-        "n_train": len(train),
+        "n_train": fitted.n_train,
         "n_test": len(asked["test"]),
         "n_validation": len(asked["validation"]),
         "accuracy_validation": score(on_validation).accuracy,
         "accuracy_test": score(on_test).accuracy if on_test else None,
         "well_formed": score(on_test or on_validation).well_formed,
-        "seconds_train": round(seconds, 3),
+        "seconds_train": round(fitted.seconds, 3),
         "milliseconds_per_command": round(test_ms if on_test else validation_ms, 3),
         "parameters": parser.parameters(),
         "code_version": code_version(),

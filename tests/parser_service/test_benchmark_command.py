@@ -51,7 +51,7 @@ def run(folder: Path, file: Path, **options) -> list[dict]:
 
 def test_a_cell_says_all_that_the_table_needs(folder, tmp_path):
     cells = run(folder, tmp_path / "cells.json")
-    assert [cell["setting"] for cell in cells] == list(benchmarking.SETTINGS)
+    assert {cell["setting"] for cell in cells} == set(benchmarking.SETTINGS)
     for cell in cells:
         assert cell.keys() >= KEYS
         assert 0 <= cell["accuracy_validation"] <= 1
@@ -82,6 +82,18 @@ def test_cells_are_appended_and_measured_once(folder, tmp_path, monkeypatch):
     assert [cell["setting"] for cell in both] == ["gen-gen", "para-para"]
     monkeypatch.setattr(benchmarking, "measure", None)
     assert run(folder, file, train_test="gen-gen,para-para") == both
+
+
+def test_settings_that_train_alike_share_one_training(folder, tmp_path, monkeypatch):
+    fits = []
+    fit = benchmarking._fit
+    monkeypatch.setattr(
+        benchmarking, "_fit", lambda job, *rest: fits.append(job) or fit(job, *rest)
+    )
+    cells = run(folder, tmp_path / "cells.json", seeds=2)
+    assert len(cells) == 10 and len(fits) == 6
+    alike = [cell for cell in cells if cell["setting"].startswith("gen+para-") and not cell["seed"]]
+    assert alike[0]["seconds_train"] == alike[1]["seconds_train"]
 
 
 @pytest.mark.parametrize("change", ["code", "configuration", "seed", "pairs"])

@@ -13,7 +13,7 @@ from tqdm import tqdm
 from annotations.language.splitting import Criterion
 from annotations.management.base import find_world
 from annotations.models import World
-from parser_service.benchmarking import SETTINGS, CellFile, Job, cell_key, jobs, measure
+from parser_service.benchmarking import SETTINGS, CellFile, Job, Training, cell_key, jobs, measure
 from parser_service.content_key import knowledge_hash
 from parser_service.corpus import Corpus, read_corpus, split_by_source_command
 from parser_service.knowledge import anonymizer_of, knowledge_of
@@ -67,23 +67,25 @@ class Command(BaseCommand):
                 read_configurations(options["config"]),
             )
         )
-        cells = CellFile(options["json"])
+        cells, training = CellFile(options["json"]), Training()
         corpora = cache(lambda criterion: corpus_of(folder, criterion, world))
         failures = []
         for job in (bar := tqdm(todo, disable=None, unit="cell")):
             bar.set_description(f"{job.parser} {job.setting} by {job.criterion}")
             try:
-                self._measure(job, corpora(job.criterion), world, cells)
+                self._measure(job, corpora(job.criterion), world, cells, training)
             except ValueError as error:
                 failures.append(f"{job.parser}, {job.protocol}: {error}")
         return failures
 
-    def _measure(self, job: Job, corpus: Corpus, world: World | None, cells: CellFile) -> None:
+    def _measure(
+        self, job: Job, corpus: Corpus, world: World | None, cells: CellFile, training: Training
+    ) -> None:
         known = knowledge_hash(world, job.protocol) if world else ""
         key = cell_key(job, corpus, known)
         if not cells.has(key):
             knowledge = knowledge_of(world, job.protocol) if world else Knowledge()
-            cells.append({**measure(job, corpus, knowledge), "key": key})
+            cells.append({**measure(job, corpus, knowledge, training), "key": key})
 
 
 def corpus_of(folder: Path, criterion: str, world: World | None) -> Corpus:
