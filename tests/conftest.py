@@ -15,6 +15,15 @@ from annotations.models.worlds import Role
 ROOT = Path(__file__).resolve().parent.parent
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Marks what touches a database, so that it can be run once more on another one."""
+    for item in items:
+        fixtures = set(getattr(item, "fixturenames", ()))
+        if fixtures & {"db", "transactional_db"} or item.get_closest_marker("django_db"):
+            item.add_marker("services")
+
+
 @pytest.fixture(autouse=True)
 def quick_and_plain(settings):
     """Static files without a manifest, so that pages render unbuilt; a hasher that costs nothing."""
