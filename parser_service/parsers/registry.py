@@ -56,6 +56,66 @@ PARSERS: dict[str, Entry] = {
         version=1,
         protocols=("strict",),
     ),
+    "seq2seq-glove": Entry(
+        dotted="parser_service.neural.seq2seq_vectors.Seq2SeqGlove",
+        config="parser_service.parsers.vectors_config.GloveConfig",
+        title="Seq2seq + GloVe",
+        description="Sequence to sequence with word vectors that start as GloVe's and are trained "
+        "on.",
+        version=1,
+        protocols=("strict",),
+    ),
+    "seq2seq-glove-elmo": Entry(
+        dotted="parser_service.neural.seq2seq_vectors.Seq2SeqGloveElmo",
+        config="parser_service.parsers.vectors_config.GloveElmoConfig",
+        title="Seq2seq + GloVe, ELMo",
+        description="Sequence to sequence with GloVe and, frozen, the layers of ELMo under a "
+        "learned mix.",
+        version=1,
+        protocols=("strict",),
+    ),
+    "seq2seq-glove-gpt": Entry(
+        dotted="parser_service.neural.seq2seq_vectors.Seq2SeqGloveGpt",
+        config="parser_service.parsers.vectors_config.GloveGptConfig",
+        title="Seq2seq + GloVe, GPT",
+        description="Sequence to sequence with GloVe and, frozen, the last layer of OpenAI's GPT.",
+        version=1,
+        protocols=("strict",),
+    ),
+    "seq2seq-glove-bert-base": Entry(
+        dotted="parser_service.neural.seq2seq_vectors.Seq2SeqGloveBertBase",
+        config="parser_service.parsers.vectors_config.GloveBertBaseConfig",
+        title="Seq2seq + GloVe, BERT base",
+        description="Sequence to sequence with GloVe and, frozen, the last layer of BERT base.",
+        version=1,
+        protocols=("strict",),
+    ),
+    "seq2seq-glove-bert-large": Entry(
+        dotted="parser_service.neural.seq2seq_vectors.Seq2SeqGloveBertLarge",
+        config="parser_service.parsers.vectors_config.GloveBertLargeConfig",
+        title="Seq2seq + GloVe, BERT large",
+        description="Sequence to sequence with GloVe and, frozen, the last layer of BERT large.",
+        version=1,
+        protocols=("strict",),
+    ),
+    "seq2seq-minilm": Entry(
+        dotted="parser_service.neural.seq2seq_vectors.Seq2SeqMiniLm",
+        config="parser_service.parsers.vectors_config.MiniLmConfig",
+        title="Seq2seq + MiniLM",
+        description="Sequence to sequence with learned word vectors and, frozen, the last layer of "
+        "a small sentence encoder.",
+        version=1,
+        protocols=("strict",),
+    ),
+    "ranker": Entry(
+        dotted="parser_service.neural.ranker.FormRanker",
+        config="parser_service.parsers.ranker_config.RankerConfig",
+        title="Form ranker",
+        description="A fine-tuned sentence encoder chooses among whole forms, by their examples and "
+        "by their English glosses; also among new forms, made from those of the training pairs.",
+        version=1,
+        protocols=("strict", "domain", "grammar"),
+    ),
 }
 
 

@@ -1,0 +1,41 @@
+"""Forms by what they say in English: through the encoder that reads the utterances."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import torch
+from torch import Tensor
+
+from parser_service.neural.prototype_head import SCALE
+from parser_service.neural.sentence_encoder import SentenceEncoder
+from parser_service.parsers.interface import Check, keep_going
+
+
+class GlossHead:
+    """logit = 20 · cos(utterance, gloss), without a weight of its own, so that it serves a form that
+    training never showed.
+
+    In training the glosses of a batch's own forms carry gradient; the vectors of the others are
+    renewed now and then.
+    """
+
+    def __init__(self, encoder: SentenceEncoder, glosses: Sequence[str]):
+        self.encoder = encoder
+        self.glosses = tuple(glosses)
+        self.vectors = torch.zeros(0, encoder.width)  # [glosses, width]
+
+    def renew(self, check: Check = keep_going) -> None:
+        """Computes the vectors of the glosses with the encoder as it is."""
+        self.vectors = self.encoder.vectors(self.glosses, check)
+
+    def logits(self, utterances: Tensor) -> Tensor:
+        """Shape [batch, width] to [batch, glosses]."""
+        return SCALE * utterances @ self.vectors.T
+
+    def trained_logits(self, utterances: Tensor, targets: Tensor) -> Tensor:
+        """The same with gradient to the glosses of ``targets`` [batch]."""
+        own = targets.unique()
+        texts = [self.glosses[index] for index in own.tolist()]
+        vectors = self.vectors.index_copy(0, own, self.encoder(texts))
+        return SCALE * utterances @ vectors.T

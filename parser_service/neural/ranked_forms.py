@@ -1,0 +1,75 @@
+"""The forms that a ranker chooses among, and the examples that it has of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, Self
+
+from parser_service.neural.ranker_training import RankedExample
+from parser_service.parsers.candidates.gathering import gather
+from parser_service.parsers.candidates.glosses import glosses
+from parser_service.parsers.interface import Knowledge, Pair
+
+MOST_SUPPORT = 4  # kinds of step, above which more of them say no more
+
+
+@dataclass(frozen=True, slots=True)
+class RankedForms:
+    """Known forms first, then new ones; each with its gloss.
+
+    ``support`` says of each new form how many kinds of step arrive at it. The first ``examples``
+    forms have examples: the known ones, or all where the grammar has commands for them.
+    """
+
+    forms: tuple[str, ...]
+    glosses: tuple[str, ...]
+    known: int
+    support: tuple[int, ...]
+    examples: int
+
+    @classmethod
+    def read(cls, values: Mapping[str, Any]) -> Self:
+        """What ``written`` gave."""
+        return cls(
+            **{
+                name: tuple(value) if isinstance(value, list) else value
+                for name, value in values.items()
+            }
+        )
+
+    def written(self) -> dict[str, Any]:
+        """The same as JSON."""
+        return asdict(self)
+
+
+def collect(
+    pairs: Sequence[Pair], knowledge: Knowledge, is_open: bool
+) -> tuple[RankedForms, list[RankedExample], str]:
+    """The forms to choose among, the examples to learn from, and a line for the log.
+
+    Where the grammar is known, its commands that are in no pair are examples as well; one that a
+    pair reads otherwise keeps the form of the pair.
+    """
+    gathered = gather(pairs, knowledge, is_open)
+    forms = (*gathered.training, *(each.form for each in gathered.new))
+    number = {form: at for at, form in enumerate(forms)}
+    said = {pair.utterance for pair in pairs}
+    generated = [
+        RankedExample(command, number[form], True)
+        for form, commands in gathered.commands.items()
+        for command in commands
+        if command not in said
+    ]
+    examples = [
+        RankedExample(pair.utterance, number[pair.form], pair.source == "generated")
+        for pair in pairs
+    ]
+    ranked = RankedForms(
+        forms,
+        tuple(glosses(forms, knowledge.predicates)),
+        len(gathered.training),
+        tuple(min(each.support, MOST_SUPPORT) for each in gathered.new),
+        len(forms) if generated else len(gathered.training),
+    )
+    return ranked, examples + generated, str(gathered)

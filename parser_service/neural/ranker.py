@@ -1,0 +1,259 @@
+"""The form ranker: which of many forms does an utterance mean?"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import asdict, replace
+from math import log
+from pathlib import Path
+from typing import Self
+
+import torch
+
+from parser_service.neural.checkpoints import WEIGHTS, load_weights, save_weights
+from parser_service.neural.deciding import Decision, Scores, calibrated
+from parser_service.neural.pretrained import load_encoder
+from parser_service.neural.ranked_forms import RankedForms, collect
+from parser_service.neural.ranker_checkpoints import FILES, load_training, save_training
+from parser_service.neural.ranker_model import RankerModel
+from parser_service.neural.ranker_training import (
+    RankedExample,
+    RankerTraining,
+    reduced_precision,
+)
+from parser_service.neural.sentence_encoder import ENCODER, TOKENIZER, SentenceEncoder
+from parser_service.neural.slot_term import SlotTerm
+from parser_service.neural.threads import threads
+from parser_service.parsers.candidates.slot_filling import SlotFiller
+from parser_service.parsers.encoder_places import encoders_folder
+from parser_service.parsers.interface import (
+    Candidate,
+    Check,
+    EpochReport,
+    Knowledge,
+    Observer,
+    Pair,
+    Parser,
+    keep_going,
+)
+from parser_service.parsers.ranker_config import RankerConfig
+from parser_service.parsers.storage import open_sealed, read_json, seal, write_json
+
+FORMS = "forms.json"
+SAVED = (FORMS, ENCODER, TOKENIZER, WEIGHTS)
+UNKNOWN = "UNKNOWN"
+PREDICTION_BATCH = 64
+SUPPORT_WEIGHT = 1.0  # nats for each kind of step that arrives at a new form
+
+
+class FormRanker(Parser):
+    """Chooses among whole forms, by one fine-tuned sentence encoder.
+
+    A form with examples is scored by a prototype and by its English gloss, a new one by its gloss
+    alone; where the ontology is known, slots that no entity of the utterance fills cost. New forms
+    are made from those of the training pairs (``candidates``) or taken from the grammar. Scores are
+    log-probabilities, calibrated on the validation pairs, which also tell how often a form is new.
+    """
+
+    name = "ranker"
+    version = 1
+    protocols = ("strict", "domain", "grammar")
+    Config = RankerConfig
+
+    def __init__(
+        self,
+        config: RankerConfig | None = None,
+        seed: int = 0,
+        knowledge: Knowledge | None = None,
+    ):
+        super().__init__(config, seed, knowledge)
+        self._decision = Decision()
+        self._ranked = RankedForms((), (), 0, (), 0)
+        self._model: RankerModel | None = None
+
+    def fit(
+        self,
+        train: Sequence[Pair],
+        validation: Sequence[Pair] = (),
+        observe: Observer | None = None,
+    ) -> None:
+        observe = observe or Observer()
+        if not train:
+            raise ValueError("There is no training pair, so there is nothing to learn from.")
+        is_open = self.config.forms != "closed"
+        self._ranked, examples, line = collect(train, self.knowledge, is_open)
+        observe.log(line)
+        with threads(self.config.threads):
+            training = self._prepare(examples, observe.check)
+            self._resume(training, observe)
+            while not training.is_over():
+                self._train_epoch(training, validation, observe)
+            training.average.keep()
+            self._settle(validation, observe.check)
+
+    def predict(
+        self, utterances: Sequence[str], beam_width: int = 1, check: Check = keep_going
+    ) -> list[list[Candidate]]:
+        """The most probable forms; scores are log-probabilities in nats.
+
+        Below ``unknown_below`` the first answer is UNKNOWN, at the log-probability of that bound.
+        """
+        answers: list[list[Candidate]] = []
+        for begin in range(0, len(utterances), PREDICTION_BATCH):
+            logs = self._decision.log_probabilities(
+                self._scores(utterances[begin : begin + PREDICTION_BATCH], check)
+            )
+            best = logs.topk(min(beam_width, logs.shape[1]), dim=-1)
+            for scores, numbers in zip(best.values.tolist(), best.indices.tolist(), strict=True):
+                ranked = zip(numbers, scores, strict=True)
+                found = [Candidate(self._ranked.forms[each], score) for each, score in ranked]
+                answers.append(self._or_unknown(found)[:beam_width])
+        return answers
+
+    def save(self, folder: Path) -> None:
+        self._write(folder)
+        seal(folder, self, SAVED)
+
+    @classmethod
+    def load(cls, folder: Path, knowledge: Knowledge | None = None) -> Self:
+        """The parser that ``save`` wrote. One of the domain finds entities in today's ontology.
+
+        Raises ValueError as every parser does, and where that ontology is not given.
+        """
+        saved = open_sealed(folder, cls, SAVED)
+        parser = cls(saved.config, saved.seed, knowledge)
+        about = read_json(folder / FORMS)
+        if about["has_slots"] and parser.knowledge.ontology is None:
+            raise ValueError(
+                f"{folder} holds a parser that knows an ontology. Load it with the ontology of its "
+                "world, under the protocol that it was trained with."
+            )
+        parser._ranked = RankedForms.read(about["ranked"])
+        parser._decision = Decision(**about["decision"])
+        parser._model = parser._model_around(SentenceEncoder.described_in(folder))
+        load_weights(folder / WEIGHTS, parser._model)
+        parser._model.eval()
+        parser._model.glosses.renew()
+        return parser
+
+    def parameters(self) -> int:
+        return sum(weights.numel() for weights in self._model.parameters()) if self._model else 0
+
+    def _prepare(self, examples: Sequence[RankedExample], check: Check) -> RankerTraining:
+        """A model with the pretrained encoder, and the prototypes where it puts the examples."""
+        pretrained = load_encoder(self.config.encoder, encoders_folder())
+        model = self._model_around(SentenceEncoder.of(pretrained, self.config.dropout))
+        vectors = model.encoder.vectors([each.utterance for each in examples], check)
+        model.prototypes.start_from(vectors, [each.form for each in examples])
+        self._model = model
+        ontology = self.knowledge.ontology
+        fill = SlotFiller(ontology).fill if ontology is not None else None
+        return RankerTraining(model, self.config, self.seed, examples, fill)
+
+    def _model_around(self, encoder: SentenceEncoder) -> RankerModel:
+        ranked, ontology = self._ranked, self.knowledge.ontology
+        slots = SlotTerm(ranked.forms, ontology) if ontology is not None else None
+        return RankerModel(encoder, ranked.glosses, ranked.examples, slots).to(processor())
+
+    def _train_epoch(
+        self, training: RankerTraining, validation: Sequence[Pair], observe: Observer
+    ) -> None:
+        begin = time.monotonic()
+        loss = training.run_epoch(observe.check)
+        with training.average.in_force():
+            with reduced_precision(training.model, self.config.precision):
+                found = self._settle(validation, observe.check)
+            observe.epoch(EpochReport(training.epoch, loss, *found, time.monotonic() - begin))
+            # The newest average is the best: the last one is the parser, whatever a small
+            # validation part says.
+            observe.checkpoint(
+                training.epoch, True, lambda folder: self._checkpoint(folder, training)
+            )
+        message = f"epoch {training.epoch} of {training.epochs}"
+        observe.progress(training.epoch / training.epochs, message)
+
+    def _settle(
+        self, validation: Sequence[Pair], check: Check
+    ) -> tuple[float | None, float | None]:
+        """Encodes the glosses and calibrates; loss and accuracy on the validation pairs."""
+        model = self._trained()
+        model.glosses.renew(check=check)
+        if not validation:
+            self._decision = Decision()
+            return None, None
+        number = {form: at for at, form in enumerate(self._ranked.forms)}
+        targets = torch.tensor([number.get(pair.form, -1) for pair in validation])
+        scores = self._scores([pair.utterance for pair in validation], check)
+        self._decision = calibrated(scores, targets)
+        if self.config.forms == "open":
+            self._decision = replace(self._decision, novelty=0.0, slope=1.0)
+        logs = self._decision.log_probabilities(scores)
+        found = logs[targets >= 0].gather(1, targets[targets >= 0, None])
+        loss = -float(found.mean()) if len(found) else None
+        return loss, float((logs.argmax(-1) == targets).float().mean())
+
+    @torch.no_grad()
+    def _scores(self, utterances: Sequence[str], check: Check) -> Scores:
+        """What prototypes, glosses and slots say, on the processor that chooses."""
+        model, known = self._trained(), self._ranked.known
+        vectors = model.encoder.vectors(utterances, check)  # [utterances, width]
+        by_gloss = model.fitting(model.glosses.logits(vectors), utterances).cpu()
+        by_gloss[:, known:] += SUPPORT_WEIGHT * torch.tensor(self._ranked.support)
+        by_example = model.prototypes(vectors).cpu()  # [utterances, forms with examples]
+        lists = []
+        for begin, end in ((0, known), (known, len(self._ranked.forms))):
+            scores = torch.log_softmax(by_gloss[:, begin:end], -1)
+            if end <= self._ranked.examples:
+                scores = scores + torch.log_softmax(by_example[:, begin:end], -1)
+            lists.append(scores)
+        evidence = by_gloss[:, known:].logsumexp(-1) - by_gloss[:, :known].logsumexp(-1)
+        return Scores(*lists, evidence)
+
+    def _or_unknown(self, ranked: list[Candidate]) -> list[Candidate]:
+        bound = self.config.unknown_below
+        if not bound or ranked[0].score >= log(bound):
+            return ranked
+        others = [each for each in ranked if each.form != UNKNOWN]
+        return [Candidate(UNKNOWN, log(bound)), *others]
+
+    def _trained(self) -> RankerModel:
+        if self._model is None:
+            raise ValueError("This parser has learned nothing yet: fit it, or load a fitted one.")
+        return self._model
+
+    def _write(self, folder: Path) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        model = self._trained()
+        about = {
+            "ranked": self._ranked.written(),
+            "decision": asdict(self._decision),
+            "has_slots": model.slots is not None,
+        }
+        write_json(folder / FORMS, about)
+        model.encoder.describe(folder)
+        save_weights(folder / WEIGHTS, model)
+
+    def _checkpoint(self, folder: Path, training: RankerTraining) -> None:
+        """The parser with the averaged weights, and the state from which to go on."""
+        self._write(folder)
+        save_training(folder, training)
+        seal(folder, self, (*SAVED, *FILES))
+
+    def _resume(self, training: RankerTraining, observe: Observer) -> None:
+        """Goes on from the last checkpoint; from the start, to the same end, if it is unreadable."""
+        folder = observe.last_checkpoint()
+        if folder is None:
+            return
+        try:
+            open_sealed(folder, type(self), (*SAVED, *FILES))
+        except ValueError as problem:
+            observe.log(f"Training starts again from the beginning. {problem}")
+            return
+        load_training(folder, training)
+        observe.log(f"Training goes on after epoch {training.epoch}.")
+
+
+def processor() -> torch.device:
+    """The GPU where there is one."""
+    return torch.device("cuda" if torch.cuda.is_available() else "cpu")

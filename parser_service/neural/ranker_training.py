@@ -1,0 +1,174 @@
+"""Training of the form ranker: steps of AdamW on the sum of two cross entropies."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from random import Random
+from typing import Any
+
+import torch
+from torch import Tensor
+from torch.nn.functional import cross_entropy
+
+from parser_service.neural.averaging import Average
+from parser_service.neural.ranker_model import RankerModel
+from parser_service.parsers.interface import Check
+from parser_service.parsers.ranker_config import RankerConfig
+
+WARM_UP = 0.06  # share of the steps over which the rate grows
+LEAST_RATE = 0.02  # share of the rate that is left at the end
+WEIGHT_DECAY = 0.01
+CLIP = 5.0
+RENEWAL = 16  # steps after which the glosses that carry no gradient are encoded again
+POOL = 8  # batches sorted by length together: little padding, and still another mix each epoch
+
+Fill = Callable[[str, Random], str]
+
+
+@dataclass(frozen=True, slots=True)
+class RankedExample:
+    """An utterance and the number of its form; the slots of a generated one may be filled."""
+
+    utterance: str
+    form: int
+    is_generated: bool = False
+
+
+class RankerTraining:
+    """AdamW and the average of the weights, with everything that one epoch hands to the next.
+
+    What chance decides (batches, dropout, the entities in generated commands) depends on the seed
+    and the number of the step alone. So weights, average, optimiser and the number of the epoch are
+    all that a training needs to go on exactly.
+    """
+
+    def __init__(
+        self,
+        model: RankerModel,
+        config: RankerConfig,
+        seed: int,
+        examples: Sequence[RankedExample],
+        fill: Fill | None = None,
+    ):
+        self.model = model
+        self.config = config
+        self.seed = seed
+        self.examples = examples
+        self.fill = fill
+        kept = {name: config.pretrained_share for name, _ in model.encoder_weights()}
+        self.average = Average(model.trained(), config.averaging, kept)
+        self.optimizer = torch.optim.AdamW(self._groups(), weight_decay=WEIGHT_DECAY)
+        self.epoch = 0
+        self.batches = math.ceil(len(examples) / config.batch_size)  # an epoch
+        self.epochs = math.ceil(config.steps / self.batches)
+
+    def is_over(self) -> bool:
+        return self.epoch >= self.epochs
+
+    def run_epoch(self, check: Check) -> float:
+        """One pass; the mean loss in nats an example. Raises ValueError where it is no number."""
+        self.model.train()
+        first = self.epoch * self.batches
+        losses = []
+        with chance_kept(), reduced_precision(self.model, self.config.precision):
+            for step, batch in enumerate(self._shuffled(), first):
+                check()
+                losses.append(self._train_on(batch, step))
+        self.model.eval()
+        self.epoch += 1
+        mean = sum(losses) / len(losses)
+        if not math.isfinite(mean):
+            raise ValueError(
+                f"Training diverged in epoch {self.epoch}: the loss is {mean}. "
+                f"Try a learning rate below {self.config.learning_rate:g}."
+            )
+        return mean
+
+    def _groups(self) -> list[dict[str, Any]]:
+        """The head learns faster than the encoder, which knows much already."""
+        encoder = [weight for _, weight in self.model.encoder_weights()]
+        return [
+            {"params": encoder, "lr": self.config.learning_rate},
+            {"params": [*self.model.prototypes.parameters()], "lr": self.config.head_learning_rate},
+        ]
+
+    def _shuffled(self) -> Iterator[list[RankedExample]]:
+        """The batches of this epoch in random order, each of utterances of about one length."""
+        random = Random(f"{self.seed} {self.epoch}")
+        order = random.sample(self.examples, len(self.examples))
+        size = self.config.batch_size
+        batches: list[list[RankedExample]] = []
+        for begin in range(0, len(order), size * POOL):
+            pool = order[begin : begin + size * POOL]
+            pool.sort(key=lambda example: len(example.utterance))
+            batches += [pool[at : at + size] for at in range(0, len(pool), size)]
+        yield from random.sample(batches, len(batches))
+
+    def _train_on(self, batch: Sequence[RankedExample], step: int) -> float:
+        torch.manual_seed(self.seed * 1_000_003 + step)
+        if step % self.batches % RENEWAL == 0:
+            self.model.glosses.renew()
+        loss = self._loss(batch, Random(f"{self.seed} step {step}"))
+        self.optimizer.zero_grad()
+        loss.backward()  # type: ignore[no-untyped-call]
+        weights = [weight for group in self.optimizer.param_groups for weight in group["params"]]
+        torch.nn.utils.clip_grad_norm_(weights, CLIP)
+        self._set_rates(step)
+        self.optimizer.step()
+        self.average.update(step + 1)
+        return loss.item()
+
+    def _loss(self, batch: Sequence[RankedExample], random: Random) -> Tensor:
+        texts = [self._text(example, random) for example in batch]
+        vectors = self.model.encoder(texts)  # [batch, width]
+        targets = torch.tensor([example.form for example in batch], device=vectors.device)
+        smoothing = self.config.label_smoothing
+        by_example = self.model.prototypes(vectors)  # [batch, forms with examples]
+        by_gloss = self.model.glosses.trained_logits(vectors, targets)
+        return cross_entropy(by_example, targets, label_smoothing=smoothing) + cross_entropy(
+            self.model.fitting(by_gloss, texts), targets, label_smoothing=smoothing
+        )
+
+    def _text(self, example: RankedExample, random: Random) -> str:
+        if self.fill and example.is_generated and random.random() < self.config.grounding:
+            return self.fill(example.utterance, random)
+        return example.utterance
+
+    def _set_rates(self, step: int) -> None:
+        """Linear growth, then linear decay."""
+        steps = self.epochs * self.batches
+        warm = max(1, int(WARM_UP * steps))
+        decay = 1 - (1 - LEAST_RATE) * (step - warm) / (steps - warm or 1)
+        share = (step + 1) / warm if step < warm else decay
+        rates = self.config.learning_rate, self.config.head_learning_rate
+        for group, rate in zip(self.optimizer.param_groups, rates, strict=True):
+            group["lr"] = rate * share
+
+
+@contextmanager
+def chance_kept() -> Iterator[None]:
+    """Leaves torch's random numbers as they were, on every device that there is."""
+    devices = list(range(torch.cuda.device_count()))
+    with torch.random.fork_rng(devices=devices):
+        yield
+
+
+@contextmanager
+def reduced_precision(model: RankerModel, precision: str) -> Iterator[None]:
+    """Lets the encoder compute in bf16 inside the block, where the processor has it and may."""
+    model.encoder.in_bf16 = precision == "auto" and has_bf16(model.encoder.device)
+    try:
+        yield
+    finally:
+        model.encoder.in_bf16 = False
+
+
+def has_bf16(device: torch.device) -> bool:
+    """Whether a processor multiplies bf16 matrices itself; emulated they are slower than fp32."""
+    if device.type == "cuda":
+        return bool(torch.cuda.is_bf16_supported(including_emulation=False))
+    found = torch.cpu.get_capabilities()
+    return bool(found.get("avx512_bf16") or found.get("amx_bf16"))
