@@ -128,6 +128,16 @@ class CommandFilters(PageFilters):
         fields: list[str] = []
 
 
+class CommandsOfFormFilters(PageFilters):
+    q = Search("anonymized_text")
+    task_category = django_filters.ChoiceFilter(label="Task category")
+    world_choices = {"task_category": task_category_choices}
+
+    class Meta:
+        model = Command
+        fields: list[str] = []
+
+
 class FormFilters(PageFilters):
     q = Search("text")
     task_category = django_filters.ChoiceFilter(label="Task category")

@@ -39,7 +39,7 @@ def world(request: HttpRequest, world: World) -> HttpResponse:
 @never_cache
 @require_safe
 def banner(request: HttpRequest) -> HttpResponse:
-    """The worker's state, which every page asks for every five seconds."""
+    """The worker's state, which every page asks for every two seconds."""
     return render(request, "gpsr_site/_banner.html")
 
 

@@ -7,7 +7,7 @@ from django.http import HttpRequest, HttpResponse
 from django.shortcuts import get_object_or_404, render
 
 from annotations.access import world_view
-from annotations.filters import CommandFilters, FormFilters
+from annotations.filters import CommandsOfFormFilters, FormFilters
 from annotations.listing import Listing, Sort
 from annotations.models import Duty, LogicalForm, Paraphrase, World
 
@@ -42,7 +42,7 @@ def form(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     rows = logical_form.commands.select_related("logical_form")
     context = {
         "logical_form": logical_form,
-        "listing": Listing(request, CommandFilters, rows, COMMAND_SORTS),
+        "listing": Listing(request, CommandsOfFormFilters, rows, COMMAND_SORTS),
         "paraphrases": Paraphrase.objects.filter(world=world, logical_form=logical_form.text)[:20],
     }
     return render(request, "annotations/form.html", context)

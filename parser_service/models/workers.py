@@ -7,8 +7,9 @@ from datetime import timedelta
 from django.db import models
 from django.utils import timezone
 
-# The parent process of a worker writes its row every 5 s.
-ALIVE_FOR = timedelta(seconds=8)
+# The parent process of a worker writes its row every 5 s. Pages ask every 2 s: ten seconds after a
+# worker's end every page says so.
+ALIVE_FOR = timedelta(seconds=7.5)
 
 
 class WorkerQuerySet(models.QuerySet["Worker"]):
