@@ -10,4 +10,4 @@ class ParserServiceConfig(AppConfig):
     name = "parser_service"
 
     def ready(self) -> None:
-        keep_encoders_in(settings.ENCODERS_DIR)
+        keep_encoders_in(settings.ENCODERS_DIR, settings.VAR_DIR / "vectors")

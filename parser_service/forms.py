@@ -11,6 +11,7 @@ from parser_service.lifecycle import LARGEST_SEED
 from parser_service.models.runs import TrainSources
 from parser_service.parsers.config_fields import ConfigField
 from parser_service.parsers.registry import config_fields, entry, make_config
+from parser_service.parsers.weight_files import missing_weights
 
 SOURCE_LABELS = {
     TrainSources.GENERATED: "generated",
@@ -46,6 +47,11 @@ class RunForm(forms.Form):
     @property
     def hyperparameters(self) -> list[forms.BoundField]:
         return [self[name] for name in self.fields if name.startswith(PREFIX)]
+
+    @property
+    def missing(self) -> str | None:
+        """Which pretrained weights the parser lacks as it is offered here, and where to put them."""
+        return missing_weights(make_config(self.parser))
 
     def clean(self) -> dict[str, Any]:
         cleaned = super().clean()

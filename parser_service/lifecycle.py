@@ -23,6 +23,7 @@ from parser_service.models import Checkpoint, EpochMetric, RunEvent, TrainingRun
 from parser_service.models.runs import Status, TrainSources
 from parser_service.parsers import registry
 from parser_service.parsers.interface import EpochReport
+from parser_service.parsers.weight_files import refuse_missing_weights
 from parser_service.waking import wake
 
 LEASE = timedelta(seconds=45 / settings.WORK_TEMPO)
@@ -53,7 +54,9 @@ def request(
     With ``send`` a worker is woken once the transaction is over. Raises ValueError, a sentence, where
     the request cannot be trained.
     """
-    values = registry.config_values(registry.make_config(parser, config))
+    made = registry.make_config(parser, config)
+    refuse_missing_weights(made)
+    values = registry.config_values(made)
     entry = registry.entry(parser)
     _refuse_what_cannot_be_trained(world, split, parser, protocol, train_sources, seed)
     run, created = TrainingRun.objects.get_or_create(

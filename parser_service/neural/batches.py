@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import torch
 from torch import Tensor
+from torch.nn.functional import pad as pad_ends
+from torch.nn.utils.rnn import pad_sequence
 
 from parser_service.neural.vocabulary import END, PADDING, START
 
@@ -15,10 +17,12 @@ POOL = 8  # batches sorted by length together: little padding, and still another
 
 @dataclass(frozen=True, slots=True)
 class Example:
-    """One pair in numbers: the words of the utterance and the tokens of the form."""
+    """One pair in numbers: the words of the utterance, the tokens of the form, and for each word
+    what a frozen encoder says of it [words, layers, width], where there is one."""
 
     source: list[int]
     target: list[int]
+    context: Tensor | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +33,7 @@ class Batch:
     lengths: Tensor  # [batch], words of each utterance
     inputs: Tensor  # [batch, target length], START and the tokens of the form
     outputs: Tensor  # [batch, target length], the tokens of the form and END
+    context: Tensor | None = None  # [batch, source length, layers, width]
 
 
 def pad(sequences: Sequence[Sequence[int]]) -> Tensor:
@@ -45,12 +50,23 @@ def sources(utterances: Sequence[Sequence[int]]) -> tuple[Tensor, Tensor]:
     return pad(closed), torch.tensor([len(utterance) for utterance in closed])
 
 
+def contexts(vectors: Sequence[Tensor | None]) -> Tensor | None:
+    """Vectors of utterances [words, layers, width] as one tensor [batch, source length, layers,
+    width], zero for END and padding; None where there are none."""
+    present = [each for each in vectors if each is not None]
+    if not present:
+        return None
+    padded = pad_sequence(present, batch_first=True)  # [batch, source length - 1, layers, width]
+    return pad_ends(padded, (0, 0, 0, 0, 0, 1))
+
+
 def collate(examples: Sequence[Example]) -> Batch:
     """One batch of ``examples``."""
     source, lengths = sources([example.source for example in examples])
     inputs = pad([[START, *example.target] for example in examples])
     outputs = pad([[*example.target, END] for example in examples])
-    return Batch(source, lengths, inputs, outputs)
+    context = contexts([example.context for example in examples])
+    return Batch(source, lengths, inputs, outputs, context)
 
 
 def in_order(examples: Sequence[Example], size: int) -> Iterator[Batch]:

@@ -9,6 +9,7 @@ from torch import Tensor, nn
 from torch.nn.utils.rnn import pack_padded_sequence, pad_packed_sequence
 
 from parser_service.neural.embeddings import Dropout, WordEmbedding
+from parser_service.neural.scalar_mix import ScalarMix
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,19 +30,30 @@ class Encoded:
 
 
 class Encoder(nn.Module):
-    """One bidirectional LSTM layer over word vectors."""
+    """One bidirectional LSTM layer over word vectors; where a frozen encoder gives vectors as well,
+    over both, joined."""
 
-    def __init__(self, embedding: WordEmbedding, hidden_size: int, dropout: Dropout):
+    def __init__(
+        self,
+        embedding: WordEmbedding,
+        hidden_size: int,
+        dropout: Dropout,
+        mix: ScalarMix | None = None,
+    ):
         super().__init__()
         self.embedding = embedding
         self.dropout = dropout
-        self.lstm = nn.LSTM(
-            embedding.embedding_dim, hidden_size // 2, batch_first=True, bidirectional=True
-        )
+        self.mix = mix
+        width = embedding.embedding_dim + (mix.width if mix else 0)
+        self.lstm = nn.LSTM(width, hidden_size // 2, batch_first=True, bidirectional=True)
 
-    def forward(self, source: Tensor, lengths: Tensor) -> Encoded:
-        """``source`` [batch, source length], ``lengths`` [batch]."""
-        vectors = self.dropout(self.embedding(source))  # [batch, source length, embedding]
+    def forward(self, source: Tensor, lengths: Tensor, context: Tensor | None = None) -> Encoded:
+        """``source`` [batch, source length], ``lengths`` [batch], ``context`` [batch, source
+        length, layers, width] where the encoder was made to mix it."""
+        words = self.embedding(source)  # [batch, source length, embedding]
+        if self.mix is not None:
+            words = torch.cat((words, self.mix(context)), dim=-1)
+        vectors = self.dropout(words)  # [batch, source length, embedding and width of the mix]
         packed = pack_padded_sequence(vectors, lengths, batch_first=True, enforce_sorted=False)
         read, (final, _) = self.lstm(packed)  # final: [2, batch, hidden / 2]
         states, _ = pad_packed_sequence(read, batch_first=True)  # [batch, source length, hidden]

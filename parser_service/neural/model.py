@@ -10,6 +10,7 @@ from parser_service.neural.batches import Batch
 from parser_service.neural.decoder import Decoder
 from parser_service.neural.embeddings import Dropout, WordEmbedding
 from parser_service.neural.encoder import Encoder
+from parser_service.neural.scalar_mix import ContextShape, ScalarMix
 from parser_service.neural.vocabulary import PADDING
 from parser_service.parsers.seq2seq_config import Seq2SeqConfig
 
@@ -23,19 +24,23 @@ class Seq2SeqModel(nn.Module):
         source_words: int,
         target_words: int,
         generator: torch.Generator,
+        context: ContextShape | None = None,
     ):
-        """Weights and dropout are drawn from ``generator`` alone."""
+        """Weights and dropout are drawn from ``generator`` alone. ``context`` is what a frozen
+        encoder adds to each word of the utterance, if there is one."""
         super().__init__()
         with torch.random.fork_rng(devices=[]):  # torch's layers draw weights that are redrawn
             source = WordEmbedding(source_words, config.embedding_size)
             target = WordEmbedding(target_words, config.embedding_size)
-            self.encoder = Encoder(source, config.hidden_size, Dropout(config.dropout, generator))
+            mix = ScalarMix(context) if context else None
+            dropout = Dropout(config.dropout, generator)
+            self.encoder = Encoder(source, config.hidden_size, dropout, mix)
             self.decoder = Decoder(target, config.hidden_size)
         self._draw_weights(generator)
 
     def loss(self, batch: Batch) -> Tensor:
         """Cross entropy in nats a token, a scalar."""
-        encoded = self.encoder(batch.source, batch.lengths)
+        encoded = self.encoder(batch.source, batch.lengths, batch.context)
         start = self.decoder.start(encoded)
         logits, _ = self.decoder(batch.inputs, start, encoded)  # [batch, target length, words]
         return cross_entropy(logits.flatten(0, 1), batch.outputs.flatten(), ignore_index=PADDING)
@@ -45,6 +50,8 @@ class Seq2SeqModel(nn.Module):
         """Glorot for matrices, small normal values for word vectors, zeros for biases but ones for
         the forget gates, so that an untrained memory keeps what it reads."""
         for name, weights in self.named_parameters():
+            if ".mix." in name:
+                continue  # starts as the plain mean of the layers
             if "embedding" in name:
                 weights.normal_(0, 0.1, generator=generator)
                 weights[PADDING] = 0

@@ -1,15 +1,16 @@
-"""The sequence-to-sequence parser of Walker et al. 2019, without pretrained vectors."""
+"""The sequence-to-sequence parser of Walker et al. 2019."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
 import torch
+from torch import Tensor
 
-from parser_service.neural.batches import Example, sources
+from parser_service.neural.batches import Example, contexts, sources
 from parser_service.neural.beam import Hypothesis, search
 from parser_service.neural.checkpoints import (
     TENSORS,
@@ -21,6 +22,7 @@ from parser_service.neural.checkpoints import (
     save_weights,
 )
 from parser_service.neural.model import Seq2SeqModel
+from parser_service.neural.scalar_mix import ContextShape
 from parser_service.neural.threads import threads
 from parser_service.neural.training import Result, Training, validation_loss
 from parser_service.neural.vocabulary import Vocabulary
@@ -64,6 +66,7 @@ class Seq2Seq(Parser):
     ):
         super().__init__(config, seed, knowledge)
         self._generator = torch.Generator().manual_seed(seed)
+        self._shape: ContextShape | None = None
         self._prepare(Vocabulary(()), Vocabulary(()), longest=0)
 
     def fit(
@@ -109,6 +112,7 @@ class Seq2Seq(Parser):
         saved = open_sealed(folder, cls, [VOCABULARY, WEIGHTS])
         parser = cls(saved.config, saved.seed, knowledge)
         text = read_json(folder / VOCABULARY)
+        parser._restore(folder, text)
         parser._prepare(Vocabulary(text["source"]), Vocabulary(text["target"]), text["longest"])
         load_weights(folder / WEIGHTS, parser._model)
         parser._model.eval()
@@ -121,12 +125,17 @@ class Seq2Seq(Parser):
         """An untrained model for these vocabularies."""
         self._generator.manual_seed(self.seed)
         self._source, self._target, self._longest = source, target, longest
-        self._model = Seq2SeqModel(self.config, len(source), len(target), self._generator)
+        self._model = Seq2SeqModel(
+            self.config, len(source), len(target), self._generator, self._shape
+        )
 
     def _read_vocabularies(self, train: Sequence[Pair]) -> None:
-        source = Vocabulary.of([words(p.utterance) for p in train], self.config.minimum_count)
+        source = self._source_vocabulary([words(pair.utterance) for pair in train])
         target = Vocabulary.of([pair.form.split() for pair in train])
         self._prepare(source, target, max(len(pair.form.split()) for pair in train))
+
+    def _source_vocabulary(self, commands: Sequence[tuple[str, ...]]) -> Vocabulary:
+        return Vocabulary.of(commands, self.config.minimum_count)
 
     def _train_epoch(
         self,
@@ -164,20 +173,31 @@ class Seq2Seq(Parser):
         return Result(right / len(pairs), loss)
 
     def _examples(self, pairs: Sequence[Pair]) -> list[Example]:
-        return [
-            Example(
-                self._source.numbers(words(pair.utterance)),
-                self._target.numbers(pair.form.split()),
-            )
-            for pair in pairs
-        ]
+        return [self._example(words(pair.utterance), pair.form.split()) for pair in pairs]
+
+    def _example(self, source: tuple[str, ...], target: Sequence[str]) -> Example:
+        numbers = (self._source.numbers(source), self._target.numbers(target))
+        return Example(*numbers, self._context(source))
+
+    def _context(self, utterance: tuple[str, ...]) -> Tensor | None:
+        """What a frozen encoder says of each word [words, layers, width]; this parser has none."""
+        return None
+
+    def _describe(self) -> dict[str, Any]:
+        """What is saved beside the vocabularies."""
+        return {}
+
+    def _restore(self, folder: Path, described: dict[str, Any]) -> None:
+        """Takes up what ``_describe`` left in ``folder``. Raises ValueError, a sentence."""
 
     def _parse(
         self, utterances: Sequence[str], width: int, check: Check
     ) -> Iterator[list[Candidate]]:
-        numbers = [self._source.numbers(words(utterance)) for utterance in utterances]
+        cut = [words(utterance) for utterance in utterances]
+        context = contexts([self._context(utterance) for utterance in cut])
+        numbers = [self._source.numbers(utterance) for utterance in cut]
         with torch.no_grad():
-            encoded = self._model.encoder(*sources(numbers))
+            encoded = self._model.encoder(*sources(numbers), context)
         longest = self._longest + SLACK
         for found in search(self._model.decoder, encoded, width, longest, check):
             yield self._candidates(found)
@@ -193,7 +213,9 @@ class Seq2Seq(Parser):
     def _write(self, folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         vocabularies = {"source": self._source.words, "target": self._target.words}
-        write_json(folder / VOCABULARY, {**vocabularies, "longest": self._longest})
+        write_json(
+            folder / VOCABULARY, {**vocabularies, "longest": self._longest, **self._describe()}
+        )
         save_weights(folder / WEIGHTS, self._model)
 
     def _checkpoint(self, folder: Path, training: Training) -> None:
@@ -209,6 +231,7 @@ class Seq2Seq(Parser):
             return
         try:
             open_sealed(folder, type(self), [VOCABULARY, WEIGHTS, TRAINING, TENSORS])
+            self._restore(folder, read_json(folder / VOCABULARY))
         except ValueError as problem:
             observe.log(f"Training starts again from the beginning. {problem}")
             return

@@ -13,18 +13,25 @@ CONFIG = "config.json"
 WEIGHTS = "model.safetensors"
 TOKENIZERS = ("tokenizer.json", "vocab.txt")
 
-_folder: Path | None = None
+_encoders: Path | None = None
+_vectors: Path | None = None
 
 
-def keep_encoders_in(folder: Path | None) -> None:
-    """Says where this installation keeps its encoders, one folder each (GPSR_ENCODERS_DIR)."""
-    global _folder
-    _folder = folder
+def keep_encoders_in(encoders: Path | None, vectors: Path | None = None) -> None:
+    """Says where this installation keeps its encoders (GPSR_ENCODERS_DIR), and where frozen ones may
+    leave the vectors of many utterances for the next training."""
+    global _encoders, _vectors
+    _encoders, _vectors = encoders, vectors
 
 
 def encoders_folder() -> Path | None:
     """Where this installation keeps its encoders; None where nobody said."""
-    return _folder
+    return _encoders
+
+
+def vectors_folder() -> Path | None:
+    """Where computed vectors may be left; None where they stay in memory."""
+    return _vectors
 
 
 def find_encoder(name: str, encoders: Path | None = None) -> Path:

@@ -1,0 +1,71 @@
+"""Frozen encoders that give each word of an utterance a vector in its context."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Protocol
+
+import torch
+from tokenizers import Tokenizer
+from torch import Tensor
+
+from parser_service.neural.pretrained import Pretrained, encoder_hash, load_encoder
+from parser_service.neural.word_pooling import mean_by_word
+
+LONGEST = 256  # subwords; the longest published paraphrase has 45
+
+
+class ContextualEncoder(Protocol):
+    """What the parser asks of an encoder. ``identity`` is the hash of all that decides vectors."""
+
+    identity: str
+
+    @property
+    def layers(self) -> int:
+        """Vectors a word."""
+
+    @property
+    def width(self) -> int:
+        """Numbers a vector."""
+
+    def vectors(self, words: Sequence[str]) -> Tensor:
+        """One utterance. Shape [words, layers, width], without gradient."""
+
+
+class TransformerWords:
+    """The last layer of a transformer, the mean over the subwords of each word.
+
+    Each utterance is read alone: in one batch with others its vectors would be rounded otherwise.
+    """
+
+    layers = 1
+
+    def __init__(self, pretrained: Pretrained):
+        self.identity = encoder_hash(pretrained.folder)
+        self._model = pretrained.model.float().eval().requires_grad_(False)
+        text = pretrained.tokenizer.backend_tokenizer.to_str()
+        self._tokenizer: Tokenizer = Tokenizer.from_str(text)
+        self._tokenizer.no_padding()
+        self._tokenizer.enable_truncation(min(LONGEST, self._model.config.max_position_embeddings))
+
+    @classmethod
+    def named(cls, name: str, encoders: Path | None = None) -> TransformerWords:
+        """The transformer ``name``. Raises ValueError saying what to put where."""
+        with torch.random.fork_rng(devices=[]):  # parts that no file has are drawn, and not used
+            return cls(load_encoder(name, encoders))
+
+    @property
+    def width(self) -> int:
+        return int(self._model.config.hidden_size)
+
+    @torch.no_grad()
+    def vectors(self, words: Sequence[str]) -> Tensor:
+        """One utterance. Shape [words, 1, width]."""
+        if not words:
+            return torch.zeros(0, 1, self.width)
+        cut = self._tokenizer.encode(list(words), is_pretokenized=True)
+        subwords = torch.tensor([cut.ids])  # [1, subwords]
+        states = self._model(input_ids=subwords, attention_mask=torch.ones_like(subwords))
+        last = states.last_hidden_state[0]  # [subwords, width]
+        return mean_by_word(last, cut.word_ids, len(words))[:, None]

