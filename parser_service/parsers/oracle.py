@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
 
+from annotations.language.anonymizer import Anonymizer
 from annotations.language.expansion import TaskCategory
 from annotations.language.grammar import Grammar, print_production, read_production
+from annotations.language.ontology import Ontology, read_ontology, write_ontology
 from annotations.language.template_chart import TemplateChart
 from annotations.language.templates import print_template, read_template
 from parser_service.parsers.config_fields import validate
@@ -23,7 +25,7 @@ from parser_service.parsers.interface import (
 )
 from parser_service.parsers.storage import open_sealed, read_json, seal, write_json
 
-GRAMMAR = "grammar.json"
+GRAMMAR, ONTOLOGY = "grammar.json", "ontology.json"
 
 
 @dataclass(frozen=True)
@@ -37,12 +39,13 @@ class OracleConfig:
 class GrammarOracle(Parser):
     """Returns the form of the template that derives the command (Walker et al. 2019, baselines).
 
-    Right on every generated command by construction, without an answer for any other. Learns
-    nothing from pairs: it is the annotated grammar of ``Knowledge``, and a saved one carries a copy.
+    Right on every generated command by construction, without an answer for any other. A command
+    with entities in it is read once more with their class tokens. Learns nothing from pairs: it is
+    the annotated grammar and the ontology of ``Knowledge``, and a saved one carries a copy of both.
     """
 
     name = "grammar-oracle"
-    version = 1
+    version = 2
     protocols = ("grammar",)
     Config = OracleConfig
 
@@ -56,6 +59,7 @@ class GrammarOracle(Parser):
         super().__init__(config, seed, knowledge)
         self._categories = tuple(self.knowledge.grammar or ())
         self._chart = TemplateChart(self._categories)
+        self._anonymizer = Anonymizer(self.knowledge.ontology or Ontology(()))
 
     def fit(
         self,
@@ -78,22 +82,30 @@ class GrammarOracle(Parser):
         answers = []
         for utterance in utterances:
             check()
-            derivations = self._chart.parse(" ".join(utterance.replace(",", " , ").split()))
-            forms = list(dict.fromkeys(derivation.form_text for derivation in derivations))
+            forms = self._forms(utterance) or self._forms(
+                self._anonymizer.anonymize(utterance).text
+            )
             answers.append([Candidate(form, -rank) for rank, form in enumerate(forms[:beam_width])])
         return answers
+
+    def _forms(self, text: str) -> list[str]:
+        derivations = self._chart.parse(" ".join(text.replace(",", " , ").split()))
+        return list(dict.fromkeys(derivation.form_text for derivation in derivations))
 
     def save(self, folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         write_json(folder / GRAMMAR, [_printed(category) for category in self._categories])
-        seal(folder, self, [GRAMMAR])
+        write_json(folder / ONTOLOGY, write_ontology(self.knowledge.ontology or Ontology(())))
+        seal(folder, self, [GRAMMAR, ONTOLOGY])
 
     @classmethod
     def load(cls, folder: Path, knowledge: Knowledge | None = None) -> Self:
-        """The saved oracle with its own copy of the grammar, whatever ``knowledge`` says today."""
-        saved = open_sealed(folder, cls, [GRAMMAR])
+        """The saved oracle with its own copies, whatever ``knowledge`` says today."""
+        saved = open_sealed(folder, cls, [GRAMMAR, ONTOLOGY])
         grammar = tuple(_read(category) for category in read_json(folder / GRAMMAR))
-        return cls(saved.config, saved.seed, Knowledge(grammar=grammar))
+        files = {name: text.encode() for name, text in read_json(folder / ONTOLOGY).items()}
+        ontology, _ = read_ontology(files)
+        return cls(saved.config, saved.seed, Knowledge(ontology=ontology, grammar=grammar))
 
     def parameters(self) -> int:
         return 0

@@ -35,7 +35,7 @@ PARSERS: dict[str, Entry] = {
         title="Grammar oracle",
         description="Chart-parses with the annotated grammar and returns the template's form. "
         "Learns nothing; has no answer outside the grammar.",
-        version=1,
+        version=2,
         protocols=("grammar",),
     ),
     "knn": Entry(

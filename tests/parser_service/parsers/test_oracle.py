@@ -3,6 +3,7 @@ import pytest
 from annotations.language.expansion import TaskCategory, generate
 from annotations.language.generator_folder import read_generator_folder
 from annotations.language.grammar import Grammar, read_productions
+from annotations.language.ontology import Entity, Ontology
 from annotations.language.templates import read_template
 from parser_service.parsers.interface import Cancelled, Knowledge
 from parser_service.parsers.oracle import GRAMMAR, GrammarOracle
@@ -30,7 +31,8 @@ def oracle():
         "look for the {kobject} = (seek {kobject})",
     )
     two = category("2", "$vbfind $thing = (locate $thing)")
-    return GrammarOracle(knowledge=Knowledge(grammar=(one, two)))
+    things = Ontology((Entity("object", "tin of soup"), Entity("room", "pantry")))
+    return GrammarOracle(knowledge=Knowledge(ontology=things, grammar=(one, two)))
 
 
 def forms(parser, utterance, beam_width=1):
@@ -39,6 +41,13 @@ def forms(parser, utterance, beam_width=1):
 
 def test_a_command_gets_the_form_of_its_template(oracle):
     assert forms(oracle, "find the <object>") == ['( find " <object> " )']
+
+
+def test_a_command_with_entities_is_read_with_their_classes(oracle, tmp_path):
+    oracle.save(tmp_path)
+    for parser in (oracle, GrammarOracle.load(tmp_path)):
+        assert forms(parser, "find the tin of soup") == ['( find " <object> " )']
+        assert forms(parser, "walk to the Pantry, please") == ['( go " <room> " )']
 
 
 def test_a_comma_may_stand_at_its_word(oracle):
