@@ -195,8 +195,7 @@ def _columns(runs: list[TrainingRun], splits: list[Split]) -> Iterator[Column]:
 def _labels(splits: list[Split]) -> dict[int, str]:
     is_telling = len({split.criterion for split in splits}) == len(splits)
     return {
-        split.pk: SHORT_CRITERIA[split.criterion] if is_telling else split.name
-        for split in splits
+        split.pk: SHORT_CRITERIA[split.criterion] if is_telling else split.name for split in splits
     }
 
 
