@@ -35,7 +35,8 @@ class GlossHead:
 
     def trained_logits(self, utterances: Tensor, targets: Tensor) -> Tensor:
         """The same with gradient to the glosses of ``targets`` [batch]."""
-        own = targets.unique()
-        texts = [self.glosses[index] for index in own.tolist()]
-        vectors = self.vectors.index_copy(0, own, self.encoder(texts))
+        own = sorted(set(targets.tolist()))
+        fresh = self.encoder([self.glosses[index] for index in own])
+        at = torch.tensor(own, device=fresh.device)
+        vectors = self.vectors.index_copy(0, at, fresh)
         return SCALE * utterances @ vectors.T

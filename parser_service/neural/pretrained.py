@@ -20,7 +20,7 @@ class Pretrained:
     """An encoder as it was published: its network and how it cuts texts into subwords."""
 
     model: PreTrainedModel
-    tokenizer: PreTrainedTokenizerFast
+    tokenizer: PreTrainedTokenizerFast  # the one with a Rust core
     folder: Path
 
 
@@ -37,6 +37,8 @@ def load_encoder(name: str, encoders: Path | None = None) -> Pretrained:
     except Exception as problem:  # transformers raises whatever its parts raise
         text = " ".join(str(problem).split())[:200]
         raise ValueError(f"{folder} holds no encoder that can be read: {text}") from problem
+    if not isinstance(tokenizer, PreTrainedTokenizerFast):
+        raise ValueError(f"{folder} holds no tokenizer.json that can be read. Put that file there.")
     return Pretrained(model, tokenizer, folder)
 
 

@@ -32,10 +32,11 @@ class RankedForms:
     def read(cls, values: Mapping[str, Any]) -> Self:
         """What ``written`` gave."""
         return cls(
-            **{
-                name: tuple(value) if isinstance(value, list) else value
-                for name, value in values.items()
-            }
+            tuple(values["forms"]),
+            tuple(values["glosses"]),
+            values["known"],
+            tuple(values["support"]),
+            values["examples"],
         )
 
     def written(self) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Self
 
 import torch
+from torch import Tensor
 
 from parser_service.neural.checkpoints import WEIGHTS, load_weights, save_weights
 from parser_service.neural.deciding import Decision, Scores, calibrated
@@ -201,14 +202,12 @@ class FormRanker(Parser):
         by_gloss = model.fitting(model.glosses.logits(vectors), utterances).cpu()
         by_gloss[:, known:] += SUPPORT_WEIGHT * torch.tensor(self._ranked.support)
         by_example = model.prototypes(vectors).cpu()  # [utterances, forms with examples]
-        lists = []
-        for begin, end in ((0, known), (known, len(self._ranked.forms))):
-            scores = torch.log_softmax(by_gloss[:, begin:end], -1)
-            if end <= self._ranked.examples:
-                scores = scores + torch.log_softmax(by_example[:, begin:end], -1)
-            lists.append(scores)
         evidence = by_gloss[:, known:].logsumexp(-1) - by_gloss[:, :known].logsumexp(-1)
-        return Scores(*lists, evidence)
+        return Scores(
+            _added(by_gloss[:, :known], by_example[:, :known]),
+            _added(by_gloss[:, known:], by_example[:, known:]),
+            evidence,
+        )
 
     def _or_unknown(self, ranked: list[Candidate]) -> list[Candidate]:
         bound = self.config.unknown_below
@@ -252,6 +251,13 @@ class FormRanker(Parser):
             return
         load_training(folder, training)
         observe.log(f"Training goes on after epoch {training.epoch}.")
+
+
+def _added(by_gloss: Tensor, by_example: Tensor) -> Tensor:
+    """The log-probabilities of both ways for some forms, of glosses alone where there is no example.
+    Shape [utterances, forms]."""
+    logs = torch.log_softmax(by_gloss, -1)
+    return logs + torch.log_softmax(by_example, -1) if by_example.shape[1] else logs
 
 
 def processor() -> torch.device:

@@ -38,7 +38,7 @@ def load_training(folder: Path, training: RankerTraining) -> None:
         training.average.values[name].copy_(tensors[f"average.{name}"])
         prefix = f"adam.{name}."
         training.optimizer.state[weight] = {
-            key.removeprefix(prefix): value.to(weight.device) if value.dim() else value
+            key.removeprefix(prefix): value.to(weight.device)
             for key, value in tensors.items()
             if key.startswith(prefix)
         }

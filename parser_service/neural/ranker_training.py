@@ -60,7 +60,7 @@ class RankerTraining:
         self.fill = fill
         kept = {name: config.pretrained_share for name, _ in model.encoder_weights()}
         self.average = Average(model.trained(), config.averaging, kept)
-        self.optimizer = torch.optim.AdamW(self._groups(), weight_decay=WEIGHT_DECAY)
+        self.optimizer = torch.optim.AdamW(self._groups(), weight_decay=WEIGHT_DECAY, fused=True)
         self.epoch = 0
         self.batches = math.ceil(len(examples) / config.batch_size)  # an epoch
         self.epochs = math.ceil(config.steps / self.batches)

@@ -51,7 +51,7 @@ class SentenceEncoder(nn.Module):
         values = json.loads((folder / ENCODER).read_text(encoding="utf-8"))
         config = AutoConfig.for_model(values.pop("model_type"), **values)
         with torch.random.fork_rng(devices=[]):  # weights are drawn only to be replaced
-            model = AutoModel.from_config(config)
+            model = AutoModel.from_config(config)  # type: ignore[no-untyped-call]
         return cls(model, Tokenizer.from_file(str(folder / TOKENIZER)))
 
     def describe(self, folder: Path) -> None:

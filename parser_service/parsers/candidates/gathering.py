@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
+from annotations.language.anonymizer import Anonymizer
 from annotations.language.errors import LanguageError
 from annotations.language.logic import Form, read_form
+from annotations.language.ontology import Ontology
 from annotations.language.predicates import infer_signatures
 from parser_service.parsers.candidates.closure import close
 from parser_service.parsers.candidates.geca import geca
@@ -66,12 +68,20 @@ def _made(pairs: Sequence[Pair], training: Sequence[str], knowledge: Knowledge) 
     if knowledge.grammar is not None:
         yield from grammar_forms(knowledge.grammar)
         return
-    yield from geca(pairs)
+    yield from geca(_anonymized(pairs, knowledge.ontology))
     if knowledge.predicates is None:
         yield from close(training, infer_signatures(_forms(training)))
         return
     yield from close(training, knowledge.predicates)
     yield from inventory(training, knowledge.predicates)
+
+
+def _anonymized(pairs: Sequence[Pair], ontology: Ontology | None) -> Sequence[Pair]:
+    """With class tokens for entities, where these are known: more commands then differ in one thing."""
+    if ontology is None:
+        return pairs
+    anonymizer = Anonymizer(ontology)
+    return [replace(pair, utterance=anonymizer.anonymize(pair.utterance).command) for pair in pairs]
 
 
 def _forms(texts: Iterable[str]) -> Iterator[Form]:

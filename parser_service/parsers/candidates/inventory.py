@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from annotations.language.logic import Application, to_corpus
+from annotations.language.logic import to_corpus
 from annotations.language.predicates import Predicate
 from annotations.language.signatures import signature_of
 from parser_service.parsers.candidates.closure import Change, close
@@ -36,7 +36,7 @@ def rename(
 ) -> Iterator[Change]:
     """Another description that takes the same arguments: ``right_of`` for ``left_of``."""
     part = place.part
-    if not is_leaf(part) or not isinstance(part, Application):
+    if not is_leaf(part):
         return
     mine = predicates.get(str(part.predicate))
     given = signature_of(part)

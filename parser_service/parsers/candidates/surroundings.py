@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeGuard
 
 from annotations.language.logic import (
     Application,
@@ -53,7 +54,10 @@ class Surroundings:
 
 def look_around(forms: Sequence[Form]) -> Surroundings:
     """The surroundings that ``forms`` show."""
-    leaves, beside, inside, terms = {}, set(), set(), {}
+    leaves: dict[Leaf, None] = {}
+    beside: set[tuple[str, str]] = set()
+    inside: set[tuple[str, int, str]] = set()
+    terms: dict[Lambda, None] = {}
     for form in forms:
         for place in places(form):
             conjunction = conjuncts(place.part)
@@ -94,7 +98,7 @@ def with_children(form: Form, parts: Sequence[Form]) -> Form:
     return form
 
 
-def is_leaf(form: Form) -> bool:
+def is_leaf(form: Form) -> TypeGuard[Leaf]:
     """Whether a form describes a variable by constants and other variables alone."""
     if not isinstance(form, Application) or not isinstance(
         next(iter(form.arguments), None), Variable
