@@ -5,14 +5,22 @@ Nothing is downloaded, only safetensors are read, and no code that comes with we
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 
 from transformers import AutoModel, AutoTokenizer, PreTrainedModel, PreTrainedTokenizerFast
+from transformers.utils import logging
 
 from parser_service.parsers.encoder_places import CONFIG, TOKENIZERS, WEIGHTS, find_encoder
 from parser_service.parsers.storage import file_hash
+
+# What matters of a load report is raised here; the rest and the bars would fill the log of a run.
+logging.disable_progress_bar()
+logging.set_verbosity_error()
+
+UNUSED = "pooler."  # the part that reads the last layer: nothing here does
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,14 +39,19 @@ def load_encoder(name: str, encoders: Path | None = None) -> Pretrained:
         tokenizer = AutoTokenizer.from_pretrained(
             folder, local_files_only=True, trust_remote_code=False
         )
-        model = AutoModel.from_pretrained(
-            folder, local_files_only=True, trust_remote_code=False, use_safetensors=True
+        model, report = AutoModel.from_pretrained(
+            folder,
+            local_files_only=True,
+            trust_remote_code=False,
+            use_safetensors=True,
+            output_loading_info=True,
         )
     except Exception as problem:  # transformers raises whatever its parts raise
         text = " ".join(str(problem).split())[:200]
         raise ValueError(f"{folder} holds no encoder that can be read: {text}") from problem
     if not isinstance(tokenizer, PreTrainedTokenizerFast):
         raise ValueError(f"{folder} holds no tokenizer.json that can be read. Put that file there.")
+    _refuse_gaps(folder, report["missing_keys"])
     return Pretrained(model, tokenizer, folder)
 
 
@@ -47,3 +60,13 @@ def encoder_hash(folder: Path) -> str:
     names = (CONFIG, WEIGHTS, *TOKENIZERS)
     hashes = [f"{name} {file_hash(folder / name)}" for name in names if (folder / name).is_file()]
     return sha256("\n".join(hashes).encode()).hexdigest()
+
+
+def _refuse_gaps(folder: Path, absent: Collection[str]) -> None:
+    """Transformers draws at random what the file has not: nobody should train on that unawares."""
+    used = sorted(name for name in absent if not name.startswith(UNUSED))
+    if used:
+        raise ValueError(
+            f"{folder / WEIGHTS} lacks {len(used)} weights of the network that its {CONFIG} "
+            f"describes, {used[0]} first. Put the two files of one model there."
+        )

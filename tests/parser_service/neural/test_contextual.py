@@ -81,6 +81,13 @@ def test_a_pickle_under_a_safe_name_is_refused(tmp_path, write):
         TransformerWords.named(str(folder))
 
 
+def test_weights_of_another_network_are_not_made_up(tmp_path):
+    folder, other = write_bert(tmp_path / "bert"), write_gpt(tmp_path / "gpt")
+    (other / "model.safetensors").replace(folder / "model.safetensors")
+    with pytest.raises(ValueError, match=r"lacks \d+ weights of the network that its config.json"):
+        TransformerWords.named(str(folder))
+
+
 def test_code_beside_the_weights_is_not_run(tmp_path):
     folder = write_gpt(tmp_path / "encoder")
     config = json.loads((folder / "config.json").read_text())

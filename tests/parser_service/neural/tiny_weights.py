@@ -7,13 +7,13 @@ from pathlib import Path
 import h5py
 import numpy
 import torch
+from safetensors.torch import load_file, save_file
 from tokenizers import Tokenizer, models, normalizers, pre_tokenizers, processors, trainers
 from transformers import (
     BertConfig,
-    BertModel,
+    BertForPreTraining,
     OpenAIGPTConfig,
     OpenAIGPTModel,
-    PreTrainedTokenizerFast,
 )
 
 TEXT = ["bring me the apple from the kitchen", "find a person in the room", "object location"]
@@ -96,7 +96,17 @@ def write_bert(folder: Path, seed: int = 0) -> Path:
         intermediate_size=16,
         max_position_embeddings=40,
     )
-    return _write(folder, BertModel, config, tokenizer, "[UNK]", seed)
+    _write(folder, BertForPreTraining, config, tokenizer, seed)
+    path = folder / "model.safetensors"
+    save_file({_first_name(name): value for name, value in load_file(path).items()}, path)
+    return path.parent
+
+
+def _first_name(name: str) -> str:
+    """The name that a weight has in the first BERTs, which is how they are still published."""
+    if ".LayerNorm." not in name:
+        return name
+    return name.replace(".weight", ".gamma").replace(".bias", ".beta")
 
 
 def write_gpt(folder: Path, seed: int = 0) -> Path:
@@ -111,11 +121,13 @@ def write_gpt(folder: Path, seed: int = 0) -> Path:
     config = OpenAIGPTConfig(
         vocab_size=tokenizer.get_vocab_size(), n_positions=40, n_embd=8, n_layer=2, n_head=2
     )
-    return _write(folder, OpenAIGPTModel, config, tokenizer, "<unk>", seed)
+    return _write(folder, OpenAIGPTModel, config, tokenizer, seed)
 
 
-def _write(folder, model, config, tokenizer, unknown, seed):
-    PreTrainedTokenizerFast(tokenizer_object=tokenizer, unk_token=unknown).save_pretrained(folder)
+def _write(folder, model, config, tokenizer, seed):
+    folder.mkdir(parents=True, exist_ok=True)
+    tokenizer.save(str(folder / "tokenizer.json"))
+    (folder / "tokenizer_config.json").write_text('{"model_max_length": 512}')
     with torch.random.fork_rng(devices=[]):
         torch.manual_seed(seed)
         model(config).save_pretrained(folder)
