@@ -17,8 +17,8 @@ from parser_service.parsers.encoder_places import CONFIG, TOKENIZERS, WEIGHTS, f
 from parser_service.parsers.storage import file_hash
 
 # What matters of a load report is raised here; the rest and the bars would fill the log of a run.
-logging.disable_progress_bar()
-logging.set_verbosity_error()
+logging.disable_progress_bar()  # type: ignore[no-untyped-call]
+logging.set_verbosity_error()  # type: ignore[no-untyped-call]
 
 UNUSED = "pooler."  # the part that reads the last layer: nothing here does
 
