@@ -43,7 +43,8 @@ class TransformerWords:
 
     def __init__(self, pretrained: Pretrained):
         self.identity = encoder_hash(pretrained.folder)
-        self._model = pretrained.model.eval().requires_grad_(False)
+        self._model = pretrained.model.requires_grad_(False)
+        self._model.eval()  # type: ignore[no-untyped-call]
         self._model.float()  # type: ignore[no-untyped-call]
         text = pretrained.tokenizer.backend_tokenizer.to_str()
         self._tokenizer: Tokenizer = Tokenizer.from_str(text)
