@@ -47,6 +47,7 @@ def test_the_editor_says_what_the_checker_finds_and_shows_what_comes_out(
 ):
     page = page_of(annotator)
     page.goto(f"{live_server.url}/w/home/templates/new/")
+    expect(page.locator(".cm-editor")).to_have_count(2)  # before, the plain fields stand there
     page.get_by_role("textbox", name="Pattern").fill("$vbfind the {kobject} now")
     form = page.get_by_role("textbox", name="Logical form")
     form.fill("(find {room})")

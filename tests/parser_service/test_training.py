@@ -15,6 +15,7 @@ from parser_service.knowledge import knowledge_of
 from parser_service.models import TrainingRun
 from parser_service.parsers import registry
 from parser_service.parsers.interface import Parser
+from parser_service.parsers.weight_files import missing_weights
 from parser_service.training import sentence_of, train, untrained
 from tests.parser_service.made_up import LONG, TINY, make_split
 
@@ -165,7 +166,11 @@ def test_only_the_last_and_the_best_checkpoint_stay_on_the_disk(split):
     assert {path.name for path in folder.iterdir()} == rows
 
 
-def test_every_parser_of_the_registry_can_be_made_for_a_run(split):
-    for name, entry in registry.PARSERS.items():
-        run = claimed(split, name, protocol=entry.protocols[0])
+@pytest.mark.parametrize("name", registry.PARSERS)
+def test_a_parser_of_the_registry_can_be_made_for_a_run_or_says_what_it_lacks(split, name):
+    try:
+        run = claimed(split, name, protocol=registry.entry(name).protocols[0])
+    except ValueError as refusal:
+        assert str(refusal) == missing_weights(registry.make_config(name, {}))
+    else:
         assert isinstance(untrained(run), Parser)
