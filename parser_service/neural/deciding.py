@@ -9,7 +9,7 @@ import torch
 from torch import Tensor
 from torch.nn.functional import logsigmoid
 
-TEMPERATURES = tuple(0.05 * step for step in range(4, 41))  # 0.2 to 2
+TEMPERATURES = tuple(0.05 * step for step in range(10, 41))  # 0.5 to 2
 OFFSETS = tuple(0.25 * step for step in range(-32, 33))  # nats
 SLOPES = (0.0, 0.125, 0.25, 0.5, 1.0)
 

@@ -18,7 +18,7 @@ class RankerConfig:
         DEFAULT_ENCODER,
         "Pretrained sentence encoder: a folder (of GPSR_ENCODERS_DIR, too), a package or a hub name.",
     )
-    steps: int = hyperparameter(320, "Optimisation steps, rounded up to whole epochs.", 1, 100_000)
+    steps: int = hyperparameter(400, "Optimisation steps, rounded up to whole epochs.", 1, 100_000)
     batch_size: int = hyperparameter(32, "Pairs a training step.", minimum=1, maximum=4096)
     learning_rate: float = hyperparameter(
         2e-4, "Largest step of AdamW on the encoder.", minimum=1e-7, maximum=1.0

@@ -4,6 +4,7 @@ from annotations.language.logic import read_form
 from annotations.language.ontology import Ontology
 from annotations.language.predicates import infer_signatures
 from annotations.language.templates import read_template
+from parser_service.corpus import read_corpus
 from parser_service.parsers.candidates.gathering import gather
 from parser_service.parsers.candidates.pool import Candidate, Made, Pool
 from parser_service.parsers.interface import Knowledge, Pair
@@ -81,3 +82,13 @@ def test_the_order_of_the_pairs_changes_nothing(pairs):
 def test_bring_is_not_made_of_what_was_never_brought(pairs):
     named = Pair("find <name>", find('name $1 " <name> "'))
     assert bring('name $1 " <name> "') not in new_forms([*pairs, named])
+
+
+def test_most_unseen_forms_of_the_published_corpus_are_among_the_candidates(shared_data):
+    corpus = read_corpus(shared_data / "walker2019", "logical_form")
+    sources = ("generated", "paraphrased")
+    gathered = gather(corpus.pairs("train", sources), Knowledge())
+    made = {each.form for each in gathered.new}
+    unseen = corpus.pairs("validation", ("paraphrased",))
+    assert sum(pair.form in made for pair in unseen) / len(unseen) > 0.8
+    assert len(made) < 300

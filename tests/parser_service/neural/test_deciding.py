@@ -65,4 +65,4 @@ def test_a_form_that_is_in_no_list_counts_as_new_and_for_no_temperature():
     found = calibrated(SCORES, torch.tensor([-1, -1]))
     assert (found.known_temperature, found.new_temperature) == (1, 1)
     assert found.novelty > 0
-    assert calibrated(SCORES, torch.tensor([0, 2])).known_temperature == pytest.approx(0.2)
+    assert calibrated(SCORES, torch.tensor([0, 2])).known_temperature == pytest.approx(0.5)
