@@ -6,8 +6,18 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from django.db.models import Count, Q
+from django.db.models import Count
 
+from annotations.language.errors import LanguageError
+from annotations.language.leakage import (
+    MOST_COMPARISONS,
+    Leak,
+    NearDuplicates,
+    comparisons,
+    near_duplicates,
+    shared,
+)
+from annotations.language.splitting import SplitItem
 from annotations.models import Example, Split
 from annotations.models.splits import Part, Source
 
@@ -25,24 +35,6 @@ class PartCounts:
     @property
     def total(self) -> int:
         return self.train + self.validation + self.test
-
-
-@dataclass(frozen=True, slots=True)
-class Leak:
-    """How much of what stands in ``part`` stands in the training part too.
-
-    ``what`` is a plural: utterances, logical forms or source commands. ``pairs`` counts the pairs of
-    ``part`` that have such a thing at all, ``shared`` those of them whose thing training has seen.
-    """
-
-    part: str
-    what: str
-    pairs: int
-    shared: int
-
-    @property
-    def percent(self) -> float:
-        return 100 * self.shared / self.pairs if self.pairs else 0.0
 
 
 def counts_of(splits: Iterable[Split]) -> dict[int, list[PartCounts]]:
@@ -84,25 +76,35 @@ def counts_of_planned(examples: Sequence[Example]) -> list[PartCounts]:
     ]
 
 
-LEAKS = {
-    "utterance": "utterances",
-    "source_command": "source commands",
-    "logical_form": "logical forms",
-}
-
-
 def leakage_of(split: Split) -> list[Leak]:
-    """What validation and test share with training, both sources together. A query each."""
-    return [
-        leak
-        for part in (Part.VALIDATION, Part.TEST)
-        for field, what in LEAKS.items()
-        if (leak := _leak(split, part, field, what)).pairs
-    ]
+    """What validation and test share with training, both sources together. One query."""
+    parts = _items_by_part(split)
+    train = parts.pop(Part.TRAIN, [])
+    return [leak for part, items in parts.items() for leak in shared(part, items, train)]
 
 
-def _leak(split: Split, part: str, field: str, what: str) -> Leak:
-    seen = split.examples.of(Part.TRAIN).exclude(**{field: ""}).order_by().values(field)
-    shared = Count("pk", filter=Q(**{f"{field}__in": seen}))
-    rows = split.examples.of(part).exclude(**{field: ""})
-    return Leak(part, what, **rows.aggregate(pairs=Count("pk"), shared=shared))
+def near_duplicates_of(split: Split, limit: int | None = MOST_COMPARISONS) -> list[NearDuplicates]:
+    """The near duplicates of validation and of test in training, both sources together. One query.
+
+    Raises LanguageError where that takes more than ``limit`` comparisons of two utterances.
+    """
+    parts = _items_by_part(split)
+    train = parts.pop(Part.TRAIN, [])
+    needed = sum(comparisons(items, train) for items in parts.values())
+    if limit is not None and needed > limit:
+        raise LanguageError(
+            f"comparing all utterances with training takes {needed:,} comparisons",
+            hint=f"run manage.py leakage {split.world.name} {split.name}",
+        )
+    return [near_duplicates(part, items, train) for part, items in parts.items()]
+
+
+def _items_by_part(split: Split) -> dict[str, list[SplitItem]]:
+    """Part → its examples, in the order train, validation, test; without parts that are empty."""
+    rows = split.examples.order_by("pk").values_list(
+        "part", "source", "utterance", "source_command", "logical_form"
+    )
+    parts: dict[str, list[SplitItem]] = {part: [] for part in Part.values}
+    for part, *texts in rows.iterator(chunk_size=5000):
+        parts[part].append(SplitItem(*texts))
+    return {part: items for part, items in parts.items() if items}

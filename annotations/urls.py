@@ -34,4 +34,5 @@ urlpatterns = [
     path("splits/", splits.splits, name="splits"),
     path("splits/new/", splits.split_new, name="split_new"),
     path("splits/<int:pk>/", splits.split, name="split"),
+    path("splits/<int:pk>/near/", splits.near_duplicates, name="near_duplicates"),
 ]

@@ -10,7 +10,7 @@ from django.core.management.base import BaseCommand, CommandError, CommandParser
 from django.db import DatabaseError
 
 from annotations.language.errors import LanguageError, Problem
-from annotations.models import World
+from annotations.models import Split, World
 
 PROBLEM = "  {file}:{line}:{column}: {severity}: {message} ({hint})"
 
@@ -100,3 +100,12 @@ def find_world(name: str) -> World:
         names = ", ".join(World.objects.values_list("name", flat=True)) or "none"
         raise CommandError(f"There is no world “{name}”. Worlds here: {names}.")
     return world
+
+
+def find_split(world: World, name: str) -> Split:
+    """The split ``name`` of ``world``. Raises CommandError with the names that exist."""
+    split = world.splits.named(name)
+    if split is None:
+        names = ", ".join(world.splits.values_list("name", flat=True)) or "none"
+        raise CommandError(f"“{world}” has no split “{name}”. It has: {names}.")
+    return split

@@ -12,13 +12,14 @@ from annotations.freezing import freeze_split, plan_split
 from annotations.language.errors import LanguageError
 from annotations.listing import Listing, Sort
 from annotations.models import Duty, Split, World
-from annotations.parts import counts_of, counts_of_planned, leakage_of
+from annotations.parts import counts_of, counts_of_planned, leakage_of, near_duplicates_of
 
 SORTS = {
     "position": Sort("No.", "id", is_number=True),
     "utterance": Sort("Utterance", "utterance"),
     "category": Sort("Task category", "task_category"),
 }
+MOST_SHOWN = 100
 
 
 @world_view(Duty.VIEW)
@@ -60,3 +61,18 @@ def split(request: HttpRequest, world: World, pk: int) -> HttpResponse:
         "listing": Listing(request, ExampleFilters, row.examples.all(), SORTS),
     }
     return render(request, "annotations/split.html", context)
+
+
+@world_view(Duty.VIEW)
+def near_duplicates(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """Utterances that training nearly has; a part of the split's page, fetched when it is opened."""
+    row = get_object_or_404(Split.objects.select_related("world"), world=world, pk=pk)
+    context: dict[str, object] = {"most": MOST_SHOWN}
+    try:
+        context["parts"] = [
+            (each.leak, each.found[:MOST_SHOWN], len(each.found))
+            for each in near_duplicates_of(row)
+        ]
+    except LanguageError as error:
+        context["refusal"] = error.problem
+    return render(request, "annotations/_near_duplicates.html", context)

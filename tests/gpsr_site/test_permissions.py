@@ -66,6 +66,7 @@ POLICY = [
             "paraphrases",
             "splits",
             "split",
+            "near_duplicates",
             "runs",
             "runs_table",
             "run",
@@ -111,6 +112,7 @@ def address(name: str, world: House, things: House | None = None) -> str:
         "template": {"pk": things.template.pk},
         "form": {"pk": things.form.pk},
         "split": {"pk": things.split.pk},
+        "near_duplicates": {"pk": things.split.pk},
         "api:split-export": {"pk": things.split.pk},
         "prediction": {"pk": things.run.pk, "example": things.example.pk},
     }

@@ -6,11 +6,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from django.core.management.base import CommandError, CommandParser
+from django.core.management.base import CommandParser
 
 from annotations.exporting import Format, export_split
-from annotations.management.base import ReportingCommand, find_world
-from annotations.models import Split, World
+from annotations.management.base import ReportingCommand, find_split, find_world
 
 
 class Command(ReportingCommand):
@@ -25,18 +24,10 @@ class Command(ReportingCommand):
     def report(
         self, *, world: str, name: str, as_: str, output: Path, **options: Any
     ) -> Mapping[str, Any]:
-        split = _find_split(find_world(world), name)
+        split = find_split(find_world(world), name)
         return {
             "split": split.name,
             "criterion": split.criterion,
             "content_hash": split.content_hash,
             "files": export_split(split, as_, output),
         }
-
-
-def _find_split(world: World, name: str) -> Split:
-    split = world.splits.named(name)
-    if split is None:
-        names = ", ".join(world.splits.values_list("name", flat=True)) or "none"
-        raise CommandError(f"“{world}” has no split “{name}”. It has: {names}.")
-    return split

@@ -98,3 +98,24 @@ def test_a_split_that_is_not_there_is_answered_with_those_that_are(generated, tm
     run("freeze_split", "home", "--name", "first")
     _, failure = run("export_split", "home", "second", "--output", tmp_path)
     assert str(failure) == "“home” has no split “second”. It has: first."
+
+
+def test_the_leakage_of_a_split_is_reported_by_part(db, shared_data):
+    run("import_pairs", shared_data / "walker2019", "--world", "walker", "--name", "published")
+    report, failure = run("leakage", "walker", "published", "--examples", 2)
+    assert failure is None
+    rows = {(row["part"], row["what"]): row for row in report["shared"]}
+    assert set(rows) >= {
+        ("validation", what)
+        for what in ("utterances", "source commands", "logical forms", "near duplicates")
+    }
+    assert rows["validation", "utterances"]["pairs"] == 121 + 181
+    assert rows["validation", "near duplicates"]["shared"] > 0
+    listed = report["near_duplicates"]["validation"]
+    assert len(listed) == 2
+    assert all(each["similarity"] >= 0.9 for each in listed)
+
+
+def test_a_split_that_is_not_there_has_no_leakage(generated):
+    _, failure = run("leakage", "home", "nowhere")
+    assert "has no split “nowhere”" in str(failure)

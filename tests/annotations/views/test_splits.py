@@ -102,3 +102,27 @@ def test_the_page_of_a_split_leads_to_its_exports(house, anna):
     page = anna.get(f"/w/home/splits/{house.split.pk}/").content.decode()
     for end in ("?as=jsonl", "?as=csv", "?as=txt&amp;source=generated&amp;part=train"):
         assert f"/api/v1/worlds/home/splits/{house.split.pk}/export/{end}" in page
+
+
+def test_near_duplicates_stand_beside_what_training_has(house, anna):
+    for part, text in (
+        ("train", "Bring me the big <object>"),
+        ("test", "bring me teh big <object>"),
+    ):
+        house.split.examples.create(
+            part=part, source="paraphrased", utterance=text, logical_form="( go )", position=100
+        )
+    address = f"/w/home/splits/{house.split.pk}/"
+    assert f'hx-get="{address}near/"' in anna.get(address).content.decode()
+    answer = anna.get(f"{address}near/")
+    found = {leak.part: rows for leak, rows, _ in answer.context["parts"]}
+    assert ("bring me teh big <object>", "bring me the big <object>") in [
+        (each.utterance, each.training) for each in found["test"]
+    ]
+    assert "Similarity" in answer.content.decode()
+
+
+def test_more_comparisons_than_a_page_can_make_are_left_to_the_command(house, anna, monkeypatch):
+    monkeypatch.setattr("annotations.parts.comparisons", lambda *_: 10**9)
+    page = anna.get(f"/w/home/splits/{house.split.pk}/near/").content.decode()
+    assert f"manage.py leakage home {house.split.name}" in page
