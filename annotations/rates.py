@@ -17,7 +17,11 @@ class Rate:
 
     def is_spent(self, key: str) -> bool:
         """Whether ``key`` has no event left for now."""
-        return int(cache.get(self._slot(key), 0)) >= self.limit
+        return self.left(key) == 0
+
+    def left(self, key: str) -> int:
+        """How many events ``key`` has left for now."""
+        return max(0, self.limit - int(cache.get(self._slot(key), 0)))
 
     def count(self, key: str) -> None:
         """One event of ``key``; the first one starts the clock."""

@@ -1,4 +1,8 @@
-"""The accuracy tables of a world: parsers down, settings across, one table a protocol."""
+"""The accuracy tables of a world: parsers down, settings across, one table a protocol.
+
+A row is a parser with one configuration. A cell is over all seeds that have been scored under its
+row and column: with the newest version of the parser among them, and of each seed the newest run.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +17,7 @@ from django.utils.http import urlencode
 
 from annotations.models import Split, World
 from annotations.models.splits import Criterion, Source
+from parser_service.accuracy_cells import Cell, newest_of_each_seed
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.models.runs import Protocol
 from parser_service.parsers.registry import PARSERS
@@ -63,52 +68,6 @@ class Column:
     def shows(self, run: TrainingRun) -> bool:
         """Whether a score of ``run`` belongs here."""
         return run.split_id == self.split.pk and run.train_sources == self.train_sources
-
-
-@dataclass(frozen=True, slots=True)
-class Cell:
-    """A parser in a column: its newest score, or the run that will give one.
-
-    ``published`` is the paper's figure in percent; ``runs`` counts the scored runs behind the cell.
-    """
-
-    score: Evaluation | None
-    active: TrainingRun | None
-    published: float | None
-    url: str
-    runs: int = 0
-    is_best: bool = False
-
-    @property
-    def percent(self) -> float | None:
-        return 100 * self.score.accuracy if self.score else None
-
-    @property
-    def low(self) -> float | None:
-        return 100 * self.score.interval_low if self.score else None
-
-    @property
-    def high(self) -> float | None:
-        return 100 * self.score.interval_high if self.score else None
-
-    @property
-    def plus_minus(self) -> float | None:
-        return 100 * self.score.half_width if self.score else None
-
-    @property
-    def note(self) -> str:
-        if not self.score:
-            return ""
-        found = f"{self.score.correct} of {self.score.count} exact"
-        return f"{found}; the newest of {self.runs} runs" if self.runs > 1 else found
-
-    @property
-    def status(self) -> str:
-        return self.active.status if self.active else ""
-
-    @property
-    def progress_percent(self) -> float:
-        return 100 * self.active.progress if self.active else 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -227,32 +186,45 @@ class _Maker:
 
     def cell(self, parser: str, column: Column, runs: list[TrainingRun]) -> Cell | None:
         mine = [run for run in runs if column.shows(run)]
-        found = [self.scores.get((run.pk, column.test_source)) for run in mine]
-        scores = [score for score in found if score]
-        active = next((run for run in mine if not run.is_ended), None)
-        if not scores and not active:
+        scored = [run for run in mine if (run.pk, column.test_source) in self.scores]
+        counted = newest_of_each_seed(scored)
+        active = tuple(run for run in mine if not run.is_ended)
+        if not counted and not active:
             return None
         return Cell(
-            score=scores[0] if scores else None,
+            scores=tuple(self.scores[run.pk, column.test_source] for run in counted),
             active=active,
             published=self.published_figure(parser, column),
-            url=self.predictions_url(scores[0], column) if scores else self.url("run", active.pk),
-            runs=len(scores),
+            url=self.cell_url(counted, active, column),
         )
+
+    def cell_url(
+        self, counted: list[TrainingRun], active: tuple[TrainingRun, ...], column: Column
+    ) -> str:
+        """The predictions that a single score counts, the run to come, or the list of all seeds."""
+        among = counted or active
+        if len(among) > 1:
+            return seeds_url(self.world, among[0])
+        return self.predictions_url(among[0], column) if counted else self.url("run", among[0].pk)
 
     def published_figure(self, parser: str, column: Column) -> float | None:
         criterion = self.published.get(column.split.pk, "")
         return published_accuracy(parser, column.setting, criterion)
 
-    def predictions_url(self, score: Evaluation, column: Column) -> str:
-        """The predictions that ``score`` counts."""
+    def predictions_url(self, run: TrainingRun, column: Column) -> str:
+        """The predictions that the score of ``run`` counts."""
         chosen = {"part": self.part}
         if source := SOURCE_NAMES.get(column.test_source):
             chosen["source"] = source
-        return f"{self.url('predictions', score.run_id)}?{urlencode(chosen)}"
+        return f"{self.url('predictions', run.pk)}?{urlencode(chosen)}"
 
     def url(self, name: str, key: int) -> str:
         return reverse(name, kwargs={"world": self.world.name, "pk": key})
+
+
+def seeds_url(world: World, run: TrainingRun) -> str:
+    """The list of ``run`` and what differs from it by nothing but the seed."""
+    return f"{reverse('runs', kwargs={'world': world.name})}?seeds_of={run.pk}"
 
 
 def _rank(parser: str, changes: Changes) -> tuple[int, int, str]:
@@ -273,4 +245,4 @@ def _with_best_marked(rows: list[Row]) -> Iterator[Row]:
 
 
 def _accuracy(cell: Cell | None) -> float:
-    return cell.score.accuracy if cell and cell.score else -1.0
+    return cell.over_seeds.mean if cell and cell.over_seeds else -1.0

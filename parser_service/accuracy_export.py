@@ -7,8 +7,9 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from parser_service.accuracy import Column, Row, Table
-from parser_service.models import Evaluation
+from parser_service.accuracy_cells import Cell
 
+# Of the newest run of a cell.
 SCORE_FIELDS = (
     "part",
     "run_id",
@@ -20,6 +21,8 @@ SCORE_FIELDS = (
     "equivalent",
     "well_formed",
 )
+# Over all seeds of a cell.
+SEED_FIELDS = ("mean", "spread", "n_seeds")
 # The columns, in this order in every release.
 HEADER = (
     "parser",
@@ -30,16 +33,21 @@ HEADER = (
     "split",
     "criterion",
     *SCORE_FIELDS,
+    *SEED_FIELDS,
 )
 
 
 def rows_of(tables: Iterable[Table]) -> Iterator[tuple[Any, ...]]:
-    """One row for each cell that has been scored; accuracies are fractions of 1."""
+    """One row for each cell that has been scored; accuracies are fractions of 1.
+
+    The figures of the newest run come first, then mean and spread (the sample standard deviation,
+    empty for one run) over all seeds.
+    """
     for table in tables:
         for row, cells in table.filled:
             for column, cell in cells:
                 if cell and cell.score:
-                    yield (*_about(table, row, column), *_score(cell.score))
+                    yield (*_about(table, row, column), *_figures(cell))
 
 
 def _about(table: Table, row: Row, column: Column) -> tuple[Any, ...]:
@@ -48,5 +56,6 @@ def _about(table: Table, row: Row, column: Column) -> tuple[Any, ...]:
     return (row.parser, configuration, table.protocol, *column.setting, split.name, split.criterion)
 
 
-def _score(score: Evaluation) -> tuple[Any, ...]:
-    return tuple(getattr(score, name) for name in SCORE_FIELDS)
+def _figures(cell: Cell) -> tuple[Any, ...]:
+    newest = tuple(getattr(cell.score, name) for name in SCORE_FIELDS)
+    return newest + tuple(getattr(cell.over_seeds, name) for name in SEED_FIELDS)

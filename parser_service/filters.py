@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from decimal import Decimal
+
 import django_filters
+from django import forms
 from django.db.models import QuerySet
 from django.http import HttpRequest
 
@@ -17,7 +20,7 @@ from annotations.filters import (
 from annotations.models import Split
 from annotations.models.splits import part_choices, source_choices
 from parser_service.models import Prediction, TrainingRun
-from parser_service.models.runs import status_choices
+from parser_service.models.runs import TrainingRunQuerySet, status_choices
 from parser_service.parsers.registry import PARSERS
 
 OUTCOMES = [
@@ -43,11 +46,21 @@ class RunFilters(PageFilters):
     status = django_filters.ChoiceFilter(label="Status", choices=status_choices)
     parser = django_filters.ChoiceFilter(label="Parser", choices=parser_choices)
     split = django_filters.ChoiceFilter("split__name", label="Split")
+    seeds_of = django_filters.NumberFilter(
+        label="Seeds of run", method="by_seeds_of", widget=forms.HiddenInput
+    )
     world_choices = {"split": split_choices}
 
     class Meta:
         model = TrainingRun
         fields: list[str] = []
+
+    def by_seeds_of(
+        self, rows: TrainingRunQuerySet, name: str, value: Decimal
+    ) -> TrainingRunQuerySet:
+        """A run of the same world and what differs from it by nothing but the seed."""
+        run = self.request.world.runs.filter(pk=value).first()
+        return rows.seeds_of(run) if run else rows.none()
 
 
 class PredictionFilters(PageFilters):

@@ -7,7 +7,7 @@ from typing import Any
 from django import forms
 
 from annotations.models import World
-from parser_service.lifecycle import LARGEST_SEED
+from parser_service.lifecycle import LARGEST_SEED, MOST_SEEDS, seeds_from
 from parser_service.models.runs import TrainSources
 from parser_service.parsers.config_fields import ConfigField
 from parser_service.parsers.registry import config_fields, entry, make_config
@@ -22,12 +22,20 @@ PREFIX = "config-"  # before the names of hyperparameters
 
 
 class RunForm(forms.Form):
-    """What to train, on what. ``config`` holds the hyperparameters once the form is valid."""
+    """What to train, on what. ``config`` holds the hyperparameters, and ``asked_seeds`` the seeds,
+    once the form is valid."""
 
     split = forms.ModelChoiceField(queryset=None, empty_label=None)
     train_sources = forms.ChoiceField(label="Train on", choices=list(SOURCE_LABELS.items()))
     protocol = forms.ChoiceField(help_text="What training may know beside its pairs.")
     seed = forms.IntegerField(min_value=0, max_value=LARGEST_SEED, initial=0)
+    seeds = forms.IntegerField(
+        min_value=1,
+        max_value=MOST_SEEDS,
+        initial=1,
+        help_text="How many runs: one with this seed and one with each of the next. "
+        "Results show their mean and spread.",
+    )
 
     def __init__(self, world: World, parser: str, *args: Any, **kwargs: Any):
         super().__init__(*args, **kwargs)
@@ -42,7 +50,7 @@ class RunForm(forms.Form):
     @property
     def general(self) -> list[forms.BoundField]:
         """The fields that every parser has."""
-        return [self[name] for name in ("split", "train_sources", "protocol", "seed")]
+        return [self[name] for name in ("split", "train_sources", "protocol", "seed", "seeds")]
 
     @property
     def hyperparameters(self) -> list[forms.BoundField]:
@@ -62,7 +70,14 @@ class RunForm(forms.Form):
         }
         if not self.errors:
             self._check_config()
+            self._count_seeds()
         return cleaned
+
+    def _count_seeds(self) -> None:
+        try:
+            self.asked_seeds = seeds_from(self.cleaned_data["seed"], self.cleaned_data["seeds"])
+        except ValueError as error:
+            self.add_error("seeds", str(error))
 
     def _check_config(self) -> None:
         """The parser has the last word on its hyperparameters."""

@@ -7,7 +7,7 @@ after its lease was lost changes nothing. A message only wakes a worker up, and 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import timedelta
 from typing import Any
@@ -29,6 +29,7 @@ from parser_service.waking import wake
 LEASE = timedelta(seconds=45 / settings.WORK_TEMPO)
 MOST_RESUMES = 2
 LARGEST_SEED = 2**32 - 1
+MOST_SEEDS = 10  # of one request
 
 
 class Fenced(Exception):
@@ -78,6 +79,25 @@ def request(
     if created and send:
         wake(run)
     return run, created
+
+
+def request_seeds(
+    world: World, split: Split, parser: str, *, seeds: Sequence[int], **asked: Any
+) -> list[tuple[TrainingRun, bool]]:
+    """One run for each of ``seeds``, all else as in ``request``: all of them or, with its ValueError,
+    none. What ``request`` returns, in the order of the seeds."""
+    with transaction.atomic():
+        return [request(world, split, parser, seed=seed, **asked) for seed in seeds]
+
+
+def seeds_from(first: int, how_many: int) -> range:
+    """``how_many`` seeds from ``first`` up. Raises ValueError, a sentence, where there are none such."""
+    if not 1 <= how_many <= MOST_SEEDS:
+        raise ValueError(f"{how_many} seeds were asked for; it has to be 1 to {MOST_SEEDS}.")
+    last = first + how_many - 1
+    if last > LARGEST_SEED:
+        raise ValueError(f"The last seed would be {last}; the largest one is {LARGEST_SEED}.")
+    return range(first, last + 1)
 
 
 def _refuse_what_cannot_be_trained(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from django.db import models
 from django.utils import timezone
@@ -10,6 +10,9 @@ from django.utils import timezone
 from annotations.models import Split, User, World
 from annotations.models.splits import Source
 from parser_service.parsers.registry import PARSERS, config_fields
+
+if TYPE_CHECKING:
+    from parser_service.models.predictions import Evaluation
 
 
 class Status(models.TextChoices):
@@ -57,6 +60,10 @@ SOURCES = {
 ENDED = (Status.SUCCEEDED, Status.FAILED, Status.CANCELLED, Status.LOST)
 
 
+# What runs that differ by their seed have in common, beside the configuration.
+SHARED_BY_SEEDS = ("world_id", "split_id", "parser", "parser_version", "protocol", "train_sources")
+
+
 def status_choices() -> list[tuple[str, str]]:
     return Status.choices
 
@@ -85,6 +92,17 @@ class TrainingRunQuerySet(models.QuerySet["TrainingRun"]):
     def scored_or_active(self) -> TrainingRunQuerySet:
         """What an accuracy table shows, or will."""
         return self.exclude(status__in=[Status.FAILED, Status.CANCELLED, Status.LOST])
+
+    def seeds_of(self, run: TrainingRun) -> TrainingRunQuerySet:
+        """``run`` and those that differ from it by nothing but the seed: a cell of the accuracy table.
+
+        Configurations are compared as the table compares them; the keys come with a query of their own.
+        """
+        alike = self.filter(**{name: getattr(run, name) for name in SHARED_BY_SEEDS})
+        changes = run.changed_hyperparameters()
+        rows = alike.select_related(None).prefetch_related(None).only("world", "parser", "config")
+        keys = [row.pk for row in rows if row.changed_hyperparameters() == changes]
+        return self.filter(pk__in=keys)
 
     def for_table(self) -> TrainingRunQuerySet:
         """With what a row of a list shows of each run: its split, who asked, its scores."""
@@ -159,10 +177,10 @@ class TrainingRun(models.Model):
         return 100 * self.progress
 
     @property
-    def scores_shown(self) -> dict[str, float]:
-        """Test source → accuracy on the test part, or on validation where there is no test part."""
+    def scores_shown(self) -> dict[str, Evaluation]:
+        """Test source → the score on the test part, or on validation where there is no test part."""
         found = sorted(self.evaluations.all(), key=lambda each: each.part == "test")
-        return {each.test_source: each.accuracy for each in found}
+        return {each.test_source: each for each in found}
 
     def changed_hyperparameters(self) -> tuple[tuple[str, Any], ...]:
         """Name and value of each hyperparameter that is not the parser's default, in order."""

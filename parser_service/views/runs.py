@@ -13,6 +13,7 @@ from annotations.listing import Listing, Sort
 from annotations.models import Duty, World
 from annotations.rates import STARTED_RUNS
 from parser_service import lifecycle
+from parser_service.accuracy import seeds_url
 from parser_service.curves import CURVES, loss_curves
 from parser_service.filters import RunFilters
 from parser_service.forms import RunForm
@@ -26,10 +27,6 @@ SORTS = {
     "seconds": Sort("Trained", "seconds_trained", is_number=True),
 }
 TEST_SOURCES = ("gen", "para", "mixed")
-TOO_MANY = (
-    f"You have started {STARTED_RUNS.limit} runs within the hour. "
-    "Wait for some of them before you start more."
-)
 
 
 @world_view(Duty.VIEW)
@@ -51,40 +48,73 @@ def runs_of(request: HttpRequest, world: World) -> Listing:
 
 @world_view(Duty.MANAGE, READ_AND_WRITE)
 def run_new(request: HttpRequest, world: World) -> HttpResponse:
-    """The form that starts a run of the parser in the URL."""
+    """The form that starts runs of the parser in the URL."""
     parser = request.GET.get("parser", "")
     parser = parser if parser in PARSERS else next(iter(PARSERS))
     initial = {"split": request.GET.get("split")}
     form = RunForm(world, parser, posted(request), initial=initial)
     if request.method == "POST" and form.is_valid():
-        run = start(request, world, form)
-        if run:
-            return redirect("run", world=world.name, pk=run.pk)
+        started = start(request, world, form)
+        if len(started) == 1:
+            return redirect("run", world=world.name, pk=started[0].pk)
+        if started:
+            return redirect(seeds_url(world, started[0]))
     context = {"form": form, "parsers": PARSERS, "chosen": parser, "entry": PARSERS[parser]}
     return render(request, "parser_service/run_new.html", context)
 
 
-def start(request: HttpRequest, world: World, form: RunForm) -> TrainingRun | None:
-    """The run that the form asks for, new or already there; None where it is refused, with the reason
-    in the form."""
+def start(request: HttpRequest, world: World, form: RunForm) -> list[TrainingRun]:
+    """The runs that the form asks for, one a seed, new or already there; none where they are refused,
+    with the reason in the form."""
     key = str(request.user.pk)
-    if STARTED_RUNS.is_spent(key):
-        form.add_error(None, TOO_MANY)
-        return None
-    asked = {
-        name: form.cleaned_data[name] for name in ("split", "protocol", "train_sources", "seed")
-    }
+    if refusal := too_many(len(form.asked_seeds), STARTED_RUNS.left(key)):
+        form.add_error(None, refusal)
+        return []
+    asked = {name: form.cleaned_data[name] for name in ("split", "protocol", "train_sources")}
     try:
-        run, is_new = lifecycle.request(
-            world, parser=form.parser, config=form.config, by=request.user, **asked
+        answers = lifecycle.request_seeds(
+            world,
+            parser=form.parser,
+            config=form.config,
+            by=request.user,
+            seeds=form.asked_seeds,
+            **asked,
         )
     except ValueError as error:
         form.add_error(None, str(error))
-        return None
-    STARTED_RUNS.count(key)
-    if not is_new:
-        messages.info(request, "This has been trained already; here is that run.")
-    return run
+        return []
+    for _ in answers:
+        STARTED_RUNS.count(key)
+    if told := in_words(answers):
+        messages.info(request, told)
+    return [run for run, _ in answers]
+
+
+def too_many(asked: int, left: int) -> str:
+    """Why a user who may start ``left`` more runs may not start ``asked``; empty where they may."""
+    if asked <= left:
+        return ""
+    if left == 0:
+        return (
+            f"You have started {STARTED_RUNS.limit} runs within the hour. "
+            "Wait for some of them before you start more."
+        )
+    return (
+        f"{asked} runs are more than the {left} that you may still start within this hour. "
+        "Ask for fewer seeds."
+    )
+
+
+def in_words(answers: list[tuple[TrainingRun, bool]]) -> str:
+    """What a request came to; empty where it is one new run, which speaks for itself."""
+    count, new = len(answers), sum(is_new for _, is_new in answers)
+    if count == 1:
+        return "" if new else "This has been trained already; here is that run."
+    if not new:
+        return f"All {count} seeds have been asked for already; here are their runs."
+    first, last = answers[0][0].seed, answers[-1][0].seed
+    started = f"Started {new} run{'s' if new > 1 else ''}, seeds {first} to {last}"
+    return f"{started}." if new == count else f"{started}; {count - new} were there already."
 
 
 @world_view(Duty.VIEW)

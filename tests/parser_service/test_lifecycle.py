@@ -100,6 +100,29 @@ def test_what_cannot_be_trained_is_refused_with_a_sentence(split, changes, sente
     assert not TrainingRun.objects.exists()
 
 
+def test_several_seeds_are_one_request(split):
+    first = ask(split, seed=5)
+    answers = lifecycle.request_seeds(split.world, split, "knn", seeds=(4, 5, 6), send=False)
+    assert [(run.seed, is_new) for run, is_new in answers] == [(4, True), (5, False), (6, True)]
+    assert answers[1][0] == first
+
+
+def test_of_several_seeds_all_are_queued_or_none(split):
+    seeds = (lifecycle.LARGEST_SEED, lifecycle.LARGEST_SEED + 1)
+    with pytest.raises(ValueError, match=r"^The seed 4294967296 has to lie between"):
+        lifecycle.request_seeds(split.world, split, "knn", seeds=seeds, send=False)
+    assert not TrainingRun.objects.exists()
+
+
+@pytest.mark.parametrize(
+    ("first", "count", "sentence"),
+    [(0, 0, "0 seeds were asked for"), (0, 11, "11 seeds"), (2**32 - 1, 2, "The last seed")],
+)
+def test_seeds_that_there_are_not_are_refused(first, count, sentence):
+    with pytest.raises(ValueError, match=f"^{sentence}"):
+        lifecycle.seeds_from(first, count)
+
+
 def test_a_split_of_another_world_is_refused(split, other_world):
     with pytest.raises(ValueError, match="belongs to another world"):
         lifecycle.request(other_world, split, "knn")

@@ -59,6 +59,7 @@ def test_a_hyperparameter_is_read_as_what_it_is(split):
     [
         (("knn", "--world", "nowhere", "--split", "home"), "There is no world “nowhere”"),
         (("knn", "--world", "home", "--split", "away"), "There is no split “away” in home"),
+        (("knn", *HERE, "--seeds", "11"), "11 seeds were asked for; it has to be 1 to 10"),
         (("knn", *HERE, "--sources", "all"), "--sources is 'all'"),
         (("knn", *HERE, "--config", "least_overlap"), "has to be KEY=VALUE"),
         (("knn", *HERE, "--config", "least_overlap=much"), "has to be of type float"),
@@ -87,6 +88,45 @@ def test_the_split_is_found_by_its_name_and_criterion(split):
     split.save()
     report = call("knn", *HERE, "--criterion", "logical_form")
     assert (report["split"], report["criterion"]) == ("home-logical_form", "logical_form")
+
+
+def test_several_seeds_report_each_run_and_mean_and_spread(split):
+    report = call("knn", *HERE, "--sources", "gen,para", "--seed", "7", "--seeds", "2")
+    assert report["seeds"] == [7, 8]
+    assert [run["status"] for run in report["runs"]] == ["succeeded", "succeeded"]
+    assert len(report["means"]) == len(report["runs"][0]["evaluations"])
+    for each, *figures in zip(
+        report["means"], *(run["evaluations"] for run in report["runs"]), strict=True
+    ):
+        # knn draws nothing, so that its seeds agree.
+        assert each["mean"] == pytest.approx(figures[0]["accuracy"])
+        assert (each["spread"], each["n_seeds"]) == (pytest.approx(0), 2)
+        assert each["test_source"] == figures[0]["test_source"]
+    assert call("knn", *HERE, "--sources", "gen,para", "--seed", "8") == report["runs"][1]
+
+
+def test_mean_and_spread_are_printed_for_a_person(split):
+    out = StringIO()
+    call_command("train", "knn", *HERE, "--seeds", "2", stdout=out, stderr=StringIO())
+    assert " ± 0.0 % over 2 seeds" in out.getvalue()
+
+
+def test_seeds_that_fail_are_reported_together(split):
+    out = StringIO()
+    with pytest.raises(CommandError, match="The grammar oracle parses with"):
+        call_command(
+            "train",
+            "grammar-oracle",
+            *HERE,
+            "--seeds",
+            "2",
+            "--json",
+            stdout=out,
+            stderr=StringIO(),
+        )
+    report = json.loads(out.getvalue())
+    assert [run["status"] for run in report["runs"]] == ["failed", "failed"]
+    assert report["means"] == []
 
 
 @pytest.mark.processes

@@ -1,11 +1,13 @@
-"""``train PARSER --world W --split N``: one run in the foreground."""
+"""``train PARSER --world W --split N``: a run in the foreground, or one for each of several seeds."""
 
 from __future__ import annotations
 
 import os
 import socket
 import time
-from collections.abc import Mapping
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from typing import Any
 
 from django.core.management.base import CommandError, CommandParser
@@ -14,6 +16,7 @@ from annotations.management.base import Refused, ReportingCommand, find_world
 from annotations.models import Split, World
 from annotations.models.splits import Criterion
 from parser_service import lifecycle
+from parser_service.analysis.seeds import over_seeds
 from parser_service.management.options import read_hyperparameters, read_sources
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.models.runs import Protocol, Status
@@ -45,25 +48,50 @@ class Command(ReportingCommand):
         )
         parser.add_argument("--seed", type=int, default=0)
         parser.add_argument(
+            "--seeds",
+            type=int,
+            default=1,
+            metavar="N",
+            help="train N times, one after the other, with the seeds from --seed up; reports each run "
+            "and the mean and spread of the accuracies",
+        )
+        parser.add_argument(
             "--config", nargs="*", default=[], metavar="KEY=VALUE", help="hyperparameters"
         )
 
     def report(self, *, parser: str, world: str, **options: Any) -> Mapping[str, Any]:
         found = find_world(world)
-        run, _ = lifecycle.request(
-            found,
-            find_split(found, options["split"], options["criterion"]),
-            parser,
-            read_hyperparameters(parser, options["config"]),
-            options["protocol"] or PARSERS[parser].protocols[0],
-            read_sources(options["sources"]),
-            options["seed"],
-            send=False,
-        )
+        seeds = lifecycle.seeds_from(options["seed"], options["seeds"])
+        asked = {
+            "split": find_split(found, options["split"], options["criterion"]),
+            "parser": parser,
+            "config": read_hyperparameters(parser, options["config"]),
+            "protocol": options["protocol"] or PARSERS[parser].protocols[0],
+            "train_sources": read_sources(options["sources"]),
+        }
+        # Each is asked for when its turn comes: nothing stays in the queue where this is interrupted.
+        runs = [self._trained(found, seed, asked) for seed in seeds]
+        report = as_report(runs[0]) if len(runs) == 1 else as_report_of_seeds(runs)
+        failed = [run for run in runs if run.status != Status.SUCCEEDED]
+        if failed:
+            sentences = [run.failure or f"Run {run.pk} is {run.status}." for run in failed]
+            raise Refused(report, list(dict.fromkeys(sentences)))
+        return report
+
+    def describe(self, report: Mapping[str, Any]) -> str:
+        lines = [super().describe(report)]
+        for each in report.get("means", ()):
+            spread = "" if each["spread"] is None else f" ± {100 * each['spread']:.1f}"
+            where = f"{each['test_source']}, {each['part']}"
+            lines.append(
+                f"  {where}: {100 * each['mean']:.1f}{spread} % over {each['n_seeds']} seeds"
+            )
+        return "\n".join(lines)
+
+    def _trained(self, world: World, seed: int, asked: Mapping[str, Any]) -> TrainingRun:
+        run, _ = lifecycle.request(world, seed=seed, send=False, **asked)
         self._carry_out(run)
-        if run.status != Status.SUCCEEDED:
-            raise Refused(as_report(run), [run.failure or f"Run {run.pk} is {run.status}."])
-        return as_report(run)
+        return run
 
     def _carry_out(self, run: TrainingRun) -> None:
         """Trains the run here, or waits for the worker that has it."""
@@ -111,6 +139,25 @@ def as_report(run: TrainingRun) -> dict[str, Any]:
         "parameters": run.parameters,
         "seconds_trained": round(run.seconds_trained, 2),
         "evaluations": [_figures(evaluation) for evaluation in run.evaluations.all()],
+    }
+
+
+def as_report_of_seeds(runs: Sequence[TrainingRun]) -> dict[str, Any]:
+    """Runs that differ by their seed, and for each test source and part the mean of their accuracies
+    and its spread (the sample standard deviation), over those that succeeded."""
+    scores = defaultdict(list)
+    for run in runs:
+        for score in run.evaluations.all():
+            scores[score.test_source, score.part].append(score.accuracy)
+    means = [
+        {"test_source": test_source, "part": part, **asdict(over_seeds(accuracies))}
+        for (test_source, part), accuracies in scores.items()
+    ]
+    return {
+        "parser": runs[0].parser,
+        "seeds": [run.seed for run in runs],
+        "means": means,
+        "runs": [as_report(run) for run in runs],
     }
 
 

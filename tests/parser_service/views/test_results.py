@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+from statistics import mean, stdev
 
 import pytest
 
@@ -68,16 +69,79 @@ def test_other_hyperparameters_are_another_row(house):
     ]
 
 
-def test_the_newest_of_several_seeds_is_shown_and_the_others_are_counted(house):
-    run, _ = lifecycle.request(house.world, house.split, "knn", seed=1, send=False)
-    score = house.run.evaluations.get()
-    score.pk, score.run, score.accuracy = None, run, 0.75
-    score.save()
-    TrainingRun.objects.filter(pk=run.pk).update(status="succeeded")
+def seeds(house, *right):
+    """Runs of seq2seq with seeds 0, 1, … of which so many answers are right."""
+    return [
+        scored_run(house.world, house.split, "seq2seq", each, seed)
+        for seed, each in enumerate(right)
+    ]
+
+
+def seq2seq_cell(house):
     (table,) = tables(house)
-    cell = table.rows[0].cells[0]
-    assert cell.percent == 75.0
-    assert "the newest of 2 runs" in cell.note
+    return table.rows[-1].cells[0]
+
+
+def test_several_seeds_show_their_mean_and_spread_and_lead_to_their_runs(house, anna):
+    runs = seeds(house, 2, 3, 7)
+    count = runs[0].evaluations.get().count
+    shares = [right / count for right in (2, 3, 7)]
+    cell = seq2seq_cell(house)
+    assert cell.n_seeds == 3
+    assert cell.percent == pytest.approx(100 * mean(shares))
+    assert cell.plus_minus == pytest.approx(100 * stdev(shares))
+    assert "mean of 3 seeds ± standard deviation" in cell.note
+    listed = anna.get(cell.url).context["listing"].rows
+    assert {run.pk for run in listed} == {run.pk for run in runs}
+
+
+def test_the_seeds_are_said_in_words_and_one_run_says_nothing_of_them(house, anna):
+    page = anna.get("/w/home/results/table/").content.decode()
+    assert "seeds</span>" not in page
+    seeds(house, 2, 3, 7)
+    page = anna.get("/w/home/results/table/").content.decode()
+    assert "mean and standard deviation of </span>3 seeds</span>" in page
+
+
+def test_the_best_of_a_column_is_the_best_mean(house):
+    house.run.evaluations.update(accuracy=0.5)
+    seeds(house, 1, 9)
+    TrainingRun.objects.get(parser="seq2seq", seed=1).evaluations.update(accuracy=0.6)
+    (table,) = tables(house)
+    assert [row.cells[0].is_best for row in table.rows] == [True, False]
+
+
+def test_other_hyperparameters_and_protocols_are_not_seeds_of_one_cell(house):
+    _, other, third = seeds(house, 2, 3, 4)
+    TrainingRun.objects.filter(pk=other.pk).update(config={**other.config, "epochs": 3})
+    TrainingRun.objects.filter(pk=third.pk).update(protocol="grammar")
+    cells = [row.cells[0] for table in tables(house) for row in table.rows]
+    assert [cell.n_seeds for cell in cells] == [1, 1, 1, 1]
+
+
+def test_of_a_seed_that_was_trained_twice_the_newest_run_counts(house):
+    old, new = seeds(house, 2, 4)
+    TrainingRun.objects.filter(pk=new.pk).update(seed=old.seed)
+    assert seq2seq_cell(house).scores == (new.evaluations.get(),)
+
+
+def test_versions_of_a_parser_are_not_averaged(house, anna):
+    old, *new = seeds(house, 2, 3, 4)
+    TrainingRun.objects.filter(pk=old.pk).update(parser_version=0)
+    cell = seq2seq_cell(house)
+    assert cell.n_seeds == 2
+    listed = anna.get(cell.url).context["listing"].rows
+    assert {run.pk for run in listed} == {run.pk for run in new}
+
+
+def test_seeds_that_wait_show_as_one_and_lead_to_all_of_them(house, anna):
+    asked = lifecycle.request_seeds(house.world, house.split, "seq2seq", seeds=(3, 4), send=False)
+    TrainingRun.objects.filter(pk=asked[0][0].pk).update(status="running", progress=0.5)
+    cell = seq2seq_cell(house)
+    assert (cell.status, cell.progress_percent, cell.percent) == ("running", 25.0, None)
+    assert anna.get(cell.url).context["listing"].total == 2
+    scored_run(house.world, house.split, "seq2seq", seed=5)
+    assert "2 more on the way" in seq2seq_cell(house).note
 
 
 def test_a_run_at_work_shows_its_progress(house):
@@ -130,6 +194,12 @@ def test_the_tables_cost_three_queries(house, django_assert_num_queries):
         tables(house)
 
 
+def test_scored_seeds_cost_no_query_each(house, django_assert_num_queries):
+    seeds(house, 1, 2, 3, 4)
+    with django_assert_num_queries(3):
+        assert seq2seq_cell(house).n_seeds == 4
+
+
 def test_the_page_shows_the_part_that_was_scored(house, anna):
     page = anna.get("/w/home/results/")
     assert page.context["part"] == "validation"
@@ -151,6 +221,18 @@ def test_the_download_holds_one_line_a_scored_cell(house, anna):
     assert answer["Content-Disposition"] == 'attachment; filename="home-results.csv"'
     assert (row["parser"], row["train_sources"], row["test_source"]) == ("knn", "gen", "gen")
     assert (row["accuracy"], row["part"], row["split"]) == ("0.25", "validation", "home-split")
+
+
+def test_the_download_holds_mean_spread_and_number_of_seeds(house, anna):
+    newest = seeds(house, 2, 6)[-1]
+    answer = anna.get("/w/home/results.csv")
+    one, several = csv.DictReader(io.StringIO(answer.content.decode()))
+    assert (one["mean"], one["spread"], one["n_seeds"]) == ("0.25", "", "1")
+    shares = [right / int(several["count"]) for right in (2, 6)]
+    assert (several["run_id"], several["n_seeds"]) == (str(newest.pk), "2")
+    assert float(several["accuracy"]) == pytest.approx(shares[1])
+    assert float(several["mean"]) == pytest.approx(mean(shares))
+    assert float(several["spread"]) == pytest.approx(stdev(shares))
 
 
 def test_no_cell_of_the_download_is_taken_for_a_formula(house, anna):

@@ -30,7 +30,7 @@ def defaults(parser, **changes):
 
 
 def form(house, parser="seq2seq", **changes):
-    general = {"split": house.split.pk, "train_sources": "para", "seed": 7}
+    general = {"split": house.split.pk, "train_sources": "para", "seed": 7, "seeds": 1}
     general["protocol"] = PARSERS[parser].protocols[0]
     return {**general, **defaults(parser, **changes)}
 
@@ -64,6 +64,23 @@ def test_the_same_is_trained_once(house, adam, no_messages):
     assert TrainingRun.objects.filter(parser="seq2seq").count() == 1
 
 
+def test_several_seeds_start_as_one_request_and_are_listed(house, adam, no_messages):
+    asked = {**form(house), "seeds": 3}
+    answer = adam.post("/w/home/runs/new/?parser=seq2seq", asked, follow=True)
+    assert "Started 3 runs, seeds 7 to 9." in answer.content.decode()
+    assert [run.seed for run in answer.context["listing"].rows] == [9, 8, 7]
+
+
+def test_seeds_that_were_trained_already_are_listed_with_the_new_ones(house, adam, no_messages):
+    adam.post("/w/home/runs/new/?parser=seq2seq", {**form(house), "seed": 8})
+    asked = {**form(house), "seeds": 3}
+    answer = adam.post("/w/home/runs/new/?parser=seq2seq", asked, follow=True)
+    assert "Started 2 runs, seeds 7 to 9; 1 were there already." in answer.content.decode()
+    again = adam.post("/w/home/runs/new/?parser=seq2seq", asked, follow=True)
+    assert "All 3 seeds have been asked for already" in again.content.decode()
+    assert again.context["listing"].total == TrainingRun.objects.filter(parser="seq2seq").count()
+
+
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
@@ -74,6 +91,9 @@ def test_the_same_is_trained_once(house, adam, no_messages):
         ({"train_sources": "all"}, "Select a valid choice"),
         ({"protocol": "grammar"}, "Select a valid choice"),
         ({"seed": -1}, "greater than or equal to 0"),
+        ({"seeds": 0}, "greater than or equal to 1"),
+        ({"seeds": 11}, "less than or equal to 10"),
+        ({"seed": 2**32 - 2, "seeds": 3}, "The last seed would be 4294967296"),
     ],
 )
 def test_what_cannot_be_trained_is_told_beside_its_field(changes, sentence, house, adam):
@@ -99,6 +119,18 @@ def test_there_is_a_limit_to_the_runs_of_an_hour(house, adam, admin, no_messages
         STARTED_RUNS.count(str(admin.pk))
     answer = adam.post("/w/home/runs/new/?parser=seq2seq", form(house))
     assert f"You have started {STARTED_RUNS.limit} runs within the hour" in answer.content.decode()
+
+
+def test_every_seed_counts_towards_the_limit(house, adam, admin, no_messages):
+    key = str(admin.pk)
+    for _ in range(STARTED_RUNS.limit - 4):
+        STARTED_RUNS.count(key)
+    asked = {**form(house), "seeds": 3}
+    adam.post("/w/home/runs/new/?parser=seq2seq", asked)
+    assert STARTED_RUNS.left(key) == 1
+    answer = adam.post("/w/home/runs/new/?parser=seq2seq", {**asked, "seed": 20})
+    assert "3 runs are more than the 1 that you may still start" in answer.content.decode()
+    assert not TrainingRun.objects.filter(seed__gte=20).exists()
 
 
 def test_a_run_that_waits_asks_for_itself_again(house, anna):
@@ -166,3 +198,23 @@ def test_runs_are_filtered_and_newest_first(house, anna):
     assert [run.parser for run in rows] == ["seq2seq", "knn"]
     rows = anna.get("/w/home/runs/", {"parser": "knn"}).context["listing"].rows
     assert [run.parser for run in rows] == ["knn"]
+
+
+def test_the_figures_of_a_run_lead_to_its_predictions(house, anna):
+    page = anna.get("/w/home/runs/table/").content.decode()
+    url = f"/w/home/runs/{house.run.pk}/predictions/?part=validation&amp;source=generated"
+    assert f'href="{url}"' in page
+
+
+def test_the_seeds_of_a_run_of_another_world_are_not_shown(house, other_world, anna):
+    foreign = scored_run(other_world, make_split(other_world, "foreign"))
+    page = anna.get("/w/home/runs/", {"seeds_of": foreign.pk})
+    assert page.context["listing"].total == 0
+
+
+def test_the_list_of_seeds_costs_no_query_a_run(house, anna, django_assert_max_num_queries):
+    asked = lifecycle.request_seeds(house.world, house.split, "seq2seq", seeds=range(9), send=False)
+    with django_assert_max_num_queries(11):
+        page = anna.get("/w/home/runs/table/", {"seeds_of": asked[0][0].pk})
+    assert "seed 0" in page.content.decode()
+    assert "seed 8" in page.content.decode()
