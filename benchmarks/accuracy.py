@@ -1,0 +1,222 @@
+"""The paper's accuracy table, from the cells of ``manage.py benchmark``.
+
+    .venv/bin/python benchmarks/accuracy.py cells.json [--markdown | --latex] [--part validation]
+
+One table a protocol: parsers down; settings, each by criterion, across. A figure is exact match in
+percent, the mean over seeds; ± is the standard deviation over them (n − 1). The best of a column in its
+protocol is bold. In parentheses stands what the paper published, always on the test parts.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import django
+import pandas as pd
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))
+os.environ.setdefault("DJANGO_SETTINGS_MODULE", "gpsr_site.settings")
+django.setup()
+
+from parser_service.benchmarking import SETTINGS, CellFile  # noqa: E402
+from parser_service.models.runs import Protocol  # noqa: E402
+from parser_service.parsers.registry import PARSERS  # noqa: E402
+from parser_service.published import published_accuracy  # noqa: E402
+
+# Criterion → the word for it in a column's head.
+CRITERIA = {"command": "command", "source_command": "source", "logical_form": "form"}
+# Rows stand in the order of the registry; parsers that it no longer has come last.
+PLACES = {name: place for place, name in enumerate(PARSERS)}
+CONDITIONS = ["protocol", "parser", "configuration", "setting", "criterion"]
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """What stands in the table: percent; ``spread`` is None for one seed."""
+
+    mean: float
+    spread: float | None
+    published: float | None
+    is_best: bool
+
+
+def read_figures(
+    cells: Sequence[dict[str, Any]], part: str, parsers: Sequence[str]
+) -> pd.DataFrame:
+    """A row for each of the ``CONDITIONS`` measured, with mean, std (NaN for one seed) and count.
+
+    A cell measured again, after the code has changed, replaces the older one. Raises ValueError, a
+    sentence, where nothing is left, or where the cells of a column were not tested on as many pairs.
+    """
+    frame = pd.DataFrame([cell for cell in cells if cell["parser"] in parsers])
+    measured = frame.dropna(subset=[f"accuracy_{part}"]) if len(frame) else frame
+    if measured.empty:
+        raise ValueError(f"No cell of these parsers has an accuracy on a {part} part.")
+    measured = measured.assign(
+        configuration=measured["configuration"].map(lambda each: json.dumps(each, sort_keys=True)),
+        percent=100 * measured[f"accuracy_{part}"].astype(float),
+    ).drop_duplicates([*CONDITIONS, "seed"], keep="last")
+    _check_sizes(measured, part)
+    return measured.groupby(CONDITIONS)["percent"].agg(["mean", "std", "count"]).reset_index()
+
+
+def _check_sizes(measured: pd.DataFrame, part: str) -> None:
+    sizes = measured.groupby(["setting", "criterion"])[f"n_{part}"].unique()
+    for (setting, criterion), found in sizes.items():
+        if len(found) > 1:
+            counts = " and ".join(str(count) for count in sorted(found))
+            raise ValueError(
+                f"{setting} by {criterion} was tested on {counts} pairs: "
+                "these cells are of different folders; keep a file for each."
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """One protocol. ``columns`` are (setting, criterion); ``rows`` name, then a figure or None each."""
+
+    protocol: str
+    columns: tuple[tuple[str, str], ...]
+    rows: tuple[tuple[str, tuple[Figure | None, ...]], ...]
+
+
+def tables(figures: pd.DataFrame) -> list[Table]:
+    """The tables in the order of the protocols, all with the same columns."""
+    measured = set(zip(figures["setting"], figures["criterion"], strict=True))
+    columns = tuple(
+        (setting, criterion)
+        for setting in SETTINGS
+        for criterion in CRITERIA
+        if (setting, criterion) in measured
+    )
+    return [
+        _table(protocol, figures[figures["protocol"] == protocol], columns)
+        for protocol in Protocol.values
+        if protocol in set(figures["protocol"])
+    ]
+
+
+def _table(protocol: str, figures: pd.DataFrame, columns: tuple[tuple[str, str], ...]) -> Table:
+    best = figures.groupby(["setting", "criterion"])["mean"].max()
+    by_row = dict(list(figures.groupby(["parser", "configuration"])))
+    order = sorted(by_row, key=lambda key: (PLACES.get(key[0], len(PLACES)), key))
+    rows = []
+    for parser, configuration in order:
+        found = by_row[parser, configuration].set_index(["setting", "criterion"])
+        name = _row_name(parser, configuration, [other for each, other in order if each == parser])
+        row = [
+            _figure(parser, column, found.loc[column], best[column])
+            if column in found.index
+            else None
+            for column in columns
+        ]
+        rows.append((name, tuple(row)))
+    return Table(protocol, columns, tuple(rows))
+
+
+def _row_name(parser: str, configuration: str, configurations: Sequence[str]) -> str:
+    """The parser; with what distinguishes this one of its ``configurations``, if there are several."""
+    values = [json.loads(each) for each in configurations]
+    mine = json.loads(configuration)
+    differing = [key for key in mine if any(each.get(key) != mine[key] for each in values)]
+    return " ".join([parser, *(f"{key}={mine[key]}" for key in differing)])
+
+
+def _figure(parser: str, column: tuple[str, str], row: pd.Series, best: float) -> Figure:
+    setting, criterion = column
+    train, _, test = setting.rpartition("-")
+    spread = None if pd.isna(row["std"]) else float(row["std"])
+    published = published_accuracy(parser, (train, test), criterion)
+    return Figure(float(row["mean"]), spread, published, bool(row["mean"] == best))
+
+
+def to_markdown(table: Table) -> str:
+    head = ["parser", *(f"{setting} {CRITERIA[by]}" for setting, by in table.columns)]
+    rows = [[f"`{name}`", *map(_in_markdown, row)] for name, row in table.rows]
+    lines = [head, ["---", *["---:"] * len(table.columns)], *rows]
+    return "\n".join([f"### {table.protocol}", "", *(f"| {' | '.join(line)} |" for line in lines)])
+
+
+def to_latex(table: Table) -> str:
+    """A booktabs tabular; a setting spans its criteria, as in the paper."""
+    settings = list(dict.fromkeys(setting for setting, _ in table.columns))
+    spans = [sum(setting == each for each, _ in table.columns) for setting in settings]
+    heads = [
+        rf"\multicolumn{{{span}}}{{c}}{{{setting}}}"
+        for setting, span in zip(settings, spans, strict=True)
+    ]
+    lines = [
+        [table.protocol, *heads],
+        ["", *(CRITERIA[by] for _, by in table.columns)],
+        *([rf"\texttt{{{_escaped(name)}}}", *map(_in_latex, row)] for name, row in table.rows),
+    ]
+    first, second, *body = [rf"{' & '.join(line)} \\" for line in lines]
+    begin = rf"\begin{{tabular}}{{l{'r' * len(table.columns)}}}"
+    return "\n".join(
+        [begin, r"\toprule", first, second, r"\midrule", *body, r"\bottomrule", r"\end{tabular}"]
+    )
+
+
+def _in_markdown(figure: Figure | None) -> str:
+    if figure is None:
+        return "–"
+    mean = f"**{figure.mean:.1f}**" if figure.is_best else f"{figure.mean:.1f}"
+    spread = "" if figure.spread is None else f" ± {figure.spread:.1f}"
+    return mean + spread + ("" if figure.published is None else f" ({figure.published:.1f})")
+
+
+def _in_latex(figure: Figure | None) -> str:
+    if figure is None:
+        return "--"
+    mean = rf"\textbf{{{figure.mean:.1f}}}" if figure.is_best else f"{figure.mean:.1f}"
+    spread = "" if figure.spread is None else rf" $\pm$ {figure.spread:.1f}"
+    paper = "" if figure.published is None else rf" \textcolor{{gray}}{{({figure.published:.1f})}}"
+    return mean + spread + paper
+
+
+def _escaped(name: str) -> str:
+    return name.replace("_", r"\_").replace("%", r"\%").replace("#", r"\#")
+
+
+def note(figures: pd.DataFrame, part: str) -> str:
+    """What the figures are, in sentences."""
+    seeds = " or ".join(str(count) for count in sorted(figures["count"].unique()))
+    return (
+        f"Exact match in percent on the {part} parts, mean ± standard deviation over {seeds} "
+        f"seed{'' if seeds == '1' else 's'}; bold: the best of its column; in parentheses: "
+        "the paper's figures, on its test parts."
+    )
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("cells", type=Path)
+    parser.add_argument("--parsers", help="names with commas between them; all by default")
+    parser.add_argument("--part", choices=["validation", "test"], default="validation")
+    style = parser.add_mutually_exclusive_group()
+    style.add_argument("--markdown", dest="show", action="store_const", const=to_markdown)
+    style.add_argument("--latex", dest="show", action="store_const", const=to_latex)
+    given = parser.parse_args(arguments)
+    show: Callable[[Table], str] = given.show or to_markdown
+    try:
+        if not given.cells.is_file():
+            raise ValueError(f"{given.cells} is no file; manage.py benchmark --json writes it.")
+        cells = CellFile(given.cells).cells
+        names = given.parsers.split(",") if given.parsers else [cell["parser"] for cell in cells]
+        figures = read_figures(cells, given.part, names)
+    except ValueError as error:
+        sys.exit(str(error))
+    comment = "% " if show is to_latex else ""
+    print(*map(show, tables(figures)), comment + note(figures, given.part), sep="\n\n")
+
+
+if __name__ == "__main__":
+    main()
