@@ -6,12 +6,20 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Self
 
-from parser_service.neural.ranker_training import RankedExample
 from parser_service.parsers.candidates.gathering import gather
 from parser_service.parsers.candidates.glosses import glosses
 from parser_service.parsers.interface import Knowledge, Pair
 
 MOST_SUPPORT = 4  # kinds of step, above which more of them say no more
+
+
+@dataclass(frozen=True, slots=True)
+class RankedExample:
+    """An utterance and the number of its form; the slots of a generated one may be filled."""
+
+    utterance: str
+    form: int
+    is_generated: bool = False
 
 
 @dataclass(frozen=True, slots=True)

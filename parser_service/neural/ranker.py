@@ -10,19 +10,14 @@ from pathlib import Path
 from typing import Self
 
 import torch
-from torch import Tensor
 
 from parser_service.neural.checkpoints import WEIGHTS, load_weights, save_weights
-from parser_service.neural.deciding import Decision, Scores, calibrated
+from parser_service.neural.deciding import Decision, calibrated
 from parser_service.neural.pretrained import load_encoder
-from parser_service.neural.ranked_forms import RankedForms, collect
+from parser_service.neural.ranked_forms import RankedExample, RankedForms, collect
 from parser_service.neural.ranker_checkpoints import FILES, load_training, save_training
 from parser_service.neural.ranker_model import RankerModel
-from parser_service.neural.ranker_training import (
-    RankedExample,
-    RankerTraining,
-    reduced_precision,
-)
+from parser_service.neural.ranker_training import RankerTraining, reduced_precision
 from parser_service.neural.sentence_encoder import ENCODER, TOKENIZER, SentenceEncoder
 from parser_service.neural.slot_term import SlotTerm
 from parser_service.neural.threads import threads
@@ -45,7 +40,6 @@ FORMS = "forms.json"
 SAVED = (FORMS, ENCODER, TOKENIZER, WEIGHTS)
 UNKNOWN = "UNKNOWN"
 PREDICTION_BATCH = 64
-SUPPORT_WEIGHT = 1.0  # nats for each kind of step that arrives at a new form
 
 
 class FormRanker(Parser):
@@ -102,9 +96,8 @@ class FormRanker(Parser):
         """
         answers: list[list[Candidate]] = []
         for begin in range(0, len(utterances), PREDICTION_BATCH):
-            logs = self._decision.log_probabilities(
-                self._scores(utterances[begin : begin + PREDICTION_BATCH], check)
-            )
+            asked = utterances[begin : begin + PREDICTION_BATCH]
+            logs = self._decision.log_probabilities(self._trained().scores(asked, check))
             best = logs.topk(min(beam_width, logs.shape[1]), dim=-1)
             for scores, numbers in zip(best.values.tolist(), best.indices.tolist(), strict=True):
                 ranked = zip(numbers, scores, strict=True)
@@ -155,7 +148,7 @@ class FormRanker(Parser):
     def _model_around(self, encoder: SentenceEncoder) -> RankerModel:
         ranked, ontology = self._ranked, self.knowledge.ontology
         slots = SlotTerm(ranked.forms, ontology) if ontology is not None else None
-        return RankerModel(encoder, ranked.glosses, ranked.examples, slots).to(processor())
+        return RankerModel(encoder, ranked, slots).to(processor())
 
     def _train_epoch(
         self, training: RankerTraining, validation: Sequence[Pair], observe: Observer
@@ -185,7 +178,7 @@ class FormRanker(Parser):
             return None, None
         number = {form: at for at, form in enumerate(self._ranked.forms)}
         targets = torch.tensor([number.get(pair.form, -1) for pair in validation])
-        scores = self._scores([pair.utterance for pair in validation], check)
+        scores = model.scores([pair.utterance for pair in validation], check)
         self._decision = calibrated(scores, targets)
         if self.config.forms == "open":
             self._decision = replace(self._decision, novelty=0.0, slope=1.0)
@@ -193,21 +186,6 @@ class FormRanker(Parser):
         found = logs[targets >= 0].gather(1, targets[targets >= 0, None])
         loss = -float(found.mean()) if len(found) else None
         return loss, float((logs.argmax(-1) == targets).float().mean())
-
-    @torch.no_grad()
-    def _scores(self, utterances: Sequence[str], check: Check) -> Scores:
-        """What prototypes, glosses and slots say, on the processor that chooses."""
-        model, known = self._trained(), self._ranked.known
-        vectors = model.encoder.vectors(utterances, check)  # [utterances, width]
-        by_gloss = model.fitting(model.glosses.logits(vectors), utterances).cpu()
-        by_gloss[:, known:] += SUPPORT_WEIGHT * torch.tensor(self._ranked.support)
-        by_example = model.prototypes(vectors).cpu()  # [utterances, forms with examples]
-        evidence = by_gloss[:, known:].logsumexp(-1) - by_gloss[:, :known].logsumexp(-1)
-        return Scores(
-            _added(by_gloss[:, :known], by_example[:, :known]),
-            _added(by_gloss[:, known:], by_example[:, known:]),
-            evidence,
-        )
 
     def _or_unknown(self, ranked: list[Candidate]) -> list[Candidate]:
         bound = self.config.unknown_below
@@ -251,13 +229,6 @@ class FormRanker(Parser):
             return
         load_training(folder, training)
         observe.log(f"Training goes on after epoch {training.epoch}.")
-
-
-def _added(by_gloss: Tensor, by_example: Tensor) -> Tensor:
-    """The log-probabilities of both ways for some forms, of glosses alone where there is no example.
-    Shape [utterances, forms]."""
-    logs = torch.log_softmax(by_gloss, -1)
-    return logs + torch.log_softmax(by_example, -1) if by_example.shape[1] else logs
 
 
 def processor() -> torch.device:

@@ -4,38 +4,34 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+import torch
 from torch import Tensor, nn
 
+from parser_service.neural.deciding import Scores
 from parser_service.neural.gloss_head import GlossHead
 from parser_service.neural.prototype_head import PrototypeHead
+from parser_service.neural.ranked_forms import RankedForms
 from parser_service.neural.sentence_encoder import SentenceEncoder
 from parser_service.neural.slot_term import SlotTerm
+from parser_service.parsers.interface import Check
+
+SUPPORT_WEIGHT = 1.0  # nats for each kind of step that arrives at a new form
 
 
 class RankerModel(nn.Module):
-    """Scores forms in two ways: against the examples that they had, and against their glosses.
-
-    ``glosses`` are those of all forms; the first ``examples`` of them have examples and therefore
-    a prototype.
-    """
+    """Scores forms in two ways: against the examples that they had, and against their glosses."""
 
     def __init__(
-        self,
-        encoder: SentenceEncoder,
-        glosses: Sequence[str],
-        examples: int,
-        slots: SlotTerm | None = None,
+        self, encoder: SentenceEncoder, ranked: RankedForms, slots: SlotTerm | None = None
     ):
+        """``slots`` where the ontology is known."""
         super().__init__()
         self.encoder = encoder
-        self.prototypes = PrototypeHead(examples, encoder.width)
-        self.glosses = GlossHead(encoder, glosses)
+        self.prototypes = PrototypeHead(ranked.examples, encoder.width)
+        self.glosses = GlossHead(encoder, ranked.glosses)
         self.slots = slots
-
-    @property
-    def examples(self) -> int:
-        """How many forms have a prototype."""
-        return len(self.prototypes.bias)
+        self.known = ranked.known
+        self.support = torch.tensor(ranked.support, dtype=torch.float)  # [new forms]
 
     def trained(self) -> Iterator[tuple[str, nn.Parameter]]:
         """The weights that training moves, by name."""
@@ -50,3 +46,28 @@ class RankerModel(nn.Module):
         if self.slots is None:
             return logits
         return logits + self.slots.scores(utterances).to(logits.device)
+
+    @torch.no_grad()
+    def scores(self, utterances: Sequence[str], check: Check) -> Scores:
+        """What prototypes, glosses, slots and support say, in the main memory."""
+        vectors = self.encoder.vectors(utterances, check)  # [utterances, width]
+        by_example = self.prototypes(vectors).cpu()  # [utterances, forms with examples]
+        by_gloss = self.fitting(self.glosses.logits(vectors), utterances).cpu()
+        known, new = by_gloss[:, : self.known], by_gloss[:, self.known :]
+        new = new + SUPPORT_WEIGHT * self.support
+        is_open = new.shape[1] > 0
+        evidence = (
+            new.logsumexp(-1) - known.logsumexp(-1) if is_open else known.new_zeros(len(known))
+        )
+        return Scores(
+            _added(known, by_example[:, : self.known]),
+            _added(new, by_example[:, self.known :]),
+            evidence,
+        )
+
+
+def _added(by_gloss: Tensor, by_example: Tensor) -> Tensor:
+    """The log-probabilities of both ways for some forms, of glosses alone where there is no example.
+    Shape [utterances, forms]."""
+    logs = torch.log_softmax(by_gloss, -1)
+    return logs + torch.log_softmax(by_example, -1) if by_example.shape[1] else logs

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from random import Random
 from typing import Any
 
@@ -14,6 +13,7 @@ from torch import Tensor
 from torch.nn.functional import cross_entropy
 
 from parser_service.neural.averaging import Average
+from parser_service.neural.ranked_forms import RankedExample
 from parser_service.neural.ranker_model import RankerModel
 from parser_service.parsers.interface import Check
 from parser_service.parsers.ranker_config import RankerConfig
@@ -26,15 +26,6 @@ RENEWAL = 16  # steps after which the glosses that carry no gradient are encoded
 POOL = 8  # batches sorted by length together: little padding, and still another mix each epoch
 
 Fill = Callable[[str, Random], str]
-
-
-@dataclass(frozen=True, slots=True)
-class RankedExample:
-    """An utterance and the number of its form; the slots of a generated one may be filled."""
-
-    utterance: str
-    form: int
-    is_generated: bool = False
 
 
 class RankerTraining:

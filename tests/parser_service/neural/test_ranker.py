@@ -207,7 +207,7 @@ def test_generated_commands_are_read_with_entities_in_the_domain(config, pairs, 
 
 def test_a_closed_set_answers_forms_of_the_training_pairs_alone(config, pairs):
     parser = FormRanker(replace(config, forms="closed", steps=4))
-    parser.fit(pairs[:9])
+    parser.fit(pairs[:9], pairs[9:])
     known = {pair.form for pair in pairs[:9]}
     assert {each.form for each in parser.predict(["find it"], 999)[0]} == known
 
