@@ -33,8 +33,7 @@ class RunForm(forms.Form):
         min_value=1,
         max_value=MOST_SEEDS,
         initial=1,
-        help_text="How many runs: one with this seed and one with each of the next. "
-        "Results show their mean and spread.",
+        help_text="How many runs, one a seed from this seed up. Results show mean and spread.",
     )
 
     def __init__(self, world: World, parser: str, *args: Any, **kwargs: Any):

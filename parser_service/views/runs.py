@@ -114,7 +114,9 @@ def in_words(answers: list[tuple[TrainingRun, bool]]) -> str:
         return f"All {count} seeds have been asked for already; here are their runs."
     first, last = answers[0][0].seed, answers[-1][0].seed
     started = f"Started {new} run{'s' if new > 1 else ''}, seeds {first} to {last}"
-    return f"{started}." if new == count else f"{started}; {count - new} were there already."
+    if new == count:
+        return f"{started}."
+    return f"{started}; {count - new} {'was' if count - new == 1 else 'were'} there already."
 
 
 @world_view(Duty.VIEW)

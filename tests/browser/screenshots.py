@@ -39,13 +39,16 @@ PAGES = {
     "run-new": "runs/new/?parser=seq2seq",
     "results": "results/",
 }
+# The cells of one run; those of several seeds lead to their runs.
+TO_PREDICTIONS = "a.accuracy[href*=predictions]"
 # Name of the picture → the page and the link on it that leads there.
 DETAILS = {
     "template": ("templates/", "#list a.row-link"),
     "form": ("forms/", "#list td a"),
     "split": ("splits/", "a.row-link"),
     "run": ("runs/?status=succeeded&parser=seq2seq", "#runs-table a.row-link"),
-    "predictions": ("results/", "a.accuracy"),
+    "predictions": ("results/", TO_PREDICTIONS),
+    "seeds": ("results/", "a.accuracy[href*=seeds_of]"),
 }
 
 
@@ -70,7 +73,7 @@ def addresses(page: Page, url: str, world: str) -> Iterator[tuple[str, str]]:
         if link := page.query_selector(selector):
             yield name, url + link.get_attribute("href")
     page.goto(base + "results/")
-    if link := page.query_selector("a.accuracy"):
+    if link := page.query_selector(TO_PREDICTIONS):
         page.goto(url + link.get_attribute("href") + "&outcome=wrong")
         if link := page.query_selector("#list a.row-link"):
             yield "prediction", url + link.get_attribute("href")

@@ -75,7 +75,7 @@ def test_seeds_that_were_trained_already_are_listed_with_the_new_ones(house, ada
     adam.post("/w/home/runs/new/?parser=seq2seq", {**form(house), "seed": 8})
     asked = {**form(house), "seeds": 3}
     answer = adam.post("/w/home/runs/new/?parser=seq2seq", asked, follow=True)
-    assert "Started 2 runs, seeds 7 to 9; 1 were there already." in answer.content.decode()
+    assert "Started 2 runs, seeds 7 to 9; 1 was there already." in answer.content.decode()
     again = adam.post("/w/home/runs/new/?parser=seq2seq", asked, follow=True)
     assert "All 3 seeds have been asked for already" in again.content.decode()
     assert again.context["listing"].total == TrainingRun.objects.filter(parser="seq2seq").count()
