@@ -42,6 +42,17 @@ def test_a_list_follows_what_one_types_and_so_does_the_address(page_of, live_ser
     expect(page.locator("#list tbody tr")).to_have_count(3)
 
 
+def test_near_duplicates_are_compared_when_they_are_asked_for(
+    page_of, live_server, annotator, house
+):
+    page = page_of(annotator)
+    page.goto(f"{live_server.url}/w/home/splits/{house.split.pk}/")
+    near = page.get_by_label("Near duplicates")
+    expect(near).to_have_attribute("aria-busy", "true")
+    page.locator("summary", has_text="Near duplicates").click()
+    expect(near).to_contain_text("of 12 pairs of validation")
+
+
 def test_the_editor_says_what_the_checker_finds_and_shows_what_comes_out(
     page_of, live_server, annotator
 ):
