@@ -76,7 +76,7 @@ class FormRanker(Parser):
         observe = observe or Observer()
         if not train:
             raise ValueError("There is no training pair, so there is nothing to learn from.")
-        is_open = self.config.forms != "closed"
+        is_open = self._is_open(train, validation)
         self._ranked, examples, line = collect(train, self.knowledge, is_open)
         observe.log(line)
         with threads(self.config.threads):
@@ -133,6 +133,13 @@ class FormRanker(Parser):
 
     def parameters(self) -> int:
         return sum(weights.numel() for weights in self._model.parameters()) if self._model else 0
+
+    def _is_open(self, train: Sequence[Pair], validation: Sequence[Pair]) -> bool:
+        """Whether new forms may be meant: unless it is said, where validation has any."""
+        if self.config.forms != "auto" or self.knowledge.grammar is not None or not validation:
+            return self.config.forms != "closed"
+        known = {pair.form for pair in train}
+        return any(pair.form not in known for pair in validation)
 
     def _prepare(self, examples: Sequence[RankedExample], check: Check) -> RankerTraining:
         """A model with the pretrained encoder, and the prototypes where it puts the examples."""

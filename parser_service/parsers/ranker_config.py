@@ -50,7 +50,7 @@ class RankerConfig:
     forms: str = hyperparameter(
         "auto",
         "Which forms are answered: those of the training pairs (closed), candidates made from them "
-        "as well (open), or what the validation pairs ask for (auto).",
+        "as well (open), or as the validation pairs ask for (auto).",
         choices=("auto", "closed", "open"),
     )
     unknown_below: float = hyperparameter(
@@ -61,8 +61,9 @@ class RankerConfig:
         "Numbers in training: bf16 where the processor has it (auto), or always fp32.",
         choices=("auto", "fp32"),
     )
+    # One core trains in three minutes, and beside other work two are slower than one.
     threads: int = hyperparameter(
-        0, "Processor cores to train on; 0 takes all. Another number may round differently.", 0, 256
+        1, "Processor cores to train on; 0 takes all. Another number may round differently.", 0, 256
     )
 
     def __post_init__(self) -> None:

@@ -312,3 +312,18 @@ def test_a_learning_rate_that_diverges_is_said(config, pairs, monkeypatch):
     monkeypatch.setattr(RankerTraining, "_train_on", lambda *_: float("nan"))
     with pytest.raises(ValueError, match=r"Training diverged in epoch 1.*learning rate below"):
         FormRanker(config).fit(pairs)
+
+
+@pytest.mark.parametrize(("forms", "is_open"), [("auto", False), ("open", True), ("closed", False)])
+def test_where_validation_has_known_forms_alone_the_set_is_closed(config, pairs, forms, is_open):
+    parser = FormRanker(replace(config, forms=forms, steps=1))
+    parser.fit(pairs, pairs[:5])
+    answers = parser.predict(["find it"], 999)[0]
+    assert (len(answers) > len({pair.form for pair in pairs})) is is_open
+
+
+def test_where_validation_has_a_new_form_the_set_is_open(config, pairs):
+    parser = FormRanker(replace(config, steps=1))
+    known = [pair for pair in pairs if pair.form != UNSEEN]
+    parser.fit(known, pairs)
+    assert UNSEEN in {each.form for each in parser.predict(["find it"], 999)[0]}
