@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Sequence
 from functools import lru_cache
@@ -16,6 +17,9 @@ from annotations.language.terms import CLASS_TOKEN
 
 _PLACE = {name: place for place, name in enumerate(ENTITY_CLASSES)}
 _MOST_READINGS = 8
+# A category that is left open is said like this (FORMATS: ``{category?}`` is "objects"); so are
+# things of no category, so that the words may count as one or not.
+_OPEN_CATEGORY = re.compile(r"\b(?:objects|items|things)\b", re.IGNORECASE)
 Counts = tuple[int, ...]  # by ENTITY_CLASSES
 
 
@@ -46,7 +50,9 @@ class SlotTerm:
         for span in self._anonymizer.anonymize(utterance).spans:
             grown = [_with_one(each, name) for each in readings for name in _classes(span)]
             readings = list(dict.fromkeys(grown))[:_MOST_READINGS]
-        return tuple(readings)
+        for _ in _OPEN_CATEGORY.findall(utterance):
+            readings += [_with_one(each, "category") for each in readings]
+        return tuple(dict.fromkeys(readings))[:_MOST_READINGS]
 
 
 def _tokens(text: str) -> Counts:

@@ -9,6 +9,7 @@ from annotations.language.anonymizer import QUESTION_WORD
 from annotations.language.ontology import Ontology
 from annotations.language.terms import CLASS_TOKEN
 
+OPEN_CATEGORY = "objects"  # what ``{category?}`` says
 OBFUSCATED = 0.15  # share of object slots said by their category, as ``{object?}`` says them
 
 
@@ -33,5 +34,6 @@ class SlotFiller:
         if not entities:
             return token[0]
         text = random.choice(entities).text
-        is_singular = entity_class == "category" and random.random() < 0.5
-        return self._ontology.singular(text) if is_singular else text
+        if entity_class == "category":
+            return random.choice((OPEN_CATEGORY, text, self._ontology.singular(text)))
+        return text

@@ -39,9 +39,9 @@ def test_slots_are_filled_with_entities_of_their_class():
     assert said == {"bring the apple from the kitchen", "bring the fruit from the kitchen"}
 
 
-def test_a_category_is_said_in_either_number():
+def test_a_category_is_said_in_either_number_or_left_open():
     said = {SlotFiller(KITCHEN).fill("a <category>", Random(seed)) for seed in range(20)}
-    assert said == {"a fruit", "a fruits"}
+    assert said == {"a fruit", "a fruits", "a objects"}
 
 
 def test_a_question_is_the_word_and_a_class_without_entities_stays():

@@ -27,6 +27,8 @@ FORMS = (
         ("bring the apple from the kitchen table", [-2, -1, -3, -2]),
         ("a fruit please", [-1, 0, 0, -1]),
         ("the fruits please", [-3, -2, 0, -1]),
+        ("the objects", [-2, -1, 0, 0]),
+        ("the object", [-2, -1, -1, 0]),
         ("", [-2, -1, -1, 0]),
     ],
 )
