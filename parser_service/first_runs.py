@@ -9,10 +9,11 @@ from annotations.models.splits import Criterion
 from parser_service import lifecycle
 from parser_service.models import TrainingRun
 
-# Parser, protocol, criterion of the split, train sources; quick ones first.
+# Parser, protocol, criterion of the split, train sources; the quick ones first, then the best.
 FIRST_RUNS = (
     ("grammar-oracle", "grammar", Criterion.COMMAND, "gen+para"),
     ("knn", "strict", Criterion.COMMAND, "gen+para"),
+    ("ranker", "strict", Criterion.COMMAND, "gen+para"),
     ("seq2seq", "strict", Criterion.COMMAND, "gen+para"),
     ("knn", "strict", Criterion.LOGICAL_FORM, "gen+para"),
 )
