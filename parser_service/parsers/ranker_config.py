@@ -36,7 +36,7 @@ class RankerConfig:
         0.99, "Share of the averaged weights kept at each step; 0 keeps none.", 0.0, 0.9999
     )
     pretrained_share: float = hyperparameter(
-        0.25,
+        0.3,
         "How far the averaged encoder goes back to the pretrained one after training: 0 not at all.",
         minimum=0.0,
         maximum=1.0,
