@@ -13,8 +13,8 @@ from parser_service.models import TrainingRun
 FIRST_RUNS = (
     ("grammar-oracle", "grammar", Criterion.COMMAND, "gen+para"),
     ("knn", "strict", Criterion.COMMAND, "gen+para"),
-    ("ranker", "strict", Criterion.COMMAND, "gen+para"),
     ("seq2seq", "strict", Criterion.COMMAND, "gen+para"),
+    ("ranker", "strict", Criterion.COMMAND, "gen+para"),
     ("knn", "strict", Criterion.LOGICAL_FORM, "gen+para"),
 )
 
