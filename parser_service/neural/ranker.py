@@ -137,7 +137,7 @@ class FormRanker(Parser):
     def _is_open(self, train: Sequence[Pair], validation: Sequence[Pair]) -> bool:
         """Whether new forms may be meant: unless it is said, where validation has any."""
         if self.config.forms != "auto" or self.knowledge.grammar is not None or not validation:
-            return self.config.forms != "closed"
+            return bool(self.config.forms != "closed")
         known = {pair.form for pair in train}
         return any(pair.form not in known for pair in validation)
 
@@ -150,7 +150,10 @@ class FormRanker(Parser):
         self._model = model
         ontology = self.knowledge.ontology
         fill = SlotFiller(ontology).fill if ontology is not None else None
-        return RankerTraining(model, self.config, self.seed, examples, fill)
+        is_strict = self.knowledge.predicates is None
+        config = self.config
+        share = config.pretrained_share if is_strict else config.pretrained_share_domain
+        return RankerTraining(model, config, self.seed, examples, share, fill)
 
     def _model_around(self, encoder: SentenceEncoder) -> RankerModel:
         ranked, ontology = self._ranked, self.knowledge.ontology

@@ -42,6 +42,7 @@ class RankerTraining:
         config: RankerConfig,
         seed: int,
         examples: Sequence[RankedExample],
+        pretrained_share: float = 0.0,
         fill: Fill | None = None,
     ):
         self.model = model
@@ -49,7 +50,7 @@ class RankerTraining:
         self.seed = seed
         self.examples = examples
         self.fill = fill
-        kept = {name: config.pretrained_share for name, _ in model.encoder_weights()}
+        kept = {name: pretrained_share for name, _ in model.encoder_weights()}
         self.average = Average(model.trained(), config.averaging, kept)
         self.optimizer = torch.optim.AdamW(self._groups(), weight_decay=WEIGHT_DECAY, fused=True)
         self.epoch = 0

@@ -41,6 +41,12 @@ class RankerConfig:
         minimum=0.0,
         maximum=1.0,
     )
+    pretrained_share_domain: float = hyperparameter(
+        0.5,
+        "The same where glosses are declared (domain, grammar): English that it knew before.",
+        minimum=0.0,
+        maximum=1.0,
+    )
     grounding: float = hyperparameter(
         0.75,
         "Share of generated commands read with entities in their slots, where the ontology is known.",

@@ -8,6 +8,7 @@ from annotations.language.logic import read_form
 from annotations.language.ontology import Entity, Ontology
 from annotations.language.predicates import infer_signatures
 from parser_service.neural.checkpoints import WEIGHTS
+from parser_service.neural.pretrained import load_encoder
 from parser_service.neural.ranker import FormRanker
 from parser_service.neural.ranker_training import RankerTraining
 from parser_service.parsers.candidates.glosses import glosses
@@ -45,6 +46,7 @@ def config(tmp_path_factory):
         head_learning_rate=5e-2,
         averaging=0.9,
         pretrained_share=0.0,
+        pretrained_share_domain=0.0,
         threads=1,
     )
 
@@ -327,3 +329,14 @@ def test_where_validation_has_a_new_form_the_set_is_open(config, pairs):
     known = [pair for pair in pairs if pair.form != UNSEEN]
     parser.fit(known, pairs)
     assert UNSEEN in {each.form for each in parser.predict(["find it"], 999)[0]}
+
+
+def test_the_encoder_goes_back_to_the_pretrained_one_as_far_as_the_protocol_says(config, pairs):
+    whole = replace(config, steps=2, pretrained_share=0.5, pretrained_share_domain=1.0)
+    strict, domestic = FormRanker(whole), FormRanker(whole, knowledge=domain())
+    pretrained = load_encoder(config.encoder).model.state_dict()
+    for parser in (strict, domestic):
+        parser.fit(pairs)
+    name = "encoder.layer.0.output.dense.weight"
+    assert torch.equal(weights(domestic)[f"encoder.model.{name}"], pretrained[name])
+    assert not torch.equal(weights(strict)[f"encoder.model.{name}"], pretrained[name])
