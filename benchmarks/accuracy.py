@@ -15,6 +15,7 @@ import os
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -89,22 +90,17 @@ class Table:
 
 
 def tables(figures: pd.DataFrame) -> list[Table]:
-    """The tables in the order of the protocols, all with the same columns."""
-    measured = set(zip(figures["setting"], figures["criterion"], strict=True))
-    columns = tuple(
-        (setting, criterion)
-        for setting in SETTINGS
-        for criterion in CRITERIA
-        if (setting, criterion) in measured
-    )
+    """The tables in the order of the protocols, each with the columns that were measured in it."""
     return [
-        _table(protocol, figures[figures["protocol"] == protocol], columns)
+        _table(protocol, figures[figures["protocol"] == protocol])
         for protocol in Protocol.values
         if protocol in set(figures["protocol"])
     ]
 
 
-def _table(protocol: str, figures: pd.DataFrame, columns: tuple[tuple[str, str], ...]) -> Table:
+def _table(protocol: str, figures: pd.DataFrame) -> Table:
+    measured = set(zip(figures["setting"], figures["criterion"], strict=True))
+    columns = tuple(each for each in product(SETTINGS, CRITERIA) if each in measured)
     best = figures.groupby(["setting", "criterion"])["mean"].max()
     by_row = dict(list(figures.groupby(["parser", "configuration"])))
     order = sorted(by_row, key=lambda key: (PLACES.get(key[0], len(PLACES)), key))

@@ -10,6 +10,8 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
+import django
+
 ROOT = Path(__file__).resolve().parent.parent
 DATA = Path(os.environ.get("GPSR_SHARED_DATA", ROOT.parent / "shared" / "data")).resolve()
 WORLD = "gpsr2018"
@@ -56,6 +58,13 @@ class Site:
             text = errors.read().decode("utf-8", "replace")
         processor = usage.ru_utime + usage.ru_stime
         return Spent(child.returncode, processor, wall, usage.ru_maxrss * 1024, text)
+
+    def enter(self) -> None:
+        """Makes this process one of the installation: what follows may read its world."""
+        os.environ.pop("DATABASE_URL", None)
+        os.environ.update(self.environment, DJANGO_SETTINGS_MODULE="gpsr_site.settings")
+        sys.path.insert(0, str(ROOT))
+        django.setup()
 
     def import_world(self) -> None:
         """The published generator as ``WORLD``: what *domain* and *grammar* know. Exits if refused."""

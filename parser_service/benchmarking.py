@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 import os
 import time
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from functools import cache
 from hashlib import sha256
 from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from parser_service.analysis.scores import NO_ANSWER, Judgement, judge, score
 from parser_service.code_version import code_version
@@ -24,9 +25,17 @@ Cell = dict[str, Any]
 SETTINGS = ("gen-gen", "gen-para", "para-para", "gen+para-para", "gen+para-mixed")
 
 
+class Column(NamedTuple):
+    """A column of the table. ``setting`` is train sources and test source: ``gen+para-mixed``."""
+
+    setting: str
+    criterion: str
+    protocol: str
+
+
 @dataclass(frozen=True, slots=True)
 class Job:
-    """What one cell measures. ``setting`` is train sources and test source: ``gen+para-mixed``."""
+    """What one cell measures: a parser in a column, with a seed."""
 
     parser: str
     configuration: tuple[tuple[str, Any], ...]
@@ -36,6 +45,12 @@ class Job:
     seed: int
 
     @property
+    def training(self) -> tuple[Any, ...]:
+        """What decides the training: jobs that have the same can share it."""
+        trained_on = _train_sources(self.setting), self.criterion, self.protocol, self.seed
+        return self.parser, self.configuration, *trained_on
+
+    @property
     def train_sources(self) -> tuple[str, ...]:
         return TrainSources(_train_sources(self.setting)).sources
 
@@ -43,28 +58,33 @@ class Job:
     def test_sources(self) -> tuple[str, ...]:
         return TEST_SOURCES[self.setting.rpartition("-")[2]]
 
+    def refused(self, why: str) -> str:
+        """The sentence where there is no cell; jobs that lack theirs for one reason share it."""
+        return f"{self.parser}, {self.protocol}: {why}"
+
 
 def jobs(
     parsers: Sequence[str],
-    settings: Sequence[str],
-    criteria: Sequence[str],
-    protocols: Sequence[str],
+    columns: Sequence[Column],
     seeds: int,
     configurations: Mapping[str, Mapping[str, Any]] | None = None,
 ) -> Iterator[Job]:
     """All that is to be measured; a parser only under the protocols that it has.
 
-    ``configurations`` changes hyperparameters of some parsers. Raises ValueError, a sentence.
+    Jobs of the same ``training`` stand together. ``configurations`` changes hyperparameters of some
+    parsers. Raises ValueError, a sentence.
     """
     changed = configurations or {}
     configured = {
         name: tuple(config_values(make_config(name, changed.get(name))).items()) for name in parsers
     }
-    # Settings last: those that train alike stand together, and the parser is trained once for both.
+    settings, criteria, protocols = (dict.fromkeys(parts) for parts in zip(*columns, strict=True))
+    # Settings last: those that train alike stand together.
     for criterion, name, protocol, seed, setting in product(
-        criteria, parsers, protocols, range(seeds), sorted(settings, key=_train_sources)
+        criteria, configured, protocols, range(seeds), sorted(settings, key=_train_sources)
     ):
-        if protocol in entry(name).protocols:
+        is_asked = Column(setting, criterion, protocol) in columns
+        if is_asked and protocol in entry(name).protocols:
             yield Job(name, configured[name], setting, criterion, protocol, seed)
 
 
@@ -77,20 +97,37 @@ class Fitted:
     n_train: int
 
 
-class Training:
-    """Trains what jobs ask for, and keeps the last parser: the next job may only test it elsewhere."""
+@dataclass(frozen=True)
+class Group:
+    """Jobs of the same ``training``, the pairs they are measured on and what the parser may know.
 
-    def __init__(self) -> None:
-        self._conditions: tuple[Any, ...] = ()
-        self._fitted: Fitted | None = None
+    Holds no rows of the database, so that any process can measure it.
+    """
 
-    def fitted(self, job: Job, corpus: Corpus, knowledge: Knowledge) -> Fitted:
-        """The parser of ``job``. Raises ValueError, a sentence, where there is nothing to train on."""
-        conditions = (replace(job, setting=_train_sources(job.setting)), id(corpus))
-        if self._fitted is None or self._conditions != conditions:
-            self._fitted = _fit(job, corpus, knowledge)
-            self._conditions = conditions
-        return self._fitted
+    jobs: tuple[Job, ...]
+    corpus: Corpus
+    knowledge: Knowledge
+    knowledge_hash: str
+
+    def __str__(self) -> str:
+        first = self.jobs[0]
+        settings = ", ".join(job.setting for job in self.jobs)
+        return f"{first.parser} {settings} by {first.criterion}"
+
+    def key(self, job: Job) -> str:
+        """The key of the cell of ``job``."""
+        return cell_key(job, self.corpus, self.knowledge_hash)
+
+    def measured(self) -> Iterator[Cell | str]:
+        """Trains once and tests for each job: its cell, or the sentence why there is none."""
+        training = cache(lambda: _fit(self.jobs[0], self.corpus, self.knowledge))
+        for job in self.jobs:
+            try:
+                cell = {**measure(job, self.corpus, training), "key": self.key(job)}
+            except ValueError as error:
+                yield job.refused(str(error))
+            else:
+                yield cell
 
 
 def _train_sources(setting: str) -> str:
@@ -108,8 +145,8 @@ def _fit(job: Job, corpus: Corpus, knowledge: Knowledge) -> Fitted:
     return Fitted(parser, time.perf_counter() - began, len(train))
 
 
-def measure(job: Job, corpus: Corpus, knowledge: Knowledge, training: Training) -> Cell:
-    """Trains and tests. Accuracies are fractions of 1; ``accuracy_test`` is None without a test part.
+def measure(job: Job, corpus: Corpus, training: Callable[[], Fitted]) -> Cell:
+    """Tests what ``training`` gives. Accuracies are fractions of 1; ``accuracy_test`` is None without a test part.
 
     Well-formedness and speed are those of the test part, or of the validation part where there is
     none. Raises ValueError, a sentence, where there is nothing to train on or to test with.
@@ -117,7 +154,7 @@ def measure(job: Job, corpus: Corpus, knowledge: Knowledge, training: Training) 
     asked = {part: corpus.pairs(part, job.test_sources) for part in ("validation", "test")}
     if not asked["validation"]:
         raise ValueError(f"{job.setting} by {job.criterion}: there are no pairs to validate with.")
-    fitted = training.fitted(job, corpus, knowledge)
+    fitted = training()
     parser = fitted.parser
     on_validation, validation_ms = _judged(parser, asked["validation"])
     validation = corpus.pairs("validation", job.train_sources)

@@ -63,16 +63,15 @@ def split_by_source_command(folder: Path, anonymize: Callable[[str], str]) -> Co
     Raises LanguageError and ValueError as ``read_corpus`` does.
     """
     published = read_corpus(folder, Criterion.COMMAND)
-    prompts = _prompts(folder)
+    rewritten = source_commands(folder, anonymize)
     pool = [
         pair
         for (part, _), pairs in published.parts.items()
         for pair in pairs
-        if part != "test" and (pair.source == "generated" or pair.utterance in prompts)
+        if part != "test" and (pair.source == "generated" or pair.utterance in rewritten)
     ]
     sources = (
-        pair.utterance if pair.source == "generated" else anonymize(prompts[pair.utterance])
-        for pair in pool
+        pair.utterance if pair.source == "generated" else rewritten[pair.utterance] for pair in pool
     )
     items = [
         SplitItem(pair.source, pair.utterance, source, pair.form)
@@ -85,12 +84,16 @@ def split_by_source_command(folder: Path, anonymize: Callable[[str], str]) -> Co
     return Corpus(Criterion.SOURCE_COMMAND, {key: tuple(pairs) for key, pairs in parts.items()})
 
 
-def _prompts(folder: Path) -> dict[str, str]:
-    """Paraphrase → the grounded command that it rewrites."""
+def source_commands(folder: Path, anonymize: Callable[[str], str]) -> dict[str, str]:
+    """Paraphrase → the command of ``paraphrasings.txt`` that it rewrites, as ``anonymize`` writes it.
+
+    Raises ValueError where the folder has no such file, LanguageError at its first fault.
+    """
     path = folder / TRIPLES_FILE
     if not path.is_file():
         raise ValueError(f"{folder} has no {TRIPLES_FILE}, so no source command is known.")
-    return {record.paraphrase: record.command for record in _sound(read_triples, path)}
+    records = _sound(read_triples, path)
+    return {record.paraphrase: anonymize(record.command) for record in records}
 
 
 def _sound(read: Callable[[bytes, str], RecordFile[Record]], path: Path) -> tuple[Record, ...]:

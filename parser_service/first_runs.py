@@ -3,19 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 from annotations.models import Split
 from annotations.models.splits import Criterion
 from parser_service import lifecycle
 from parser_service.models import TrainingRun
 
-# Parser, protocol, criterion of the split, train sources; the quick ones first, then the best.
+
+class FirstRun(NamedTuple):
+    """What is asked for; ``config`` are hyperparameters that differ from their defaults."""
+
+    parser: str
+    protocol: str
+    criterion: Criterion
+    sources: str
+    config: Mapping[str, Any] = {}
+
+
+# Those of seconds, then the best one, on all cores: nothing else computes on a new installation.
 FIRST_RUNS = (
-    ("grammar-oracle", "grammar", Criterion.COMMAND, "gen+para"),
-    ("knn", "strict", Criterion.COMMAND, "gen+para"),
-    ("seq2seq", "strict", Criterion.COMMAND, "gen+para"),
-    ("ranker", "strict", Criterion.COMMAND, "gen+para"),
-    ("knn", "strict", Criterion.LOGICAL_FORM, "gen+para"),
+    FirstRun("grammar-oracle", "grammar", Criterion.COMMAND, "gen+para"),
+    FirstRun("knn", "strict", Criterion.COMMAND, "gen+para"),
+    FirstRun("ranker", "strict", Criterion.COMMAND, "gen+para", {"threads": 0}),
+    FirstRun("seq2seq", "strict", Criterion.COMMAND, "gen+para"),
+    FirstRun("knn", "strict", Criterion.LOGICAL_FORM, "gen+para"),
 )
 
 
@@ -26,7 +38,7 @@ def request_first_runs(splits: Mapping[Criterion, Split]) -> None:
         for criterion, split in splits.items()
         if not TrainingRun.objects.filter(split=split).exists()
     }
-    for parser, protocol, criterion, sources in FIRST_RUNS:
-        if criterion in untouched:
-            split = untouched[criterion]
-            lifecycle.request(split.world, split, parser, None, protocol, sources)
+    for run in FIRST_RUNS:
+        if run.criterion in untouched:
+            split = untouched[run.criterion]
+            lifecycle.request(split.world, split, run.parser, run.config, run.protocol, run.sources)

@@ -57,8 +57,14 @@ class RunForm(forms.Form):
 
     @property
     def missing(self) -> str | None:
-        """Which pretrained weights the parser lacks as it is offered here, and where to put them."""
-        return missing_weights(make_config(self.parser))
+        """Which pretrained weights the parser lacks as the form stands, and where to put them."""
+        names = {
+            each.name: named
+            for each in config_fields(self.parser)
+            if each.type is str and not each.choices
+            if (named := str(self[PREFIX + each.name].value() or "").strip())
+        }
+        return missing_weights(make_config(self.parser, names))
 
     def clean(self) -> dict[str, Any]:
         cleaned = super().clean()
@@ -79,11 +85,13 @@ class RunForm(forms.Form):
             self.add_error("seeds", str(error))
 
     def _check_config(self) -> None:
-        """The parser has the last word on its hyperparameters."""
+        """The parser has the last word on its hyperparameters. A sentence that opens with the name of
+        one, as they usually do, stands beside its field."""
         try:
             make_config(self.parser, self.config)
         except ValueError as error:
-            self.add_error(None, str(error))
+            field = PREFIX + str(error).partition(" ")[0]
+            self.add_error(field if field in self.fields else None, str(error))
 
 
 def field_for(declared: ConfigField) -> forms.Field:
@@ -98,7 +106,8 @@ def field_for(declared: ConfigField) -> forms.Field:
     if declared.choices:
         return forms.ChoiceField(choices=[(name, name) for name in declared.choices], **common)
     if declared.type is str:
-        return forms.CharField(required=False, **common)
+        # A text that names something by default is never left empty: it would name nothing.
+        return forms.CharField(required=bool(declared.default), **common)
     bounds = {"min_value": declared.minimum, "max_value": declared.maximum}
     if declared.type is int:
         return forms.IntegerField(**common, **bounds)

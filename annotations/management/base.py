@@ -11,6 +11,7 @@ from django.db import DatabaseError
 
 from annotations.language.errors import LanguageError, Problem
 from annotations.models import Split, World
+from annotations.models.splits import Criterion
 
 PROBLEM = "  {file}:{line}:{column}: {severity}: {message} ({hint})"
 
@@ -102,9 +103,11 @@ def find_world(name: str) -> World:
     return world
 
 
-def find_split(world: World, name: str) -> Split:
-    """The split ``name`` of ``world``. Raises CommandError with the names that exist."""
-    split = world.splits.named(name)
+def find_split(world: World, name: str, criterion: str = Criterion.COMMAND) -> Split:
+    """The split of ``world`` called ``name``, the one by ``criterion`` where several share a name.
+    Raises CommandError with the names that exist.
+    """
+    split = world.splits.named(name, criterion)
     if split is None:
         names = ", ".join(world.splits.values_list("name", flat=True)) or "none"
         raise CommandError(f"“{world}” has no split “{name}”. It has: {names}.")

@@ -34,8 +34,9 @@ def search(
     batch = encoded.mask.shape[0]
     repeated = encoded.repeated(width)
     state = decoder.start(repeated)
-    written = torch.full((batch, width, 1), START)  # [batch, width, tokens so far]
-    scores = torch.full((batch, width), IMPOSSIBLE)  # [batch, width]
+    device = repeated.states.device
+    written = torch.full((batch, width, 1), START, device=device)  # [batch, width, tokens so far]
+    scores = torch.full((batch, width), IMPOSSIBLE, device=device)  # [batch, width]
     scores[:, 0] = 0.0  # the hypotheses are alike before the first token: one is enough
     for _ in range(longest):
         check()
@@ -46,6 +47,7 @@ def search(
         written = torch.cat((written, tokens[:, :, None]), dim=2)
         if bool(_is_finished(written).all()):
             break
+    written, scores = written.cpu(), scores.cpu()
     return [_hypotheses(written[row], scores[row]) for row in range(batch)]
 
 
@@ -55,7 +57,7 @@ def _best(scores: Tensor, logits: Tensor, written: Tensor) -> tuple[Tensor, Tens
     batch, width, words = logits.shape
     steps = torch.log_softmax(logits, dim=-1)  # [batch, width, words]
     steps[:, :, [PADDING, UNKNOWN, START]] = IMPOSSIBLE
-    only_padding = torch.full((words,), IMPOSSIBLE)  # [words]
+    only_padding = steps.new_full((words,), IMPOSSIBLE)  # [words]
     only_padding[PADDING] = 0.0
     steps = torch.where(_is_finished(written)[:, :, None], only_padding, steps)
     totals = (scores[:, :, None] + steps).view(batch, width * words)
@@ -72,7 +74,8 @@ def _is_finished(written: Tensor) -> Tensor:
 def _flat(origins: Tensor) -> Tensor:
     """Hypotheses of each beam [batch, width] as rows of the repeated batch [batch * width]."""
     batch, width = origins.shape
-    return (torch.arange(batch)[:, None] * width + origins).flatten()
+    firsts = torch.arange(batch, device=origins.device) * width  # [batch]
+    return (firsts[:, None] + origins).flatten()
 
 
 def _hypotheses(written: Tensor, scores: Tensor) -> list[Hypothesis]:

@@ -59,8 +59,10 @@ def load_training(folder: Path, training: Training) -> None:
     """Puts ``training`` into the state that ``save_training`` wrote, its model included."""
     tensors = load_tensors(folder / TENSORS)
     load_weights(folder / WEIGHTS, training.model)
-    for name, parameter in training.model.named_parameters():
-        training.optimizer.state[parameter] = _under(f"adam.{name}.", tensors)
+    names = [name for name, _ in training.model.named_parameters()]
+    adam = {at: _under(f"adam.{name}.", tensors) for at, name in enumerate(names)}
+    groups = training.optimizer.state_dict()["param_groups"]
+    training.optimizer.load_state_dict({"state": adam, "param_groups": groups})
     training.best_weights = _under("best.", tensors)
     training.generator.set_state(tensors["generator"])
     about = read_json(folder / TRAINING)

@@ -11,6 +11,7 @@ from tokenizers import Tokenizer
 from torch import Tensor
 
 from parser_service.neural.pretrained import Pretrained, encoder_hash, load_encoder
+from parser_service.neural.processor import processor
 from parser_service.neural.word_pooling import mean_by_word
 
 LONGEST = 256  # subwords; the longest published paraphrase has 45
@@ -30,7 +31,7 @@ class ContextualEncoder(Protocol):
         """Numbers a vector."""
 
     def vectors(self, words: Sequence[str]) -> Tensor:
-        """One utterance. Shape [words, layers, width], without gradient."""
+        """One utterance. Shape [words, layers, width], in the main memory, without gradient."""
 
 
 class TransformerWords:
@@ -43,7 +44,7 @@ class TransformerWords:
 
     def __init__(self, pretrained: Pretrained):
         self.identity = encoder_hash(pretrained.folder)
-        self._model = pretrained.model.requires_grad_(False)
+        self._model = pretrained.model.requires_grad_(False).to(processor())
         self._model.eval()  # type: ignore[no-untyped-call]
         self._model.float()  # type: ignore[no-untyped-call]
         text = pretrained.tokenizer.backend_tokenizer.to_str()
@@ -67,7 +68,7 @@ class TransformerWords:
         if not words:
             return torch.zeros(0, 1, self.width)
         cut = self._tokenizer.encode(list(words), is_pretokenized=True)
-        subwords = torch.tensor([cut.ids])  # [1, subwords]
+        subwords = torch.tensor([cut.ids], device=self._model.device)  # [1, subwords]
         states = self._model(input_ids=subwords, attention_mask=torch.ones_like(subwords))
-        last = states.last_hidden_state[0]  # [subwords, width]
+        last = states.last_hidden_state[0].cpu()  # [subwords, width]
         return mean_by_word(last, cut.word_ids, len(words))[:, None]

@@ -1,51 +1,70 @@
-"""From the scores of known and of new forms to one list of calibrated probabilities."""
+"""From what the voices of a model say of known and of new forms to one list of calibrated probabilities."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product
+from typing import Any, Self
 
 import torch
 from torch import Tensor
-from torch.nn.functional import logsigmoid
+from torch.nn.functional import cross_entropy, logsigmoid
 
-TEMPERATURES = tuple(0.05 * step for step in range(10, 41))  # 0.5 to 2
+VOICES = ("examples", "glosses", "slots", "support")
+Weights = tuple[float, ...]  # by VOICES
+EQUAL: Weights = (1.0,) * len(VOICES)
+SPREAD = 0.5  # of the logarithm of a weight, before validation has shown anything
 OFFSETS = tuple(0.25 * step for step in range(-32, 33))  # nats
 SLOPES = (0.0, 0.125, 0.25, 0.5, 1.0)
 
 
 @dataclass(frozen=True, slots=True)
 class Scores:
-    """What a model says to some utterances, higher for better.
+    """What each voice of a model says to some utterances, in nats, higher for better.
 
-    ``known`` [utterances, known forms] and ``new`` [utterances, new forms] are unnormalised
-    log-probabilities. ``evidence`` [utterances] says by how much the glosses of the new forms fit
-    better than those of the known ones.
+    ``known`` [voices, utterances, known forms] and ``new`` [voices, utterances, new forms]; a voice
+    that has nothing to say says 0 to all forms.
     """
 
     known: Tensor
     new: Tensor
-    evidence: Tensor
+
+    @property
+    def evidence(self) -> Tensor:
+        """By how much the new forms fit better than the known ones. Shape [utterances].
+
+        Examples are left out, which only known forms have.
+        """
+        if not self.new.shape[-1]:
+            return self.known.new_zeros(self.known.shape[1])
+        new, known = self.new[1:].sum(0), self.known[1:].sum(0)
+        return new.logsumexp(-1) - known.logsumexp(-1)
 
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """Temperatures of both lists, and when a form is taken for a new one.
+    """How much each voice counts among known and among new forms, and when a form is new.
 
     The log-odds that it is new are ``novelty`` + ``slope`` · evidence.
     """
 
     novelty: float = 0.0
     slope: float = 1.0
-    known_temperature: float = 1.0
-    new_temperature: float = 1.0
+    known: Weights = EQUAL
+    new: Weights = EQUAL
+
+    @classmethod
+    def read(cls, values: Mapping[str, Any]) -> Self:
+        """What ``dataclasses.asdict`` gave, once it was JSON."""
+        return cls(values["novelty"], values["slope"], tuple(values["known"]), tuple(values["new"]))
 
     def log_probabilities(self, scores: Scores) -> Tensor:
         """Shape [utterances, known + new forms]; each row sums to 1 as probabilities."""
-        known = torch.log_softmax(scores.known / self.known_temperature, -1)
-        if not scores.new.shape[1]:
+        known = torch.log_softmax(together(scores.known, self.known), -1)
+        if not scores.new.shape[-1]:
             return known
-        new = torch.log_softmax(scores.new / self.new_temperature, -1)
+        new = torch.log_softmax(together(scores.new, self.new), -1)
         odds = (self.novelty + self.slope * scores.evidence)[:, None]
         return torch.cat([known + logsigmoid(-odds), new + logsigmoid(odds)], -1)
 
@@ -58,15 +77,15 @@ def calibrated(scores: Scores, targets: Tensor) -> Decision:
     nothing and counts nothing: validation pairs parted by command ask for a closed set, those
     parted by form for an open one.
     """
-    number = scores.known.shape[1]
+    number = scores.known.shape[-1]
     is_known = (targets >= 0) & (targets < number)
     is_made = targets >= number
     novelty, slope = best_gate(scores.evidence, ~is_known)
     return Decision(
         novelty,
         slope,
-        best_temperature(scores.known[is_known], targets[is_known]),
-        best_temperature(scores.new[is_made], targets[is_made] - number),
+        best_weights(scores.known[:, is_known], targets[is_known]),
+        best_weights(scores.new[:, is_made], targets[is_made] - number),
     )
 
 
@@ -91,13 +110,29 @@ def best_gate(evidence: Tensor, is_new: Tensor) -> tuple[float, float]:
     return offset - slope * float(usual), slope
 
 
-def best_temperature(scores: Tensor, targets: Tensor) -> float:
-    """The temperature at which ``targets`` are most probable; 1 where there is nothing to see."""
-    if not len(targets):
-        return 1.0
+def best_weights(scores: Tensor, targets: Tensor) -> Weights:
+    """The weights of the voices at which ``targets`` are most probable; 1 where nothing is to be seen.
 
-    def surprise(temperature: float) -> float:
-        logs = torch.log_softmax(scores / temperature, -1)
-        return -float(logs.gather(1, targets[:, None]).mean())
+    A log-linear pool of opinions (Genest and Zidek 1986) by maximum a posteriori: before any pair
+    each weight is log-normal around 1, so that a few pairs cannot silence a voice.
+    """
+    logarithms = torch.zeros(len(scores), dtype=torch.double, requires_grad=True)
+    said = scores.double()
+    search = torch.optim.LBFGS([logarithms], max_iter=100, line_search_fn="strong_wolfe")
 
-    return min(TEMPERATURES, key=surprise)
+    def surprise() -> Tensor:
+        search.zero_grad()
+        seen = cross_entropy(together(said, logarithms.exp()), targets, reduction="sum")
+        loss = seen + logarithms.square().sum() / (2 * SPREAD**2)
+        loss.backward()  # type: ignore[no-untyped-call]
+        return loss
+
+    if len(targets):
+        search.step(surprise)  # type: ignore[no-untyped-call]
+    return tuple(logarithms.detach().exp().tolist())
+
+
+def together(scores: Tensor, weights: Weights | Tensor) -> Tensor:
+    """The weighted sum of the voices. Shape [voices, utterances, forms] to [utterances, forms]."""
+    shares = torch.as_tensor(weights, dtype=scores.dtype)
+    return torch.einsum("v,vuf->uf", shares, scores)

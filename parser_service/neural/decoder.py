@@ -45,9 +45,17 @@ class Decoder(nn.Module):
     def forward(self, tokens: Tensor, state: State, encoded: Encoded) -> tuple[Tensor, State]:
         """Scores of the next token after each of ``tokens`` [batch, target length]: logits
         [batch, target length, target words], and the memory after the last."""
+        written, state = self.write(tokens, state)
+        return self.logits(written, encoded), state
+
+    def write(self, tokens: Tensor, state: State) -> tuple[Tensor, State]:
+        """The LSTM alone: its outputs [batch, target length, hidden], and the memory."""
         vectors = self.embedding(tokens)  # [batch, target length, embedding]
         written, (hidden, cell) = self.lstm(vectors, (state.hidden, state.cell))
+        return written, State(hidden, cell)
+
+    def logits(self, written: Tensor, encoded: Encoded) -> Tensor:
+        """What follows it: attention and the output layer. Shapes as above."""
         read = self.attention(written, encoded)  # [batch, target length, hidden]
         joined = torch.cat((written, read), dim=-1)  # [batch, target length, 2 * hidden]
-        logits = self.output(torch.tanh(self.combine(joined)))  # [batch, target length, words]
-        return logits, State(hidden, cell)
+        return self.output(torch.tanh(self.combine(joined)))  # type: ignore[no-any-return]

@@ -13,6 +13,7 @@ from parser_service.neural.elmo_characters import spell
 from parser_service.neural.elmo_layers import ProjectedLstm
 from parser_service.neural.elmo_options import ElmoOptions, read_elmo_options
 from parser_service.neural.elmo_weights import BACKWARD, FORWARD, opened
+from parser_service.neural.processor import full_fp32, processor
 from parser_service.parsers.storage import file_hash
 from parser_service.parsers.weight_files import find_elmo
 
@@ -53,14 +54,16 @@ class Elmo:
     def vectors(self, words: Sequence[str]) -> Tensor:
         """One utterance. Shape [words, layers, width]; a layer is forward and backward, joined."""
         spelled = torch.tensor(spell(words, self.options.longest_word))  # [words + 2, longest]
-        plain = self._cnn(spelled)  # [words + 2, width / 2]
+        with full_fp32():
+            plain = self._cnn(spelled.to(processor()))  # [words + 2, width / 2]
         ahead = self._read(plain, self._forward)
         behind = self._read(plain.flip(0), self._backward)
         layers = [
             torch.cat((one, other.flip(0)), dim=-1)  # [words + 2, width]
             for one, other in zip(ahead, behind, strict=True)
         ]
-        return torch.stack(layers, dim=1)[1:-1].clone()  # without the sentence's begin and end
+        inner = torch.stack(layers, dim=1)[1:-1]  # without the sentence's begin and end
+        return inner.to("cpu", copy=True)
 
     def _read(self, words: Tensor, lstms: Sequence[ProjectedLstm]) -> list[Tensor]:
         """``words`` and the output of each layer in one direction, each [words, width / 2]."""

@@ -19,6 +19,7 @@ from parser_service.neural.elmo_layers import (
     ProjectedLstm,
 )
 from parser_service.neural.elmo_options import ElmoOptions
+from parser_service.neural.processor import processor
 
 FORWARD, BACKWARD = 0, 1
 
@@ -78,7 +79,7 @@ class ElmoWeights:
                 f"{self._path}: {name} should have shape {list(shape)} but {has}; put the weights "
                 "there that were published with the options.json beside them."
             )
-        return torch.from_numpy(dataset[...].astype("float32"))
+        return torch.from_numpy(dataset[...].astype("float32")).to(processor())
 
 
 @contextmanager

@@ -17,7 +17,8 @@ class WordEmbedding(nn.Embedding):
 
 class Dropout(nn.Module):
     """Inverted dropout. Its masks come from ``generator`` and not from torch's global one, so that
-    nothing else that runs in the process changes what is learned."""
+    nothing else that runs in the process changes what is learned. It lives on the CPU, so that
+    every processor drops the same."""
 
     def __init__(self, probability: float, generator: torch.Generator):
         super().__init__()
@@ -28,5 +29,5 @@ class Dropout(nn.Module):
         if not self.training or self.probability == 0:
             return values
         keep = 1 - self.probability
-        mask = torch.empty_like(values).bernoulli_(keep, generator=self.generator)
-        return values * mask / keep  # as values
+        mask = torch.empty_like(values, device="cpu").bernoulli_(keep, generator=self.generator)
+        return values * mask.to(values.device) / keep  # as values

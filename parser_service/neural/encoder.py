@@ -49,8 +49,9 @@ class Encoder(nn.Module):
 
     def forward(self, source: Tensor, lengths: Tensor, context: Tensor | None = None) -> Encoded:
         """``source`` [batch, source length], ``lengths`` [batch], ``context`` [batch, source
-        length, layers, width] where the encoder was made to mix it."""
-        words = self.embedding(source)  # [batch, source length, embedding]
+        length, layers, width] where the encoder was made to mix it, all in the main memory."""
+        device = self.embedding.weight.device
+        words = self.embedding(source.to(device))  # [batch, source length, embedding]
         if self.mix is not None:
             words = torch.cat((words, self.mix(context)), dim=-1)
         vectors = self.dropout(words)  # [batch, source length, embedding and width of the mix]
@@ -60,6 +61,6 @@ class Encoder(nn.Module):
         positions = torch.arange(source.shape[1])  # [source length]
         return Encoded(
             states=self.dropout(states),
-            mask=positions < lengths[:, None],
+            mask=(positions < lengths[:, None]).to(device),
             final=torch.cat((final[0], final[1]), dim=-1),
         )

@@ -33,9 +33,9 @@ class GlossHead:
         """Shape [batch, width] to [batch, glosses]."""
         return SCALE * utterances @ self.vectors.T
 
-    def trained_logits(self, utterances: Tensor, targets: Tensor) -> Tensor:
-        """The same with gradient to the glosses of ``targets`` [batch]."""
-        own = sorted(set(targets.tolist()))
+    def trained_logits(self, utterances: Tensor, targets: Sequence[int]) -> Tensor:
+        """The same with gradient to the glosses of ``targets``, a form for each utterance."""
+        own = sorted(set(targets))
         fresh = self.encoder([self.glosses[index] for index in own])
         at = torch.tensor(own, device=fresh.device)
         vectors = self.vectors.index_copy(0, at, fresh)

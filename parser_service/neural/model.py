@@ -10,6 +10,7 @@ from parser_service.neural.batches import Batch
 from parser_service.neural.decoder import Decoder
 from parser_service.neural.embeddings import Dropout, WordEmbedding
 from parser_service.neural.encoder import Encoder
+from parser_service.neural.processor import bf16_on_gpu
 from parser_service.neural.scalar_mix import ContextShape, ScalarMix
 from parser_service.neural.vocabulary import PADDING
 from parser_service.parsers.seq2seq_config import Seq2SeqConfig
@@ -39,11 +40,19 @@ class Seq2SeqModel(nn.Module):
         self._draw_weights(generator)
 
     def loss(self, batch: Batch) -> Tensor:
-        """Cross entropy in nats a token, a scalar."""
+        """Cross entropy in nats a token, a scalar.
+
+        On a GPU attention and output are in bf16. The LSTMs are not: torch would run them in fp16,
+        in which small gradients vanish.
+        """
         encoded = self.encoder(batch.source, batch.lengths, batch.context)
+        device = encoded.states.device
         start = self.decoder.start(encoded)
-        logits, _ = self.decoder(batch.inputs, start, encoded)  # [batch, target length, words]
-        return cross_entropy(logits.flatten(0, 1), batch.outputs.flatten(), ignore_index=PADDING)
+        written, _ = self.decoder.write(batch.inputs.to(device), start)
+        with bf16_on_gpu(device):
+            logits = self.decoder.logits(written, encoded)  # [batch, target length, words]
+        outputs = batch.outputs.to(device)
+        return cross_entropy(logits.float().flatten(0, 1), outputs.flatten(), ignore_index=PADDING)
 
     @torch.no_grad()
     def _draw_weights(self, generator: torch.Generator) -> None:

@@ -1,4 +1,4 @@
-"""Forms with examples: one learned vector each."""
+"""Forms with examples, for training: one learned vector each."""
 
 from __future__ import annotations
 

@@ -26,15 +26,16 @@ class RankedExample:
 class RankedForms:
     """Known forms first, then new ones; each with its gloss.
 
-    ``support`` says of each new form how many kinds of step arrive at it. The first ``examples``
-    forms have examples: the known ones, or all where the grammar has commands for them.
+    ``support`` says of each new form how many kinds of step arrive at it. ``examples`` are the
+    numbers of the forms that the examples have: the known ones have some, and all where the grammar
+    has commands for them.
     """
 
     forms: tuple[str, ...]
     glosses: tuple[str, ...]
     known: int
     support: tuple[int, ...]
-    examples: int
+    examples: tuple[int, ...]
 
     @classmethod
     def read(cls, values: Mapping[str, Any]) -> Self:
@@ -44,7 +45,7 @@ class RankedForms:
             tuple(values["glosses"]),
             values["known"],
             tuple(values["support"]),
-            values["examples"],
+            tuple(values["examples"]),
         )
 
     def written(self) -> dict[str, Any]:
@@ -74,11 +75,12 @@ def collect(
         RankedExample(pair.utterance, number[pair.form], pair.source == "generated")
         for pair in pairs
     ]
+    examples += generated
     ranked = RankedForms(
         forms,
         tuple(glosses(forms, knowledge.predicates)),
         len(gathered.training),
         tuple(min(each.support, MOST_SUPPORT) for each in gathered.new),
-        len(forms) if generated else len(gathered.training),
+        tuple(each.form for each in examples),
     )
-    return ranked, examples + generated, str(gathered)
+    return ranked, examples, str(gathered)

@@ -14,6 +14,7 @@ import torch
 from parser_service.neural.checkpoints import WEIGHTS, load_weights, save_weights
 from parser_service.neural.deciding import Decision, calibrated
 from parser_service.neural.pretrained import load_encoder
+from parser_service.neural.processor import processor
 from parser_service.neural.ranked_forms import RankedExample, RankedForms, collect
 from parser_service.neural.ranker_checkpoints import FILES, load_training, save_training
 from parser_service.neural.ranker_model import RankerModel
@@ -45,14 +46,14 @@ PREDICTION_BATCH = 64
 class FormRanker(Parser):
     """Chooses among whole forms, by one fine-tuned sentence encoder.
 
-    A form with examples is scored by a prototype and by its English gloss, a new one by its gloss
-    alone; where the ontology is known, slots that no entity of the utterance fills cost. New forms
+    A form with examples is scored by the nearest of them and by its English gloss, a new one by its
+    gloss alone; where the ontology is known, slots that no entity of the utterance fills cost. New forms
     are made from those of the training pairs (``candidates``) or taken from the grammar. Scores are
     log-probabilities, calibrated on the validation pairs, which also tell how often a form is new.
     """
 
     name = "ranker"
-    version = 1
+    version = 2
     protocols = ("strict", "domain", "grammar")
     Config = RankerConfig
 
@@ -64,7 +65,7 @@ class FormRanker(Parser):
     ):
         super().__init__(config, seed, knowledge)
         self._decision = Decision()
-        self._ranked = RankedForms((), (), 0, (), 0)
+        self._ranked = RankedForms((), (), 0, (), ())
         self._model: RankerModel | None = None
 
     def fit(
@@ -85,7 +86,7 @@ class FormRanker(Parser):
             while not training.is_over():
                 self._train_epoch(training, validation, observe)
             training.average.keep()
-            self._settle(validation, observe.check)
+            self._settle(training, validation, observe.check)
 
     def predict(
         self, utterances: Sequence[str], beam_width: int = 1, check: Check = keep_going
@@ -124,7 +125,7 @@ class FormRanker(Parser):
                 "world, under the protocol that it was trained with."
             )
         parser._ranked = RankedForms.read(about["ranked"])
-        parser._decision = Decision(**about["decision"])
+        parser._decision = Decision.read(about["decision"])
         parser._model = parser._model_around(SentenceEncoder.described_in(folder))
         load_weights(folder / WEIGHTS, parser._model)
         parser._model.eval()
@@ -167,7 +168,7 @@ class FormRanker(Parser):
         loss = training.run_epoch(observe.check)
         with training.average.in_force():
             with reduced_precision(training.model, self.config.precision):
-                found = self._settle(validation, observe.check)
+                found = self._settle(training, validation, observe.check)
             observe.epoch(EpochReport(training.epoch, loss, *found, time.monotonic() - begin))
             # The newest average is the best: the last one is the parser, whatever a small
             # validation part says.
@@ -178,11 +179,11 @@ class FormRanker(Parser):
         observe.progress(training.epoch / training.epochs, message)
 
     def _settle(
-        self, validation: Sequence[Pair], check: Check
+        self, training: RankerTraining, validation: Sequence[Pair], check: Check
     ) -> tuple[float | None, float | None]:
-        """Encodes the glosses and calibrates; loss and accuracy on the validation pairs."""
+        """Encodes examples and glosses and calibrates; loss and accuracy on the validation pairs."""
         model = self._trained()
-        model.glosses.renew(check=check)
+        model.renew([example.utterance for example in training.examples], check)
         if not validation:
             self._decision = Decision()
             return None, None
@@ -239,8 +240,3 @@ class FormRanker(Parser):
             return
         load_training(folder, training)
         observe.log(f"Training goes on after epoch {training.epoch}.")
-
-
-def processor() -> torch.device:
-    """The GPU where there is one."""
-    return torch.device("cuda" if torch.cuda.is_available() else "cpu")

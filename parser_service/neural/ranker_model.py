@@ -1,4 +1,4 @@
-"""The network of the form ranker: an encoder and the prototypes of forms with examples."""
+"""The network of the form ranker: an encoder, and forms by their examples and by their glosses."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from collections.abc import Iterator, Sequence
 import torch
 from torch import Tensor, nn
 
-from parser_service.neural.deciding import Scores
+from parser_service.neural.deciding import VOICES, Scores
 from parser_service.neural.gloss_head import GlossHead
+from parser_service.neural.nearest_examples import NearestExamples
 from parser_service.neural.prototype_head import PrototypeHead
 from parser_service.neural.ranked_forms import RankedForms
 from parser_service.neural.sentence_encoder import SentenceEncoder
@@ -19,7 +20,11 @@ SUPPORT_WEIGHT = 1.0  # nats for each kind of step that arrives at a new form
 
 
 class RankerModel(nn.Module):
-    """Scores forms in two ways: against the examples that they had, and against their glosses."""
+    """Scores forms in two ways: against their examples and against their glosses.
+
+    In training a prototype stands for the examples of a form, which have no vectors of the day;
+    afterwards the nearest of them speaks.
+    """
 
     def __init__(
         self, encoder: SentenceEncoder, ranked: RankedForms, slots: SlotTerm | None = None
@@ -27,7 +32,8 @@ class RankerModel(nn.Module):
         """``slots`` where the ontology is known."""
         super().__init__()
         self.encoder = encoder
-        self.prototypes = PrototypeHead(ranked.examples, encoder.width)
+        self.nearest = NearestExamples(ranked.examples, encoder.width)
+        self.prototypes = PrototypeHead(self.nearest.number, encoder.width)
         self.glosses = GlossHead(encoder, ranked.glosses)
         self.slots = slots
         self.known = ranked.known
@@ -47,27 +53,21 @@ class RankerModel(nn.Module):
             return logits
         return logits + self.slots.scores(utterances).to(logits.device)
 
+    def renew(self, utterances: Sequence[str], check: Check) -> None:
+        """Puts ``utterances``, the examples, and the glosses where the encoder puts them by now."""
+        self.glosses.renew(check)
+        self.nearest.renew(self.encoder, utterances, check)
+
     @torch.no_grad()
     def scores(self, utterances: Sequence[str], check: Check) -> Scores:
-        """What prototypes, glosses, slots and support say, in the main memory."""
+        """What examples, glosses, slots and support say, in the main memory."""
         vectors = self.encoder.vectors(utterances, check)  # [utterances, width]
-        by_example = self.prototypes(vectors).cpu()  # [utterances, forms with examples]
-        by_gloss = self.fitting(self.glosses.logits(vectors), utterances).cpu()
-        known, new = by_gloss[:, : self.known], by_gloss[:, self.known :]
-        new = new + SUPPORT_WEIGHT * self.support
-        is_open = new.shape[1] > 0
-        evidence = (
-            new.logsumexp(-1) - known.logsumexp(-1) if is_open else known.new_zeros(len(known))
-        )
-        return Scores(
-            _added(known, by_example[:, : self.known]),
-            _added(new, by_example[:, self.known :]),
-            evidence,
-        )
-
-
-def _added(by_gloss: Tensor, by_example: Tensor) -> Tensor:
-    """The log-probabilities of both ways for some forms, of glosses alone where there is no example.
-    Shape [utterances, forms]."""
-    logs = torch.log_softmax(by_gloss, -1)
-    return logs + torch.log_softmax(by_example, -1) if by_example.shape[1] else logs
+        by_gloss = self.glosses.logits(vectors).cpu()  # [utterances, forms]
+        said = by_gloss.new_zeros(len(VOICES), *by_gloss.shape)
+        by_example = self.nearest(vectors).cpu()  # [utterances, forms with examples]
+        said[0, :, : by_example.shape[1]] = by_example
+        said[1] = by_gloss
+        if self.slots is not None:
+            said[2] = self.slots.scores(utterances)
+        said[3, :, self.known :] = SUPPORT_WEIGHT * self.support
+        return Scores(said[..., : self.known], said[..., self.known :])

@@ -13,6 +13,7 @@ from torch import Tensor
 from torch.nn.functional import cross_entropy
 
 from parser_service.neural.averaging import Average
+from parser_service.neural.processor import has_bf16
 from parser_service.neural.ranked_forms import RankedExample
 from parser_service.neural.ranker_model import RankerModel
 from parser_service.parsers.interface import Check
@@ -116,10 +117,11 @@ class RankerTraining:
     def _loss(self, batch: Sequence[RankedExample], random: Random) -> Tensor:
         texts = [self._text(example, random) for example in batch]
         vectors = self.model.encoder(texts)  # [batch, width]
-        targets = torch.tensor([example.form for example in batch], device=vectors.device)
+        meant = [example.form for example in batch]
+        targets = torch.tensor(meant, device=vectors.device)
         smoothing = self.config.label_smoothing
         by_example = self.model.prototypes(vectors)  # [batch, forms with examples]
-        by_gloss = self.model.glosses.trained_logits(vectors, targets)
+        by_gloss = self.model.glosses.trained_logits(vectors, meant)
         return cross_entropy(by_example, targets, label_smoothing=smoothing) + cross_entropy(
             self.model.fitting(by_gloss, texts), targets, label_smoothing=smoothing
         )
@@ -156,11 +158,3 @@ def reduced_precision(model: RankerModel, precision: str) -> Iterator[None]:
         yield
     finally:
         model.encoder.in_bf16 = False
-
-
-def has_bf16(device: torch.device) -> bool:
-    """Whether a processor multiplies bf16 matrices itself; emulated they are slower than fp32."""
-    if device.type == "cuda":
-        return bool(torch.cuda.is_bf16_supported(including_emulation=False))
-    found = torch.cpu.get_capabilities()
-    return bool(found.get("avx512_bf16") or found.get("amx_bf16"))

@@ -26,6 +26,7 @@ class ScalarMix(nn.Module):
         self.gamma = nn.Parameter(torch.ones(1))
 
     def forward(self, layers: Tensor) -> Tensor:
-        """[batch, words, layers, width] to [batch, words, width]."""
+        """[batch, words, layers, width] in the main memory to [batch, words, width]."""
         shares = torch.softmax(self.weights, dim=0)  # [layers]
-        return self.gamma * torch.einsum("bwld,l->bwd", layers, shares)
+        mixed = torch.einsum("bwld,l->bwd", layers.to(shares.device), shares)
+        return self.gamma * mixed

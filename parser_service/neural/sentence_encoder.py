@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Self
 
@@ -73,7 +74,8 @@ class SentenceEncoder(nn.Module):
         cut = self.tokenizer.encode_batch(list(texts))
         subwords = torch.tensor([each.ids for each in cut], device=device)  # [texts, length]
         mask = torch.tensor([each.attention_mask for each in cut], device=device)
-        with torch.autocast(device.type, torch.bfloat16, enabled=self.in_bf16):
+        bf16 = torch.autocast(device.type, torch.bfloat16) if self.in_bf16 else nullcontext()
+        with bf16:
             states = self.model(input_ids=subwords, attention_mask=mask).last_hidden_state
         states = self.dropout(states.float())  # [texts, length, width]
         shares = mask / mask.sum(1, keepdim=True)  # [texts, length]

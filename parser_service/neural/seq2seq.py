@@ -22,6 +22,7 @@ from parser_service.neural.checkpoints import (
     save_weights,
 )
 from parser_service.neural.model import Seq2SeqModel
+from parser_service.neural.processor import full_fp32, processor
 from parser_service.neural.scalar_mix import ContextShape
 from parser_service.neural.threads import threads
 from parser_service.neural.training import Result, Training, validation_loss
@@ -97,7 +98,7 @@ class Seq2Seq(Parser):
         width = max(beam_width, self.config.beam_width)
         self._model.eval()
         answers: list[list[Candidate]] = []
-        with threads(self.config.threads):
+        with threads(self.config.threads), full_fp32():
             for begin in range(0, len(utterances), PREDICTION_BATCH):
                 check()
                 answers += self._parse(utterances[begin : begin + PREDICTION_BATCH], width, check)
@@ -125,9 +126,8 @@ class Seq2Seq(Parser):
         """An untrained model for these vocabularies."""
         self._generator.manual_seed(self.seed)
         self._source, self._target, self._longest = source, target, longest
-        self._model = Seq2SeqModel(
-            self.config, len(source), len(target), self._generator, self._shape
-        )
+        model = Seq2SeqModel(self.config, len(source), len(target), self._generator, self._shape)
+        self._model = model.to(processor())
 
     def _read_vocabularies(self, train: Sequence[Pair]) -> None:
         source = self._source_vocabulary([words(pair.utterance) for pair in train])

@@ -55,6 +55,13 @@ def validate(config: Any) -> None:
             raise ValueError(f"{declared.name} is {value!r}, but {fault}.")
 
 
+def refuse_empty(config: Any, field: str) -> None:
+    """For weights that a parser cannot do without: it would be another one under its name. Raises
+    ValueError, a sentence."""
+    if not getattr(config, field).strip():
+        raise ValueError(f"{field} is empty, but this parser reads it; name what it is to read.")
+
+
 def read_config(config_class: type[C], values: Mapping[str, Any]) -> C:
     """A config from JSON ``values``, with defaults. Raises ValueError, a sentence."""
     known = [item.name for item in _declared(config_class)]

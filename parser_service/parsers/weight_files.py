@@ -74,6 +74,8 @@ def missing_weights(config: Any, encoders: Path | None = None) -> str | None:
                 find(name, encoders)
             except ValueError as problem:
                 problems.append(str(problem))
+            except OSError as problem:  # a name longer than the system allows, say
+                problems.append(f"{field} cannot be looked for: {problem.strerror or problem}.")
     return " ".join(problems) or None
 
 

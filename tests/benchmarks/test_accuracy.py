@@ -53,6 +53,13 @@ def test_each_protocol_has_a_table_and_a_best_of_its_own(printed):
     assert "**90.0**" in domain
 
 
+def test_a_protocol_has_the_columns_that_were_measured_in_it(printed):
+    cells = [cell(), cell("ranker", setting="gen-para", protocol="domain")]
+    strict, domain = printed(cells).split("### domain")
+    assert "| parser | para-para command |" in strict
+    assert "| parser | gen-para command |" in domain
+
+
 def test_columns_follow_the_paper_and_what_was_not_measured_is_a_dash(printed):
     cells = [
         cell(setting="gen+para-mixed", n_validation=302),

@@ -1,10 +1,12 @@
-"""A small made-up split, and the parser that learns it in seconds."""
+"""A small made-up split, as rows and as files, and the parser that learns it in seconds."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import product
+from pathlib import Path
 
+from annotations.language.pairs import by_length, write_pairs
 from annotations.models import Example, Split, World
 
 # A network that learns the made-up pairs in seconds, and one that is not done before it is stopped.
@@ -52,3 +54,18 @@ def make_split(world: World, name: str = "home") -> Split:
                 logical_form=form,
             )
     return split
+
+
+def make_folder(folder: Path) -> Path:
+    """Pair files by command with train and validation parts, and where the paraphrases come from."""
+    for name, place in (("gen", 0), ("para", 1)):
+        rows = {"train.txt": [], "val.txt": []}
+        for number, made in enumerate(made_up_pairs()):
+            rows["val.txt" if number % 4 == 3 else "train.txt"].append((made[place], made[2]))
+        for file, pairs in rows.items():
+            path = folder / name / file
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text("".join(write_pairs(by_length(pairs))), encoding="utf-8")
+    triples = [f"{said}\n{command}\n{form}\n" for command, said, form in made_up_pairs()]
+    (folder / "paraphrasings.txt").write_text("".join(triples), encoding="utf-8")
+    return folder

@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+from itertools import groupby
 from pathlib import Path
 
 import pytest
@@ -13,10 +14,10 @@ from django.conf import settings as site
 from django.core.management import CommandError, call_command
 
 from annotations.importing import import_generator
-from annotations.language.pairs import by_length, write_pairs
 from parser_service import benchmarking
 from parser_service.corpus import read_corpus, split_by_source_command
-from tests.parser_service.made_up import made_up_pairs
+from parser_service.management.options import read_column
+from tests.parser_service.made_up import made_up_pairs, make_folder
 from tests.parser_service.running import ROOT
 
 KEYS = {
@@ -28,24 +29,12 @@ KEYS = {
 
 @pytest.fixture
 def folder(tmp_path) -> Path:
-    """Pair files by command with train and validation parts, and where the paraphrases come from."""
-    triples = []
-    for name, place in (("gen", 0), ("para", 1)):
-        rows = {"train.txt": [], "val.txt": []}
-        for number, made in enumerate(made_up_pairs()):
-            rows["val.txt" if number % 4 == 3 else "train.txt"].append((made[place], made[2]))
-        for file, pairs in rows.items():
-            path = tmp_path / "pairs" / name / file
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text("".join(write_pairs(by_length(pairs))), encoding="utf-8")
-    triples = [f"{said}\n{command}\n{form}\n" for command, said, form in made_up_pairs()]
-    (tmp_path / "pairs" / "paraphrasings.txt").write_text("".join(triples), encoding="utf-8")
-    return tmp_path / "pairs"
+    return make_folder(tmp_path / "pairs")
 
 
 def run(folder: Path, file: Path, **options) -> list[dict]:
-    given = {"criteria": "command", "protocols": "strict", "parsers": "knn", **options}
-    call_command("benchmark", str(folder), json=file, **given)
+    named = {} if "columns" in options else {"criteria": "command", "protocols": "strict"}
+    call_command("benchmark", str(folder), json=file, **{"parsers": "knn", **named, **options})
     return json.loads(file.read_text(encoding="utf-8"))
 
 
@@ -94,6 +83,25 @@ def test_settings_that_train_alike_share_one_training(folder, tmp_path, monkeypa
     assert len(cells) == 10 and len(fits) == 6
     alike = [cell for cell in cells if cell["setting"].startswith("gen+para-") and not cell["seed"]]
     assert alike[0]["seconds_train"] == alike[1]["seconds_train"]
+
+
+def test_columns_are_measured_and_no_other_combination(folder, tmp_path):
+    columns = "gen+para-mixed:command:strict, gen-gen:command:strict,para-para:command:domain"
+    cells = run(folder, tmp_path / "cells.json", columns=columns)
+    found = [(cell["setting"], cell["criterion"], cell["protocol"]) for cell in cells]
+    assert found == [("gen-gen", "command", "strict"), ("gen+para-mixed", "command", "strict")]
+
+
+def test_columns_that_train_alike_stand_together():
+    texts = (
+        "gen+para-para:command:strict", "gen-gen:command:strict", "gen+para-para:command:domain",
+        "gen+para-mixed:logical_form:strict", "gen+para-mixed:command:strict",
+        "gen-para:command:strict", "gen+para-para:logical_form:strict",
+    )  # fmt: skip
+    todo = list(benchmarking.jobs(["ranker", "knn"], [read_column(text) for text in texts], 2))
+    assert len(todo) == len(set(todo)) == 2 * (7 + 6)
+    trainings = [training for training, _ in groupby(todo, key=lambda job: job.training)]
+    assert len(trainings) == len(set(trainings)) == 2 * (4 + 3)
 
 
 @pytest.mark.parametrize("change", ["code", "configuration", "seed", "pairs"])
@@ -149,6 +157,12 @@ def test_a_paraphrase_of_unknown_origin_is_left_out(folder):
         ({"train_test": "para-gen"}, "'para-gen' is none of gen-gen"),
         ({"criteria": "logical_form"}, "has no split by logical_form"),
         ({"criteria": "source_command"}, "needs the ontology of a --world"),
+        ({"columns": "para-gen:command:strict"}, "'para-gen' is none of gen-gen"),
+        ({"columns": "gen-gen:form:strict"}, "'form' is none of command"),
+        ({"columns": "gen-gen:command:loose"}, "'loose' is none of strict"),
+        ({"columns": "gen-gen:command"}, "'gen-gen:command' has to be SETTING:CRITERION:PROTOCOL"),
+        ({"columns": "gen-gen:command:strict", "criteria": "command"}, "leave either away"),
+        ({"jobs": 0}, "--jobs is 0; it has to be 1 or more"),
         ({"config": ["least_overlap=0.5"]}, "has to be PARSER.KEY=VALUE"),
         ({"parsers": "grammar-oracle", "protocols": "grammar"}, "The grammar oracle parses with"),
     ],

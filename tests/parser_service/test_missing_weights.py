@@ -62,6 +62,15 @@ def test_the_page_refuses_the_run_with_it(world, adam, sentence):
     assert TrainingRun.objects.count() == before
 
 
+@pytest.mark.parametrize(
+    "parser, field", [(PARSER, "glove"), (PARSER, "elmo"), ("ranker", "encoder")]
+)
+def test_a_name_that_no_file_can_have_is_missing_and_none_at_all_is_refused(parser, field):
+    assert field in missing_weights(make_config(parser, {field: 1000 * "x"}))
+    with pytest.raises(ValueError, match=f"{field} is empty"):
+        make_config(parser, {field: " "})
+
+
 def test_a_run_is_not_queued(world, split, sentence):
     with pytest.raises(ValueError) as refused:
         lifecycle.request(world, split, PARSER)

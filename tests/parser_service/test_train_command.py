@@ -58,7 +58,7 @@ def test_a_hyperparameter_is_read_as_what_it_is(split):
     ("arguments", "sentence"),
     [
         (("knn", "--world", "nowhere", "--split", "home"), "There is no world “nowhere”"),
-        (("knn", "--world", "home", "--split", "away"), "There is no split “away” in home"),
+        (("knn", "--world", "home", "--split", "away"), "“home” has no split “away”. It has: home"),
         (("knn", *HERE, "--seeds", "11"), "11 seeds were asked for; it has to be 1 to 10"),
         (("knn", *HERE, "--sources", "all"), "--sources is 'all'"),
         (("knn", *HERE, "--config", "least_overlap"), "has to be KEY=VALUE"),

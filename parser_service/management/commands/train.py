@@ -12,8 +12,8 @@ from typing import Any
 
 from django.core.management.base import CommandError, CommandParser
 
-from annotations.management.base import Refused, ReportingCommand, find_world
-from annotations.models import Split, World
+from annotations.management.base import Refused, ReportingCommand, find_split, find_world
+from annotations.models import World
 from annotations.models.splits import Criterion
 from parser_service import lifecycle
 from parser_service.analysis.seeds import over_seeds
@@ -110,15 +110,6 @@ class Command(ReportingCommand):
                 raise CommandError(f"Run {run.pk} goes on without this command.") from None
             lifecycle.acknowledge_cancel(run)
             raise CommandError(f"Run {run.pk} was cancelled.") from None
-
-
-def find_split(world: World, name: str, criterion: str) -> Split:
-    """The split called ``name`` under ``criterion``. Raises CommandError with the names there are."""
-    split = world.splits.named(name, criterion)
-    if split is None:
-        names = ", ".join(world.splits.values_list("name", flat=True)) or "none"
-        raise CommandError(f"There is no split “{name}” in {world}. Splits there: {names}.")
-    return split
 
 
 def as_report(run: TrainingRun) -> dict[str, Any]:

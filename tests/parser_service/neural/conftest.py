@@ -1,12 +1,14 @@
 """A toy language, small enough to be learned in seconds on one thread."""
 
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from shutil import rmtree
 
 import pytest
 
+from parser_service.parsers import encoder_places
 from parser_service.parsers.interface import Cancelled, Observer, Pair
+from parser_service.parsers.registry import load_class
 from parser_service.parsers.seq2seq_config import Seq2SeqConfig
 
 SMALL = Seq2SeqConfig(
@@ -21,6 +23,15 @@ SMALL = Seq2SeqConfig(
     threads=1,
 )
 LONGER = replace(SMALL, epochs=80, patience=80)
+QUICK = asdict(replace(SMALL, epochs=3, patience=3, beam_width=2))
+PRETRAINED = {  # the rows that read pretrained words, and what they look for
+    "seq2seq-glove": {},
+    "seq2seq-glove-elmo": {"elmo": "elmo"},
+    "seq2seq-glove-gpt": {"encoder": "gpt"},
+    "seq2seq-glove-bert-base": {"encoder": "bert"},
+    "seq2seq-glove-bert-large": {"encoder": "bert"},
+    "seq2seq-minilm": {"encoder": "bert"},
+}
 VERBS = {"bring": "bring", "fetch": "bring", "find": "find", "look for": "find"}
 HELD_OUT = "fetch the <object> in the <room>"
 PLACES = ("", " in the <room>", " at the <location>")
@@ -83,6 +94,24 @@ class Recorder(Observer):
         return self.folder / name if (self.folder / name).exists() else None
 
 
+class StoppedOnce(Recorder):
+    """Stops the run in its second epoch; listens quietly to what goes on from there."""
+
+    has_stopped = False
+
+    def check(self):
+        if self.epochs and not self.has_stopped:
+            self.has_stopped = True
+            raise Cancelled
+
+
+def parser_of(name, seed=1, **changes):
+    """A parser of one of these names for a training in seconds."""
+    parser = load_class(name)
+    glove = {"glove": "tiny.txt"} if "glove" in name else {}
+    return parser(parser.Config(**{**QUICK, **glove, **PRETRAINED.get(name, {}), **changes}), seed)
+
+
 @pytest.fixture(scope="session")
 def pairs():
     return toy_pairs()
@@ -96,3 +125,29 @@ def trained(pairs):
     parser = Seq2Seq(LONGER, seed=1)
     parser.fit([pair for pair in pairs if pair.utterance != HELD_OUT])
     return parser
+
+
+@pytest.fixture(scope="session")
+def encoders(tmp_path_factory):
+    """A folder of encoders as GPSR_ENCODERS_DIR names one."""
+    from tests.parser_service.neural.tiny_weights import (
+        write_bert,
+        write_elmo,
+        write_glove,
+        write_gpt,
+    )
+
+    folder = tmp_path_factory.mktemp("encoders")
+    known = ("bring", "fetch", "the", "a", "unused")
+    write_glove(folder / "tiny.txt.gz", known, SMALL.embedding_size, packed=True)
+    write_elmo(folder / "elmo")
+    write_gpt(folder / "gpt")
+    write_bert(folder / "bert")
+    return folder
+
+
+@pytest.fixture
+def kept_there(encoders, tmp_path, monkeypatch):
+    """Has parsers find those encoders, and keep vectors in a folder of the test."""
+    monkeypatch.setattr(encoder_places, "_encoders", encoders)
+    monkeypatch.setattr(encoder_places, "_vectors", tmp_path / "vectors")

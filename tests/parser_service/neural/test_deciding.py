@@ -1,31 +1,51 @@
+from dataclasses import asdict
+
 import pytest
 import torch
 
 from parser_service.neural.deciding import (
+    EQUAL,
+    VOICES,
     Decision,
     Scores,
     best_gate,
-    best_temperature,
+    best_weights,
     calibrated,
 )
 
+FIRST, SECOND = VOICES.index("examples"), VOICES.index("glosses")
+
+
+def said(first, second=None):
+    """Scores [voices, utterances, forms] of the first two voices; the others say nothing."""
+    scores = torch.zeros(len(VOICES), *torch.tensor(first).shape)
+    scores[FIRST] = torch.tensor(first)
+    if second is not None:
+        scores[SECOND] = torch.tensor(second)
+    return scores
+
+
 SCORES = Scores(
-    known=torch.tensor([[2.0, 0.0], [0.0, 1.0]]),
-    new=torch.tensor([[0.0, 3.0], [1.0, 0.0]]),
-    evidence=torch.tensor([-1.0, 1.0]),
+    known=said([[2.0, 0.0], [0.0, 1.0]], [[2.0, 0.0], [0.0, 0.0]]),
+    new=said([[0.0, 0.0], [0.0, 0.0]], [[0.0, 1.0], [3.0, 0.0]]),
 )
 
 
 def test_each_row_is_a_distribution_over_known_and_new_forms():
-    logs = Decision(novelty=0.5, known_temperature=0.7).log_probabilities(SCORES)
+    logs = Decision(novelty=0.5, known=(0.7, 1, 1, 1)).log_probabilities(SCORES)
     assert logs.shape == (2, 4)
     assert torch.allclose(logs.exp().sum(-1), torch.ones(2))
 
 
 def test_without_new_forms_all_is_known():
-    closed = Scores(SCORES.known, torch.zeros(2, 0), torch.zeros(2))
+    closed = Scores(SCORES.known, torch.zeros(len(VOICES), 2, 0))
     logs = Decision(novelty=9.0).log_probabilities(closed)
     assert torch.allclose(logs.exp().sum(-1), torch.ones(2))
+
+
+def test_evidence_is_how_much_better_the_new_forms_fit_without_their_examples():
+    one = Scores(said([[5.0]], [[1.0]]), said([[0.0]], [[3.0]]))
+    assert one.evidence.tolist() == [2]
 
 
 def test_the_more_often_forms_are_new_the_more_new_forms_are_answered():
@@ -53,16 +73,34 @@ def test_without_validation_the_evidence_decides():
     assert best_gate(torch.zeros(0), torch.zeros(0, dtype=torch.bool)) == (0, 1)
 
 
-def test_the_temperature_follows_how_often_the_scores_are_right():
-    scores = torch.tensor([[3.0, 0.0]] * 10)
-    sure = best_temperature(scores, torch.zeros(10, dtype=torch.long))
-    unsure = best_temperature(scores, torch.tensor([0, 1] * 5))
-    assert sure < 1 < unsure
-    assert best_temperature(scores[:0], torch.zeros(0, dtype=torch.long)) == 1
+def test_a_voice_counts_as_much_as_it_is_right():
+    right, wrong = [[2.0, 0.0]] * 20, [[0.0, 2.0]] * 20
+    weights = best_weights(said(right, wrong), torch.zeros(20, dtype=torch.long))
+    assert weights[FIRST] > 1.5
+    assert weights[SECOND] < 0.8
+    assert weights[2:] == (1, 1)
 
 
-def test_a_form_that_is_in_no_list_counts_as_new_and_for_no_temperature():
+def test_a_few_pairs_silence_no_voice_and_none_change_nothing():
+    few = said([[9.0, 0.0]], [[0.0, 9.0]])
+    assert best_weights(few, torch.tensor([0]))[SECOND] > 0.2
+    assert best_weights(few[:, :0], torch.zeros(0, dtype=torch.long)) == EQUAL
+
+
+def test_the_weights_follow_how_often_the_scores_are_right():
+    scores = said([[3.0, 0.0]] * 40)
+    sure = best_weights(scores, torch.zeros(40, dtype=torch.long))
+    unsure = best_weights(scores, torch.tensor([0, 1] * 20))
+    assert sure[FIRST] > 1 > unsure[FIRST]
+
+
+def test_a_form_that_is_in_no_list_counts_as_new_and_for_no_weight():
     found = calibrated(SCORES, torch.tensor([-1, -1]))
-    assert (found.known_temperature, found.new_temperature) == (1, 1)
+    assert found.known == found.new == EQUAL
     assert found.novelty > 0
-    assert calibrated(SCORES, torch.tensor([0, 2])).known_temperature == pytest.approx(0.5)
+    assert calibrated(SCORES, torch.tensor([0, 2])).known != EQUAL
+
+
+def test_a_decision_can_be_written_and_read():
+    decision = calibrated(SCORES, torch.tensor([0, 2]))
+    assert Decision.read(asdict(decision)) == decision

@@ -73,7 +73,7 @@ def test_glosses_of_the_targets_carry_gradient_and_the_others_do_not(encoder):
     head = GlossHead(encoder, TEXTS)
     head.renew()
     utterances = encoder.vectors(["find me"])
-    logits = head.trained_logits(utterances, torch.tensor([2]))
+    logits = head.trained_logits(utterances, [2])
     assert torch.allclose(logits, head.logits(utterances), atol=1e-4)
     assert logits[0, 2].requires_grad
     [slope] = torch.autograd.grad(

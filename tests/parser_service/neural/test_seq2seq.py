@@ -12,7 +12,7 @@ from tests.parser_service.neural.conftest import HELD_OUT, SMALL, Recorder
 
 
 def weights(parser):
-    return parser._model.state_dict()
+    return {name: value.cpu() for name, value in parser._model.state_dict().items()}
 
 
 def same_weights(one, other):

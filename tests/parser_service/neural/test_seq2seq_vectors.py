@@ -1,6 +1,6 @@
 """The rows of the paper with weights made here, in the formats in which theirs are published."""
 
-from dataclasses import asdict, replace
+from dataclasses import asdict
 
 import pytest
 import torch
@@ -10,49 +10,17 @@ from parser_service.neural.seq2seq_vectors import Seq2SeqGlove, Seq2SeqGloveElmo
 from parser_service.neural.vector_cache import VectorCache
 from parser_service.parsers import encoder_places
 from parser_service.parsers.interface import Cancelled, Pair
-from parser_service.parsers.registry import PARSERS, load_class
+from parser_service.parsers.registry import PARSERS
 from parser_service.parsers.words import words
-from tests.parser_service.neural.conftest import SMALL, Recorder
-from tests.parser_service.neural.tiny_weights import write_bert, write_elmo, write_glove, write_gpt
+from tests.parser_service.neural.conftest import PRETRAINED, Recorder, StoppedOnce, parser_of
+from tests.parser_service.neural.tiny_weights import write_bert
 
-QUICK = asdict(replace(SMALL, epochs=3, patience=3, beam_width=2))
-ENCODERS = {
-    "seq2seq-glove": {},
-    "seq2seq-glove-elmo": {"elmo": "elmo"},
-    "seq2seq-glove-gpt": {"encoder": "gpt"},
-    "seq2seq-glove-bert-base": {"encoder": "bert"},
-    "seq2seq-glove-bert-large": {"encoder": "bert"},
-    "seq2seq-minilm": {"encoder": "bert"},
-}
-CONTEXTUAL = [name for name in ENCODERS if name != "seq2seq-glove"]
-GLOVE_WORDS = ("bring", "fetch", "the", "a", "unused")
-
-
-@pytest.fixture(scope="module")
-def encoders(tmp_path_factory):
-    """A folder of encoders as GPSR_ENCODERS_DIR names one."""
-    folder = tmp_path_factory.mktemp("encoders")
-    write_glove(folder / "tiny.txt.gz", GLOVE_WORDS, SMALL.embedding_size, packed=True)
-    write_elmo(folder / "elmo")
-    write_gpt(folder / "gpt")
-    write_bert(folder / "bert")
-    return folder
-
-
-@pytest.fixture(autouse=True)
-def kept_there(encoders, tmp_path, monkeypatch):
-    monkeypatch.setattr(encoder_places, "_encoders", encoders)
-    monkeypatch.setattr(encoder_places, "_vectors", tmp_path / "vectors")
-
-
-def parser_of(name, seed=1, **changes):
-    parser = load_class(name)
-    glove = {"glove": "tiny.txt"} if "glove" in name else {}
-    return parser(parser.Config(**{**QUICK, **glove, **ENCODERS[name], **changes}), seed)
+pytestmark = pytest.mark.usefixtures("kept_there")
+CONTEXTUAL = [name for name in PRETRAINED if name != "seq2seq-glove"]
 
 
 def weights(parser):
-    return parser._model.state_dict()
+    return {name: value.cpu() for name, value in parser._model.state_dict().items()}
 
 
 def same_weights(one, other):
@@ -60,10 +28,10 @@ def same_weights(one, other):
 
 
 def test_these_are_the_rows_that_read_pretrained_words():
-    assert set(ENCODERS) == {name for name in PARSERS if name.startswith("seq2seq-")}
+    assert set(PRETRAINED) == {name for name in PARSERS if name.startswith("seq2seq-")}
 
 
-@pytest.mark.parametrize("name", ENCODERS)
+@pytest.mark.parametrize("name", PRETRAINED)
 def test_a_row_trains_and_answers_alike_once_loaded(name, pairs, tmp_path):
     parser, observe = parser_of(name), Recorder(tmp_path / "run")
     parser.fit(pairs, pairs[:4], observe)
@@ -75,18 +43,7 @@ def test_a_row_trains_and_answers_alike_once_loaded(name, pairs, tmp_path):
     assert loaded.parameters() == parser.parameters() > 0
 
 
-class StoppedOnce(Recorder):
-    """Stops the run in its second epoch; listens quietly to what goes on from there."""
-
-    has_stopped = False
-
-    def check(self):
-        if self.epochs and not self.has_stopped:
-            self.has_stopped = True
-            raise Cancelled
-
-
-@pytest.mark.parametrize("name", ENCODERS)
+@pytest.mark.parametrize("name", PRETRAINED)
 def test_a_stopped_run_goes_on_to_the_same_weights(name, pairs, tmp_path):
     undisturbed, stopped, resumed = parser_of(name), parser_of(name), parser_of(name)
     observe = StoppedOnce(tmp_path)
@@ -224,7 +181,7 @@ def test_equal_seeds_give_equal_weights(pairs):
     assert same_weights(one, other)
 
 
-@pytest.mark.parametrize("name", ENCODERS)
+@pytest.mark.parametrize("name", PRETRAINED)
 def test_a_row_is_never_without_its_vectors(name):
     for field in {"glove", "elmo", "encoder"} & asdict(parser_of(name).config).keys():
         with pytest.raises(ValueError, match=f"{field} is empty, but this parser reads it"):

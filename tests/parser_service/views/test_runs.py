@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pytest
-from django.core.cache import cache
 
 from annotations.rates import STARTED_RUNS
 from parser_service import lifecycle
@@ -11,17 +10,6 @@ from parser_service.models import RunEvent, TrainingRun
 from parser_service.parsers.registry import PARSERS, config_fields
 from tests.furnishing import scored_run
 from tests.parser_service.made_up import make_split
-
-
-@pytest.fixture(autouse=True)
-def no_earlier_runs():
-    cache.clear()
-
-
-@pytest.fixture
-def no_messages(monkeypatch):
-    """Starting a run sends a message to a broker, which these tests need not have."""
-    monkeypatch.setattr("parser_service.waking.send_wake_up", lambda queue: None)
 
 
 def defaults(parser, **changes):
