@@ -1,19 +1,16 @@
-"""The Celery application: queues, one process for one run, and the timer in the worker's parent."""
+"""The Celery application: one process for one run, and the timer in the worker's parent."""
 
 from __future__ import annotations
 
 import os
 
 from celery import Celery
-from kombu import Queue
 
 os.environ.setdefault("DJANGO_SETTINGS_MODULE", "gpsr_site.settings")
 
 app = Celery("gpsr_site")
 app.config_from_object("django.conf:settings", namespace="CELERY")
 app.conf.update(
-    task_queues=[Queue("cpu"), Queue("gpu")],
-    task_default_queue="cpu",
     task_ignore_result=True,
     worker_pool="prefork",
     worker_concurrency=1,

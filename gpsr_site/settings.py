@@ -132,6 +132,8 @@ if CELERY_BROKER_URL.startswith("filesystem:"):
         "data_folder_out": str(VAR_DIR / "broker" / "messages"),
         "control_folder": str(VAR_DIR / "broker" / "control"),
     }
+# Sites that share a broker keep apart by it.
+BROKER_QUEUE_PREFIX = env.str("GPSR_QUEUE_PREFIX", default="gpsr-")
 # Divides every period of the background work (leases, timers): tests run at tempo 10.
 WORK_TEMPO = env.float("GPSR_WORK_TEMPO", default=1.0)
 

@@ -22,6 +22,11 @@ WAKE_AFTER = timedelta(seconds=15 / settings.WORK_TEMPO)
 MESSAGE_LIVES_SECONDS = 60
 
 
+def message_queue(queue: str) -> str:
+    """What the broker calls ``queue``."""
+    return f"{settings.BROKER_QUEUE_PREFIX}{queue}"
+
+
 def wake(run: TrainingRun) -> None:
     """Tells a worker of the run's queue, once this transaction is over, that there is work."""
     transaction.on_commit(partial(send_wake_up, run.queue))
@@ -33,7 +38,7 @@ def send_wake_up(queue: str) -> None:
         current_app.send_task(
             TASK,
             args=[queue],
-            queue=queue,
+            queue=message_queue(queue),
             expires=MESSAGE_LIVES_SECONDS,
             retry=True,
             retry_policy={"max_retries": 1, "interval_start": 0},

@@ -24,8 +24,9 @@ from django.utils import timezone
 
 from parser_service import lifecycle
 from parser_service.models import TrainingRun, Worker
+from parser_service.models.runs import Queue
 from parser_service.training import train
-from parser_service.waking import TASK, WAKE_AFTER, wake_for_forgotten, wake_for_next
+from parser_service.waking import TASK, WAKE_AFTER, message_queue, wake_for_forgotten, wake_for_next
 
 logger = logging.getLogger(__name__)
 
@@ -80,7 +81,8 @@ class Service(bootsteps.StartStopStep):
         """Called once the pool is there; Celery's own handlers are set by then and are replaced."""
         self._worker = worker
         self._name = worker.hostname
-        self._queues = sorted(worker.app.amqp.queues.consume_from)
+        consumed = worker.app.amqp.queues.consume_from
+        self._queues = [queue for queue in Queue.values if message_queue(queue) in consumed]
         os.register_at_fork(
             before=self._quiet.acquire,
             after_in_parent=self._quiet.release,

@@ -8,7 +8,11 @@ os.mkdir(os.path.join(var, "static"))  # where collectstatic would write, and wh
 os.environ["GPSR_VAR_DIR"] = var
 os.environ["DEBUG"] = "false"
 os.environ["HOST"] = "127.0.0.1"
-os.environ.pop("CELERY_BROKER_URL", None)
+os.environ["GPSR_QUEUE_PREFIX"] = f"{os.path.basename(var)}-"  # processes of tests share a broker
+if url := os.environ.get("TEST_BROKER_URL"):
+    os.environ["CELERY_BROKER_URL"] = url
+else:
+    os.environ.pop("CELERY_BROKER_URL", None)
 if url := os.environ.get("TEST_DATABASE_URL"):
     os.environ["DATABASE_URL"] = url
 else:

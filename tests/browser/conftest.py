@@ -69,7 +69,7 @@ def page_of(logged_in, house) -> Callable[..., Page]:
 @pytest.fixture
 def worker(house, tmp_path) -> Iterator[RunningWorker]:
     """A real worker on the filesystem broker."""
-    started = RunningWorker("filesystem://", tmp_path / "worker.log")
+    started = RunningWorker(tmp_path / "worker.log")
     yield started
     started.remove()
     print(started.log.read_text(encoding="utf-8"))

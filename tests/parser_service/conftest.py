@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator
 
 import pytest
+from celery import current_app
+from django.conf import settings
 
 from annotations.models import Split
+from parser_service.models.runs import Queue
+from parser_service.waking import message_queue
 from tests.parser_service.made_up import make_split
 from tests.parser_service.running import RunningWorker
 
@@ -17,19 +20,23 @@ def split(world) -> Split:
     return make_split(world)
 
 
-@pytest.fixture
-def broker() -> str:
-    """The filesystem broker, or the one of TEST_BROKER_URL."""
-    return os.environ.get("TEST_BROKER_URL", "filesystem://localhost")
+@pytest.fixture(scope="session", autouse=True)
+def tidy_broker() -> Iterator[None]:
+    """The broker of TEST_BROKER_URL is left without our queues."""
+    yield
+    if not settings.CELERY_BROKER_URL.startswith("filesystem:"):
+        with current_app.connection_for_write() as connection, connection.channel() as channel:
+            for queue in Queue.values:
+                channel.queue_delete(message_queue(queue))
 
 
 @pytest.fixture
-def start_worker(transactional_db, broker, tmp_path) -> Iterator[Callable[[], RunningWorker]]:
+def start_worker(transactional_db, tmp_path) -> Iterator[Callable[[], RunningWorker]]:
     """Starts workers; whatever is left of them is killed in the end."""
     workers: list[RunningWorker] = []
 
     def start() -> RunningWorker:
-        workers.append(RunningWorker(broker, tmp_path / f"worker-{len(workers)}.log"))
+        workers.append(RunningWorker(tmp_path / f"worker-{len(workers)}.log"))
         return workers[-1]
 
     yield start

@@ -32,11 +32,10 @@ def database_url() -> str:
 class RunningWorker:
     """One ``manage.py work`` in a process group of its own, at ten times the usual tempo."""
 
-    def __init__(self, broker: str, log: Path):
+    def __init__(self, log: Path):
         environment = {
             **os.environ,
             "DATABASE_URL": database_url(),
-            "CELERY_BROKER_URL": broker,
             "GPSR_VAR_DIR": str(site.VAR_DIR),
             "GPSR_WORK_TEMPO": str(TEMPO),
         }

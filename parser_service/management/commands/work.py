@@ -10,6 +10,7 @@ from celery import current_app
 from django.core.management.base import BaseCommand, CommandParser
 
 from parser_service.models.runs import Queue
+from parser_service.waking import message_queue
 
 
 class Command(BaseCommand):
@@ -31,7 +32,7 @@ class Command(BaseCommand):
             [
                 "--quiet",
                 "worker",
-                f"--queues={queue}",
+                f"--queues={message_queue(queue)}",
                 f"--hostname={queue}-{os.getpid()}@%h",
                 f"--loglevel={level}",
                 "--without-gossip",
