@@ -3,8 +3,8 @@
     .venv/bin/python benchmarks/accuracy.py cells.json [--markdown | --latex] [--part validation]
 
 One table a protocol: parsers down; settings, each by criterion, across. A figure is exact match in
-percent, the mean over seeds; ± is the standard deviation over them (n − 1). The best of a column in its
-protocol is bold. In parentheses stands what the paper published, always on the test parts.
+percent, the mean over seeds and over new splits where there are some; ± is the standard deviation over
+them (n − 1). The best of a column in its protocol is bold. In parentheses stands what the paper published, always on the test parts.
 """
 
 from __future__ import annotations
@@ -52,32 +52,46 @@ class Figure:
 def read_figures(
     cells: Sequence[dict[str, Any]], part: str, parsers: Sequence[str]
 ) -> pd.DataFrame:
-    """A row for each of the ``CONDITIONS`` measured, with mean, std (NaN for one seed) and count.
+    """A row for each of the ``CONDITIONS`` measured, with mean, std (NaN for one cell), and the number
+    of ``seeds`` and of new ``splits``.
 
     A cell measured again, after the code has changed, replaces the older one. Raises ValueError, a
-    sentence, where nothing is left, or where the cells of a column were not tested on as many pairs.
+    sentence, where nothing is left, or where the cells of a column do not belong together.
     """
     frame = pd.DataFrame([cell for cell in cells if cell["parser"] in parsers])
     measured = frame.dropna(subset=[f"accuracy_{part}"]) if len(frame) else frame
     if measured.empty:
         raise ValueError(f"No cell of these parsers has an accuracy on a {part} part.")
+    if "split" not in measured:
+        measured = measured.assign(split=None)
     measured = measured.assign(
         configuration=measured["configuration"].map(lambda each: json.dumps(each, sort_keys=True)),
         percent=100 * measured[f"accuracy_{part}"].astype(float),
-    ).drop_duplicates([*CONDITIONS, "seed"], keep="last")
-    _check_sizes(measured, part)
-    return measured.groupby(CONDITIONS)["percent"].agg(["mean", "std", "count"]).reset_index()
+    ).drop_duplicates([*CONDITIONS, "seed", "split"], keep="last")
+    _check_together(measured, part)
+    figures = measured.groupby(CONDITIONS).agg(
+        mean=("percent", "mean"),
+        std=("percent", "std"),
+        seeds=("seed", "nunique"),
+        splits=("split", "nunique"),
+    )
+    return figures.reset_index()
 
 
-def _check_sizes(measured: pd.DataFrame, part: str) -> None:
-    sizes = measured.groupby(["setting", "criterion"])[f"n_{part}"].unique()
-    for (setting, criterion), found in sizes.items():
-        if len(found) > 1:
-            counts = " and ".join(str(count) for count in sorted(found))
+def _check_together(measured: pd.DataFrame, part: str) -> None:
+    for (setting, criterion), cells in measured.groupby(["setting", "criterion"]):
+        if cells["split"].isna().any() and cells["split"].notna().any():
             raise ValueError(
-                f"{setting} by {criterion} was tested on {counts} pairs: "
-                "these cells are of different folders; keep a file for each."
+                f"{setting} by {criterion} was measured on the published split and on new ones; keep a "
+                "file for each."
             )
+        for _, found in cells.groupby("split", dropna=False)[f"n_{part}"].unique().items():
+            if len(found) > 1:
+                counts = " and ".join(str(count) for count in sorted(found))
+                raise ValueError(
+                    f"{setting} by {criterion} was tested on {counts} pairs: "
+                    "these cells are of different folders; keep a file for each."
+                )
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,12 +198,21 @@ def _escaped(name: str) -> str:
 
 def note(figures: pd.DataFrame, part: str) -> str:
     """What the figures are, in sentences."""
-    seeds = " or ".join(str(count) for count in sorted(figures["count"].unique()))
+    new = [_counted(figures[figures["criterion"] == each], "splits") for each in CRITERIA]
+    on_new = [f"{how} by {by}" for how, by in zip(new, CRITERIA.values(), strict=True) if how]
     return (
-        f"Exact match in percent on the {part} parts, mean ± standard deviation over {seeds} "
-        f"seed{'' if seeds == '1' else 's'}; bold: the best of its column; in parentheses: "
-        "the paper's figures, on its test parts."
+        f"Exact match in percent on the {part} parts, mean ± standard deviation over "
+        f"{_counted(figures, 'seeds')}{''.join(f', {each}' for each in on_new)}; "
+        "bold: the best of its column; in parentheses: the paper's figures, on its test parts."
     )
+
+
+def _counted(figures: pd.DataFrame, what: str) -> str:
+    """``1 or 3 seeds``; nothing where there are none."""
+    counts = [count for count in sorted(figures[what].unique()) if count]
+    word = what.removesuffix("s") if counts == [1] else what
+    numbers = " or ".join(map(str, counts))
+    return f"{numbers} {'new ' if what == 'splits' else ''}{word}" if counts else ""
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -13,6 +13,7 @@ from itertools import product
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from annotations.language.splitting import Criterion
 from parser_service.analysis.scores import NO_ANSWER, Judgement, judge, score
 from parser_service.code_version import code_version
 from parser_service.corpus import Corpus
@@ -35,7 +36,10 @@ class Column(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """What one cell measures: a parser in a column, with a seed."""
+    """What one cell measures: a parser in a column, with a seed.
+
+    ``split`` is the seed of a new split of the train and validation pairs, None the published one.
+    """
 
     parser: str
     configuration: tuple[tuple[str, Any], ...]
@@ -43,11 +47,18 @@ class Job:
     criterion: str
     protocol: str
     seed: int
+    split: int | None = None
 
     @property
     def training(self) -> tuple[Any, ...]:
         """What decides the training: jobs that have the same can share it."""
-        trained_on = _train_sources(self.setting), self.criterion, self.protocol, self.seed
+        trained_on = (
+            _train_sources(self.setting),
+            self.criterion,
+            self.protocol,
+            self.seed,
+            self.split,
+        )
         return self.parser, self.configuration, *trained_on
 
     @property
@@ -68,11 +79,13 @@ def jobs(
     columns: Sequence[Column],
     seeds: int,
     configurations: Mapping[str, Mapping[str, Any]] | None = None,
+    new_splits: int = 0,
 ) -> Iterator[Job]:
     """All that is to be measured; a parser only under the protocols that it has.
 
     Jobs of the same ``training`` stand together. ``configurations`` changes hyperparameters of some
-    parsers. Raises ValueError, a sentence.
+    parsers. With ``new_splits``, each seed is taken on that many new splits in place of the published
+    one; by source command, of which none was published, on one at least. Raises ValueError, a sentence.
     """
     changed = configurations or {}
     configured = {
@@ -80,12 +93,20 @@ def jobs(
     }
     settings, criteria, protocols = (dict.fromkeys(parts) for parts in zip(*columns, strict=True))
     # Settings last: those that train alike stand together.
-    for criterion, name, protocol, seed, setting in product(
-        criteria, configured, protocols, range(seeds), sorted(settings, key=_train_sources)
-    ):
-        is_asked = Column(setting, criterion, protocol) in columns
-        if is_asked and protocol in entry(name).protocols:
-            yield Job(name, configured[name], setting, criterion, protocol, seed)
+    for criterion, name, protocol, seed in product(criteria, configured, protocols, range(seeds)):
+        if protocol not in entry(name).protocols:
+            continue
+        for split, setting in product(
+            _splits(criterion, new_splits), sorted(settings, key=_train_sources)
+        ):
+            if Column(setting, criterion, protocol) in columns:
+                yield Job(name, configured[name], setting, criterion, protocol, seed, split)
+
+
+def _splits(criterion: str, new_splits: int) -> Sequence[int | None]:
+    if criterion == Criterion.SOURCE_COMMAND:
+        new_splits = max(1, new_splits)
+    return range(new_splits) if new_splits else [None]
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,8 +20,6 @@ from annotations.language.pairs import (
 from annotations.language.splitting import Criterion, SplitItem, split
 from parser_service.parsers.interface import Pair
 
-SOURCE_SPLIT_SEED = 0
-
 
 @dataclass(frozen=True)
 class Corpus:
@@ -55,33 +53,37 @@ def read_corpus(folder: Path, criterion: str) -> Corpus:
     return Corpus(criterion, parts)
 
 
-def split_by_source_command(folder: Path, anonymize: Callable[[str], str]) -> Corpus:
-    """A new split of the train and validation pairs whose source command is known.
+def new_split(
+    folder: Path, criterion: str, seed: int, source_of: Mapping[str, str] | None = None
+) -> Corpus:
+    """The train and validation pairs of ``folder``, split anew 70/10/20 by any criterion.
 
-    A generated command is its own source; a paraphrase's is the command of ``paraphrasings.txt``
-    that it rewrites, as ``anonymize`` writes it. Always the same split for the same folder.
-    Raises LanguageError and ValueError as ``read_corpus`` does.
+    Where ``source_of`` is given (paraphrase → source command, see ``source_commands``), paraphrases
+    that it lacks are left out; a generated command is its own source. Raises LanguageError and
+    ValueError as ``read_corpus`` does.
     """
-    published = read_corpus(folder, Criterion.COMMAND)
-    rewritten = source_commands(folder, anonymize)
+    kept_as = Criterion.COMMAND if criterion == Criterion.SOURCE_COMMAND else criterion
+    published = read_corpus(folder, kept_as)
     pool = [
         pair
         for (part, _), pairs in published.parts.items()
         for pair in pairs
-        if part != "test" and (pair.source == "generated" or pair.utterance in rewritten)
+        if part != "test"
+        and (source_of is None or pair.source == "generated" or pair.utterance in source_of)
     ]
-    sources = (
-        pair.utterance if pair.source == "generated" else rewritten[pair.utterance] for pair in pool
-    )
     items = [
-        SplitItem(pair.source, pair.utterance, source, pair.form)
-        for pair, source in zip(pool, sources, strict=True)
+        SplitItem(pair.source, pair.utterance, _source(pair, source_of or {}), pair.form)
+        for pair in pool
     ]
-    chosen = split(items, Criterion.SOURCE_COMMAND, seed=SOURCE_SPLIT_SEED)
     parts: dict[tuple[str, str], list[Pair]] = defaultdict(list)
-    for pair, part in zip(pool, chosen, strict=True):
+    for pair, part in zip(pool, split(items, Criterion(criterion), seed=seed), strict=True):
         parts[part, pair.source].append(pair)
-    return Corpus(Criterion.SOURCE_COMMAND, {key: tuple(pairs) for key, pairs in parts.items()})
+    return Corpus(criterion, {key: tuple(pairs) for key, pairs in parts.items()})
+
+
+def _source(pair: Pair, source_of: Mapping[str, str]) -> str:
+    """The source command; an empty one means the utterance itself."""
+    return "" if pair.source == "generated" else source_of.get(pair.utterance, "")
 
 
 def source_commands(folder: Path, anonymize: Callable[[str], str]) -> dict[str, str]:

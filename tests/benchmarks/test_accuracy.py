@@ -81,7 +81,17 @@ def test_a_cell_measured_again_replaces_the_older():
     (row,) = read_figures([cell(accuracy=0.1), cell(accuracy=0.6)], "validation", ["knn"]).to_dict(
         "records"
     )
-    assert (row["mean"], row["count"]) == (60.0, 1)
+    assert (row["mean"], row["seeds"], row["splits"]) == (60.0, 1, 0)
+
+
+def test_new_splits_become_a_mean_as_seeds_do(printed):
+    cells = [
+        cell(accuracy=accuracy, split=split, n_validation=180 + split)
+        for split, accuracy in enumerate((0.6, 0.7, 0.8))
+    ]
+    text = printed(cells)
+    assert "**70.0** ± 10.0" in text
+    assert "over 1 seed, 3 new splits by command;" in text
 
 
 def test_latex_spans_a_setting_over_its_criteria_and_greys_the_paper(printed):
@@ -102,6 +112,7 @@ def test_parsers_are_chosen_by_name(printed):
         ([cell()], ["--part", "test"], "has an accuracy on a test part"),
         ([], [], "has an accuracy on a validation part"),
         ([cell(), cell(seed=1, n_validation=97)], [], "97 and 181 pairs"),
+        ([cell(), cell(split=0)], [], "on the published split and on new ones"),
     ],
 )
 def test_what_makes_no_table_is_told_in_a_sentence(cells, options, sentence, printed):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 from itertools import groupby
@@ -15,7 +16,7 @@ from django.core.management import CommandError, call_command
 
 from annotations.importing import import_generator
 from parser_service import benchmarking
-from parser_service.corpus import read_corpus, split_by_source_command
+from parser_service.corpus import new_split, read_corpus, source_commands
 from parser_service.management.options import read_column
 from tests.parser_service.made_up import made_up_pairs, make_folder
 from tests.parser_service.running import ROOT
@@ -129,8 +130,12 @@ def test_a_test_part_is_scored_with_the_validation_pairs_as_neighbours(folder, t
     assert cell["accuracy_validation"] < 1.0
 
 
+def split_by_source_command(folder):
+    return new_split(folder, "source_command", 0, source_commands(folder, lambda prompt: prompt))
+
+
 def test_no_source_command_is_in_two_parts(folder):
-    corpus = split_by_source_command(folder, lambda prompt: prompt)
+    corpus = split_by_source_command(folder)
     source = {said: command for command, said, _ in made_up_pairs()}
     parts: dict[str, set[str]] = {}
     for (part, _), pairs in corpus.parts.items():
@@ -145,9 +150,37 @@ def test_a_paraphrase_of_unknown_origin_is_left_out(folder):
     (folder / "paraphrasings.txt").write_text(
         "".join((folder / "paraphrasings.txt").read_text().splitlines(keepends=True)[:30])
     )
-    corpus = split_by_source_command(folder, lambda prompt: prompt)
+    corpus = split_by_source_command(folder)
     sources = [pair.source for pairs in corpus.parts.values() for pair in pairs]
     assert (sources.count("generated"), sources.count("paraphrased")) == (36, 10)
+
+
+@pytest.mark.parametrize("criterion", ["command", "source_command", "logical_form"])
+def test_new_splits_stand_in_for_the_published_one(folder, tmp_path, criterion, world):
+    for name in ("gen", "para"):
+        shutil.copytree(folder / name, folder / f"{name}_logical")
+    options = {"criteria": criterion, "train_test": "para-para", "world": "home"}
+    cells = run(folder, tmp_path / "cells.json", new_splits=3, **options)
+    assert [(cell["split"], cell["seed"]) for cell in cells] == [(0, 0), (1, 0), (2, 0)]
+    for cell in cells:
+        assert (cell["n_train"], cell["n_validation"], cell["n_test"]) == pytest.approx(
+            (25, 4, 7), abs=3
+        )
+    published = run(folder, tmp_path / "others.json", **options)
+    assert [cell["split"] for cell in published] == [0 if criterion == "source_command" else None]
+
+
+def test_no_form_is_in_two_parts_of_a_new_split(folder):
+    for name in ("gen", "para"):
+        (folder / name).rename(folder / f"{name}_logical")
+    corpora = [new_split(folder, "logical_form", seed) for seed in range(2)]
+    assert corpora[0] != corpora[1]
+    for corpus in corpora:
+        parts: dict[str, set[str]] = {}
+        for (part, _), pairs in corpus.parts.items():
+            for pair in pairs:
+                parts.setdefault(pair.form, set()).add(part)
+        assert all(len(found) == 1 for found in parts.values())
 
 
 @pytest.mark.parametrize(
@@ -162,6 +195,8 @@ def test_a_paraphrase_of_unknown_origin_is_left_out(folder):
         ({"columns": "gen-gen:command:loose"}, "'loose' is none of strict"),
         ({"columns": "gen-gen:command"}, "'gen-gen:command' has to be SETTING:CRITERION:PROTOCOL"),
         ({"columns": "gen-gen:command:strict", "criteria": "command"}, "leave either away"),
+        ({"new_splits": -1}, "--new-splits is -1; it has to be 0 or more"),
+        ({"seeds": 0}, "--seeds is 0; it has to be 1 or more"),
         ({"jobs": 0}, "--jobs is 0; it has to be 1 or more"),
         ({"config": ["least_overlap=0.5"]}, "has to be PARSER.KEY=VALUE"),
         ({"parsers": "grammar-oracle", "protocols": "grammar"}, "The grammar oracle parses with"),

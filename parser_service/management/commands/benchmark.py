@@ -19,7 +19,7 @@ from annotations.models import World
 from parser_service.benchmarking import SETTINGS, Cell, CellFile, Column, Group, Job, jobs
 from parser_service.benchmarking_in_parallel import measured_in_parallel
 from parser_service.content_key import knowledge_hash
-from parser_service.corpus import Corpus, read_corpus, split_by_source_command
+from parser_service.corpus import Corpus, new_split, read_corpus, source_commands
 from parser_service.knowledge import anonymizer_of, knowledge_of
 from parser_service.management.options import read_column, read_configurations, read_names
 from parser_service.models.runs import Protocol
@@ -53,6 +53,14 @@ class Command(BaseCommand):
         )
         parser.add_argument("--seeds", type=int, default=1, help="seeds 0 to N - 1")
         parser.add_argument(
+            "--new-splits",
+            type=int,
+            default=0,
+            metavar="N",
+            help="split the train and validation pairs anew, 70/10/20, N times (default: the published "
+            "split, and one new by source command)",
+        )
+        parser.add_argument(
             "--config",
             nargs="*",
             default=[],
@@ -80,14 +88,17 @@ class Command(BaseCommand):
     def _run(self, folder: Path, world: World | None, options: dict[str, Any]) -> list[str]:
         """Measures what is missing; what could not be measured, and why."""
         at_once = options["jobs"]
-        if at_once < 1:
-            raise ValueError(f"--jobs is {at_once}; it has to be 1 or more.")
+        for name, least in (("jobs", 1), ("seeds", 1), ("new_splits", 0)):
+            if (given := options[name]) < least:
+                flag = name.replace("_", "-")
+                raise ValueError(f"--{flag} is {given}; it has to be {least} or more.")
         todo = list(
             jobs(
                 read_names(options["parsers"], list(PARSERS)),
                 _columns(**options),
                 options["seeds"],
                 read_configurations(options["config"]),
+                options["new_splits"],
             )
         )
         cells = CellFile(options["json"])
@@ -147,12 +158,14 @@ def missing(
 ) -> tuple[list[Group], list[str]]:
     """What ``cells`` has not, and for jobs that cannot be measured the sentences why."""
     groups, failures = [], []
-    corpora = cache(lambda criterion: corpus_of(folder, criterion, world))
+    corpora = cache(lambda criterion, split: corpus_of(folder, criterion, split, world))
     known = cache(lambda protocol: _known(world, protocol))
     for _, alike in groupby(todo, key=lambda job: job.training):
         first, *others = alike
         try:
-            group = Group((first, *others), corpora(first.criterion), *known(first.protocol))
+            group = Group(
+                (first, *others), corpora(first.criterion, first.split), *known(first.protocol)
+            )
         except ValueError as error:
             failures.append(first.refused(str(error)))
             continue
@@ -168,12 +181,17 @@ def _known(world: World | None, protocol: str) -> tuple[Knowledge, str]:
     return knowledge_of(world, protocol), knowledge_hash(world, protocol)
 
 
-def corpus_of(folder: Path, criterion: str, world: World | None) -> Corpus:
-    """The pairs of ``folder`` by ``criterion``. Raises ValueError, a sentence."""
+def corpus_of(folder: Path, criterion: str, split: int | None, world: World | None) -> Corpus:
+    """The pairs of ``folder`` by ``criterion``, as published or split anew.
+
+    Raises ValueError, a sentence.
+    """
     if not folder.is_dir():
         raise ValueError(f"{folder} is no folder.")
-    if criterion != Criterion.SOURCE_COMMAND:
+    if split is None:
         return read_corpus(folder, criterion)
+    if criterion != Criterion.SOURCE_COMMAND:
+        return new_split(folder, criterion, split)
     if world is None:
         raise ValueError("The split by source_command needs the ontology of a --world.")
-    return split_by_source_command(folder, anonymizer_of(world))
+    return new_split(folder, criterion, split, source_commands(folder, anonymizer_of(world)))
