@@ -4,7 +4,8 @@
 
 One table a protocol: parsers down; settings, each by criterion, across. A figure is exact match in
 percent, the mean over seeds and over new splits where there are some; ± is the standard deviation over
-them (n − 1). The best of a column in its protocol is bold. In parentheses stands what the paper published, always on the test parts.
+them (n − 1). The best of a column in its protocol is bold. In parentheses stands what the paper published,
+always on the test parts.
 """
 
 from __future__ import annotations
