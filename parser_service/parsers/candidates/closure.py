@@ -8,7 +8,8 @@ forms than anybody says; those that several kinds of change arrive at are likely
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 from annotations.language.canonical import canonical_text
@@ -54,7 +55,7 @@ def close(
         changes: kinds of change by name, those of this module by default.
     """
     kinds = CHANGES if changes is None else changes
-    read = [form for form in map(_read, forms) if form is not None]
+    read = list(read_forms(forms))
     around = look_around(read)
     made: dict[Made, None] = {}
     for form in read:
@@ -144,27 +145,27 @@ def _retyped(
     mine, its = given.arguments, declared.arguments
     if len(mine) == len(its):
         differing = [at for at, kind in enumerate(its) if kind != mine[at]]
-        if len(differing) == 1 and (constant := _constant(its[differing[0]])):
+        if len(differing) == 1 and (constant := constant_of(its[differing[0]])):
             [at] = differing
             yield (*part.arguments[:at], constant, *part.arguments[at + 1 :])
-    elif its[:-1] == mine and (constant := _constant(its[-1])):
+    elif its[:-1] == mine and (constant := constant_of(its[-1])):
         yield (*part.arguments, constant)
     elif its == mine[:-1]:
         yield part.arguments[:-1]
 
 
-def _constant(kind: ArgumentKind) -> Form | None:
+def constant_of(kind: ArgumentKind) -> Form | None:
     """What stands for an argument of some kind in an anonymized form."""
     if kind is ArgumentKind.UNKNOWN:
         return UNKNOWN
     return Constant(f"<{kind}>") if kind in ENTITY_KINDS else None
 
 
-def _read(text: str) -> Form | None:
-    try:
-        return read_form(text)
-    except LanguageError:
-        return None  # a text that is no form can be answered, not changed
+def read_forms(texts: Iterable[str]) -> Iterator[Form]:
+    """The forms that can be changed: a text that is none can only be answered."""
+    for text in texts:
+        with suppress(LanguageError):
+            yield read_form(text)
 
 
 def _without(parts: Sequence[Form], number: int) -> tuple[Form, ...]:

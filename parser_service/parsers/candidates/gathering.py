@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from annotations.language.anonymizer import Anonymizer
-from annotations.language.errors import LanguageError
-from annotations.language.logic import Form, read_form
 from annotations.language.ontology import Ontology
 from annotations.language.predicates import infer_signatures
-from parser_service.parsers.candidates.closure import close
+from parser_service.parsers.candidates.closure import close, read_forms
 from parser_service.parsers.candidates.geca import geca
 from parser_service.parsers.candidates.grammar_forms import grammar_forms
 from parser_service.parsers.candidates.inventory import inventory
 from parser_service.parsers.candidates.pool import SURE, Candidate, Made, Pool
+from parser_service.parsers.candidates.unseen import unseen
 from parser_service.parsers.interface import Knowledge, Pair
 
 MOST_CANDIDATES = 800
@@ -70,10 +69,11 @@ def _made(pairs: Sequence[Pair], training: Sequence[str], knowledge: Knowledge) 
         return
     yield from geca(_anonymized(pairs, knowledge.ontology))
     if knowledge.predicates is None:
-        yield from close(training, infer_signatures(_forms(training)))
+        yield from close(training, infer_signatures(read_forms(training)))
         return
     yield from close(training, knowledge.predicates)
     yield from inventory(training, knowledge.predicates)
+    yield from unseen(training, knowledge.predicates)
 
 
 def _anonymized(pairs: Sequence[Pair], ontology: Ontology | None) -> Sequence[Pair]:
@@ -82,11 +82,3 @@ def _anonymized(pairs: Sequence[Pair], ontology: Ontology | None) -> Sequence[Pa
         return pairs
     anonymizer = Anonymizer(ontology)
     return [replace(pair, utterance=anonymizer.anonymize(pair.utterance).command) for pair in pairs]
-
-
-def _forms(texts: Iterable[str]) -> Iterator[Form]:
-    for text in texts:
-        try:
-            yield read_form(text)
-        except LanguageError:
-            continue
