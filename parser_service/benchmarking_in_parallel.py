@@ -64,6 +64,7 @@ def measured_in_parallel(
 def _start(group: Group, running: dict[Connection, Child]) -> None:
     context = get_context("spawn")
     answers, answering = context.Pipe(duplex=False)
+    # Pickled here and unpickled once Django is ready there: its classes import models.
     process = context.Process(target=_measure, args=(pickle.dumps(group), answering))
     with _interrupts_blocked():
         process.start()
