@@ -1,4 +1,4 @@
-"""Declared predicates that no training form has, where their signatures let them stand.
+"""Declared predicates and signatures that no training form has, where they may stand.
 
 What training shows can be exchanged for what it shows elsewhere, and ``inventory`` asks for another
 predicate of the same signature. A world may also declare ``(leftmost $1 <location>)`` where nothing
@@ -18,10 +18,9 @@ from annotations.language.logic import (
     free_variables,
     to_corpus,
 )
-from annotations.language.logic import predicates as predicates_in
-from annotations.language.predicates import Predicate, PredicateKind
+from annotations.language.predicates import Predicate, PredicateKind, infer_signatures
 from annotations.language.signatures import ArgumentKind, Signature, argument_kind
-from parser_service.parsers.candidates.closure import Change, close, constant_of, read_forms
+from parser_service.parsers.candidates.closure import Change, close, constant_of, read_forms, retype
 from parser_service.parsers.candidates.pool import SURE, Made
 from parser_service.parsers.candidates.surroundings import (
     Place,
@@ -37,13 +36,19 @@ OPEN_KINDS = (ArgumentKind.LAMBDA, ArgumentKind.VARIABLE)
 
 
 def unseen(forms: Sequence[str], predicates: Mapping[str, Predicate]) -> list[Made]:
-    """The forms with one predicate that none of ``forms`` has.
+    """The forms with one predicate that none of ``forms`` has, or none with such arguments.
 
-    No other step arrives at them, so that each is as sure as one by two kinds of change.
+    Little else arrives at them, so that each is as sure as one by two kinds of change.
     """
-    seen = {name for form in read_forms(forms) for name in predicates_in(form)}
-    new = {name: each for name, each in predicates.items() if name not in seen}
-    return [replace(each, weight=SURE) for each in close(forms, new, {NAME: stand_in})]
+    shown = infer_signatures(read_forms(forms))
+    absent = {name: each for name, each in predicates.items() if name not in shown}
+    other = {
+        name: replace(each, signatures=_without(each.signatures, shown[name].signatures))
+        for name, each in predicates.items()
+        if name in shown
+    }
+    made = [*close(forms, absent, {NAME: stand_in}), *close(forms, other, {NAME: retype})]
+    return [replace(each, weight=SURE) for each in made]
 
 
 def stand_in(
@@ -56,6 +61,10 @@ def stand_in(
     elif len(parts) == 1 and is_leaf(parts[0]):
         for leaf in _instances(PredicateKind.DESCRIPTION, variables(parts[0]), predicates):
             yield with_children(place.part, [leaf]), _said(parts[0], leaf)
+
+
+def _without(declared: Sequence[Signature], shown: Sequence[Signature]) -> tuple[Signature, ...]:
+    return tuple(each for each in declared if each not in shown)
 
 
 def _is_done(place: Place) -> bool:

@@ -56,6 +56,13 @@ def test_a_relation_stands_between_the_same_two():
     assert made(beside, bring(OBJECT), alone) == {alone.replace("above", "beside")}
 
 
+def test_a_signature_that_training_never_shows_is_taken_up():
+    bringing = declared("bring", (LAMBDA,), (LAMBDA, LOCATION))
+    assert made(bringing, bring(OBJECT)) == {f'{bring(OBJECT)[:-2]} " <location> " )'}
+    both = bring(OBJECT), f'{bring(OBJECT)[:-2]} " <location> " )'
+    assert made(bringing, *both) == set()
+
+
 def test_what_training_shows_and_what_has_no_constant_is_left_alone():
     assert made(declared("bring", (LAMBDA,)), bring(OBJECT)) == set()
     assert made(declared("count", (LAMBDA, ArgumentKind.NUMBER)), bring(OBJECT)) == set()
