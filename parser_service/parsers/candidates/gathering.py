@@ -50,8 +50,7 @@ def gather(pairs: Sequence[Pair], knowledge: Knowledge, is_open: bool = True) ->
     training = tuple(sorted({pair.form for pair in pairs}))
     if not is_open:
         return Gathered(training)
-    pool = Pool()
-    pool.add(_made(pairs, training, knowledge))
+    pool = reach(pairs, training, knowledge)
     candidates = list(pool.candidates())
     known = set(training)
     new = [each for each in candidates if each.form not in known and each.support >= SURE]
@@ -61,6 +60,13 @@ def gather(pairs: Sequence[Pair], knowledge: Knowledge, is_open: bool = True) ->
         pool.counts(),
         {each.form: each.commands for each in candidates} if knowledge.grammar is not None else {},
     )
+
+
+def reach(pairs: Sequence[Pair], training: Sequence[str], knowledge: Knowledge) -> Pool:
+    """All forms that the steps arrive at, the unlikely and those of ``training`` among them."""
+    pool = Pool()
+    pool.add(_made(pairs, training, knowledge))
+    return pool
 
 
 def _made(pairs: Sequence[Pair], training: Sequence[str], knowledge: Knowledge) -> Iterator[Made]:

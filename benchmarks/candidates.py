@@ -1,0 +1,85 @@
+"""How many forms that training never showed are among the candidates made from it, and at what price.
+
+    GPSR_SHARED_DATA=… .venv/bin/python benchmarks/candidates.py [--splits 8]
+
+Splits the published train and validation pairs anew by form, several times, and makes the candidates from
+each training part. By protocol: the candidates of a split; the share of the held-out paraphrases whose form is
+a candidate; and by support, how many forms were made, and which share of them was held out (is real).
+"""
+
+from __future__ import annotations
+
+import argparse
+import tempfile
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+import pandas as pd
+from fresh_site import DATA, WORLD, Site
+
+PROTOCOLS = ("strict", "domain")
+HELD_OUT = ("validation", "test")
+
+
+def made(protocol: str, splits: int) -> Iterator[dict[str, object]]:
+    """Every new form of every split: its support, and how many held-out paraphrases mean it.
+
+    A held-out form that no step arrives at has support 0.
+    """
+    from annotations.models import World
+    from parser_service.corpus import new_split
+    from parser_service.knowledge import knowledge_of
+    from parser_service.parsers.candidates.gathering import reach
+
+    knowledge = knowledge_of(World.objects.get(name=WORLD), protocol)
+    for seed in range(splits):
+        corpus = new_split(DATA / "walker2019", "logical_form", seed)
+        pairs = corpus.pairs("train", ("generated", "paraphrased"))
+        training = sorted({pair.form for pair in pairs})
+        held = [pair for part in HELD_OUT for pair in corpus.pairs(part, ["paraphrased"])]
+        meant = Counter(pair.form for pair in held)
+        support = dict.fromkeys(meant, 0)
+        for each in reach(pairs, training, knowledge).candidates():
+            if each.form not in training:
+                support[each.form] = each.support
+        for form, found in support.items():
+            yield {"support": found, "pairs": meant[form]}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--splits", type=int, default=8)
+    splits = parser.parse_args().splits
+    with tempfile.TemporaryDirectory() as folder:
+        site = Site(Path(folder) / "var")
+        site.import_world()
+        site.enter()
+        for protocol in PROTOCOLS:
+            report(protocol, pd.DataFrame(made(protocol, splits)), splits)
+
+
+def report(protocol: str, forms: pd.DataFrame, splits: int) -> None:
+    from parser_service.neural.ranked_forms import MOST_SUPPORT
+    from parser_service.parsers.candidates.pool import SURE
+
+    kept = forms[forms["support"] >= SURE]
+    covered = 100 * kept["pairs"].sum() / forms["pairs"].sum()
+    print(
+        f"\n{protocol}: {len(kept) / splits:.0f} candidates a split, which have the form of {covered:.1f} % "
+        f"of the held-out paraphrases ({splits} splits by form)"
+    )
+    reached = forms[forms["support"] > 0]
+    by_support = reached.groupby(reached["support"].clip(upper=MOST_SUPPORT))["pairs"]
+    table = pd.DataFrame(
+        {
+            "forms a split": by_support.size() / splits,
+            "real, %": 100 * by_support.agg(lambda meant: (meant > 0).mean()),
+            "of the paraphrases, %": 100 * by_support.sum() / forms["pairs"].sum(),
+        }
+    )
+    print(table.rename(index={MOST_SUPPORT: f"{MOST_SUPPORT} or more"}).round(1).to_string())
+
+
+if __name__ == "__main__":
+    main()
