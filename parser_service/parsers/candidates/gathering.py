@@ -47,10 +47,10 @@ def gather(pairs: Sequence[Pair], knowledge: Knowledge, is_open: bool = True) ->
     predicates appear which no pair has; *grammar* has all forms of its templates, and nothing has
     to be made. Candidates that only one kind of change arrives at are left out.
     """
-    training = tuple(sorted({pair.form for pair in pairs}))
+    training = _forms(pairs)
     if not is_open:
         return Gathered(training)
-    pool = reach(pairs, training, knowledge)
+    pool = reach(pairs, knowledge)
     candidates = list(pool.candidates())
     known = set(training)
     new = [each for each in candidates if each.form not in known and each.support >= SURE]
@@ -62,10 +62,14 @@ def gather(pairs: Sequence[Pair], knowledge: Knowledge, is_open: bool = True) ->
     )
 
 
-def reach(pairs: Sequence[Pair], training: Sequence[str], knowledge: Knowledge) -> Pool:
-    """All forms that the steps arrive at, the unlikely and those of ``training`` among them."""
+def _forms(pairs: Sequence[Pair]) -> tuple[str, ...]:
+    return tuple(sorted({pair.form for pair in pairs}))
+
+
+def reach(pairs: Sequence[Pair], knowledge: Knowledge) -> Pool:
+    """All forms that the steps arrive at, the unlikely ones and those of ``pairs`` among them."""
     pool = Pool()
-    pool.add(_made(pairs, training, knowledge))
+    pool.add(_made(pairs, _forms(pairs), knowledge))
     return pool
 
 

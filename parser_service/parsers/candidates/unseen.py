@@ -94,9 +94,8 @@ def _instances(
 
 def _arguments(signature: Signature, kept: Sequence[Form]) -> tuple[Form, ...] | None:
     """``kept`` where λs and variables are declared, constants elsewhere; None where that cannot be."""
-    if [argument_kind(each) for each in kept] != [
-        k for k in signature.arguments if k in OPEN_KINDS
-    ]:
+    wanted = [kind for kind in signature.arguments if kind in OPEN_KINDS]
+    if [argument_kind(each) for each in kept] != wanted:
         return None
     left = iter(kept)
     found = [
