@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import product
 from typing import Any, Self
 
 import torch
@@ -15,8 +14,9 @@ VOICES = ("examples", "glosses", "slots", "support")
 Weights = tuple[float, ...]  # by VOICES
 EQUAL: Weights = (1.0,) * len(VOICES)
 SPREAD = 0.5  # of the logarithm of a weight, before validation has shown anything
-OFFSETS = tuple(0.25 * step for step in range(-32, 33))  # nats
+OFFSETS = tuple(0.25 * step for step in range(-64, 33))  # nats
 SLOPES = (0.0, 0.125, 0.25, 0.5, 1.0)
+SUPPORT_LEFT_OUT = 3.0  # of a known form that is taken for new, whose steps nobody looked for
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,8 +38,16 @@ class Scores:
         """
         if not self.new.shape[-1]:
             return self.known.new_zeros(self.known.shape[1])
+        return self.new[1:].sum(0).logsumexp(-1) - self.known[1:].sum(0).logsumexp(-1)
+
+    def evidence_without(self, forms: Tensor) -> Tensor:
+        """What ``evidence`` would be had training not shown each utterance's form of ``forms``
+        [utterances], known forms all. Shape [utterances]."""
+        meant = forms[:, None]
         new, known = self.new[1:].sum(0), self.known[1:].sum(0)
-        return new.logsumexp(-1) - known.logsumexp(-1)
+        left_out = known.gather(1, meant) + SUPPORT_LEFT_OUT
+        known = known.scatter(1, meant, torch.finfo(known.dtype).min)
+        return torch.cat([new, left_out], -1).logsumexp(-1) - known.logsumexp(-1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,14 +81,12 @@ def calibrated(scores: Scores, targets: Tensor) -> Decision:
     """The decision under which the forms [utterances] that were meant are most probable.
 
     ``targets`` number known forms first, then new ones; -1 for a form that is in neither list,
-    which is a new one all the same. Where all forms were known, or all new, evidence has shown
-    nothing and counts nothing: validation pairs parted by command ask for a closed set, those
-    parted by form for an open one.
+    which is a new one all the same.
     """
     number = scores.known.shape[-1]
     is_known = (targets >= 0) & (targets < number)
     is_made = targets >= number
-    novelty, slope = best_gate(scores.evidence, ~is_known)
+    novelty, slope = calibrated_gate(scores, targets)
     return Decision(
         novelty,
         slope,
@@ -89,25 +95,39 @@ def calibrated(scores: Scores, targets: Tensor) -> Decision:
     )
 
 
-def best_gate(evidence: Tensor, is_new: Tensor) -> tuple[float, float]:
+def calibrated_gate(scores: Scores, targets: Tensor) -> tuple[float, float]:
+    """Novelty and slope for utterances that mean the forms ``targets`` (see ``calibrated``).
+
+    What a new form looks like is learned from known ones, too, by taking each for new.
+    """
+    number = scores.known.shape[-1]
+    is_known = (targets >= 0) & (targets < number)
+    left_out = Scores(scores.known[:, is_known], scores.new[:, is_known])
+    return best_gate(scores.evidence, ~is_known, left_out.evidence_without(targets[is_known]))
+
+
+def best_gate(evidence: Tensor, is_new: Tensor, left_out: Tensor) -> tuple[float, float]:
     """Novelty and slope at which it is most probable which forms [utterances] were new.
 
-    A known and a new form at the mean of the evidence are counted in, half each, so that nothing
-    becomes certain.
+    ``left_out`` is the evidence [pairs] of known forms taken for new. Half a new form is counted in
+    there, and half a known one at the mean of the evidence, so that nothing becomes certain: pairs
+    parted by command ask for a nearly closed set, those parted by form for an open one.
     """
     if not len(evidence):
         return 0.0, 1.0
     usual = evidence.mean()
-
-    def surprise(gate: tuple[float, float]) -> float:
-        offset, slope = gate
-        odds = offset + slope * (evidence - usual)
-        seen = logsigmoid(torch.where(is_new, odds, -odds)).sum()
-        counted_in = logsigmoid(torch.tensor([offset, -offset])).sum() / 2
-        return -float(seen + counted_in)
-
-    offset, slope = min(product(OFFSETS, SLOPES), key=surprise)
-    return offset - slope * float(usual), slope
+    left_out = left_out if len(left_out) else usual[None]
+    # [offsets, slopes, 1]
+    offset = torch.tensor(OFFSETS).view(-1, 1, 1)
+    slope = torch.tensor(SLOPES).view(1, -1, 1)
+    odds = offset + slope * (evidence - usual)
+    seen = logsigmoid(torch.where(is_new, odds, -odds)).sum(-1)
+    counted_in = (
+        logsigmoid(offset + slope * (left_out - usual)).mean(-1) + logsigmoid(-offset)[..., 0]
+    )
+    best = int((seen + counted_in / 2).argmax())
+    found, rise = OFFSETS[best // len(SLOPES)], SLOPES[best % len(SLOPES)]
+    return found - rise * float(usual), rise
 
 
 def best_weights(scores: Tensor, targets: Tensor) -> Weights:

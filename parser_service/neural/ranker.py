@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from math import log
 from pathlib import Path
 from typing import Self
@@ -12,7 +12,7 @@ from typing import Self
 import torch
 
 from parser_service.neural.checkpoints import WEIGHTS, load_weights, save_weights
-from parser_service.neural.deciding import Decision, calibrated
+from parser_service.neural.deciding import Decision, calibrated, calibrated_gate
 from parser_service.neural.pretrained import load_encoder
 from parser_service.neural.processor import processor
 from parser_service.neural.ranked_forms import RankedExample, RankedForms, collect
@@ -49,11 +49,12 @@ class FormRanker(Parser):
     A form with examples is scored by the nearest of them and by its English gloss, a new one by its
     gloss alone; where the ontology is known, slots that no entity of the utterance fills cost. New forms
     are made from those of the training pairs (``candidates``) or taken from the grammar. Scores are
-    log-probabilities, calibrated on the validation pairs, which also tell how often a form is new.
+    log-probabilities, calibrated on the validation pairs, which also tell how often a form is new and
+    what tells it from a known one.
     """
 
     name = "ranker"
-    version = 2
+    version = 3
     protocols = ("strict", "domain", "grammar")
     Config = RankerConfig
 
@@ -77,7 +78,7 @@ class FormRanker(Parser):
         observe = observe or Observer()
         if not train:
             raise ValueError("There is no training pair, so there is nothing to learn from.")
-        is_open = self._is_open(train, validation)
+        is_open = self.config.forms == "open"
         self._ranked, examples, line = collect(train, self.knowledge, is_open)
         observe.log(line)
         with threads(self.config.threads):
@@ -135,13 +136,6 @@ class FormRanker(Parser):
     def parameters(self) -> int:
         return sum(weights.numel() for weights in self._model.parameters()) if self._model else 0
 
-    def _is_open(self, train: Sequence[Pair], validation: Sequence[Pair]) -> bool:
-        """Whether new forms may be meant: unless it is said, where validation has any."""
-        if self.config.forms != "auto" or self.knowledge.grammar is not None or not validation:
-            return bool(self.config.forms != "closed")
-        known = {pair.form for pair in train}
-        return any(pair.form not in known for pair in validation)
-
     def _prepare(self, examples: Sequence[RankedExample], check: Check) -> RankerTraining:
         """A model with the pretrained encoder, and the prototypes where it puts the examples."""
         pretrained = load_encoder(self.config.encoder, encoders_folder())
@@ -185,18 +179,22 @@ class FormRanker(Parser):
         model = self._trained()
         model.renew([example.utterance for example in training.examples], check)
         if not validation:
-            self._decision = Decision()
+            self._decision = Decision(*self._gate_of(training.examples, check))
             return None, None
         number = {form: at for at, form in enumerate(self._ranked.forms)}
         targets = torch.tensor([number.get(pair.form, -1) for pair in validation])
         scores = model.scores([pair.utterance for pair in validation], check)
         self._decision = calibrated(scores, targets)
-        if self.config.forms == "open":
-            self._decision = replace(self._decision, novelty=0.0, slope=1.0)
         logs = self._decision.log_probabilities(scores)
         found = logs[targets >= 0].gather(1, targets[targets >= 0, None])
         loss = -float(found.mean()) if len(found) else None
         return loss, float((logs.argmax(-1) == targets).float().mean())
+
+    def _gate_of(self, examples: Sequence[RankedExample], check: Check) -> tuple[float, float]:
+        """When a form is new, as far as some of the training pairs tell, where nothing else does."""
+        some = examples[:: 1 + len(examples) // PREDICTION_BATCH]
+        scores = self._trained().scores([each.utterance for each in some], check)
+        return calibrated_gate(scores, torch.tensor([each.form for each in some]))
 
     def _or_unknown(self, ranked: list[Candidate]) -> list[Candidate]:
         bound = self.config.unknown_below

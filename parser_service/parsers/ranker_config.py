@@ -54,10 +54,10 @@ class RankerConfig:
         maximum=1.0,
     )
     forms: str = hyperparameter(
-        "auto",
-        "Which forms are answered: those of the training pairs (closed), candidates made from them "
-        "as well (open), or as the validation pairs ask for (auto).",
-        choices=("auto", "closed", "open"),
+        "open",
+        "Which forms are answered: those of the training pairs and candidates made from them, as "
+        "often as the validation pairs have such (open), or those of the training pairs alone (closed).",
+        choices=("open", "closed"),
     )
     unknown_below: float = hyperparameter(
         0.0, "Probability below which the answer is UNKNOWN; 0 always answers.", 0.0, 1.0

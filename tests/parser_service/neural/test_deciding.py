@@ -5,12 +5,14 @@ import torch
 
 from parser_service.neural.deciding import (
     EQUAL,
+    SUPPORT_LEFT_OUT,
     VOICES,
     Decision,
     Scores,
     best_gate,
     best_weights,
     calibrated,
+    calibrated_gate,
 )
 
 FIRST, SECOND = VOICES.index("examples"), VOICES.index("glosses")
@@ -55,22 +57,47 @@ def test_the_more_often_forms_are_new_the_more_new_forms_are_answered():
     assert chosen == [[0, 1], [0, 2], [3, 2]]
 
 
-def test_where_all_forms_were_known_evidence_counts_nothing_and_new_ones_are_rare():
-    novelty, slope = best_gate(torch.randn(100), torch.zeros(100, dtype=torch.bool))
-    assert slope == 0 and novelty < -4
-    assert best_gate(torch.randn(100), torch.ones(100, dtype=torch.bool)) == (-novelty, 0)
+NONE = torch.zeros(0)
+
+
+def test_where_all_forms_were_known_new_ones_are_rare_unless_the_evidence_is_strong():
+    known, left_out = torch.randn(100), 8 + torch.randn(100)
+    novelty, slope = best_gate(known, torch.zeros(100, dtype=torch.bool), left_out)
+    assert slope > 0 and novelty < -4
+    assert novelty + slope * 8 > 0
+
+
+def test_where_forms_left_out_look_like_the_others_evidence_counts_nothing():
+    evidence, known = torch.zeros(100), torch.zeros(100, dtype=torch.bool)
+    novelty, slope = best_gate(evidence, known, torch.zeros(100))
+    assert (novelty < -4, slope) == (True, 0)
+    assert best_gate(evidence, ~known, NONE) == (-novelty, 0)
 
 
 def test_evidence_counts_where_it_tells_new_from_known():
     is_new = torch.tensor([True, False] * 50)
     telling = torch.where(is_new, 3.0, -1.0)
-    novelty, slope = best_gate(telling, is_new)
-    assert slope == 1 and novelty == pytest.approx(-1)
-    assert best_gate(torch.zeros(100), is_new) == (0, 0)
+    novelty, slope = best_gate(telling, is_new, NONE)
+    assert slope > 1 and novelty == pytest.approx(-slope)
+    assert best_gate(torch.zeros(100), is_new, NONE) == (0, 0)
 
 
-def test_without_validation_the_evidence_decides():
-    assert best_gate(torch.zeros(0), torch.zeros(0, dtype=torch.bool)) == (0, 1)
+def test_without_a_pair_the_evidence_decides():
+    assert best_gate(NONE, torch.zeros(0, dtype=torch.bool), NONE) == (0, 1)
+
+
+def test_a_form_left_out_is_among_the_new_ones_and_no_more_among_the_known():
+    scores = Scores(said([[5.0, 0.0]], [[4.0, 1.0]]), said([[0.0]], [[2.0]]))
+    there = torch.tensor([2.0, 4.0 + SUPPORT_LEFT_OUT]).logsumexp(-1)
+    assert scores.evidence_without(torch.tensor([0])) == there - 1
+    assert scores.evidence_without(torch.tensor([1])) < scores.evidence_without(torch.tensor([0]))
+
+
+def test_the_only_known_form_can_be_left_out():
+    scores = Scores(said([[1.0]] * 3), said([[0.0]] * 3))
+    novelty, slope = calibrated_gate(scores, torch.zeros(3, dtype=torch.long))
+    assert novelty < 0 <= slope < float("inf")
+    assert Decision(novelty, slope).log_probabilities(scores).isfinite().all()
 
 
 def test_a_voice_counts_as_much_as_it_is_right():

@@ -325,19 +325,33 @@ def test_a_learning_rate_that_diverges_is_said(config, pairs, monkeypatch):
         FormRanker(config).fit(pairs)
 
 
-@pytest.mark.parametrize(("forms", "is_open"), [("auto", False), ("open", True), ("closed", False)])
-def test_where_validation_has_known_forms_alone_the_set_is_closed(config, pairs, forms, is_open):
+@pytest.mark.parametrize(("forms", "is_open"), [("open", True), ("closed", False)])
+@pytest.mark.parametrize("asked", [5, 0], ids=["calibrated", "without validation"])
+def test_new_forms_are_candidates_unless_the_set_is_closed(config, pairs, forms, is_open, asked):
     parser = FormRanker(replace(config, forms=forms, steps=1))
-    parser.fit(pairs, pairs[:5])
+    parser.fit(pairs, pairs[:asked])
     answers = parser.predict(["find it"], 999)[0]
-    assert (len(answers) > len({pair.form for pair in pairs})) is is_open
+    known = {pair.form for pair in pairs}
+    assert ({each.form for each in answers} > known) is is_open
 
 
-def test_where_validation_has_a_new_form_the_set_is_open(config, pairs):
-    parser = FormRanker(replace(config, steps=1))
+@pytest.mark.parametrize("asked", [True, False], ids=["calibrated", "without validation"])
+def test_known_forms_are_answered_where_validation_and_training_have_no_others(
+    config, pairs, asked
+):
+    parser = FormRanker(config, seed=1)
+    parser.fit(pairs, pairs if asked else [])
+    known = {pair.form for pair in pairs}
+    assert all(ranked[0].form in known for ranked in parser.predict(utterances(pairs)))
+
+
+def test_new_forms_are_answered_where_validation_has_no_others(config, pairs):
+    parser = FormRanker(config, seed=1)
     known = [pair for pair in pairs if pair.form != UNSEEN]
-    parser.fit(known, pairs)
-    assert UNSEEN in {each.form for each in parser.predict(["find it"], 999)[0]}
+    unseen = [pair for pair in pairs if pair.form == UNSEEN]
+    parser.fit(known, unseen)
+    answers = parser.predict(utterances(unseen))
+    assert not {ranked[0].form for ranked in answers} & {pair.form for pair in known}
 
 
 def test_the_encoder_goes_back_to_the_pretrained_one_as_far_as_the_protocol_says(config, pairs):
