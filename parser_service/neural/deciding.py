@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import product
 from typing import Any, Self
 
 import torch
@@ -98,7 +99,7 @@ def calibrated(scores: Scores, targets: Tensor) -> Decision:
 def calibrated_gate(scores: Scores, targets: Tensor) -> tuple[float, float]:
     """Novelty and slope for utterances that mean the forms ``targets`` (see ``calibrated``).
 
-    What a new form looks like is learned from known ones, too, by taking each for new.
+    What a new form looks like is learned from known ones, too: each is taken for new.
     """
     number = scores.known.shape[-1]
     is_known = (targets >= 0) & (targets < number)
@@ -109,25 +110,26 @@ def calibrated_gate(scores: Scores, targets: Tensor) -> tuple[float, float]:
 def best_gate(evidence: Tensor, is_new: Tensor, left_out: Tensor) -> tuple[float, float]:
     """Novelty and slope at which it is most probable which forms [utterances] were new.
 
-    ``left_out`` is the evidence [pairs] of known forms taken for new. Half a new form is counted in
-    there, and half a known one at the mean of the evidence, so that nothing becomes certain: pairs
-    parted by command ask for a nearly closed set, those parted by form for an open one.
+    ``left_out`` is the evidence [utterances] of known forms taken for new. Half a pair is counted in
+    that was new, at their mean surprise, and half a known one at the mean of the evidence, so that
+    nothing becomes certain: pairs parted by command ask for a nearly closed set, those parted by form
+    for an open one.
     """
     if not len(evidence):
         return 0.0, 1.0
     usual = evidence.mean()
     left_out = left_out if len(left_out) else usual[None]
-    # [offsets, slopes, 1]
-    offset = torch.tensor(OFFSETS).view(-1, 1, 1)
-    slope = torch.tensor(SLOPES).view(1, -1, 1)
-    odds = offset + slope * (evidence - usual)
-    seen = logsigmoid(torch.where(is_new, odds, -odds)).sum(-1)
-    counted_in = (
-        logsigmoid(offset + slope * (left_out - usual)).mean(-1) + logsigmoid(-offset)[..., 0]
-    )
-    best = int((seen + counted_in / 2).argmax())
-    found, rise = OFFSETS[best // len(SLOPES)], SLOPES[best % len(SLOPES)]
-    return found - rise * float(usual), rise
+
+    def surprise(gate: tuple[float, float]) -> float:
+        offset, slope = gate
+        odds = offset + slope * (evidence - usual)
+        seen = logsigmoid(torch.where(is_new, odds, -odds)).sum()
+        new = logsigmoid(offset + slope * (left_out - usual)).mean()
+        known = logsigmoid(torch.tensor(-offset))
+        return -float(seen + (new + known) / 2)
+
+    offset, slope = min(product(OFFSETS, SLOPES), key=surprise)
+    return offset - slope * float(usual), slope
 
 
 def best_weights(scores: Tensor, targets: Tensor) -> Weights:
