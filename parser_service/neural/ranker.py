@@ -41,6 +41,7 @@ FORMS = "forms.json"
 SAVED = (FORMS, ENCODER, TOKENIZER, WEIGHTS)
 UNKNOWN = "UNKNOWN"
 PREDICTION_BATCH = 64
+VALIDATIONS = 4  # in a training; to encode all examples anew takes a while
 
 
 class FormRanker(Parser):
@@ -160,9 +161,11 @@ class FormRanker(Parser):
     ) -> None:
         begin = time.monotonic()
         loss = training.run_epoch(observe.check)
+        found: tuple[float | None, float | None] = None, None
         with training.average.in_force():
-            with reduced_precision(training.model, self.config.precision):
-                found = self._settle(training, validation, observe.check)
+            if is_due(training.epoch, training.epochs):
+                with reduced_precision(training.model, self.config.precision):
+                    found = self._settle(training, validation, observe.check)
             observe.epoch(EpochReport(training.epoch, loss, *found, time.monotonic() - begin))
             # The newest average is the best: the last one is the parser, whatever a small
             # validation part says.
@@ -238,3 +241,8 @@ class FormRanker(Parser):
             return
         load_training(folder, training)
         observe.log(f"Training goes on after epoch {training.epoch}.")
+
+
+def is_due(epoch: int, epochs: int) -> bool:
+    """Whether the validation pairs are asked after ``epoch``, as after the last one."""
+    return epoch * VALIDATIONS // epochs > (epoch - 1) * VALIDATIONS // epochs

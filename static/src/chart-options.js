@@ -68,6 +68,7 @@ function lineOf(one, colour, shift) {
     type: "line",
     name: one.name,
     data: one.values,
+    connectNulls: true, // a curve may be measured at some epochs only
     yAxisIndex: isRight(one) ? 1 : 0,
     symbol: "circle",
     symbolSize: 4,

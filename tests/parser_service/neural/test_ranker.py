@@ -9,7 +9,7 @@ from annotations.language.ontology import Entity, Ontology
 from annotations.language.predicates import infer_signatures
 from parser_service.neural.checkpoints import WEIGHTS
 from parser_service.neural.pretrained import load_encoder
-from parser_service.neural.ranker import FormRanker
+from parser_service.neural.ranker import VALIDATIONS, FormRanker, is_due
 from parser_service.neural.ranker_training import RankerTraining
 from parser_service.parsers.candidates.glosses import glosses
 from parser_service.parsers.interface import Cancelled, Knowledge, Pair
@@ -174,10 +174,24 @@ def test_every_epoch_is_reported(config, pairs, tmp_path):
     FormRanker(config, seed=1).fit(pairs, pairs[:4], observe)
     first, last = observe.epochs[0], observe.epochs[-1]
     assert last.train_loss < first.train_loss
-    assert 0 <= first.validation_accuracy <= 1 and first.seconds > 0
+    assert first.seconds > 0
     assert len(observe.epochs) == -(-config.steps // -(-len(pairs) // config.batch_size))
     assert observe.fractions[-1] == 1
     assert "forms of the training pairs" in observe.lines[0]
+
+
+def test_the_validation_pairs_are_asked_now_and_then_and_at_the_end(config, pairs, tmp_path):
+    observe = Recorder(tmp_path)
+    FormRanker(config, seed=1).fit(pairs, pairs[:4], observe)
+    asked = [report for report in observe.epochs if report.validation_accuracy is not None]
+    assert len(asked) == VALIDATIONS < len(observe.epochs)
+    assert asked[-1] is observe.epochs[-1]
+    assert all(0 <= report.validation_accuracy <= 1 for report in asked)
+
+
+@pytest.mark.parametrize("epochs", [1, 2, 3])
+def test_a_short_training_asks_after_every_epoch(epochs):
+    assert all(is_due(epoch, epochs) for epoch in range(1, epochs + 1))
 
 
 def test_without_validation_pairs_it_learns_all_the_same(config, pairs, tmp_path):
