@@ -113,7 +113,7 @@ PARSERS: dict[str, Entry] = {
         title="Form ranker",
         description="A fine-tuned sentence encoder chooses among whole forms, by their examples and "
         "by their English glosses; also among new forms, made from those of the training pairs.",
-        version=2,
+        version=3,
         protocols=("strict", "domain", "grammar"),
     ),
 }
