@@ -55,8 +55,8 @@ class RankerConfig:
     )
     forms: str = hyperparameter(
         "open",
-        "Which forms are answered: those of the training pairs and candidates made from them, as "
-        "often as the validation pairs have such (open), or those of the training pairs alone (closed).",
+        "Which forms are answered: new ones too, as often as validation pairs have such (open), or "
+        "those of the training pairs alone (closed).",
         choices=("open", "closed"),
     )
     unknown_below: float = hyperparameter(
