@@ -16,6 +16,7 @@ from parser_service.neural.sentence_encoder import SentenceEncoder
 from parser_service.neural.slot_term import SlotTerm
 from parser_service.parsers.interface import Check
 
+ASKED_AT_ONCE = 32  # utterances; with more, short ones are padded to long ones
 SUPPORT_WEIGHT = 1.0  # nats for each kind of step that arrives at a new form
 
 
@@ -61,7 +62,7 @@ class RankerModel(nn.Module):
     @torch.no_grad()
     def scores(self, utterances: Sequence[str], check: Check) -> Scores:
         """What examples, glosses, slots and support say, in the main memory."""
-        vectors = self.encoder.vectors(utterances, check)  # [utterances, width]
+        vectors = self.encoder.vectors(utterances, check, ASKED_AT_ONCE)  # [utterances, width]
         by_gloss = self.glosses.logits(vectors).cpu()  # [utterances, forms]
         said = by_gloss.new_zeros(len(VOICES), *by_gloss.shape)
         by_example = self.nearest(vectors).cpu()  # [utterances, forms with examples]

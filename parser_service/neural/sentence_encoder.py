@@ -82,17 +82,22 @@ class SentenceEncoder(nn.Module):
         return normalize(torch.einsum("bl,blw->bw", shares, states), dim=-1)
 
     @torch.no_grad()
-    def vectors(self, texts: Sequence[str], check: Check = keep_going) -> Tensor:
-        """The same without dropout and gradient, for any number of texts. Shape [texts, width]."""
+    def vectors(
+        self, texts: Sequence[str], check: Check = keep_going, at_once: int = BATCH
+    ) -> Tensor:
+        """The same without dropout and gradient, for any number of texts. Shape [texts, width].
+
+        Texts of about one length are encoded together, ``at_once`` at a time.
+        """
         if not texts:
             return torch.zeros(0, self.width, device=self.device)
         was_training = self.training
         self.eval()
         order = sorted(range(len(texts)), key=lambda index: len(texts[index]))
         found = []
-        for begin in range(0, len(order), BATCH):
+        for begin in range(0, len(order), at_once):
             check()
-            found.append(self([texts[index] for index in order[begin : begin + BATCH]]))
+            found.append(self([texts[index] for index in order[begin : begin + at_once]]))
         self.train(was_training)
         vectors = torch.cat(found)
         return vectors[torch.tensor(order).argsort()]
