@@ -41,6 +41,10 @@ class Scores:
             return self.known.new_zeros(self.known.shape[1])
         return self.new[1:].sum(0).logsumexp(-1) - self.known[1:].sum(0).logsumexp(-1)
 
+    def knows(self, forms: Tensor) -> Tensor:
+        """Which of ``forms`` [utterances] are known, by their numbers (see ``calibrated``)."""
+        return (forms >= 0) & (forms < self.known.shape[-1])
+
     def evidence_without(self, forms: Tensor) -> Tensor:
         """What ``evidence`` would be had training not shown each utterance's form of ``forms``
         [utterances], known forms all. Shape [utterances]."""
@@ -85,8 +89,7 @@ def calibrated(scores: Scores, targets: Tensor) -> Decision:
     which is a new one all the same.
     """
     number = scores.known.shape[-1]
-    is_known = (targets >= 0) & (targets < number)
-    is_made = targets >= number
+    is_known, is_made = scores.knows(targets), targets >= number
     novelty, slope = calibrated_gate(scores, targets)
     return Decision(
         novelty,
@@ -101,8 +104,7 @@ def calibrated_gate(scores: Scores, targets: Tensor) -> tuple[float, float]:
 
     What a new form looks like is learned from known ones, too: each is taken for new.
     """
-    number = scores.known.shape[-1]
-    is_known = (targets >= 0) & (targets < number)
+    is_known = scores.knows(targets)
     left_out = Scores(scores.known[:, is_known], scores.new[:, is_known])
     return best_gate(scores.evidence, ~is_known, left_out.evidence_without(targets[is_known]))
 
