@@ -41,6 +41,7 @@ FORMS = "forms.json"
 SAVED = (FORMS, ENCODER, TOKENIZER, WEIGHTS)
 UNKNOWN = "UNKNOWN"
 PREDICTION_BATCH = 64
+GATE_PAIRS = 64  # of training that set the gate where no validation pair does
 VALIDATIONS = 4  # in a training; to encode all examples anew takes a while
 
 
@@ -195,7 +196,7 @@ class FormRanker(Parser):
 
     def _gate_of(self, examples: Sequence[RankedExample], check: Check) -> tuple[float, float]:
         """When a form is new, as far as some of the training pairs tell, where nothing else does."""
-        some = examples[:: 1 + len(examples) // PREDICTION_BATCH]
+        some = examples[:: 1 + len(examples) // GATE_PAIRS]
         scores = self._trained().scores([each.utterance for each in some], check)
         return calibrated_gate(scores, torch.tensor([each.form for each in some]))
 
@@ -224,7 +225,11 @@ class FormRanker(Parser):
         save_weights(folder / WEIGHTS, model)
 
     def _checkpoint(self, folder: Path, training: RankerTraining) -> None:
-        """The parser with the averaged weights, and the state from which to go on."""
+        """The averaged weights, and the state from which to go on.
+
+        Examples and calibration are those of the last epoch that was validated: going on needs
+        neither, and the last epoch is.
+        """
         self._write(folder)
         save_training(folder, training)
         seal(folder, self, (*SAVED, *FILES))
