@@ -9,7 +9,7 @@ from parser_service.models import EpochMetric
 
 
 def loss_curves(epochs: Sequence[EpochMetric]) -> dict[str, Any]:
-    """Training and, where it was measured, validation loss in nats a token."""
+    """Training and, where it was measured, validation loss, in the unit that the registry names."""
     series = [{"name": "training", "values": [each.train_loss for each in epochs]}]
     if any(each.validation_loss is not None for each in epochs):
         series.append({"name": "validation", "values": [each.validation_loss for each in epochs]})

@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Self
 
+from annotations.language.anonymizer import Anonymizer
+from annotations.language.ontology import Ontology
 from parser_service.parsers.candidates.gathering import gather
 from parser_service.parsers.candidates.glosses import glosses
 from parser_service.parsers.interface import Knowledge, Pair
@@ -15,11 +17,12 @@ MOST_SUPPORT = 4  # kinds of step, above which more of them say no more
 
 @dataclass(frozen=True, slots=True)
 class RankedExample:
-    """An utterance and the number of its form; the slots of a generated one may be filled."""
+    """An utterance and the number of its form; ``pattern`` has class tokens for its entities, as far
+    as any are known."""
 
     utterance: str
     form: int
-    is_generated: bool = False
+    pattern: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,18 +67,19 @@ def collect(
     gathered = gather(pairs, knowledge, is_open)
     forms = (*gathered.training, *(each.form for each in gathered.new))
     number = {form: at for at, form in enumerate(forms)}
-    said = {pair.utterance for pair in pairs}
-    generated = [
-        RankedExample(command, number[form], True)
+    meant = [(pair.utterance, pair.form) for pair in pairs]
+    said = {utterance for utterance, _ in meant}
+    meant += [
+        (command, form)
         for form, commands in gathered.commands.items()
         for command in commands
         if command not in said
     ]
+    anonymizer = Anonymizer(knowledge.ontology or Ontology(()))
     examples = [
-        RankedExample(pair.utterance, number[pair.form], pair.source == "generated")
-        for pair in pairs
+        RankedExample(utterance, number[form], anonymizer.anonymize(utterance).text)
+        for utterance, form in meant
     ]
-    examples += generated
     ranked = RankedForms(
         forms,
         tuple(glosses(forms, knowledge.predicates)),

@@ -56,7 +56,7 @@ class FormRanker(Parser):
     """
 
     name = "ranker"
-    version = 3
+    version = 4
     protocols = ("strict", "domain", "grammar")
     Config = RankerConfig
 

@@ -127,8 +127,10 @@ class RankerTraining:
         )
 
     def _text(self, example: RankedExample, random: Random) -> str:
-        if self.fill and example.is_generated and random.random() < self.config.grounding:
-            return self.fill(example.utterance, random)
+        """The utterance; in a share of cases with other entities of the same classes, which say
+        nothing of the form but where few utterances name them."""
+        if self.fill and random.random() < self.config.grounding:
+            return self.fill(example.pattern, random)
         return example.utterance
 
     def _set_rates(self, step: int) -> None:

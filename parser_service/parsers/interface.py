@@ -70,8 +70,8 @@ class Knowledge:
 
 @dataclass(frozen=True, slots=True)
 class EpochReport:
-    """One pass over the training pairs. Losses are nats a token, accuracy a fraction of 1; a value
-    that was not measured is None. ``seconds`` is the wall time of this epoch."""
+    """One pass over the training pairs. Losses are in the unit that the registry names, accuracy is a
+    fraction of 1; a value that was not measured is None. ``seconds`` is the wall time of this epoch."""
 
     epoch: int  # counts from 1
     train_loss: float

@@ -49,7 +49,8 @@ class RankerConfig:
     )
     grounding: float = hyperparameter(
         0.75,
-        "Share of generated commands read with entities in their slots, where the ontology is known.",
+        "How often a training utterance is read with other entities of the same classes, where the "
+        "ontology is known.",
         minimum=0.0,
         maximum=1.0,
     )

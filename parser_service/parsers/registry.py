@@ -16,7 +16,8 @@ class Entry:
     """One parser as pages, the worker and the command line see it.
 
     ``dotted`` is the path of its class (which may import torch), ``config`` of its hyperparameters
-    (which may not); ``queue`` names the workers that may run it, ``cpu`` or ``gpu``.
+    (which may not); ``queue`` names the workers that may run it, ``cpu`` or ``gpu``. ``loss_unit`` is
+    that of the losses it reports.
     """
 
     dotted: str
@@ -26,6 +27,7 @@ class Entry:
     version: int
     protocols: tuple[Protocol, ...]
     queue: str = "cpu"
+    loss_unit: str = "nats a token"
 
 
 PARSERS: dict[str, Entry] = {
@@ -113,8 +115,9 @@ PARSERS: dict[str, Entry] = {
         title="Form ranker",
         description="A fine-tuned sentence encoder chooses among whole forms, by their examples and "
         "by their English glosses; also among new forms, made from those of the training pairs.",
-        version=3,
+        version=4,
         protocols=("strict", "domain", "grammar"),
+        loss_unit="nats an utterance",
     ),
 }
 

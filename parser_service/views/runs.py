@@ -135,9 +135,11 @@ def run_state(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 def state_of(world: World, pk: int) -> dict[str, object]:
     run = get_object_or_404(TrainingRun.objects.for_table(), world=world, pk=pk)
+    entry = PARSERS.get(run.parser)
     return {
         "run": run,
-        "entry": PARSERS.get(run.parser),
+        "entry": entry,
+        "loss_title": f"Loss by epoch, {entry.loss_unit if entry else 'nats'}",
         "evaluations": sorted(run.evaluations.all(), key=order_of),
         "epochs": list(run.epochs.all()),
         "events": list(run.events.order_by("-id")[:200])[::-1],

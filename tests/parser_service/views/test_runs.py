@@ -173,6 +173,14 @@ def test_the_curves_are_what_the_charts_read(house, anna):
     assert accuracy["series"][0]["values"] == [25.0]
 
 
+@pytest.mark.parametrize(
+    ("parser", "unit"), [("seq2seq", "nats a token"), ("ranker", "nats an utterance")]
+)
+def test_the_chart_says_in_what_the_parser_counts_its_loss(parser, unit, house, anna):
+    run, _ = lifecycle.request(house.world, house.split, parser, send=False)
+    assert f"Loss by epoch, {unit}" in anna.get(f"/w/home/runs/{run.pk}/").content.decode()
+
+
 def test_the_table_of_runs_costs_no_query_a_run(house, anna, django_assert_max_num_queries):
     for seed in range(8):
         lifecycle.request(house.world, house.split, "seq2seq", seed=seed, send=False)
