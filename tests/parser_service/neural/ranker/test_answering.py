@@ -1,0 +1,111 @@
+"""What a ranker answers."""
+
+from dataclasses import replace
+from math import exp, log
+
+import pytest
+
+from parser_service.neural.ranker import FormRanker
+from parser_service.parsers.interface import Cancelled
+from tests.parser_service.neural.ranker.home import UNSEEN, utterances
+
+
+def accuracy(parser, pairs):
+    answers = parser.predict(utterances(pairs))
+    right = (a[0].form == p.form for a, p in zip(answers, pairs, strict=True))
+    return sum(right) / len(pairs)
+
+
+def test_it_learns_a_toy_language(learned, pairs):
+    assert accuracy(learned, [pair for pair in pairs if pair.form != UNSEEN]) >= 0.9
+
+
+def test_a_form_that_no_pair_has_is_among_the_answers(learned, pairs):
+    [asked] = {
+        pair.utterance
+        for pair in pairs
+        if pair.form == UNSEEN and " a " in pair.utterance and "look" in pair.utterance
+    }
+    assert UNSEEN in [candidate.form for candidate in learned.predict([asked], 30)[0]]
+
+
+def test_scores_are_log_probabilities_that_sum_to_one(learned, pairs):
+    for candidates in learned.predict(utterances(pairs)[:5], 10_000):
+        scores = [candidate.score for candidate in candidates]
+        assert scores == sorted(scores, reverse=True)
+        assert sum(map(exp, scores)) == pytest.approx(1, abs=1e-3)
+        assert len({candidate.form for candidate in candidates}) == len(candidates)
+
+
+def test_a_closed_set_answers_forms_of_the_training_pairs_alone(config, pairs):
+    parser = FormRanker(replace(config, forms="closed", steps=4))
+    parser.fit(pairs[:9], pairs[9:])
+    known = {pair.form for pair in pairs[:9]}
+    assert {each.form for each in parser.predict(["find it"], 999)[0]} == known
+
+
+def test_below_the_threshold_the_answer_is_unknown(learned, pairs):
+    hesitant = FormRanker(replace(learned.config, unknown_below=0.9999), seed=1)
+    hesitant._ranked, hesitant._decision = learned._ranked, learned._decision
+    hesitant._model = learned._model
+    [[first, second]] = hesitant.predict(["something else"], 2)
+    assert (first.form, first.score) == ("UNKNOWN", log(0.9999))
+    assert second == learned.predict(["something else"])[0][0]
+    assert learned.predict(["something else"])[0][0].form != "UNKNOWN"
+
+
+def test_a_cancelled_prediction_stops(learned):
+    def cancel():
+        raise Cancelled
+
+    with pytest.raises(Cancelled):
+        learned.predict(["bring the <object>"], check=cancel)
+
+
+def test_the_first_candidate_does_not_depend_on_how_many_are_asked_for(learned, pairs):
+    one, three = learned.predict(utterances(pairs), 1), learned.predict(utterances(pairs), 3)
+    assert [a[0] for a in one] == [a[0] for a in three]
+
+
+def test_the_order_of_the_questions_changes_no_answer(learned, pairs):
+    asked = utterances(pairs)
+    forward, backward = learned.predict(asked), learned.predict(asked[::-1])[::-1]
+    assert [a[0].form for a in forward] == [a[0].form for a in backward]
+
+
+def test_nothing_asked_nothing_answered(learned):
+    assert learned.predict([]) == []
+
+
+def test_asked_before_it_has_learned_it_says_so(config):
+    with pytest.raises(ValueError, match="has learned nothing yet"):
+        FormRanker(config).predict(["go"])
+
+
+@pytest.mark.parametrize(("forms", "is_open"), [("open", True), ("closed", False)])
+@pytest.mark.parametrize("asked", [5, 0], ids=["calibrated", "without validation"])
+def test_new_forms_are_candidates_unless_the_set_is_closed(config, pairs, forms, is_open, asked):
+    parser = FormRanker(replace(config, forms=forms, steps=1))
+    parser.fit(pairs, pairs[:asked])
+    answers = parser.predict(["find it"], 999)[0]
+    known = {pair.form for pair in pairs}
+    assert ({each.form for each in answers} > known) is is_open
+
+
+@pytest.mark.parametrize("asked", [True, False], ids=["calibrated", "without validation"])
+def test_known_forms_are_answered_where_validation_and_training_have_no_others(
+    config, pairs, asked
+):
+    parser = FormRanker(config, seed=1)
+    parser.fit(pairs, pairs if asked else [])
+    known = {pair.form for pair in pairs}
+    assert all(ranked[0].form in known for ranked in parser.predict(utterances(pairs)))
+
+
+def test_new_forms_are_answered_where_validation_has_no_others(config, pairs):
+    parser = FormRanker(config, seed=1)
+    known = [pair for pair in pairs if pair.form != UNSEEN]
+    unseen = [pair for pair in pairs if pair.form == UNSEEN]
+    parser.fit(known, unseen)
+    answers = parser.predict(utterances(unseen))
+    assert not {ranked[0].form for ranked in answers} & {pair.form for pair in known}

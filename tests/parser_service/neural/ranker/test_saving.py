@@ -1,0 +1,85 @@
+"""Saved, loaded, tampered with, moved."""
+
+from dataclasses import replace
+
+import pytest
+import torch
+
+from parser_service.neural.checkpoints import WEIGHTS
+from parser_service.neural.ranker import FormRanker
+from parser_service.parsers.interface import Knowledge
+from parser_service.parsers.storage import CONFIG, file_hash, read_json, write_json
+from tests.parser_service.neural.conftest import Recorder
+from tests.parser_service.neural.elsewhere import CPU, ELSEWHERE, computing_on
+from tests.parser_service.neural.ranker.home import domain, utterances, weights
+
+GPU = pytest.param(
+    torch.device("cuda"),
+    marks=pytest.mark.skipif(not torch.cuda.is_available(), reason="there is no GPU"),
+)
+PROCESSORS = [ELSEWHERE, GPU]
+
+
+@pytest.mark.parametrize("device", PROCESSORS, ids=str)
+@pytest.mark.filterwarnings("ignore:for .* copying from a non-meta parameter")
+@pytest.mark.parametrize("knowledge", [Knowledge(), domain()], ids=["strict", "domain"])
+def test_a_ranker_trained_elsewhere_answers_alike_on_the_cpu(
+    knowledge, device, config, pairs, tmp_path
+):
+    asked = utterances(pairs)
+    with computing_on(device):
+        parser = FormRanker(replace(config, precision="fp32"), seed=1, knowledge=knowledge)
+        parser.fit(pairs[:18], pairs[18:], Recorder(tmp_path / "run"))
+        assert {weight.device.type for _, weight in parser._model.trained()} == {device.type}
+        there = parser.predict(asked, 2)
+        parser.save(tmp_path / "saved")
+    with computing_on(CPU):
+        here = FormRanker.load(tmp_path / "saved", knowledge).predict(asked, 2)
+    assert [[each.form for each in ranked] for ranked in here] == [
+        [each.form for each in ranked] for ranked in there
+    ]
+
+
+def test_saved_and_loaded_it_answers_alike(learned, pairs, tmp_path):
+    learned.save(tmp_path / "parser")
+    loaded = FormRanker.load(tmp_path / "parser")
+    asked = [*utterances(pairs), "", "unheard of", "?!"]
+    assert loaded.predict(asked, 3) == learned.predict(asked, 3)
+    assert loaded.parameters() == learned.parameters() > 0
+    assert (loaded.config, loaded.seed) == (learned.config, learned.seed)
+
+
+def test_a_parser_of_the_domain_is_loaded_with_an_ontology(config, pairs, tmp_path):
+    parser = FormRanker(replace(config, steps=4), 0, domain())
+    parser.fit(pairs)
+    parser.save(tmp_path)
+    with pytest.raises(ValueError, match="Load it with the ontology of its world"):
+        FormRanker.load(tmp_path)
+    asked = ["bring the apple", "find the <name> in the kitchen"]
+    assert FormRanker.load(tmp_path, domain()).predict(asked) == parser.predict(asked)
+
+
+def test_an_altered_file_is_refused(learned, tmp_path):
+    learned.save(tmp_path)
+    content = bytearray((tmp_path / WEIGHTS).read_bytes())
+    content[-1] ^= 1
+    (tmp_path / WEIGHTS).write_bytes(content)
+    with pytest.raises(ValueError, match=r"model\.safetensors is not the file that was saved"):
+        FormRanker.load(tmp_path)
+
+
+def test_a_pickle_under_a_safe_name_is_refused_even_with_its_hash(learned, tmp_path):
+    learned.save(tmp_path)
+    torch.save(weights(learned), tmp_path / WEIGHTS)
+    about = read_json(tmp_path / CONFIG)
+    about["sha256"][WEIGHTS] = file_hash(tmp_path / WEIGHTS)
+    write_json(tmp_path / CONFIG, about)
+    with pytest.raises(ValueError, match="is not a safetensors file, and no other kind is read"):
+        FormRanker.load(tmp_path)
+
+
+def test_nothing_is_pickled(config, pairs, tmp_path):
+    observe = Recorder(tmp_path)
+    FormRanker(replace(config, steps=2)).fit(pairs[:9], pairs[9:12], observe)
+    names = {path.name for path in observe.last_checkpoint().iterdir()}
+    assert {name.rsplit(".")[-1] for name in names} == {"json", "safetensors"}
