@@ -127,8 +127,8 @@ class RankerTraining:
         )
 
     def _text(self, example: RankedExample, random: Random) -> str:
-        """The utterance; in a share of cases with other entities of the same classes, which say
-        nothing of the form but where few utterances name them."""
+        """The utterance, in a share of cases with other entities of the same classes: what it means
+        does not hang on which ones it names."""
         if self.fill and random.random() < self.config.grounding:
             return self.fill(example.pattern, random)
         return example.utterance

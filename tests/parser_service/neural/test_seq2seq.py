@@ -3,12 +3,12 @@ from dataclasses import replace
 import pytest
 import torch
 
-from parser_service.neural.checkpoints import WEIGHTS
 from parser_service.neural.seq2seq import Seq2Seq
 from parser_service.neural.training import Training
 from parser_service.parsers.interface import Cancelled, Pair
-from parser_service.parsers.storage import CONFIG, file_hash, read_json, write_json
+from parser_service.parsers.storage import CONFIG, read_json, write_json
 from tests.parser_service.neural.conftest import HELD_OUT, SMALL, Recorder
+from tests.parser_service.neural.tampering import alter_weights, pickle_weights
 
 
 def weights(parser):
@@ -204,19 +204,14 @@ def test_a_cancelled_prediction_stops_within_a_form(trained):
 
 def test_an_altered_file_of_weights_is_refused(trained, tmp_path):
     trained.save(tmp_path)
-    content = bytearray((tmp_path / WEIGHTS).read_bytes())
-    content[-1] ^= 1
-    (tmp_path / WEIGHTS).write_bytes(content)
+    alter_weights(tmp_path)
     with pytest.raises(ValueError, match=r"model\.safetensors is not the file that was saved"):
         Seq2Seq.load(tmp_path)
 
 
 def test_a_pickle_under_a_safe_name_is_refused_even_with_its_hash(trained, tmp_path):
     trained.save(tmp_path)
-    torch.save(weights(trained), tmp_path / WEIGHTS)
-    about = read_json(tmp_path / CONFIG)
-    about["sha256"][WEIGHTS] = file_hash(tmp_path / WEIGHTS)
-    write_json(tmp_path / CONFIG, about)
+    pickle_weights(tmp_path, weights(trained))
     with pytest.raises(ValueError, match="is not a safetensors file, and no other kind is read"):
         Seq2Seq.load(tmp_path)
 

@@ -5,7 +5,6 @@ from dataclasses import asdict
 import pytest
 import torch
 
-from parser_service.neural.checkpoints import WEIGHTS
 from parser_service.neural.seq2seq_vectors import Seq2SeqGlove, Seq2SeqGloveElmo, Seq2SeqMiniLm
 from parser_service.neural.vector_cache import VectorCache
 from parser_service.parsers import encoder_places
@@ -13,6 +12,7 @@ from parser_service.parsers.interface import Cancelled, Pair
 from parser_service.parsers.registry import PARSERS
 from parser_service.parsers.words import words
 from tests.parser_service.neural.conftest import PRETRAINED, Recorder, StoppedOnce, parser_of
+from tests.parser_service.neural.tampering import alter_weights
 from tests.parser_service.neural.tiny_weights import write_bert
 
 pytestmark = pytest.mark.usefixtures("kept_there")
@@ -157,9 +157,7 @@ def test_a_saved_parser_whose_weights_were_altered_is_refused(pairs, tmp_path):
     parser = parser_of("seq2seq-glove-elmo")
     parser.fit(pairs[:9])
     parser.save(tmp_path)
-    content = bytearray((tmp_path / WEIGHTS).read_bytes())
-    content[-1] ^= 1
-    (tmp_path / WEIGHTS).write_bytes(content)
+    alter_weights(tmp_path)
     with pytest.raises(ValueError, match=r"model\.safetensors is not the file that was saved"):
         Seq2SeqGloveElmo.load(tmp_path)
 

@@ -5,13 +5,12 @@ from dataclasses import replace
 import pytest
 import torch
 
-from parser_service.neural.checkpoints import WEIGHTS
 from parser_service.neural.ranker import FormRanker
 from parser_service.parsers.interface import Knowledge
-from parser_service.parsers.storage import CONFIG, file_hash, read_json, write_json
 from tests.parser_service.neural.conftest import Recorder
 from tests.parser_service.neural.elsewhere import CPU, ELSEWHERE, computing_on
 from tests.parser_service.neural.ranker.home import domain, utterances, weights
+from tests.parser_service.neural.tampering import alter_weights, pickle_weights
 
 GPU = pytest.param(
     torch.device("cuda"),
@@ -61,19 +60,14 @@ def test_a_parser_of_the_domain_is_loaded_with_an_ontology(config, pairs, tmp_pa
 
 def test_an_altered_file_is_refused(learned, tmp_path):
     learned.save(tmp_path)
-    content = bytearray((tmp_path / WEIGHTS).read_bytes())
-    content[-1] ^= 1
-    (tmp_path / WEIGHTS).write_bytes(content)
+    alter_weights(tmp_path)
     with pytest.raises(ValueError, match=r"model\.safetensors is not the file that was saved"):
         FormRanker.load(tmp_path)
 
 
 def test_a_pickle_under_a_safe_name_is_refused_even_with_its_hash(learned, tmp_path):
     learned.save(tmp_path)
-    torch.save(weights(learned), tmp_path / WEIGHTS)
-    about = read_json(tmp_path / CONFIG)
-    about["sha256"][WEIGHTS] = file_hash(tmp_path / WEIGHTS)
-    write_json(tmp_path / CONFIG, about)
+    pickle_weights(tmp_path, weights(learned))
     with pytest.raises(ValueError, match="is not a safetensors file, and no other kind is read"):
         FormRanker.load(tmp_path)
 
