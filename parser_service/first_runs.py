@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from annotations.models import Split
 from annotations.models.splits import Criterion
-from parser_service import lifecycle
+from parser_service import requesting
 from parser_service.models import TrainingRun
 
 
@@ -41,4 +41,6 @@ def request_first_runs(splits: Mapping[Criterion, Split]) -> None:
     for run in FIRST_RUNS:
         if run.criterion in untouched:
             split = untouched[run.criterion]
-            lifecycle.request(split.world, split, run.parser, run.config, run.protocol, run.sources)
+            requesting.request(
+                split.world, split, run.parser, run.config, run.protocol, run.sources
+            )

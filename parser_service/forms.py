@@ -7,11 +7,11 @@ from typing import Any
 from django import forms
 
 from annotations.models import World
-from parser_service.lifecycle import LARGEST_SEED, MOST_SEEDS, seeds_from
 from parser_service.models.runs import TrainSources
 from parser_service.parsers.config_fields import ConfigField
 from parser_service.parsers.registry import config_fields, entry, make_config
 from parser_service.parsers.weight_files import missing_weights
+from parser_service.requesting import LARGEST_SEED, MOST_SEEDS, seeds_from
 
 SOURCE_LABELS = {
     TrainSources.GENERATED: "generated",

@@ -1,4 +1,5 @@
-"""The one writer of a run's status: queued → running → succeeded, failed, cancelled or lost.
+"""The one writer of a run's status: queued → running → succeeded, failed, cancelled or lost. (What a
+run begins with is in ``requesting``.)
 
 The row of a run is the truth. Whoever claims a run raises its ``attempt``; every later write carries
 that number as a fencing token and is refused when it is stale, so that a worker which comes back
@@ -7,7 +8,7 @@ after its lease was lost changes nothing. A message only wakes a worker up, and 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from datetime import timedelta
 from typing import Any
@@ -17,106 +18,17 @@ from django.db import transaction
 from django.db.models import QuerySet
 from django.utils import timezone
 
-from annotations.models import Split, User, World
-from parser_service.content_key import content_key
 from parser_service.models import Checkpoint, EpochMetric, RunEvent, TrainingRun
-from parser_service.models.runs import Status, TrainSources
-from parser_service.parsers import registry
+from parser_service.models.runs import Status
 from parser_service.parsers.interface import EpochReport
-from parser_service.parsers.weight_files import refuse_missing_weights
 from parser_service.waking import wake
 
 LEASE = timedelta(seconds=45 / settings.WORK_TEMPO)
 MOST_RESUMES = 2
-LARGEST_SEED = 2**32 - 1
-MOST_SEEDS = 10  # of one request
 
 
 class Fenced(Exception):
     """A write was refused: the run is no longer this attempt's."""
-
-
-# --- asking for a run -----------------------------------------------------------------------------
-
-
-def request(
-    world: World,
-    split: Split,
-    parser: str,
-    config: Mapping[str, Any] | None = None,
-    protocol: str = "strict",
-    train_sources: str = TrainSources.GENERATED,
-    seed: int = 0,
-    by: User | None = None,
-    send: bool = True,
-) -> tuple[TrainingRun, bool]:
-    """A queued run, and True; or the run that already has, or will have, this result, and False.
-
-    With ``send`` a worker is woken once the transaction is over. Raises ValueError, a sentence, where
-    the request cannot be trained.
-    """
-    made = registry.make_config(parser, config)
-    refuse_missing_weights(made)
-    values = registry.config_values(made)
-    entry = registry.entry(parser)
-    _refuse_what_cannot_be_trained(world, split, parser, protocol, train_sources, seed)
-    run, created = TrainingRun.objects.get_or_create(
-        world=world,
-        content_key=content_key(split, parser, values, protocol, train_sources, seed),
-        status__in=[Status.QUEUED, Status.RUNNING, Status.SUCCEEDED],
-        defaults={
-            "split": split,
-            "parser": parser,
-            "parser_version": entry.version,
-            "config": values,
-            "protocol": protocol,
-            "train_sources": train_sources,
-            "seed": seed,
-            "queue": entry.queue,
-            "created_by": by,
-        },
-    )
-    if created and send:
-        wake(run)
-    return run, created
-
-
-def request_seeds(
-    world: World, split: Split, parser: str, *, seeds: Sequence[int], **asked: Any
-) -> list[tuple[TrainingRun, bool]]:
-    """One run for each of ``seeds``, all else as in ``request``: all of them or, with its ValueError,
-    none. What ``request`` returns, in the order of the seeds."""
-    with transaction.atomic():
-        return [request(world, split, parser, seed=seed, **asked) for seed in seeds]
-
-
-def seeds_from(first: int, how_many: int) -> range:
-    """``how_many`` seeds from ``first`` up. Raises ValueError, a sentence, where there are none such."""
-    if not 1 <= how_many <= MOST_SEEDS:
-        raise ValueError(f"{how_many} seeds were asked for; it has to be 1 to {MOST_SEEDS}.")
-    last = first + how_many - 1
-    if last > LARGEST_SEED:
-        raise ValueError(f"The last seed would be {last}; the largest one is {LARGEST_SEED}.")
-    return range(first, last + 1)
-
-
-def _refuse_what_cannot_be_trained(
-    world: World, split: Split, parser: str, protocol: str, train_sources: str, seed: int
-) -> None:
-    entry = registry.entry(parser)
-    if split.world_id != world.pk:
-        raise ValueError(f"The split {split} belongs to another world than {world}.")
-    if protocol not in entry.protocols:
-        allowed = ", ".join(entry.protocols)
-        raise ValueError(f"{parser} has no protocol {protocol!r}; it has: {allowed}.")
-    if train_sources not in TrainSources.values:
-        allowed = ", ".join(TrainSources.values)
-        raise ValueError(f"No train sources are called {train_sources!r}; there are: {allowed}.")
-    if not 0 <= seed <= LARGEST_SEED:
-        raise ValueError(f"The seed {seed} has to lie between 0 and {LARGEST_SEED}.")
-    for source in TrainSources(train_sources).sources:
-        if not split.examples.filter(part="train", source=source).exists():
-            raise ValueError(f"The split {split} has no {source} examples to train on.")
 
 
 # --- holding a run --------------------------------------------------------------------------------

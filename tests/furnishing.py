@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from annotations.generating import generate_pairs
 from annotations.importing import import_generator
 from annotations.models import Example, LogicalForm, SemanticTemplate, Split, World
-from parser_service import lifecycle
+from parser_service import requesting
 from parser_service.models import EpochMetric, Evaluation, Prediction, TrainingRun
 from parser_service.models.runs import Status
 from tests.annotations.conftest import TINY, as_bytes
@@ -46,7 +46,7 @@ def scored_run(
     world: World, split: Split, parser: str = "knn", right: int = 3, seed: int = 0
 ) -> TrainingRun:
     """A run that succeeded: of the examples of validation, the first ``right`` are predicted right."""
-    run, _ = lifecycle.request(world, split, parser, seed=seed, send=False)
+    run, _ = requesting.request(world, split, parser, seed=seed, send=False)
     TrainingRun.objects.filter(pk=run.pk).update(status=Status.SUCCEEDED, progress=1)
     examples = list(split.examples.filter(part="validation"))
     for number, example in enumerate(examples):

@@ -12,7 +12,7 @@ from annotations.forms import posted
 from annotations.listing import Listing, Sort
 from annotations.models import Duty, World
 from annotations.rates import STARTED_RUNS
-from parser_service import lifecycle
+from parser_service import lifecycle, requesting
 from parser_service.accuracy import seeds_url
 from parser_service.curves import CURVES, loss_curves
 from parser_service.filters import RunFilters
@@ -72,7 +72,7 @@ def start(request: HttpRequest, world: World, form: RunForm) -> list[TrainingRun
         return []
     asked = {name: form.cleaned_data[name] for name in ("split", "protocol", "train_sources")}
     try:
-        answers = lifecycle.request_seeds(
+        answers = requesting.request_seeds(
             world,
             parser=form.parser,
             config=form.config,

@@ -11,7 +11,7 @@ from django.test import Client
 from playwright.sync_api import Browser, BrowserContext, Page
 
 from annotations.models import User
-from parser_service import lifecycle
+from parser_service import requesting
 from tests.browser.screenshots import CHROMIUM
 from tests.browser.variants import Variant
 from tests.furnishing import House, furnish
@@ -78,4 +78,4 @@ def worker(house, tmp_path) -> Iterator[RunningWorker]:
 @pytest.fixture
 def waiting_run(house):
     """A run that nobody has begun."""
-    return lifecycle.request(house.world, house.split, "seq2seq", send=False)[0]
+    return requesting.request(house.world, house.split, "seq2seq", send=False)[0]

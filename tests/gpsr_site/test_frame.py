@@ -13,7 +13,7 @@ from annotations.models.worlds import DUTIES, Role
 from gpsr_site.counts import counts_of, counts_of_all
 from gpsr_site.flow import next_steps
 from gpsr_site.workers import workers_now
-from parser_service import lifecycle
+from parser_service import requesting
 from parser_service.models import Worker
 
 
@@ -46,7 +46,7 @@ def test_a_worker_that_fell_silent_is_missed_within_ten_seconds(house, annotator
 
 
 def test_the_banner_counts_the_runs_that_wait(house, annotator, client):
-    lifecycle.request(house.world, house.split, "seq2seq", send=False)
+    requesting.request(house.world, house.split, "seq2seq", send=False)
     client.force_login(annotator)
     answer = client.get("/banner/").content.decode()
     assert "1 run waits for one." in answer

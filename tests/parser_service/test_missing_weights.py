@@ -12,7 +12,7 @@ from django.core.management import CommandError, call_command
 from django.test import Client
 
 from annotations.language.pairs import by_length, write_pairs
-from parser_service import lifecycle
+from parser_service import requesting
 from parser_service.models import TrainingRun
 from parser_service.parsers import encoder_places
 from parser_service.parsers.registry import config_fields, make_config
@@ -73,7 +73,7 @@ def test_a_name_that_no_file_can_have_is_missing_and_none_at_all_is_refused(pars
 
 def test_a_run_is_not_queued(world, split, sentence):
     with pytest.raises(ValueError) as refused:
-        lifecycle.request(world, split, PARSER)
+        requesting.request(world, split, PARSER)
     assert str(refused.value) == sentence
 
 

@@ -9,7 +9,7 @@ import pytest
 from django.core.management import CommandError, call_command
 
 from annotations.models import Entity, Ontology
-from parser_service import lifecycle
+from parser_service import lifecycle, requesting
 from parser_service.checkpoints import model_folder, remove_folder
 from parser_service.serving import best_run
 from parser_service.training import train
@@ -28,7 +28,7 @@ def split(world, transactional_db):
 
 
 def trained(split, parser="knn", **asked):
-    run, _ = lifecycle.request(split.world, split, parser, send=False, **asked)
+    run, _ = requesting.request(split.world, split, parser, send=False, **asked)
     train(lifecycle.claim("the test", "cpu", run))
     run.refresh_from_db()
     assert run.status == "succeeded"
@@ -91,7 +91,7 @@ def test_what_cannot_be_answered_is_a_sentence(split, options, sentence):
 
 
 def test_a_run_that_has_not_succeeded_is_not_asked(split):
-    run, _ = lifecycle.request(split.world, split, "knn", send=False)
+    run, _ = requesting.request(split.world, split, "knn", send=False)
     with pytest.raises(CommandError, match=f"Run {run.pk} is queued"):
         ask("bring me the red cup", "--run", str(run.pk))
 

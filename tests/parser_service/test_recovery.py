@@ -7,7 +7,7 @@ from itertools import groupby
 
 import pytest
 
-from parser_service import lifecycle
+from parser_service import lifecycle, requesting
 from parser_service.models import Worker
 from parser_service.training import train
 from tests.parser_service.made_up import LONG, TINY
@@ -29,7 +29,7 @@ def undisturbed(split) -> list[list[tuple[str, float]]]:
 
 
 def train_here(split) -> list[list[tuple[str, float]]]:
-    run, _ = lifecycle.request(split.world, split, "seq2seq", SHORT, seed=SEED, send=False)
+    run, _ = requesting.request(split.world, split, "seq2seq", SHORT, seed=SEED, send=False)
     train(lifecycle.claim("the test", "cpu", run))
     answers = predicted(run)
     run.delete()
@@ -58,7 +58,7 @@ def kill_both(worker) -> None:
 @pytest.mark.parametrize("kill", [kill_worker, kill_child, kill_both])
 def test_a_killed_run_goes_on_to_the_same_result(world, split, undisturbed, start_worker, kill):
     worker = start_worker()
-    run, _ = lifecycle.request(world, split, "seq2seq", SHORT, seed=SEED)
+    run, _ = requesting.request(world, split, "seq2seq", SHORT, seed=SEED)
     wait_for_epochs(run, 5)
     kill(worker)
     run.refresh_from_db()
@@ -76,7 +76,7 @@ def test_a_killed_run_goes_on_to_the_same_result(world, split, undisturbed, star
 
 def test_a_child_does_not_outlive_its_killed_parent(world, split, start_worker):
     worker = start_worker()
-    run, _ = lifecycle.request(world, split, "seq2seq", LONG)
+    run, _ = requesting.request(world, split, "seq2seq", LONG)
     wait_for_epochs(run, 1)
     children = worker.children()
     assert children
@@ -97,7 +97,7 @@ def test_a_paused_worker_that_comes_back_late_writes_nothing(
     world, split, undisturbed, start_worker
 ):
     paused = start_worker()
-    run, _ = lifecycle.request(world, split, "seq2seq", SHORT, seed=SEED)
+    run, _ = requesting.request(world, split, "seq2seq", SHORT, seed=SEED)
     wait_for_epochs(run, 5)
     paused.signal_all(signal.SIGSTOP)
     start_worker()
@@ -112,7 +112,7 @@ def test_a_paused_worker_that_comes_back_late_writes_nothing(
 
 
 def test_a_run_that_loses_three_workers_is_lost_and_says_what_to_do(world, split, start_worker):
-    run, _ = lifecycle.request(world, split, "seq2seq", LONG)
+    run, _ = requesting.request(world, split, "seq2seq", LONG)
     worker = start_worker()
     for attempt in (1, 2, 3):
         wait_for(

@@ -14,7 +14,7 @@ from django.conf import settings as site
 from django.core.management import CommandError, call_command
 from django.utils import timezone
 
-from parser_service import lifecycle
+from parser_service import lifecycle, requesting
 from parser_service.models import TrainingRun
 from tests.parser_service.made_up import LONG, make_split
 from tests.parser_service.running import ROOT, database_url, wait_for, wait_for_epochs
@@ -153,7 +153,7 @@ def test_ctrl_c_cancels_the_run(split):
 
 
 def test_a_run_whose_worker_is_gone_is_finished_here(split):
-    run, _ = lifecycle.request(split.world, split, "knn", train_sources="gen+para", send=False)
+    run, _ = requesting.request(split.world, split, "knn", train_sources="gen+para", send=False)
     lifecycle.claim("cpu-1@elsewhere", "cpu", run)
     TrainingRun.objects.update(lease_until=timezone.now())
     assert call("knn", *HERE)["attempts"] == 2

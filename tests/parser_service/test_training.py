@@ -9,7 +9,7 @@ import pytest
 from django.db import OperationalError
 from django.utils import timezone
 
-from parser_service import lifecycle
+from parser_service import lifecycle, requesting
 from parser_service.checkpoints import model_folder, stored_folder
 from parser_service.knowledge import knowledge_of
 from parser_service.models import TrainingRun
@@ -23,7 +23,7 @@ SHORT = {**TINY, "epochs": 4, "patience": 4}
 
 
 def claimed(split, parser: str = "knn", **asked) -> TrainingRun:
-    run, _ = lifecycle.request(split.world, split, parser, send=False, **asked)
+    run, _ = requesting.request(split.world, split, parser, send=False, **asked)
     found = lifecycle.claim("the test", "cpu", run)
     assert found is not None
     return found

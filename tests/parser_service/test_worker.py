@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from parser_service import lifecycle
+from parser_service import lifecycle, requesting
 from parser_service.models import Worker
 from parser_service.waking import send_wake_up
 from tests.parser_service.made_up import LONG, TINY
@@ -27,7 +27,7 @@ def worker(start_worker):
 
 
 def test_a_worker_shows_that_it_lives_and_trains_what_is_asked_for(world, split, worker):
-    run, _ = lifecycle.request(world, split, "knn", train_sources="gen+para")
+    run, _ = requesting.request(world, split, "knn", train_sources="gen+para")
     wait_for_status(run, "succeeded", 15)
     assert run.evaluations.count() == 6
     assert run.predictions.best().count() == 24
@@ -36,15 +36,15 @@ def test_a_worker_shows_that_it_lives_and_trains_what_is_asked_for(world, split,
 
 
 def test_the_timer_ticks_while_a_child_trains(world, split, worker):
-    run, _ = lifecycle.request(world, split, "seq2seq", LONG)
+    run, _ = requesting.request(world, split, "seq2seq", LONG)
     wait_for_epochs(run, 1)
     seen = Worker.objects.get().last_seen
     wait_for(lambda: Worker.objects.get().last_seen > seen, 3, "the worker's row is written")
 
 
 def test_a_second_run_waits_for_the_first(world, split, worker):
-    first, _ = lifecycle.request(world, split, "seq2seq", {**TINY, "epochs": 20}, seed=1)
-    second, _ = lifecycle.request(world, split, "knn")
+    first, _ = requesting.request(world, split, "seq2seq", {**TINY, "epochs": 20}, seed=1)
+    second, _ = requesting.request(world, split, "knn")
     wait_for_status(second, "succeeded", 60)
     first.refresh_from_db()
     assert first.status == "succeeded"
@@ -54,12 +54,12 @@ def test_a_second_run_waits_for_the_first(world, split, worker):
 
 
 def test_cancelling_a_running_run_takes_effect_within_five_seconds(world, split, worker):
-    run, _ = lifecycle.request(world, split, "seq2seq", LONG)
+    run, _ = requesting.request(world, split, "seq2seq", LONG)
     wait_for_epochs(run, 2)
     lifecycle.cancel(run)
     assert wait_for_status(run, "cancelled", 5) < 5
     assert run.finished_at is not None
-    follower, _ = lifecycle.request(world, split, "knn")
+    follower, _ = requesting.request(world, split, "knn")
     wait_for_status(follower, "succeeded", 15)
 
 
@@ -67,7 +67,7 @@ def test_stopping_the_service_hands_the_run_back_and_the_next_start_goes_on(
     world, split, start_worker
 ):
     first = start_worker()
-    run, _ = lifecycle.request(world, split, "seq2seq", LONG)
+    run, _ = requesting.request(world, split, "seq2seq", LONG)
     wait_for_epochs(run, 3)
     assert first.stop() < 5
     run.refresh_from_db()
@@ -88,13 +88,13 @@ def test_every_way_to_stop_a_worker_is_a_stop_in_good_order(worker, number):
 def test_a_run_whose_message_was_lost_is_picked_up_by_the_timer(world, split, worker):
     seen = Worker.objects.get().last_seen
     wait_for(lambda: Worker.objects.get().last_seen > seen, 5, "the first tick is over")
-    run, _ = lifecycle.request(world, split, "knn", send=False)
+    run, _ = requesting.request(world, split, "knn", send=False)
     wait_for_status(run, "succeeded", 15)
 
 
 def test_a_wake_up_for_nothing_does_nothing(world, split, worker):
     send_wake_up("cpu")
-    run, _ = lifecycle.request(world, split, "knn")
+    run, _ = requesting.request(world, split, "knn")
     wait_for_status(run, "succeeded", 15)
 
 
@@ -103,7 +103,7 @@ def test_of_two_workers_racing_for_one_run_one_wins(world, split, start_worker):
     start_worker()
     wait_for(lambda: Worker.objects.alive().count() == 2, 15, "two workers show themselves")
     for seed in range(4):
-        run, _ = lifecycle.request(world, split, "knn", seed=seed)
+        run, _ = requesting.request(world, split, "knn", seed=seed)
         send_wake_up("cpu")
         wait_for_status(run, "succeeded", 15)
         assert run.attempt == 1

@@ -15,7 +15,7 @@ from django.core.management.base import CommandError, CommandParser
 from annotations.management.base import Refused, ReportingCommand, find_split, find_world
 from annotations.models import World
 from annotations.models.splits import Criterion
-from parser_service import lifecycle
+from parser_service import lifecycle, requesting
 from parser_service.analysis.seeds import over_seeds
 from parser_service.management.options import read_hyperparameters, read_sources
 from parser_service.models import Evaluation, TrainingRun
@@ -61,7 +61,7 @@ class Command(ReportingCommand):
 
     def report(self, *, parser: str, world: str, **options: Any) -> Mapping[str, Any]:
         found = find_world(world)
-        seeds = lifecycle.seeds_from(options["seed"], options["seeds"])
+        seeds = requesting.seeds_from(options["seed"], options["seeds"])
         asked = {
             "split": find_split(found, options["split"], options["criterion"]),
             "parser": parser,
@@ -89,7 +89,7 @@ class Command(ReportingCommand):
         return "\n".join(lines)
 
     def _trained(self, world: World, seed: int, asked: Mapping[str, Any]) -> TrainingRun:
-        run, _ = lifecycle.request(world, seed=seed, send=False, **asked)
+        run, _ = requesting.request(world, seed=seed, send=False, **asked)
         self._carry_out(run)
         return run
 

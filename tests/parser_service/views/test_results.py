@@ -9,7 +9,7 @@ from statistics import mean, stdev
 import pytest
 
 from annotations.models import Example, Split
-from parser_service import lifecycle
+from parser_service import requesting
 from parser_service.accuracy import accuracy_tables
 from parser_service.models import TrainingRun
 from parser_service.published import SIZES, published_accuracy, published_criteria
@@ -60,7 +60,7 @@ def test_protocols_never_share_a_table(house):
 def test_other_hyperparameters_are_another_row(house):
     run = scored_run(house.world, house.split, "seq2seq")
     TrainingRun.objects.filter(pk=run.pk).update(config={**run.config, "epochs": 3})
-    lifecycle.request(house.world, house.split, "seq2seq", seed=1, send=False)
+    requesting.request(house.world, house.split, "seq2seq", seed=1, send=False)
     (table,) = tables(house)
     assert [(row.parser, row.changes) for row in table.rows] == [
         ("knn", ()),
@@ -135,7 +135,7 @@ def test_versions_of_a_parser_are_not_averaged(house, anna):
 
 
 def test_seeds_that_wait_show_as_one_and_lead_to_all_of_them(house, anna):
-    asked = lifecycle.request_seeds(house.world, house.split, "seq2seq", seeds=(3, 4), send=False)
+    asked = requesting.request_seeds(house.world, house.split, "seq2seq", seeds=(3, 4), send=False)
     TrainingRun.objects.filter(pk=asked[0][0].pk).update(status="running", progress=0.5)
     cell = seq2seq_cell(house)
     assert (cell.status, cell.progress_percent, cell.percent) == ("running", 25.0, None)
@@ -145,7 +145,7 @@ def test_seeds_that_wait_show_as_one_and_lead_to_all_of_them(house, anna):
 
 
 def test_a_run_at_work_shows_its_progress(house):
-    run, _ = lifecycle.request(house.world, house.split, "seq2seq", send=False)
+    run, _ = requesting.request(house.world, house.split, "seq2seq", send=False)
     TrainingRun.objects.filter(pk=run.pk).update(status="running", progress=0.3)
     (table,) = tables(house)
     cell = table.rows[1].cells[0]
@@ -161,7 +161,7 @@ def test_what_came_to_nothing_is_not_in_the_table(status, house):
 
 
 def test_columns_are_the_settings_that_somebody_trained(house):
-    lifecycle.request(house.world, house.split, "seq2seq", train_sources="gen+para", send=False)
+    requesting.request(house.world, house.split, "seq2seq", train_sources="gen+para", send=False)
     (table,) = tables(house)
     assert [column.setting for column in table.columns] == [
         ("gen", "gen"),
@@ -173,7 +173,7 @@ def test_columns_are_the_settings_that_somebody_trained(house):
 
 def test_columns_are_named_by_criterion_where_that_tells_them_apart(house):
     other = make_split(house.world, "other")
-    lifecycle.request(house.world, other, "knn", send=False)
+    requesting.request(house.world, other, "knn", send=False)
     both = [house.split, other]
     assert {column.label for column in tables(house, splits=both)[0].columns} == {
         "home-split",
@@ -189,7 +189,7 @@ def test_columns_are_named_by_criterion_where_that_tells_them_apart(house):
 
 def test_the_tables_cost_three_queries(house, django_assert_num_queries):
     for seed in range(6):
-        lifecycle.request(house.world, house.split, "seq2seq", seed=seed, send=False)
+        requesting.request(house.world, house.split, "seq2seq", seed=seed, send=False)
     with django_assert_num_queries(3):
         tables(house)
 

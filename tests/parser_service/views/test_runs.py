@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from annotations.rates import STARTED_RUNS
-from parser_service import lifecycle
+from parser_service import requesting
 from parser_service.models import RunEvent, TrainingRun
 from parser_service.parsers.registry import PARSERS, config_fields
 from tests.furnishing import scored_run
@@ -122,7 +122,7 @@ def test_every_seed_counts_towards_the_limit(house, adam, admin, no_messages):
 
 
 def test_a_run_that_waits_asks_for_itself_again(house, anna):
-    run, _ = lifecycle.request(house.world, house.split, "seq2seq", send=False)
+    run, _ = requesting.request(house.world, house.split, "seq2seq", send=False)
     page = anna.get(f"/w/home/runs/{run.pk}/").content.decode()
     assert f'hx-get="/w/home/runs/{run.pk}/state/"' in page
     assert "The run waits for a worker." in page
@@ -144,13 +144,13 @@ def test_the_state_shows_progress_log_and_failure(house, anna):
 
 
 def test_only_admins_see_what_only_admins_may_do(house, anna, adam):
-    run, _ = lifecycle.request(house.world, house.split, "seq2seq", send=False)
+    run, _ = requesting.request(house.world, house.split, "seq2seq", send=False)
     assert "Cancel" not in anna.get(f"/w/home/runs/{run.pk}/").content.decode()
     assert "Cancel" in adam.get(f"/w/home/runs/{run.pk}/").content.decode()
 
 
 def test_cancelling_a_run_that_waits_ends_it_at_once(house, adam):
-    run, _ = lifecycle.request(house.world, house.split, "seq2seq", send=False)
+    run, _ = requesting.request(house.world, house.split, "seq2seq", send=False)
     adam.post(f"/w/home/runs/{run.pk}/cancel/")
     run.refresh_from_db()
     assert run.status == "cancelled"
@@ -177,13 +177,13 @@ def test_the_curves_are_what_the_charts_read(house, anna):
     ("parser", "unit"), [("seq2seq", "nats a token"), ("ranker", "nats an utterance")]
 )
 def test_the_chart_says_in_what_the_parser_counts_its_loss(parser, unit, house, anna):
-    run, _ = lifecycle.request(house.world, house.split, parser, send=False)
+    run, _ = requesting.request(house.world, house.split, parser, send=False)
     assert f"Loss by epoch, {unit}" in anna.get(f"/w/home/runs/{run.pk}/").content.decode()
 
 
 def test_the_table_of_runs_costs_no_query_a_run(house, anna, django_assert_max_num_queries):
     for seed in range(8):
-        lifecycle.request(house.world, house.split, "seq2seq", seed=seed, send=False)
+        requesting.request(house.world, house.split, "seq2seq", seed=seed, send=False)
     with django_assert_max_num_queries(9):
         anna.get("/w/home/runs/table/")
 
@@ -209,7 +209,9 @@ def test_the_seeds_of_a_run_of_another_world_are_not_shown(house, other_world, a
 
 
 def test_the_list_of_seeds_costs_no_query_a_run(house, anna, django_assert_max_num_queries):
-    asked = lifecycle.request_seeds(house.world, house.split, "seq2seq", seeds=range(9), send=False)
+    asked = requesting.request_seeds(
+        house.world, house.split, "seq2seq", seeds=range(9), send=False
+    )
     with django_assert_max_num_queries(11):
         page = anna.get("/w/home/runs/table/", {"seeds_of": asked[0][0].pk})
     assert "seed 0" in page.content.decode()
