@@ -37,8 +37,8 @@ class Average:
         """Takes in the weights after step ``step``, which counts from 1."""
         decay = min(self.decay, (1 + step) / (10 + step))
         held = list(self.values.values())
-        torch._foreach_mul_(held, decay)
-        torch._foreach_add_(held, [w.detach() for w in self._weights.values()], alpha=1 - decay)
+        live = [weight.detach() for weight in self._weights.values()]
+        torch._foreach_lerp_(held, live, 1 - decay)
 
     @contextmanager
     def in_force(self) -> Iterator[None]:

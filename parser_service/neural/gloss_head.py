@@ -33,10 +33,11 @@ class GlossHead:
         """Shape [batch, width] to [batch, glosses]."""
         return SCALE * utterances @ self.vectors.T
 
-    def trained_logits(self, utterances: Tensor, targets: Sequence[int]) -> Tensor:
-        """The same with gradient to the glosses of ``targets``, a form for each utterance."""
+    def read(self, texts: Sequence[str], targets: Sequence[int]) -> tuple[Tensor, Tensor]:
+        """Vectors [batch, width] and logits [batch, glosses] of ``texts``, with gradient to them and to
+        the glosses of ``targets``, a form for each: all in one pass through the encoder."""
         own = sorted(set(targets))
-        fresh = self.encoder([self.glosses[index] for index in own])
-        at = torch.tensor(own, device=fresh.device)
-        vectors = self.vectors.index_copy(0, at, fresh)
-        return SCALE * utterances @ vectors.T
+        found = self.encoder([*texts, *(self.glosses[index] for index in own)])
+        utterances, fresh = found[: len(texts)], found[len(texts) :]
+        at = torch.tensor(own, device=found.device)
+        return utterances, SCALE * utterances @ self.vectors.index_copy(0, at, fresh).T

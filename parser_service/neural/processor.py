@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager
 
 import torch
 
@@ -18,6 +19,18 @@ def has_bf16(device: torch.device) -> bool:
         return bool(torch.cuda.is_bf16_supported(including_emulation=False))
     found = torch.cpu.get_capabilities()
     return bool(found.get("avx512_bf16") or found.get("amx_bf16"))
+
+
+@contextmanager
+def denormals_flushed() -> Iterator[None]:
+    """Takes numbers below 1e-38 for 0 inside the block. The activation of transformers makes such,
+    and a CPU takes many times as long for one as for another number."""
+    was_so = not float(torch.full((), 1e-39) / 2)
+    torch.set_flush_denormal(True)
+    try:
+        yield
+    finally:
+        torch.set_flush_denormal(was_so)
 
 
 def bf16_on_gpu(device: torch.device) -> AbstractContextManager[object]:

@@ -56,7 +56,7 @@ class FormRanker(Parser):
     """
 
     name = "ranker"
-    version = 4
+    version = 5
     protocols = ("strict", "domain", "grammar")
     Config = RankerConfig
 
@@ -86,10 +86,12 @@ class FormRanker(Parser):
         with threads(self.config.threads):
             training = self._prepare(examples, observe.check)
             self._resume(training, observe)
+            was_over = training.is_over()
             while not training.is_over():
                 self._train_epoch(training, validation, observe)
             training.average.keep()
-            self._settle(training, validation, observe.check)
+            if was_over:  # else the last epoch has done so
+                self._settle(training, validation, observe.check)
 
     def predict(
         self, utterances: Sequence[str], beam_width: int = 1, check: Check = keep_going
@@ -142,7 +144,8 @@ class FormRanker(Parser):
         """A model with the pretrained encoder, and the prototypes where it puts the examples."""
         pretrained = load_encoder(self.config.encoder, encoders_folder())
         model = self._model_around(SentenceEncoder.of(pretrained, self.config.dropout))
-        vectors = model.encoder.vectors([each.utterance for each in examples], check)
+        with reduced_precision(model, self.config.precision):
+            vectors = model.encoder.vectors([each.utterance for each in examples], check)
         model.prototypes.start_from(vectors, [each.form for each in examples])
         self._model = model
         ontology = self.knowledge.ontology
@@ -165,7 +168,8 @@ class FormRanker(Parser):
         found: tuple[float | None, float | None] = None, None
         with training.average.in_force():
             if is_due(training.epoch, training.epochs):
-                with reduced_precision(training.model, self.config.precision):
+                precision = "fp32" if training.is_over() else self.config.precision
+                with reduced_precision(training.model, precision):
                     found = self._settle(training, validation, observe.check)
             observe.epoch(EpochReport(training.epoch, loss, *found, time.monotonic() - begin))
             # The newest average is the best: the last one is the parser, whatever a small

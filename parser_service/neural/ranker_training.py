@@ -13,7 +13,7 @@ from torch import Tensor
 from torch.nn.functional import cross_entropy
 
 from parser_service.neural.averaging import Average
-from parser_service.neural.processor import has_bf16
+from parser_service.neural.processor import denormals_flushed, has_bf16
 from parser_service.neural.ranked_forms import RankedExample
 from parser_service.neural.ranker_model import RankerModel
 from parser_service.parsers.interface import Check
@@ -66,7 +66,8 @@ class RankerTraining:
         self.model.train()
         first = self.epoch * self.batches
         losses = []
-        with chance_kept(), reduced_precision(self.model, self.config.precision):
+        precision = reduced_precision(self.model, self.config.precision)
+        with chance_kept(), denormals_flushed(), precision:
             for step, batch in enumerate(self._shuffled(), first):
                 check()
                 losses.append(self._train_on(batch, step))
@@ -116,12 +117,11 @@ class RankerTraining:
 
     def _loss(self, batch: Sequence[RankedExample], random: Random) -> Tensor:
         texts = [self._text(example, random) for example in batch]
-        vectors = self.model.encoder(texts)  # [batch, width]
         meant = [example.form for example in batch]
+        vectors, by_gloss = self.model.glosses.read(texts, meant)
         targets = torch.tensor(meant, device=vectors.device)
         smoothing = self.config.label_smoothing
         by_example = self.model.prototypes(vectors)  # [batch, forms with examples]
-        by_gloss = self.model.glosses.trained_logits(vectors, meant)
         return cross_entropy(by_example, targets, label_smoothing=smoothing) + cross_entropy(
             self.model.fitting(by_gloss, texts), targets, label_smoothing=smoothing
         )

@@ -15,11 +15,16 @@ from torch.nn.functional import normalize
 from transformers import AutoConfig, AutoModel, PreTrainedModel
 
 from parser_service.neural.pretrained import Pretrained
+from parser_service.neural.processor import denormals_flushed
+from parser_service.neural.shared_dropout import share_dropout
 from parser_service.parsers.interface import Check, keep_going
 
 ENCODER = "encoder.json"
 TOKENIZER = "tokenizer.json"
 LONGEST = 64  # subwords; the longest published paraphrase has 45
+LENGTH_STEP = (
+    8  # subwords; torch keeps code for each shape that it multiplied: few shapes, less memory
+)
 BATCH = 64
 
 
@@ -36,8 +41,12 @@ class SentenceEncoder(nn.Module):
         self.tokenizer = tokenizer
         self.dropout = nn.Dropout(dropout)
         self.in_bf16 = False
+        share_dropout(model)
+        model.set_attn_implementation("eager")  # on short texts the fused one takes longer
         tokenizer.enable_truncation(LONGEST)
-        tokenizer.enable_padding(pad_id=model.config.pad_token_id or 0)
+        tokenizer.enable_padding(
+            pad_id=model.config.pad_token_id or 0, pad_to_multiple_of=LENGTH_STEP
+        )
         model.get_input_embeddings().weight.requires_grad_(False)
 
     @classmethod
@@ -82,6 +91,7 @@ class SentenceEncoder(nn.Module):
         return normalize(torch.einsum("bl,blw->bw", shares, states), dim=-1)
 
     @torch.no_grad()
+    @denormals_flushed()
     def vectors(
         self, texts: Sequence[str], check: Check = keep_going, at_once: int = BATCH
     ) -> Tensor:

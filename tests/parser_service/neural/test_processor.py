@@ -8,7 +8,7 @@ from parser_service.neural.batches import Example, collate, sources
 from parser_service.neural.contextual import TransformerWords
 from parser_service.neural.embeddings import Dropout
 from parser_service.neural.model import Seq2SeqModel
-from parser_service.neural.processor import bf16_on_gpu, full_fp32
+from parser_service.neural.processor import bf16_on_gpu, denormals_flushed, full_fp32
 from parser_service.parsers.interface import Cancelled
 from parser_service.parsers.words import words
 from tests.parser_service.neural.conftest import SMALL, Recorder, StoppedOnce, parser_of
@@ -145,3 +145,13 @@ def test_on_the_cpu_nothing_is_in_bf16_and_full_fp32_changes_nothing():
 def test_the_loss_is_in_fp32():
     model = Seq2SeqModel(SMALL, 12, 9, torch.Generator().manual_seed(1))
     assert model.loss(collate([Example([4], [5])])).dtype == torch.float32
+
+
+def test_denormal_numbers_are_zero_inside_the_block_alone():
+    tiny = torch.full((4,), 1e-39)
+    assert (tiny / 2).all()
+    with denormals_flushed():
+        with denormals_flushed():
+            assert not (tiny / 2).any()
+        assert not (tiny / 2).any()
+    assert (tiny / 2).all()

@@ -72,14 +72,17 @@ def test_each_prototype_starts_as_the_mean_of_its_examples(encoder):
 def test_glosses_of_the_targets_carry_gradient_and_the_others_do_not(encoder):
     head = GlossHead(encoder, TEXTS)
     head.renew()
-    utterances = encoder.vectors(["find me"])
-    logits = head.trained_logits(utterances, [2])
-    assert torch.allclose(logits, head.logits(utterances), atol=1e-4)
-    assert logits[0, 2].requires_grad
-    [slope] = torch.autograd.grad(
-        logits[0, 0], [encoder.model.pooler.dense.weight], allow_unused=True
-    )
-    assert slope is None
+    utterances, logits = head.read(["find me"], [2])
+    assert torch.allclose(utterances, encoder.vectors(["find me"]), atol=1e-5)
+    alone = head.logits(utterances)  # with gradient to the utterance alone
+    assert torch.allclose(logits, alone, atol=1e-4)
+    weight = encoder.model.encoder.layer[0].output.dense.weight
+    for gloss, is_trained in ((0, False), (1, False), (2, True)):
+        slopes = [
+            torch.autograd.grad(each[0, gloss], weight, retain_graph=True)[0]
+            for each in (logits, alone)
+        ]
+        assert torch.allclose(*slopes, atol=1e-5) != is_trained
 
 
 def test_the_average_follows_the_weights_and_gives_them_back():
