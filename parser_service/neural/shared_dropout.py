@@ -8,7 +8,7 @@ from torch import Tensor, nn
 class SharedDropout(nn.Dropout):
     """Drops the same features of every word of a text (Gal and Ghahramani 2016).
 
-    To draw a number for each word and feature, as usual, takes a CPU a fifth of a training step.
+    To draw a number for each word and feature, as usual, takes a CPU a sixth of a training step.
     """
 
     def forward(self, values: Tensor) -> Tensor:

@@ -1,0 +1,64 @@
+"""Where a training of the ranker spends its time: milliseconds a step, and the costliest operations.
+
+    GPSR_SHARED_DATA=… .venv/bin/python benchmarks/training_step.py --threads 1
+
+Trains on a third of the generated and paraphrased commands of the published corpus, under *strict*, for a
+few passes. The fastest pass counts: in the first torch makes its code, and after some the parser encodes all
+its examples. A second training goes through torch's profiler, which makes it slower.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from fresh_site import DATA, ROOT
+
+sys.path.insert(0, str(ROOT))
+
+from torch.profiler import ProfilerActivity, profile
+
+from parser_service.corpus import read_corpus
+from parser_service.neural.ranker import FormRanker
+from parser_service.parsers.interface import EpochReport, Observer, Pair
+from parser_service.parsers.ranker_config import RankerConfig
+
+PASSES = 6
+MOST_OPERATIONS = 12
+
+
+class Clock(Observer):
+    """Keeps the seconds of every pass."""
+
+    def __init__(self) -> None:
+        self.seconds: list[float] = []
+
+    def epoch(self, report: EpochReport) -> None:
+        self.seconds.append(report.seconds)
+
+
+def train(pairs: list[Pair], steps: int, threads: int) -> list[float]:
+    """The seconds of each pass."""
+    clock = Clock()
+    FormRanker(RankerConfig(steps=steps, threads=threads, forms="closed")).fit(pairs, (), clock)
+    return clock.seconds
+
+
+def main() -> None:
+    arguments = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    arguments.add_argument("--threads", type=int, default=1, metavar="N")
+    threads = arguments.parse_args().threads
+    corpus = read_corpus(DATA / "walker2019", "command")
+    pairs = corpus.pairs("train", ("generated", "paraphrased"))[::3]
+    batches = -(-len(pairs) // RankerConfig().batch_size)
+    found = train(pairs, PASSES * batches, threads)
+    print(
+        f"{1000 * min(found) / batches:.0f} ms a step ({batches} steps a pass; threads: {threads})"
+    )
+    with profile(activities=[ProfilerActivity.CPU]) as profiled:
+        train(pairs, batches, threads)
+    print(profiled.key_averages().table("self_cpu_time_total", row_limit=MOST_OPERATIONS))
+
+
+if __name__ == "__main__":
+    main()
