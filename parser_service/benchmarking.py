@@ -79,13 +79,14 @@ def jobs(
     columns: Sequence[Column],
     seeds: int,
     configurations: Mapping[str, Mapping[str, Any]] | None = None,
-    new_splits: int = 0,
+    new_splits: Sequence[int] = (),
 ) -> Iterator[Job]:
     """All that is to be measured; a parser only under the protocols that it has.
 
     Jobs of the same ``training`` stand together. ``configurations`` changes hyperparameters of some
-    parsers. With ``new_splits``, each seed is taken on that many new splits in place of the published
-    one; by source command, of which none was published, on one at least. Raises ValueError, a sentence.
+    parsers. With ``new_splits``, their seeds, each seed is taken on these in place of the published
+    split; by source command, of which none was published, else on the first. Raises ValueError, a
+    sentence.
     """
     changed = configurations or {}
     configured = {
@@ -103,10 +104,9 @@ def jobs(
                 yield Job(name, configured[name], setting, criterion, protocol, seed, split)
 
 
-def _splits(criterion: str, new_splits: int) -> Sequence[int | None]:
-    if criterion == Criterion.SOURCE_COMMAND:
-        new_splits = max(1, new_splits)
-    return range(new_splits) if new_splits else [None]
+def _splits(criterion: str, new_splits: Sequence[int]) -> Sequence[int | None]:
+    published = 0 if criterion == Criterion.SOURCE_COMMAND else None
+    return new_splits or [published]
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -32,6 +33,19 @@ def read_column(text: str) -> Column:
             f"{SETTINGS[-1]}:{known[1][0]}:{known[2][0]}."
         )
     return Column(*(read_names(part, names)[0] for part, names in zip(parts, known, strict=True)))
+
+
+def read_split_seeds(text: str) -> range:
+    """``N`` as the seeds 0 to N - 1, ``A-B`` as those from A to B. Raises ValueError."""
+    if found := re.fullmatch(r"(\d+)(?:-(\d+))?", text.strip()):
+        first, last = found.groups()
+        seeds = range(int(first)) if last is None else range(int(first), int(last) + 1)
+        if seeds or last is None:
+            return seeds
+    raise ValueError(
+        f"--new-splits is {text!r}; it has to be a number of splits (5), or the seeds of the first and "
+        "the last (6-9)."
+    )
 
 
 def read_sources(text: str) -> str:

@@ -17,7 +17,7 @@ from django.core.management import CommandError, call_command
 from annotations.importing import import_generator
 from parser_service import benchmarking
 from parser_service.corpus import new_split, read_corpus, source_commands
-from parser_service.management.options import read_column
+from parser_service.management.options import read_column, read_split_seeds
 from tests.parser_service.made_up import made_up_pairs, make_folder
 from tests.parser_service.running import ROOT
 
@@ -160,14 +160,20 @@ def test_new_splits_stand_in_for_the_published_one(folder, tmp_path, criterion, 
     for name in ("gen", "para"):
         shutil.copytree(folder / name, folder / f"{name}_logical")
     options = {"criteria": criterion, "train_test": "para-para", "world": "home"}
-    cells = run(folder, tmp_path / "cells.json", new_splits=3, **options)
-    assert [(cell["split"], cell["seed"]) for cell in cells] == [(0, 0), (1, 0), (2, 0)]
+    cells = run(folder, tmp_path / "cells.json", new_splits="2-4", **options)
+    assert [(cell["split"], cell["seed"]) for cell in cells] == [(2, 0), (3, 0), (4, 0)]
     for cell in cells:
         assert (cell["n_train"], cell["n_validation"], cell["n_test"]) == pytest.approx(
             (25, 4, 7), abs=3
         )
     published = run(folder, tmp_path / "others.json", **options)
     assert [cell["split"] for cell in published] == [0 if criterion == "source_command" else None]
+
+
+def test_new_splits_are_so_many_or_those_of_some_seeds():
+    assert list(read_split_seeds("3")) == [0, 1, 2]
+    assert list(read_split_seeds(" 6-7 ")) == [6, 7]
+    assert not read_split_seeds("0")
 
 
 def test_no_form_is_in_two_parts_of_a_new_split(folder):
@@ -195,7 +201,8 @@ def test_no_form_is_in_two_parts_of_a_new_split(folder):
         ({"columns": "gen-gen:command:loose"}, "'loose' is none of strict"),
         ({"columns": "gen-gen:command"}, "'gen-gen:command' has to be SETTING:CRITERION:PROTOCOL"),
         ({"columns": "gen-gen:command:strict", "criteria": "command"}, "leave either away"),
-        ({"new_splits": -1}, "--new-splits is -1; it has to be 0 or more"),
+        ({"new_splits": "-1"}, "--new-splits is '-1'; it has to be a number of splits (5), or"),
+        ({"new_splits": "9-6"}, "--new-splits is '9-6'; it has to be a number of splits (5), or"),
         ({"seeds": 0}, "--seeds is 0; it has to be 1 or more"),
         ({"jobs": 0}, "--jobs is 0; it has to be 1 or more"),
         ({"config": ["least_overlap=0.5"]}, "has to be PARSER.KEY=VALUE"),

@@ -21,7 +21,12 @@ from parser_service.benchmarking_in_parallel import measured_in_parallel
 from parser_service.content_key import knowledge_hash
 from parser_service.corpus import Corpus, new_split, read_corpus, source_commands
 from parser_service.knowledge import anonymizer_of, knowledge_of
-from parser_service.management.options import read_column, read_configurations, read_names
+from parser_service.management.options import (
+    read_column,
+    read_configurations,
+    read_names,
+    read_split_seeds,
+)
 from parser_service.models.runs import Protocol
 from parser_service.parsers.interface import Knowledge
 from parser_service.parsers.registry import PARSERS
@@ -54,11 +59,10 @@ class Command(BaseCommand):
         parser.add_argument("--seeds", type=int, default=1, help="seeds 0 to N - 1")
         parser.add_argument(
             "--new-splits",
-            type=int,
-            default=0,
-            metavar="N",
-            help="split the train and validation pairs anew, 70/10/20, N times (default: the published "
-            "split, and one new by source command)",
+            default="0",
+            metavar="N|A-B",
+            help="split the train and validation pairs anew, 70/10/20, N times, or with the seeds A to B "
+            "(default: the published split, and one new by source command)",
         )
         parser.add_argument(
             "--config",
@@ -88,17 +92,16 @@ class Command(BaseCommand):
     def _run(self, folder: Path, world: World | None, options: dict[str, Any]) -> list[str]:
         """Measures what is missing; what could not be measured, and why."""
         at_once = options["jobs"]
-        for name, least in (("jobs", 1), ("seeds", 1), ("new_splits", 0)):
-            if (given := options[name]) < least:
-                flag = name.replace("_", "-")
-                raise ValueError(f"--{flag} is {given}; it has to be {least} or more.")
+        for name in ("jobs", "seeds"):
+            if (given := options[name]) < 1:
+                raise ValueError(f"--{name} is {given}; it has to be 1 or more.")
         todo = list(
             jobs(
                 read_names(options["parsers"], list(PARSERS)),
                 _columns(**options),
                 options["seeds"],
                 read_configurations(options["config"]),
-                options["new_splits"],
+                read_split_seeds(options["new_splits"]),
             )
         )
         cells = CellFile(options["json"])
