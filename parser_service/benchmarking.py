@@ -84,9 +84,8 @@ def jobs(
     """All that is to be measured; a parser only under the protocols that it has.
 
     Jobs of the same ``training`` stand together. ``configurations`` changes hyperparameters of some
-    parsers. With ``new_splits``, their seeds, each seed is taken on these in place of the published
-    split; by source command, of which none was published, else on the first. Raises ValueError, a
-    sentence.
+    parsers. ``new_splits`` are the seeds of splits that stand in for the published one, and for that of
+    seed 0 by source command, of which none was published. Raises ValueError, a sentence.
     """
     changed = configurations or {}
     configured = {
@@ -105,8 +104,7 @@ def jobs(
 
 
 def _splits(criterion: str, new_splits: Sequence[int]) -> Sequence[int | None]:
-    published = 0 if criterion == Criterion.SOURCE_COMMAND else None
-    return new_splits or [published]
+    return new_splits or [0 if criterion == Criterion.SOURCE_COMMAND else None]
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,9 +22,7 @@ from parser_service.parsers.interface import Check, keep_going
 ENCODER = "encoder.json"
 TOKENIZER = "tokenizer.json"
 LONGEST = 64  # subwords; the longest published paraphrase has 45
-LENGTH_STEP = (
-    8  # subwords; torch keeps code for each shape that it multiplied: few shapes, less memory
-)
+LENGTH_STEP = 8  # subwords; torch keeps code for each shape: few of them, less memory
 BATCH = 64
 
 
