@@ -12,7 +12,7 @@ from typing import Self
 import torch
 
 from parser_service.neural.checkpoints import WEIGHTS, load_weights, save_weights
-from parser_service.neural.deciding import Decision, calibrated, calibrated_gate
+from parser_service.neural.deciding import Decision, calibrated
 from parser_service.neural.pretrained import load_encoder
 from parser_service.neural.processor import processor
 from parser_service.neural.ranked_forms import RankedExample, RankedForms, collect
@@ -41,7 +41,6 @@ FORMS = "forms.json"
 SAVED = (FORMS, ENCODER, TOKENIZER, WEIGHTS)
 UNKNOWN = "UNKNOWN"
 PREDICTION_BATCH = 64
-GATE_PAIRS = 64  # of training that set the gate where no validation pair does
 VALIDATIONS = 4  # in a training; to encode all examples anew takes a while
 
 
@@ -51,12 +50,11 @@ class FormRanker(Parser):
     A form with examples is scored by the nearest of them and by its English gloss, a new one by its
     gloss alone; where the ontology is known, slots that no entity of the utterance fills cost. New forms
     are made from those of the training pairs (``candidates``) or taken from the grammar. Scores are
-    log-probabilities, calibrated on the validation pairs, which also tell how often a form is new and
-    what tells it from a known one.
+    log-probabilities, calibrated on the validation pairs, which also tell how often a form is new.
     """
 
     name = "ranker"
-    version = 5
+    version = 6
     protocols = ("strict", "domain", "grammar")
     Config = RankerConfig
 
@@ -187,7 +185,7 @@ class FormRanker(Parser):
         model = self._trained()
         model.renew([example.utterance for example in training.examples], check)
         if not validation:
-            self._decision = Decision(*self._gate_of(training.examples, check))
+            self._decision = Decision()
             return None, None
         number = {form: at for at, form in enumerate(self._ranked.forms)}
         targets = torch.tensor([number.get(pair.form, -1) for pair in validation])
@@ -197,12 +195,6 @@ class FormRanker(Parser):
         found = logs[targets >= 0].gather(1, targets[targets >= 0, None])
         loss = -float(found.mean()) if len(found) else None
         return loss, float((logs.argmax(-1) == targets).float().mean())
-
-    def _gate_of(self, examples: Sequence[RankedExample], check: Check) -> tuple[float, float]:
-        """When a form is new, as far as some of the training pairs tell, where nothing else does."""
-        some = examples[:: 1 + len(examples) // GATE_PAIRS]
-        scores = self._trained().scores([each.utterance for each in some], check)
-        return calibrated_gate(scores, torch.tensor([each.form for each in some]))
 
     def _or_unknown(self, ranked: list[Candidate]) -> list[Candidate]:
         bound = self.config.unknown_below

@@ -115,7 +115,7 @@ PARSERS: dict[str, Entry] = {
         title="Form ranker",
         description="A fine-tuned sentence encoder chooses among whole forms, by their examples and "
         "by their English glosses; also among new forms, made from those of the training pairs.",
-        version=5,
+        version=6,
         protocols=("strict", "domain", "grammar"),
         loss_unit="nats an utterance",
     ),

@@ -1,18 +1,18 @@
 from dataclasses import asdict
+from math import log
 
 import pytest
 import torch
 
 from parser_service.neural.deciding import (
     EQUAL,
-    SUPPORT_LEFT_OUT,
+    USUAL_NOVELTY,
     VOICES,
     Decision,
     Scores,
-    best_gate,
+    best_novelty,
     best_weights,
     calibrated,
-    calibrated_gate,
 )
 
 FIRST, SECOND = VOICES.index("examples"), VOICES.index("glosses")
@@ -57,47 +57,49 @@ def test_the_more_often_forms_are_new_the_more_new_forms_are_answered():
     assert chosen == [[0, 1], [0, 2], [3, 2]]
 
 
-NONE = torch.zeros(0)
+def novelty_of(evidence, new, forms):
+    """The novelty after so many pairs, of so many ``forms``, the first ``new`` of which are new."""
+    number = torch.arange(len(evidence)) % forms
+    return best_novelty(evidence, number < new, number)
 
 
-def test_where_all_forms_were_known_new_ones_are_rare_unless_the_evidence_is_strong():
-    known, left_out = torch.linspace(-2, 2, 100), torch.linspace(6, 10, 100)
-    novelty, slope = best_gate(known, torch.zeros(100, dtype=torch.bool), left_out)
-    assert slope > 0 and novelty < -4
-    assert novelty + slope * 8 > 0
+def test_without_a_pair_the_novelty_is_as_usual():
+    assert novelty_of(torch.zeros(0), 0, 1) == USUAL_NOVELTY
 
 
-def test_where_forms_left_out_look_like_the_others_evidence_counts_nothing():
-    evidence, known = torch.zeros(100), torch.zeros(100, dtype=torch.bool)
-    novelty, slope = best_gate(evidence, known, torch.zeros(100))
-    assert (novelty < -4, slope) == (True, 0)
-    assert best_gate(evidence, ~known, NONE) == (-novelty, 0)
+@pytest.mark.parametrize("new", [1, 5, 10])
+def test_some_new_forms_leave_it_as_it_is(new):
+    evidence = torch.where(torch.arange(120) % 40 < new, 5.0, 0.0)
+    assert novelty_of(evidence, new, 40) == pytest.approx(USUAL_NOVELTY, abs=0.2)
 
 
-def test_evidence_counts_where_it_tells_new_from_known():
-    is_new = torch.tensor([True, False] * 50)
-    telling = torch.where(is_new, 3.0, -1.0)
-    novelty, slope = best_gate(telling, is_new, NONE)
-    assert slope == 1 and novelty == pytest.approx(-1)
-    assert best_gate(torch.zeros(100), is_new, NONE) == (0, 0)
+@pytest.mark.parametrize("pairs", [1, 200])
+def test_where_all_forms_are_new_the_set_is_open(pairs):
+    found = novelty_of(torch.full((pairs,), 2.0), 12, 12)
+    assert found == pytest.approx(log(pairs / 0.5 + 1))
 
 
-def test_without_a_pair_the_evidence_decides():
-    assert best_gate(NONE, torch.zeros(0, dtype=torch.bool), NONE) == (0, 1)
+def test_where_most_forms_are_new_they_need_not_fit_better():
+    evidence = torch.where(torch.arange(200) % 40 < 36, 2.0, -2.0)
+    assert novelty_of(evidence, 36, 40) > -2
 
 
-def test_a_form_left_out_is_among_the_new_ones_and_no_more_among_the_known():
-    scores = Scores(said([[5.0, 0.0]], [[4.0, 1.0]]), said([[0.0]], [[2.0]]))
-    there = torch.tensor([2.0, 4.0 + SUPPORT_LEFT_OUT]).logsumexp(-1)
-    assert scores.evidence_without(torch.tensor([0])) == there - 1
-    assert scores.evidence_without(torch.tensor([1])) < scores.evidence_without(torch.tensor([0]))
+def test_where_known_forms_were_meant_that_fitted_worse_new_ones_are_rarer():
+    assert novelty_of(torch.linspace(-2, 4, 200), 0, 200) < USUAL_NOVELTY - 1
 
 
-def test_the_only_known_form_can_be_left_out():
-    scores = Scores(said([[1.0]] * 3), said([[0.0]] * 3))
-    novelty, slope = calibrated_gate(scores, torch.zeros(3, dtype=torch.long))
-    assert novelty < 0 <= slope < float("inf")
-    assert Decision(novelty, slope).log_probabilities(scores).isfinite().all()
+def test_many_pairs_of_one_form_say_no_more_than_one_of_it():
+    evidence, number = torch.linspace(-2, 4, 200), torch.arange(200)
+    once = best_novelty(evidence, number < 0, number)
+    thrice = best_novelty(evidence.repeat(3), number.repeat(3) < 0, number.repeat(3))
+    assert thrice == once
+
+
+def test_the_only_known_form_has_a_probability_when_nothing_is_new():
+    scores = Scores(said([[1.0]] * 3), torch.zeros(len(VOICES), 3, 0))
+    found = calibrated(scores, torch.zeros(3, dtype=torch.long))
+    assert found.novelty <= USUAL_NOVELTY
+    assert found.log_probabilities(scores).tolist() == [[0]] * 3
 
 
 def test_a_voice_counts_as_much_as_it_is_right():
