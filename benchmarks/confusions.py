@@ -16,10 +16,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pandas as pd
-from fresh_site import DATA, WORLD, Site
+from fresh_site import Site
+from new_splits import SETTINGS, trained
 
 CATEGORY = re.compile(r'\( is_a \$\d " <category> " \)')
-PROTOCOL, CRITERION = "domain", "source_command"
 
 
 def blurred(form: str) -> str:
@@ -31,18 +31,7 @@ def blurred(form: str) -> str:
 def answers(split: int, setting: str) -> Iterator[dict[str, object]]:
     """Every held-out paraphrase of a split: its part, whether the answer is right, and whether it is but
     for the three distinctions."""
-    from annotations.models import World
-    from parser_service.knowledge import knowledge_of
-    from parser_service.management.commands.benchmark import corpus_of
-    from parser_service.models.runs import TrainSources
-    from parser_service.parsers.registry import load_class, make_config
-
-    world = World.objects.get(name=WORLD)
-    corpus = corpus_of(DATA / "walker2019", CRITERION, split, world)
-    sources = TrainSources(setting.rpartition("-")[0]).sources
-    knowledge = knowledge_of(world, PROTOCOL).limited_to(PROTOCOL)
-    parser = load_class("ranker")(make_config("ranker"), 0, knowledge)
-    parser.fit(corpus.pairs("train", sources), corpus.pairs("validation", sources))
+    parser, corpus = trained(split, setting)
     for part in ("validation", "test"):
         pairs = corpus.pairs(part, ["paraphrased"])
         for pair, ranked in zip(pairs, parser.predict([p.utterance for p in pairs]), strict=True):
@@ -58,7 +47,7 @@ def answers(split: int, setting: str) -> Iterator[dict[str, object]]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--splits", default="0", help="their numbers, separated by commas")
-    parser.add_argument("--setting", default="para-para", choices=("para-para", "gen+para-para"))
+    parser.add_argument("--setting", default=SETTINGS[0], choices=SETTINGS)
     given = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         site = Site(Path(folder) / "var")
