@@ -9,15 +9,10 @@ biggest or largest, and an explicit ``and`` or none. By part: exact match, and e
 
 from __future__ import annotations
 
-import argparse
 import re
-import tempfile
 from collections.abc import Iterator
-from pathlib import Path
 
-import pandas as pd
-from fresh_site import Site
-from new_splits import SETTINGS, trained
+from new_splits import Trained, table_of
 
 CATEGORY = re.compile(r'\( is_a \$\d " <category> " \)')
 
@@ -28,16 +23,14 @@ def blurred(form: str) -> str:
     return " ".join(re.sub(r"[()]", " ", text).split())
 
 
-def answers(split: int, setting: str) -> Iterator[dict[str, object]]:
-    """Every held-out paraphrase of a split: its part, whether the answer is right, and whether it is but
-    for the three distinctions."""
-    parser, corpus = trained(split, setting)
-    for part in ("validation", "test"):
-        pairs = corpus.pairs(part, ["paraphrased"])
-        for pair, ranked in zip(pairs, parser.predict([p.utterance for p in pairs]), strict=True):
+def answers(trained: Trained) -> Iterator[dict[str, object]]:
+    """Every held-out paraphrase: its part, whether the answer is right, and whether it is but for the
+    three distinctions."""
+    for part, pairs in trained.held_out.items():
+        found = trained.parser.predict([pair.utterance for pair in pairs])
+        for pair, ranked in zip(pairs, found, strict=True):
             said, meant = ranked[0].form, pair.form
             yield {
-                "split": split,
                 "part": part,
                 "exact": 100.0 * (said == meant),
                 "but for these": 100.0 * (blurred(said) == blurred(meant)),
@@ -45,16 +38,7 @@ def answers(split: int, setting: str) -> Iterator[dict[str, object]]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--splits", default="0", help="their numbers, separated by commas")
-    parser.add_argument("--setting", default=SETTINGS[0], choices=SETTINGS)
-    given = parser.parse_args()
-    with tempfile.TemporaryDirectory() as folder:
-        site = Site(Path(folder) / "var")
-        site.import_world()
-        site.enter()
-        splits = [int(number) for number in given.splits.split(",")]
-        table = pd.DataFrame(row for split in splits for row in answers(split, given.setting))
+    table = table_of(__doc__.partition("\n")[0], "0", answers)
     by_part = table.groupby(["split", "part"], sort=False)
     print(by_part[["exact", "but for these"]].mean().assign(pairs=by_part.size()).round(1))
 
