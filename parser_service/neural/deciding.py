@@ -73,7 +73,7 @@ def calibrated(scores: Scores, targets: Tensor) -> Decision:
     """The decision under which the forms [utterances] that were meant are most probable.
 
     ``targets`` number known forms first, then new ones; -1 for a form that is in neither list,
-    which is a new one all the same.
+    which is a new one all the same (all such count as one form).
     """
     number = scores.known.shape[-1]
     is_known, is_made = (targets >= 0) & (targets < number), targets >= number

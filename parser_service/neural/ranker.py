@@ -50,7 +50,8 @@ class FormRanker(Parser):
     A form with examples is scored by the nearest of them and by its English gloss, a new one by its
     gloss alone; where the ontology is known, slots that no entity of the utterance fills cost. New forms
     are made from those of the training pairs (``candidates``) or taken from the grammar. Scores are
-    log-probabilities, calibrated on the validation pairs, which also tell how often a form is new.
+    log-probabilities, calibrated on the validation pairs, which also tell by how much a new form has to
+    fit better.
     """
 
     name = "ranker"

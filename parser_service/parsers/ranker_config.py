@@ -56,8 +56,8 @@ class RankerConfig:
     )
     forms: str = hyperparameter(
         "open",
-        "Which forms are answered: new ones too, as often as validation pairs have such (open), or "
-        "those of the training pairs alone (closed).",
+        "Which forms are answered: new ones too, where they fit much better or validation pairs have no "
+        "others (open), or those of the training pairs alone (closed).",
         choices=("open", "closed"),
     )
     unknown_below: float = hyperparameter(
