@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from django.contrib import admin
 from django.contrib.auth.admin import UserAdmin
+from django.contrib.auth.decorators import login_not_required
 from django.contrib.auth.models import Group
-from django.http import HttpRequest
+from django.contrib.auth.views import redirect_to_login
+from django.core.exceptions import PermissionDenied
+from django.http import HttpRequest, HttpResponse
+from django.urls import reverse
 
 from annotations.models import ApiToken, Membership, User, World
 
@@ -27,8 +31,18 @@ class AccountAdmin(UserAdmin):
 
 @admin.register(World)
 class WorldAdmin(admin.ModelAdmin):
+    """A world's name is used in URLs and commands and never changes. The workbench has a page of its
+    own for deleting one, which the confirmation here, a line for every row, would not survive."""
+
     list_display = ("name", "description", "created_at")
+    fields = ("name", "description")
     inlines = (MembershipInline,)
+
+    def get_readonly_fields(self, request: HttpRequest, obj: World | None = None) -> list[str]:
+        return ["name"] if obj else []
+
+    def has_delete_permission(self, request: HttpRequest, obj: World | None = None) -> bool:
+        return False
 
 
 @admin.register(ApiToken)
@@ -43,8 +57,17 @@ class ApiTokenAdmin(admin.ModelAdmin):
 
 
 def may_enter(request: HttpRequest) -> bool:
-    """Accounts are the business of superusers alone, whatever else somebody's staff flag says."""
+    """Return whether the person is an active superuser; the staff flag alone does not open the admin."""
     return request.user.is_active and request.user.is_superuser
 
 
+@login_not_required
+def log_in(request: HttpRequest, extra_context: object = None) -> HttpResponse:
+    """Lead to the site's own page for logging in, which counts wrong attempts."""
+    if request.user.is_authenticated and not may_enter(request):
+        raise PermissionDenied("Only administrators of this installation may do this.")
+    return redirect_to_login(request.GET.get("next") or reverse("admin:index"))
+
+
 admin.site.has_permission = may_enter
+admin.site.login = log_in

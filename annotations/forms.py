@@ -7,95 +7,188 @@ from typing import Any
 from django import forms
 from django.http import HttpRequest, QueryDict
 
-from annotations.checking import check_template
-from annotations.models import TaskCategory, World
+from annotations.editing.once import new_key
+from annotations.editing.template_check import MOST_CHARACTERS, Checked, check_template
+from annotations.language.decoding import decode
+from annotations.language.errors import LanguageError
+from annotations.models import Origin, Production, SemanticTemplate, TaskCategory, World
+from annotations.models.comments import MOST_CHARACTERS as MOST_CHARACTERS_OF_COMMENT
 from annotations.models.splits import criterion_choices
 from annotations.models.templates import Status, template_status_choices
 
 
 def posted(request: HttpRequest) -> QueryDict | None:
-    """What a form is bound to; None while nothing has been sent."""
+    """Return the data to bind a form to; None when nothing has been sent."""
     return request.POST if request.method == "POST" else None
 
 
-PATTERN_EDITOR = {
-    "rows": 2,
-    "data-editor": "pattern",
-    "placeholder": "$vbfind the {kobject} in the {room}",
-}
-FORM_EDITOR = {
-    "rows": 4,
-    "data-editor": "form",
-    "placeholder": "(find (λ$1:e (is_a $1 {kobject}) (at $1 {room})))",
-}
-
-
 class TemplateForm(forms.Form):
-    """A pattern and its form. What the checker calls an error keeps a template from being ready."""
+    """A pattern and its logical form. An error of the checker keeps a template from being ready.
+
+    ``checked`` is what the checker says, once the form has been validated and holds both sides.
+    """
 
     task_category = forms.ModelChoiceField(queryset=None, empty_label=None)
-    pattern = forms.CharField(widget=forms.Textarea(attrs=PATTERN_EDITOR))
-    form = forms.CharField(label="Logical form", widget=forms.Textarea(attrs=FORM_EDITOR))
+    pattern = forms.CharField(
+        max_length=MOST_CHARACTERS,
+        widget=forms.Textarea(attrs={"rows": 2, "data-editor": "pattern"}),
+    )
+    form = forms.CharField(
+        label="Logical form",
+        max_length=MOST_CHARACTERS,
+        widget=forms.Textarea(attrs={"rows": 4, "data-editor": "form"}),
+    )
     status = forms.ChoiceField(
         choices=template_status_choices,
         initial=Status.READY,
         help_text="Only ready templates make commands.",
     )
     version = forms.IntegerField(widget=forms.HiddenInput, required=False)
+    once = forms.CharField(widget=forms.HiddenInput, required=False, max_length=60, initial=new_key)
 
     def __init__(self, world: World, *args: Any, **kwargs: Any):
         super().__init__(*args, **kwargs)
         self.world = world
+        self.checked: Checked | None = None
         self.fields["task_category"].queryset = TaskCategory.objects.filter(grammar__world=world)
+        for name, example in example_template(world).items():
+            self.fields[name].widget.attrs["placeholder"] = example
 
     def clean(self) -> dict[str, Any]:
         cleaned = super().clean()
-        if self.errors or cleaned["status"] == Status.DRAFT:
+        if self.errors:
             return cleaned
-        checked = check_template(
-            self.world, cleaned["task_category"], cleaned["pattern"], cleaned["form"]
+        self.checked = check_template(
+            self.world, self.chosen_category, cleaned["pattern"], cleaned["form"]
         )
-        for problem in checked.problems:
-            if problem.is_error:
-                side = "form" if problem.position.source == "form" else "pattern"
-                self.add_error(
-                    side, f"{problem.message} ({problem.hint})" if problem.hint else problem.message
-                )
+        errors = [problem for problem in self.checked.problems if problem.is_error]
+        for problem in errors if cleaned["status"] != Status.DRAFT else ():
+            side = "form" if problem.position.source == "form" else "pattern"
+            hint = f" ({problem.hint})" if problem.hint else ""
+            self.add_error(side, f"{problem.message}{hint}")
         return cleaned
+
+    @property
+    def chosen_category(self) -> TaskCategory | None:
+        """The chosen task category; where none is, that of the template, or else the last one."""
+        field = self.fields["task_category"]
+        try:
+            chosen = field.clean(self["task_category"].value())
+        except forms.ValidationError:
+            chosen = None
+        return chosen or self.initial.get("task_category") or field.queryset.last()
+
+
+def example_template(world: World) -> dict[str, str]:
+    """Return a pattern and a form of this world to show in the empty fields of a new template."""
+    template = SemanticTemplate.objects.filter(grammar__world=world, status=Status.READY).first()
+    if template:
+        return {"pattern": template.pattern, "form": template.form}
+    production = Production.objects.filter(grammar__world=world).order_by("position").first()
+    return {"pattern": production.expansion} if production else {}
+
+
+class UtterancesForm(forms.Form):
+    """Utterances to label: pasted, one a line, or in a text file."""
+
+    MOST_BYTES = 2_000_000
+
+    text = forms.CharField(
+        label="Utterances",
+        required=False,
+        max_length=MOST_BYTES,
+        widget=forms.Textarea(
+            attrs={"rows": 10, "placeholder": "could you get me the red mug from the kitchen"}
+        ),
+        help_text="One a line.",
+    )
+    file = forms.FileField(
+        label="Or a text file", required=False, help_text="UTF-8, one utterance a line."
+    )
+
+    def clean_file(self) -> list[str]:
+        """Return the lines of the file; none without one."""
+        file = self.cleaned_data["file"]
+        if file is None:
+            return []
+        if file.size > self.MOST_BYTES:
+            raise forms.ValidationError(
+                f"The file has {file.size:,} bytes; {self.MOST_BYTES:,} is the limit."
+            )
+        try:
+            return decode(file.read(), file.name).splitlines()
+        except LanguageError as error:
+            raise forms.ValidationError(str(error)) from error
+
+    def clean(self) -> dict[str, Any]:
+        cleaned = super().clean()
+        if not self.errors and not any(line.strip() for line in self.lines):
+            self.add_error("text", "Write an utterance, or choose a file that has some.")
+        return cleaned
+
+    @property
+    def lines(self) -> list[str]:
+        """What was pasted, and then what the file holds."""
+        return [*self.cleaned_data.get("text", "").splitlines(), *self.cleaned_data["file"]]
+
+    @property
+    def origin(self) -> str:
+        return Origin.UPLOADED if self.cleaned_data["file"] else Origin.PASTED
+
+
+class CommentForm(forms.Form):
+    """What somebody says about a row."""
+
+    text = forms.CharField(
+        label="Your comment",
+        max_length=MOST_CHARACTERS_OF_COMMENT,
+        widget=forms.Textarea(attrs={"rows": 3}),
+        help_text="Write @name to reach a member of this world.",
+    )
 
 
 class WorldForm(forms.ModelForm):
-    """The name of a world stands in its addresses and does not change."""
+    """A new world. Its name is used in URLs and never changes."""
 
     class Meta:
         model = World
         fields = ["name", "description"]
         widgets = {"description": forms.Textarea(attrs={"rows": 2})}
         help_texts = {
-            "name": "Lower-case letters, digits, _ and -. It stands in addresses and commands.",
-            "description": "A sentence for those who see it in the list.",
+            "name": "Lower-case letters, digits, _ and -. Used in URLs and commands.",
+            "description": "One sentence, shown in the list of worlds.",
         }
 
 
 class SplitForm(forms.Form):
-    """How to part the pairs. Shares are in percent and sum to 100."""
+    """How to split the pairs. The shares are percentages that sum to 100."""
 
     SHARES = ("train", "validation", "test")
 
     name = forms.SlugField(
-        max_length=80, help_text="Letters, digits, _ and -. It stands in tables and addresses."
+        max_length=80, help_text="Letters, digits, _ and -. Used in tables and URLs."
     )
     criterion = forms.ChoiceField(
-        label="No two parts share a",
+        label="Keep apart by",
         choices=lambda: [(name, label.lower()) for name, label in criterion_choices()],
-        help_text="A logical form in one part only is the harder test.",
+        help_text="No two parts share one. By logical form is the harder test.",
     )
     seed = forms.IntegerField(
-        initial=0, min_value=0, max_value=2**32 - 1, help_text="The same seed, the same split."
+        initial=0, min_value=0, max_value=2**32 - 1, help_text="The same seed gives the same split."
     )
     train = forms.FloatField(label="Train, %", initial=70, min_value=0, max_value=100)
     validation = forms.FloatField(label="Validation, %", initial=10, min_value=0, max_value=100)
     test = forms.FloatField(label="Test, %", initial=20, min_value=0, max_value=100)
+
+    def clean(self) -> dict[str, Any]:
+        """Refuse shares that are no whole, in percent as they are asked for."""
+        cleaned = super().clean()
+        shares = [cleaned[part] for part in self.SHARES if part in cleaned]
+        if len(shares) == len(self.SHARES) and abs(sum(shares) - 100) > 1e-4:
+            self.add_error(
+                "test", f"The three shares sum to {sum(shares):g} %; they have to sum to 100 %."
+            )
+        return cleaned
 
     @property
     def what(self) -> list[forms.BoundField]:
@@ -107,7 +200,7 @@ class SplitForm(forms.Form):
 
     @property
     def choice(self) -> dict[str, Any]:
-        """What the verb wants, once the form is valid."""
+        """Return the arguments of ``freeze_split`` and ``plan_split``, once the form is valid."""
         shares = [self.cleaned_data[part] / 100 for part in self.SHARES]
         chosen = {name: self.cleaned_data[name] for name in ("criterion", "seed")}
         return {**chosen, "proportions": shares}
@@ -118,7 +211,7 @@ class ManyFiles(forms.ClearableFileInput):
 
 
 class FilesField(forms.FileField):
-    """Several uploaded files; cleans to a list of them."""
+    """A field for several files; its value is a list of them."""
 
     widget = ManyFiles
 
@@ -131,12 +224,22 @@ class PairsForm(forms.Form):
     """The pair files of a published corpus, in one archive."""
 
     name = forms.SlugField(
-        max_length=60, help_text="The splits are called by it: name-command, name-logical_form."
+        max_length=60, help_text="The splits are named after it: name-command, name-logical_form."
     )
     archive = forms.FileField(
         help_text="A zip archive with any of the folders gen, para, gen_logical and para_logical "
         "(train.txt, val.txt, test.txt in each) and paraphrasings.txt."
     )
+
+
+class WorldArchiveForm(forms.Form):
+    """The archive of a world, and what the new world is called."""
+
+    name = forms.CharField(
+        max_length=60,
+        help_text="Of the new world: lower-case letters, digits, _ and -. Used in URLs and commands.",
+    )
+    archive = forms.FileField(help_text="The zip archive from “Download” on a world's import page.")
 
 
 class ImportForm(forms.Form):
@@ -147,3 +250,31 @@ class ImportForm(forms.Form):
         help_text="The grammar, template and ontology files of one generator: choose all of them, "
         "or one zip archive with them.",
     )
+    keeps_others = forms.BooleanField(
+        label="Keep what these files do not have",
+        required=False,
+        help_text="Only files of the same name are replaced: a grammar, objects.xml, predicates.json.",
+    )
+
+
+class UncoveredFilters(forms.Form):
+    """What the commands without a form may be filtered by. Each name is a parameter of the page's URL."""
+
+    q = forms.CharField(
+        label="Search",
+        required=False,
+        max_length=200,
+        widget=forms.SearchInput(attrs={"placeholder": "Search"}),
+    )
+    task_category = forms.ChoiceField(label="Task category", required=False)
+    nonterminal = forms.ChoiceField(label="Nonterminal", required=False)
+
+    def __init__(self, categories: list[str], nonterminals: list[str], *args: Any) -> None:
+        super().__init__(*args)
+        self.fields["task_category"].choices = _choices("Task category", categories)
+        names = {name: f"${name}" for name in nonterminals}
+        self.fields["nonterminal"].choices = [("", "Nonterminal: any"), *names.items()]
+
+
+def _choices(label: str, names: list[str]) -> list[tuple[str, str]]:
+    return [("", f"{label}: any"), *((name, name) for name in names)]

@@ -2,10 +2,10 @@
 
     .venv/bin/python benchmarks/accuracy.py cells.json [--markdown | --latex] [--part validation]
 
-One table a protocol: parsers down; settings, each by criterion, across. A figure is exact match in
-percent, the mean over seeds and over new splits where there are some; ± is the standard deviation over
-them (n − 1). The best of a column in its protocol is bold. In parentheses stands what the paper published,
-always on the test parts.
+One table per protocol, with a row for each parser and a column for each setting and criterion. A figure is
+exact match in percent, the mean over seeds and over new splits where there are any; ± is their standard
+deviation (n − 1). The best of a column is bold. The paper's figure, always on the test parts, is in
+parentheses.
 """
 
 from __future__ import annotations
@@ -28,21 +28,21 @@ sys.path.insert(0, str(ROOT))
 os.environ.setdefault("DJANGO_SETTINGS_MODULE", "gpsr_site.settings")
 django.setup()
 
-from parser_service.benchmarking import SETTINGS, CellFile  # noqa: E402
-from parser_service.models.runs import Protocol  # noqa: E402
+from parser_service.benchmarking.cells import CellFile  # noqa: E402
+from parser_service.parsers.conditions import SETTINGS, Protocol  # noqa: E402
 from parser_service.parsers.registry import PARSERS  # noqa: E402
-from parser_service.published import published_accuracy  # noqa: E402
+from parser_service.results.published import published_accuracy  # noqa: E402
 
 # Criterion → the word for it in a column's head.
 CRITERIA = {"command": "command", "source_command": "source", "logical_form": "form"}
-# Rows stand in the order of the registry; parsers that it no longer has come last.
+# Rows are in the order of the registry; parsers that it no longer has come last.
 PLACES = {name: place for place, name in enumerate(PARSERS)}
 CONDITIONS = ["protocol", "parser", "configuration", "setting", "criterion"]
 
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """What stands in the table: percent; ``spread`` is None for one seed."""
+    """One figure of the table, in percent; ``spread`` is None for one seed."""
 
     mean: float
     spread: float | None
@@ -86,9 +86,9 @@ def _check_together(measured: pd.DataFrame, part: str) -> None:
                 f"{setting} by {criterion} was measured on the published split and on new ones; keep a "
                 "file for each."
             )
-        for _, found in cells.groupby("split", dropna=False)[f"n_{part}"].unique().items():
-            if len(found) > 1:
-                counts = " and ".join(str(count) for count in sorted(found))
+        for _, numbers in cells.groupby("split", dropna=False)[f"n_{part}"].unique().items():
+            if len(numbers) > 1:
+                counts = " and ".join(str(count) for count in sorted(numbers))
                 raise ValueError(
                     f"{setting} by {criterion} was tested on {counts} pairs: "
                     "these cells are of different folders; keep a file for each."
@@ -108,25 +108,23 @@ def tables(figures: pd.DataFrame) -> list[Table]:
     """The tables in the order of the protocols, each with the columns that were measured in it."""
     return [
         _table(protocol, figures[figures["protocol"] == protocol])
-        for protocol in Protocol.values
+        for protocol in Protocol
         if protocol in set(figures["protocol"])
     ]
 
 
 def _table(protocol: str, figures: pd.DataFrame) -> Table:
     measured = set(zip(figures["setting"], figures["criterion"], strict=True))
-    columns = tuple(each for each in product(SETTINGS, CRITERIA) if each in measured)
+    columns = tuple(each for each in product(map(str, SETTINGS), CRITERIA) if each in measured)
     best = figures.groupby(["setting", "criterion"])["mean"].max()
     by_row = dict(list(figures.groupby(["parser", "configuration"])))
     order = sorted(by_row, key=lambda key: (PLACES.get(key[0], len(PLACES)), key))
     rows = []
     for parser, configuration in order:
-        found = by_row[parser, configuration].set_index(["setting", "criterion"])
+        own = by_row[parser, configuration].set_index(["setting", "criterion"])
         name = _row_name(parser, configuration, [other for each, other in order if each == parser])
         row = [
-            _figure(parser, column, found.loc[column], best[column])
-            if column in found.index
-            else None
+            _figure(parser, column, own.loc[column], best[column]) if column in own.index else None
             for column in columns
         ]
         rows.append((name, tuple(row)))

@@ -1,10 +1,11 @@
-"""How many forms that training never showed are among the candidates made from it, and at what price.
+"""The share of held-out forms that are among the candidates made from the training part.
 
     GPSR_SHARED_DATA=… .venv/bin/python benchmarks/candidates.py [--splits 8]
 
-Splits the published train and validation pairs anew by form, several times, and makes the candidates from
-each training part. By protocol: the candidates of a split; the share of the held-out paraphrases whose form is
-a candidate; and by support, how many forms were made, and which share of them was held out (is real).
+Makes several new splits by form of the published train and validation pairs, and the candidates from each
+training part. Prints for each protocol: the number of candidates per split; the share of the held-out
+paraphrases whose form is a candidate; and by support, the number of forms made and the share of them that was
+held out (is real).
 """
 
 from __future__ import annotations
@@ -18,19 +19,18 @@ from pathlib import Path
 import pandas as pd
 from fresh_site import DATA, WORLD, Site
 
-PROTOCOLS = ("strict", "domain")
 HELD_OUT = ("validation", "test")
 
 
-def made(protocol: str, splits: int) -> Iterator[dict[str, object]]:
-    """Every new form of every split: its support, and how many held-out paraphrases mean it.
+def support_of_forms(protocol: str, splits: int) -> Iterator[dict[str, object]]:
+    """Yield every new form of every split: its support, and how many held-out paraphrases mean it.
 
     A held-out form that no step arrives at has support 0.
     """
     from annotations.models import World
-    from parser_service.corpus import new_split
-    from parser_service.knowledge import knowledge_of
-    from parser_service.parsers.candidates.gathering import reach
+    from parser_service.benchmarking.corpus import new_split
+    from parser_service.parsers.candidates.generation import reach
+    from parser_service.runs.knowledge import knowledge_of
 
     knowledge = knowledge_of(World.objects.get(name=WORLD), protocol)
     for seed in range(splits):
@@ -43,8 +43,8 @@ def made(protocol: str, splits: int) -> Iterator[dict[str, object]]:
         for each in reach(pairs, knowledge).candidates():
             if each.form not in training:
                 support[each.form] = each.support
-        for form, found in support.items():
-            yield {"support": found, "pairs": meant[form]}
+        for form, number in support.items():
+            yield {"support": number, "pairs": meant[form]}
 
 
 def main() -> None:
@@ -55,25 +55,25 @@ def main() -> None:
         site = Site(Path(folder) / "var")
         site.import_world()
         site.enter()
-        for protocol in PROTOCOLS:
-            report(protocol, pd.DataFrame(made(protocol, splits)), splits)
+        for protocol in ("strict", "domain"):
+            report(protocol, pd.DataFrame(support_of_forms(protocol, splits)), splits)
 
 
 def report(protocol: str, forms: pd.DataFrame, splits: int) -> None:
-    from parser_service.neural.ranked_forms import MOST_SUPPORT
+    from parser_service.neural.ranker.ranked_forms import MOST_SUPPORT
     from parser_service.parsers.candidates.pool import SURE
 
     kept = forms[forms["support"] >= SURE]
     covered = 100 * kept["pairs"].sum() / forms["pairs"].sum()
     print(
-        f"\n{protocol}: {len(kept) / splits:.0f} candidates a split, which have the form of {covered:.1f} % "
+        f"\n{protocol}: {len(kept) / splits:.0f} candidates per split, which include the form of {covered:.1f} % "
         f"of the held-out paraphrases ({splits} splits by form)"
     )
     reached = forms[forms["support"] > 0]
     by_support = reached.groupby(reached["support"].clip(upper=MOST_SUPPORT))["pairs"]
     table = pd.DataFrame(
         {
-            "forms a split": by_support.size() / splits,
+            "forms per split": by_support.size() / splits,
             "real, %": 100 * by_support.agg(lambda meant: (meant > 0).mean()),
             "of the paraphrases, %": 100 * by_support.sum() / forms["pairs"].sum(),
         }

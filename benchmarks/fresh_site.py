@@ -1,4 +1,4 @@
-"""A fresh installation on which commands run one after another, and what each of them costs."""
+"""A fresh installation, to run commands on and measure what each of them costs."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ WORLD = "gpsr2018"
 
 @dataclass(frozen=True, slots=True)
 class Spent:
-    """Of one command: exit status, seconds of processor (user and system) and of the clock, the most
-    memory that it held in bytes, and what it wrote to standard error."""
+    """What one command cost: exit status, seconds of processor time (user and system) and of wall time, peak
+    memory in bytes, and what it wrote to standard error."""
 
     status: int
     processor: float
@@ -30,7 +30,7 @@ class Spent:
 
 
 class Site:
-    """A SQLite database under ``folder``. Encoders are looked for where they were before."""
+    """A SQLite database in ``folder``. Encoders are looked for where the environment says."""
 
     def __init__(self, folder: Path):
         self.environment = {**os.environ, "GPSR_VAR_DIR": str(folder)}
@@ -40,8 +40,8 @@ class Site:
         self.run("migrate", "-v0")
 
     def run(self, *arguments: str) -> Spent:
-        """Runs ``manage.py`` in a process of its own. This process has to stay small: the peak that
-        the kernel reports starts at the size of the process that was forked."""
+        """Run ``manage.py`` in a process of its own. This process has to stay small: the peak that the
+        kernel reports starts at the size of the process that was forked."""
         began = time.perf_counter()
         with tempfile.TemporaryFile() as errors:
             child = subprocess.Popen(
@@ -60,14 +60,14 @@ class Site:
         return Spent(child.returncode, processor, wall, usage.ru_maxrss * 1024, text)
 
     def enter(self) -> None:
-        """Makes this process one of the installation: what follows may read its world."""
+        """Make this process one of the installation, so that it can read its world."""
         os.environ.pop("DATABASE_URL", None)
         os.environ.update(self.environment, DJANGO_SETTINGS_MODULE="gpsr_site.settings")
         sys.path.insert(0, str(ROOT))
         django.setup()
 
     def import_world(self) -> None:
-        """The published generator as ``WORLD``: what *domain* and *grammar* know. Exits if refused."""
+        """Import the published generator as ``WORLD``, which *domain* and *grammar* read. Exits if refused."""
         made = self.run("import_generator", str(DATA / "generator-2018"), "--world", WORLD)
         if made.status:
             sys.exit(made.errors)

@@ -1,10 +1,10 @@
-"""How far a parser can get where source commands are new: paraphrases that say the same, word for word.
+"""Label noise: identical paraphrases of different source commands, and how often their forms agree.
 
     GPSR_SHARED_DATA=… .venv/bin/python benchmarks/label_noise.py
 
-Takes the train and validation paraphrases of the published corpus by command, anonymized. Of those whose
-text a paraphrase of another source command has too, counts how many have the form that most of these have.
-What differs there no parser can know: it is the noise of the labels.
+Takes the anonymized train and validation paraphrases of the published corpus by command. Of those whose text is
+also a paraphrase of another source command, counts how many have the form that most of the others have. No
+parser can know the difference: it is the noise of the labels.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ Said = tuple[str, str]  # source command and form
 def paraphrases() -> Iterator[tuple[str, Said]]:
     """The words of each paraphrase with a known source, in class tokens, and what it was said for."""
     from annotations.models import World
-    from parser_service.corpus import read_corpus, source_commands
-    from parser_service.knowledge import anonymizer_of
+    from parser_service.benchmarking.corpus import read_corpus, source_commands
     from parser_service.parsers.words import words
+    from parser_service.runs.knowledge import anonymizer_of
 
     anonymize = anonymizer_of(World.objects.get(name=WORLD))
     sources = source_commands(DATA / "walker2019", anonymize)

@@ -19,13 +19,14 @@ from typing import TypeVar
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
-from annotations.language.expansion import generate  # noqa: E402
-from annotations.language.generator_folder import read_generator_folder  # noqa: E402
-from annotations.language.grammar import Grammar, read_productions  # noqa: E402
-from annotations.language.logic import read_form  # noqa: E402
-from annotations.language.pairs import read_pairs  # noqa: E402
-from annotations.language.recognizer import Recognizer  # noqa: E402
-from annotations.language.template_chart import TemplateChart  # noqa: E402
+from annotations.language.corpus import read_pairs  # noqa: E402
+from annotations.language.forms import read_form  # noqa: E402
+from annotations.language.grammar import Grammar, Recognizer, read_productions  # noqa: E402
+from annotations.language.templates import (  # noqa: E402
+    TemplateChart,
+    generate,
+    read_generator_folder,
+)
 
 DATA = Path(os.environ.get("GPSR_SHARED_DATA", ROOT.parent / "shared" / "data"))
 T = TypeVar("T")

@@ -1,10 +1,10 @@
 """How fast parsers answer: single commands on one thread, and batches on all cores.
 
     GPSR_SHARED_DATA=… .venv/bin/python benchmarks/latency.py --parsers knn,seq2seq
-    … benchmarks/latency.py --parsers knn --saved FOLDER      # one that was saved, such as a checkpoint
+    … benchmarks/latency.py --parsers knn --saved FOLDER      # a saved parser
 
 Trains each parser on the generated and paraphrased commands of the published corpus, then parses its
-validation utterances one by one with one thread and in batches of 64 with as many as there are cores,
+validation utterances one by one on one thread, and in batches of 64 on as many threads as there are cores,
 with a beam of 5. Percentiles are over single parses, after a warm-up.
 """
 
@@ -35,11 +35,11 @@ WARM_UP = 10
 
 
 def measure(name: str, protocol: str, saved: Path | None) -> None:
-    """Trains or loads a parser and prints its line."""
+    """Train or load a parser and print its line."""
     from annotations.models import World
-    from parser_service.corpus import read_corpus
-    from parser_service.knowledge import knowledge_of
+    from parser_service.benchmarking.corpus import read_corpus
     from parser_service.parsers.registry import load_class, make_config
+    from parser_service.runs.knowledge import knowledge_of
 
     corpus, sources = read_corpus(DATA / "walker2019", "command"), ("generated", "paraphrased")
     knowledge = knowledge_of(World.objects.get(name=WORLD), protocol)
@@ -57,7 +57,7 @@ def measure(name: str, protocol: str, saved: Path | None) -> None:
 
 
 def use_threads(parser: Any, number: int) -> None:
-    """A parser may be configured to compute on some; torch is there only if a parser loaded it."""
+    """Set the threads of a parser that has a setting for them, and those of torch where it is loaded."""
     if hasattr(parser.config, "threads"):
         parser.config = replace(parser.config, threads=number)
     if torch := sys.modules.get("torch"):
@@ -70,8 +70,8 @@ def batched(utterances: Sequence[str]) -> Iterator[Sequence[str]]:
 
 
 def seconds_of(parser: Any, calls: Sequence[Sequence[str]]) -> list[float]:
-    """How long each call of ``predict`` took, after some that are not counted."""
-    from parser_service.evaluating import BEAM_WIDTH
+    """Return the seconds of each call of ``predict``, after some that are not counted."""
+    from parser_service.runs.evaluating import BEAM_WIDTH
 
     for utterances in calls[:WARM_UP]:
         parser.predict(utterances, BEAM_WIDTH)
@@ -97,10 +97,8 @@ def report(name: str, singles: Sequence[float], rate: float) -> None:
 def main() -> None:
     arguments = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     arguments.add_argument("--parsers", required=True, metavar="A,B")
-    arguments.add_argument("--protocol", help="only this one of those that a parser has")
-    arguments.add_argument(
-        "--saved", type=Path, help="the folder of a saved parser, of one protocol"
-    )
+    arguments.add_argument("--protocol", help="measure only this protocol")
+    arguments.add_argument("--saved", type=Path, help="folder of a saved parser of that protocol")
     given = arguments.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         site = Site(Path(folder) / "var")

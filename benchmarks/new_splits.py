@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import pandas as pd
 from fresh_site import DATA, WORLD, Site
 
-if TYPE_CHECKING:  # the project is importable only once a site was entered
+if TYPE_CHECKING:  # the project can be imported only after a site was entered
     from parser_service.parsers.interface import Pair, Parser
 
 SETTINGS = ("para-para", "gen+para-para")
@@ -21,8 +21,8 @@ PROTOCOL, CRITERION = "domain", "source_command"
 
 @dataclass(frozen=True, slots=True)
 class Trained:
-    """The ranker after the train pairs of a split, calibrated on its validation pairs; the forms that
-    it was shown; and the paraphrases of the two other parts."""
+    """A ranker trained on the train pairs of a split and calibrated on its validation pairs; the forms of
+    its training pairs; and the paraphrases of the two other parts."""
 
     parser: Parser
     known: frozenset[str]
@@ -30,9 +30,9 @@ class Trained:
 
 
 def table_of(about: str, splits: str, answers: Callable[[Trained], Iterator[dict]]) -> pd.DataFrame:
-    """What ``answers`` says of the ranker on each split that the command line asks for, a row each.
+    """Return the rows that ``answers`` yields for the ranker on each split that the command line names.
 
-    ``splits`` are the default. A training takes a few minutes.
+    ``splits`` is the default. A training takes a few minutes.
     """
     parser = argparse.ArgumentParser(description=about)
     parser.add_argument("--splits", default=splits, help="their numbers, separated by commas")
@@ -45,20 +45,20 @@ def table_of(about: str, splits: str, answers: Callable[[Trained], Iterator[dict
         return pd.DataFrame(
             {"split": split, **row}
             for split in map(int, given.splits.split(","))
-            for row in answers(_trained(split, given.setting))
+            for row in answers(_train(split, given.setting))
         )
 
 
-def _trained(split: int, setting: str) -> Trained:
+def _train(split: int, setting: str) -> Trained:
     from annotations.models import World
-    from parser_service.knowledge import knowledge_of
-    from parser_service.management.commands.benchmark import corpus_of
-    from parser_service.models.runs import TrainSources
+    from parser_service.benchmarking.plan import load_corpus
+    from parser_service.parsers.conditions import Setting
     from parser_service.parsers.registry import load_class, make_config
+    from parser_service.runs.knowledge import knowledge_of
 
     world = World.objects.get(name=WORLD)
-    corpus = corpus_of(DATA / "walker2019", CRITERION, split, world)
-    sources = TrainSources(setting.rpartition("-")[0]).sources
+    corpus = load_corpus(DATA / "walker2019", CRITERION, split, world)
+    sources = Setting.read(setting).train_sources.sources
     train = corpus.pairs("train", sources)
     knowledge = knowledge_of(world, PROTOCOL).limited_to(PROTOCOL)
     parser = load_class("ranker")(make_config("ranker"), 0, knowledge)

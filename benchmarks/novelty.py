@@ -1,10 +1,10 @@
-"""By how much new forms should have to fit better than known ones: accuracy by the threshold.
+"""The threshold by which new forms have to fit better than known ones: accuracy for several values.
 
     GPSR_SHARED_DATA=… .venv/bin/python benchmarks/novelty.py [--splits 1,2,4,5] [--setting para-para]
 
-Trains the ranker (domain, seed 0) on new splits by source command, a few minutes each, and asks it for the
-paraphrases of the test parts. Then moves the threshold from where it is: by so many nats a new form has to fit
-better (or, below 0, worse). By move: the share of new forms among the answers and exact match, %.
+Trains the ranker (domain, seed 0) on new splits by source command, a few minutes each, and parses the
+paraphrases of the test parts. Then raises the threshold by some nats, or lowers it (below 0). Prints for each
+change the share of new forms among the answers, and exact match, in %.
 """
 
 from __future__ import annotations
@@ -19,10 +19,11 @@ EVERY_FORM = sys.maxsize  # answers to an utterance
 
 
 def answers(trained: Trained) -> Iterator[dict[str, float]]:
-    """Every test paraphrase after every move: whether a new form is answered, and the right one."""
+    """Yield for every test paraphrase and every change whether the answer is a new form, and whether it is
+    right."""
     pairs = trained.held_out["test"]
-    found = trained.parser.predict([pair.utterance for pair in pairs], EVERY_FORM)
-    for pair, ranked in zip(pairs, found, strict=True):
+    ranked_answers = trained.parser.predict([pair.utterance for pair in pairs], EVERY_FORM)
+    for pair, ranked in zip(pairs, ranked_answers, strict=True):
         for move in MOVES:
             best = max(
                 ranked, key=lambda each: each.score - move * (each.form not in trained.known)

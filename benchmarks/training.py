@@ -1,10 +1,10 @@
-"""What training costs: seconds of the clock and peak memory, a process for each training.
+"""What training costs: wall time and peak memory, each training in a process of its own.
 
     GPSR_SHARED_DATA=… .venv/bin/python benchmarks/training.py --parsers knn,seq2seq
 
 Each parser is trained on the published corpus by ``manage.py benchmark`` on a fresh SQLite database,
-under every protocol that it has. The seconds are those of the training alone; the memory is that of the
-whole process, with reading the pairs and scoring the validation part. The bounds are for the default
+under every protocol that it supports. The seconds are those of the training alone; the memory is that of the
+whole process, which also reads the pairs and scores the validation part. The bounds are for the default
 configuration on two processor cores.
 """
 
@@ -32,10 +32,10 @@ def verdict(measured: float, bound: float) -> str:
 
 
 def measure(site: Site, cells: Path, parser: str, protocol: str, setting: str, by: str) -> bool:
-    """Trains once and prints a line; whether there was anything to measure."""
+    """Train once and print a line; return whether there was anything to measure."""
     spent = site.run(
         *("benchmark", str(DATA / "walker2019"), "--world", WORLD, "--json", str(cells)),
-        *("--parsers", parser, "--protocols", protocol, "--settings", setting, "--criteria", by),
+        *("--parsers", parser, "--protocols", protocol, "--train-test", setting, "--criteria", by),
     )
     name = f"{parser}, {protocol}, {setting} by {by}"
     if spent.status:
@@ -54,7 +54,7 @@ def measure(site: Site, cells: Path, parser: str, protocol: str, setting: str, b
 def main() -> None:
     arguments = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     arguments.add_argument("--parsers", default=",".join(PARSERS), metavar="A,B")
-    arguments.add_argument("--settings", default="gen-gen,para-para,gen+para-para", metavar="A,B")
+    arguments.add_argument("--train-test", default="gen-gen,para-para,gen+para-para", metavar="A,B")
     arguments.add_argument("--criteria", default="command", metavar="A,B")
     given = arguments.parse_args()
     try:
@@ -66,9 +66,9 @@ def main() -> None:
         site.import_world()
         measured = [
             measure(site, Path(folder) / "cells.json", name, protocol, setting, by)
-            for name, found in entries.items()
+            for name, each in entries.items()
             for protocol, setting, by in product(
-                found.protocols, given.settings.split(","), given.criteria.split(",")
+                each.protocols, given.train_test.split(","), given.criteria.split(",")
             )
         ]
     if not all(measured):

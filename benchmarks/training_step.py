@@ -1,10 +1,10 @@
-"""Where a training of the ranker spends its time: milliseconds a step, and the costliest operations.
+"""Where a training of the ranker spends its time: milliseconds per step, and the most expensive operations.
 
     GPSR_SHARED_DATA=… .venv/bin/python benchmarks/training_step.py --threads 1
 
 Trains on a third of the generated and paraphrased commands of the published corpus, under *strict*, for a
-few passes. The fastest pass counts: in the first torch makes its code, and after some the parser encodes all
-its examples. A second training goes through torch's profiler, which makes it slower.
+few passes. The fastest pass counts: the first includes compilation by torch, and some include encoding all
+examples. A second training runs under torch's profiler, which makes it slower.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ sys.path.insert(0, str(ROOT))
 
 from torch.profiler import ProfilerActivity, profile
 
-from parser_service.corpus import read_corpus
-from parser_service.neural.ranker import FormRanker
+from parser_service.benchmarking.corpus import read_corpus
+from parser_service.neural.ranker.parser import FormRanker
 from parser_service.parsers.interface import EpochReport, Observer, Pair
 from parser_service.parsers.ranker_config import RankerConfig
 
@@ -51,9 +51,9 @@ def main() -> None:
     corpus = read_corpus(DATA / "walker2019", "command")
     pairs = corpus.pairs("train", ("generated", "paraphrased"))[::3]
     batches = -(-len(pairs) // RankerConfig().batch_size)
-    found = train(pairs, PASSES * batches, threads)
+    seconds = train(pairs, PASSES * batches, threads)
     print(
-        f"{1000 * min(found) / batches:.0f} ms a step ({batches} steps a pass; threads: {threads})"
+        f"{1000 * min(seconds) / batches:.0f} ms per step ({batches} steps per pass; threads: {threads})"
     )
     with profile(activities=[ProfilerActivity.CPU]) as profiled:
         train(pairs, batches, threads)

@@ -1,43 +1,103 @@
-"""Logging in, with a limit on how often one may get it wrong."""
+"""Logging in, with limits on how often one may get it wrong."""
 
 from __future__ import annotations
 
-from django.contrib.auth.views import LoginView
-from django.core.exceptions import ValidationError
-from django.forms import Form
-from django.http import HttpRequest, HttpResponse
+import threading
+import time
+import unicodedata
 
-from annotations.rates import FAILED_LOG_INS
+from django import forms
+from django.contrib import messages
+from django.contrib.auth.forms import AuthenticationForm
+from django.contrib.auth.views import LoginView, PasswordChangeView
+from django.core.exceptions import ValidationError
+from django.http import HttpRequest, HttpResponse
+from django.urls import reverse_lazy
+
+from annotations.people.rate_limits import Rate
+
+# For one name from one address; beyond it even the right password waits.
+BY_NAME_AND_ADDRESS = Rate("log-in", limit=10, seconds=600)
+# For one address, whatever the names.
+BY_ADDRESS = Rate("log-in-address", limit=100, seconds=600)
+# For one name from all addresses. Beyond it every attempt is slow; nobody is locked out, for else
+# anybody could lock out anybody.
+BY_NAME = Rate("log-in-name", limit=50, seconds=600)
+SLOW_SECONDS = 2.0
+# Slow attempts that wait at the same time; more would hold the threads that serve everybody.
+SLOW_PLACES = threading.BoundedSemaphore(2)
 
 TOO_OFTEN = (
-    "Too many wrong attempts for this name from this address. "
-    f"Try again in {FAILED_LOG_INS.seconds // 60} minutes."
+    "Too many wrong attempts from this address. "
+    f"Try again in {BY_NAME_AND_ADDRESS.seconds // 60} minutes."
 )
+TOO_MANY_AT_ONCE = "Too many attempts for this name just now. Try again in a few seconds."
+
+
+class LogInForm(AuthenticationForm):
+    """Name and password, of a length that is cheap to hash."""
+
+    password = forms.CharField(strip=False, max_length=1000, widget=forms.PasswordInput)
 
 
 class LogIn(LoginView):
-    """The log-in page. Failures count per address and name; above the limit even the right password waits."""
+    """The one page for logging in; Django's admin leads here, too."""
 
     redirect_authenticated_user = True
+    authentication_form = LogInForm
 
     def post(self, request: HttpRequest, *args: object, **kwargs: object) -> HttpResponse:
-        if not FAILED_LOG_INS.is_spent(self.key):
-            return super().post(request, *args, **kwargs)
-        form = self.get_form()
-        form.full_clean()
-        form.errors.clear()
-        form.add_error(None, ValidationError(TOO_OFTEN))
-        return self.render_to_response(self.get_context_data(form=form), status=429)
+        """Take a place under each limit before the password is looked at; a success returns them."""
+        address = str(request.META["REMOTE_ADDR"])
+        name = normalize_name(request.POST.get("username", ""))
+        self.key = f"{address} {name}"
+        places = BY_ADDRESS.take(address), BY_NAME_AND_ADDRESS.take(self.key)
+        if None in places:
+            return self.refuse(TOO_OFTEN, BY_NAME_AND_ADDRESS.seconds)
+        self.address_place = places[0]
+        if BY_NAME.take(name) is None and not wait_slowly():
+            return self.refuse(TOO_MANY_AT_ONCE, int(SLOW_SECONDS) * 2)
+        return super().post(request, *args, **kwargs)
 
-    def form_valid(self, form: Form) -> HttpResponse:
-        FAILED_LOG_INS.forget(self.key)
+    def refuse(self, sentence: str, seconds: int) -> HttpResponse:
+        form = self.get_form()
+        form.full_clean = lambda: None  # the password is not looked at
+        form.cleaned_data = {}
+        form._errors = forms.utils.ErrorDict()
+        form.add_error(None, ValidationError(sentence))
+        context = self.get_context_data(form=form)
+        headers = {"Retry-After": str(seconds)}
+        return self.render_to_response(context, status=429, headers=headers)
+
+    def form_valid(self, form: forms.Form) -> HttpResponse:
+        BY_NAME_AND_ADDRESS.forget(self.key)
+        BY_ADDRESS.give_back(self.address_place)
         return super().form_valid(form)
 
-    def form_invalid(self, form: Form) -> HttpResponse:
-        FAILED_LOG_INS.count(self.key)
-        return super().form_invalid(form)
 
-    @property
-    def key(self) -> str:
-        name = self.request.POST.get("username", "").strip().lower()
-        return f"{self.request.META['REMOTE_ADDR']} {name}"
+class ChangePassword(PasswordChangeView):
+    """Whoever is logged in changes their own password, and stays logged in here but nowhere else."""
+
+    template_name = "registration/password.html"
+    success_url = reverse_lazy("home")
+
+    def form_valid(self, form: forms.Form) -> HttpResponse:
+        response = super().form_valid(form)
+        messages.success(self.request, "Your password was changed.")
+        return response
+
+
+def normalize_name(name: str) -> str:
+    """Return ``name`` as Django looks it up (NFKC), and without regard to case."""
+    return unicodedata.normalize("NFKC", name[:1000]).strip().casefold()
+
+
+def wait_slowly() -> bool:
+    """Wait before an attempt on a name that many try; False where others wait already."""
+    if not SLOW_PLACES.acquire(blocking=False):
+        return False
+    try:
+        time.sleep(SLOW_SECONDS)
+    finally:
+        SLOW_PLACES.release()
+    return True

@@ -2,6 +2,6 @@ from django.apps import AppConfig
 
 
 class SiteConfig(AppConfig):
-    """The house around both apps: home, rail, banner, and the command that starts it all."""
+    """The site around both apps: home, rail, banner, and the command that starts it all."""
 
     name = "gpsr_site"

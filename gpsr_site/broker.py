@@ -24,7 +24,7 @@ class Channel(filesystem.Channel):
     """A folder of messages, oldest first by name."""
 
     def _get(self, queue: str) -> Any:
-        """Takes the oldest message of ``queue``: whoever renames it first has it. Raises Empty."""
+        """Take the oldest message of ``queue``: whoever renames it first has it. Raises Empty."""
         for path in sorted(Path(self.data_folder_in).glob(f"*.{queue}.msg")):
             taken = path.with_suffix(".reading")
             try:
@@ -37,7 +37,7 @@ class Channel(filesystem.Channel):
         raise Empty
 
     def _put(self, queue: str, payload: Any, **kwargs: Any) -> None:
-        """Puts ``payload`` onto ``queue``. Raises ChannelError where the folder takes no file."""
+        """Put ``payload`` onto ``queue``. Raises ChannelError where the folder cannot be written."""
         folder = Path(self.data_folder_out)
         name = f"{time.time_ns():020}_{uuid.uuid4()}"
         unfinished = folder / f"{name}.writing"
@@ -49,6 +49,6 @@ class Channel(filesystem.Channel):
 
 
 class Transport(filesystem.Transport):
-    """What ``CELERY_BROKER_TRANSPORT`` names for the filesystem broker."""
+    """The filesystem transport, named by ``CELERY_BROKER_TRANSPORT``."""
 
     Channel = Channel

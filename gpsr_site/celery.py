@@ -1,4 +1,4 @@
-"""The Celery application: one process for one run, and the timer in the worker's parent."""
+"""The Celery application: one process for one piece of work, and the timer in the worker's parent."""
 
 from __future__ import annotations
 
@@ -18,7 +18,9 @@ app.conf.update(
     worker_max_tasks_per_child=1,
     worker_enable_remote_control=False,
     worker_hijack_root_logger=False,
+    broker_connection_retry=True,
     broker_connection_retry_on_startup=True,
+    broker_connection_max_retries=None,  # for ever: a worker never ends because the broker is away
 )
 app.autodiscover_tasks(["parser_service"], related_name="worker")
-app.steps["worker"].add("parser_service.worker:Service")
+app.steps["worker"].add("parser_service.runs.worker:Service")

@@ -1,4 +1,4 @@
-"""The pages that look at both apps: the list of worlds, the home of one, banner and health."""
+"""The pages that look at both apps: the list of worlds, the overview of one, banner and health."""
 
 from __future__ import annotations
 
@@ -9,28 +9,46 @@ from django.shortcuts import render
 from django.views.decorators.cache import never_cache
 from django.views.decorators.http import require_safe
 
-from annotations.access import world_view
-from annotations.models import Duty, World
-from gpsr_site.counts import counts_of, counts_of_all
-from gpsr_site.flow import next_steps, stages
+from annotations.models import Duty, TaskCategory, World
+from annotations.people.access import world_view
+from gpsr_site.overview.best_runs import best_runs
+from gpsr_site.overview.counts import counts_of, counts_of_all
+from gpsr_site.overview.first_steps import first_steps
+from gpsr_site.overview.flow import stages
+from gpsr_site.overview.work_list import WorkList
+from gpsr_site.workers import workers_now
+
+MOST_SHOWN = 3  # things that wait, for each world of the list
+MOST_JOBS = 5  # in the work list; the page of jobs has them all
 
 
 @require_safe
 def home(request: HttpRequest) -> HttpResponse:
-    """The worlds that one may see."""
+    """The worlds that the reader may see, with what waits in each."""
     worlds = World.objects.visible_to(request.user)
     counts = counts_of_all(worlds)
-    listed = [(world, counts[world.pk]) for world in worlds]
+    duties = worlds.duties_by_world(request.user)
+    workers = workers_now()
+    listed = []
+    for world in worlds:
+        work = WorkList(world, counts[world.pk], duties[world.pk], workers)
+        listed.append((world, counts[world.pk], work.items[:MOST_SHOWN]))
     return render(request, "gpsr_site/home.html", {"listed": listed})
 
 
 @world_view(Duty.VIEW)
 def world(request: HttpRequest, world: World) -> HttpResponse:
-    """The flow of one world with its counts, and what to do next."""
-    counts = counts_of(world)
+    """What there is in a world, what waits, and how well its parsers do."""
+    counts = request.counts = counts_of(world)  # the rail takes them from there
+    best = best_runs(world)
+    jobs = world.jobs.needing_attention()[:MOST_JOBS]
+    work = WorkList(world, counts, request.duties, workers_now(), best, jobs)
     context = {
         "stages": stages(counts),
-        "steps": next_steps(counts, request.duties),
+        "work_groups": work.groups,
+        "first_steps": first_steps(counts, request.duties),
+        "coverage": TaskCategory.objects.filter(grammar__world=world),
+        "best": best,
         "recent_runs": world.runs.for_table()[:6],
     }
     return render(request, "gpsr_site/world.html", context)

@@ -1,25 +1,31 @@
-"""Runs the web server and the worker side by side, and stops them together."""
+"""Runs the web server and the workers side by side, and stops them together."""
 
 from __future__ import annotations
 
 import contextlib
+import ctypes
 import os
 import signal
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from types import FrameType
 
 # A worker stops within 5 s of being asked (DESIGN §6); whoever is later than this is killed.
 PATIENCE_SECONDS = 7.0
 RESTART_PAUSE_SECONDS = 3.0
+# Linux tells a child of its parent's end, also of a SIGKILL. (Loaded now: between fork and exec little is safe.)
+LIBC = ctypes.CDLL(None) if sys.platform == "linux" else None
+PR_SET_PDEATHSIG = 1
 
 
 class Supervisor:
     """Child processes by name, each in a process group of its own.
 
-    A child that ends is started again after a pause; ``SIGINT`` or ``SIGTERM`` ends them all.
+    A child that ends is started again after a pause; ``SIGINT`` or ``SIGTERM`` ends them all. Where this
+    process is killed, Linux ends them.
     """
 
     def __init__(self, commands: Mapping[str, Sequence[str]], say: Callable[[str], object]) -> None:
@@ -55,7 +61,11 @@ class Supervisor:
             child.wait()
 
     def _start_child(self, name: str) -> None:
-        self.children[name] = subprocess.Popen(self.commands[name], start_new_session=True)
+        self.children[name] = subprocess.Popen(
+            self.commands[name],
+            start_new_session=True,
+            preexec_fn=partial(_end_with_parent, os.getpid()) if LIBC else None,
+        )
 
     def _restart_the_ended(self) -> None:
         for name, child in list(self.children.items()):
@@ -74,21 +84,24 @@ class Supervisor:
         self.is_stopping = True
 
 
+def _end_with_parent(parent: int) -> None:
+    """Ask Linux for a SIGTERM when ``parent`` ends. Called in the new child."""
+    LIBC.prctl(PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
+    if os.getppid() != parent:
+        os._exit(1)
+
+
 def _kill_group(process_group: int) -> None:
     """End what is left of a child's process group; an empty group is fine."""
     with contextlib.suppress(ProcessLookupError, PermissionError):
         os.killpg(process_group, signal.SIGKILL)
 
 
-def web_server_command(host: str, port: int) -> list[str]:
-    """gunicorn with one process and threads: pages are short, SQLite has one writer."""
-    return [
-        *(sys.executable, "-m", "gunicorn", "gpsr_site.wsgi:application"),
-        *("--bind", f"{host}:{port}"),
-        *("--worker-class", "gthread", "--workers", "1", "--threads", "8"),
-        *("--graceful-timeout", "3", "--timeout", "60", "--log-level", "warning"),
-    ]
+def web_server_command() -> list[str]:
+    """One process with threads (gpsr_site.web.server): pages are short, SQLite has one writer."""
+    return [sys.executable, "manage.py", "serve"]
 
 
-def worker_command() -> list[str]:
-    return [sys.executable, "manage.py", "work", "--queue", "cpu"]
+def worker_command(*queues: str) -> list[str]:
+    """Return the command of a worker that serves ``queues``."""
+    return [sys.executable, "manage.py", "work", "--queue", *queues]

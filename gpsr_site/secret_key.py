@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def read_or_make_secret_key(path: Path) -> str:
-    """The key in ``path``; where there is none, a new one is written there with mode 0600."""
+    """Return the key in ``path``. If the file does not exist, write a new key to it with mode 0600."""
     try:
         descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     except FileExistsError:

@@ -4,20 +4,37 @@ from django.contrib import admin
 from django.contrib.auth.views import LogoutView
 from django.urls import include, path
 
-from annotations.views.worlds import world_new
+from annotations.views.editing import comments
+from annotations.views.worlds import jobs
+from annotations.views.worlds.worlds import world_import, world_new
 from gpsr_site import pages
-from gpsr_site.accounts import LogIn
+from gpsr_site.accounts import ChangePassword, LogIn
+from gpsr_site.search import search
 
 urlpatterns = [
     path("", pages.home, name="home"),
     path("login/", LogIn.as_view(), name="login"),
     path("logout/", LogoutView.as_view(), name="logout"),
+    path("password/", ChangePassword.as_view(), name="password"),
     path("banner/", pages.banner, name="banner"),
     path("healthz", pages.healthz, name="healthz"),
     path("worlds/new/", world_new, name="world_new"),
+    path("worlds/import/", world_import, name="world_import"),
+    path("inbox/", comments.inbox, name="inbox"),
+    path("inbox/<int:pk>/", comments.notice_open, name="notice_open"),
+    path("jobs/<int:pk>/", jobs.job, name="job"),
+    path("jobs/<int:pk>/state/", jobs.job_state, name="job_state"),
+    path("jobs/<int:pk>/cancel/", jobs.job_cancel, name="job_cancel"),
+    path("jobs/<int:pk>/answer/", jobs.job_answer, name="job_answer"),
     path("w/<slug:world>/", pages.world, name="world"),
+    path("w/<slug:world>/search/", search, name="search"),
     path("w/<slug:world>/", include("annotations.urls")),
     path("w/<slug:world>/", include("parser_service.urls")),
     path("api/v1/", include("annotations.api.urls")),
     path("admin/", admin.site.urls),
 ]
+
+handler400 = "gpsr_site.web.errors.bad_request"
+handler403 = "gpsr_site.web.errors.permission_denied"
+handler404 = "gpsr_site.web.errors.not_found"
+handler500 = "gpsr_site.web.errors.server_error"

@@ -1,48 +1,86 @@
-"""Whether anybody trains: what the top bar and the banner of every page say."""
+"""The state of the workers, as the top bar and the banner of every page show it."""
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Mapping, Set
 from dataclasses import dataclass
 
-from parser_service.models import TrainingRun, Worker
+from django.db.models import Count
+
+from annotations.background import kinds
+from annotations.models.background import Queue, Status
+from parser_service.models import Worker
+from parser_service.parsers.registry import PARSERS
+
+# Each of them needs a living worker, whether or not something waits there.
+NEEDED = frozenset({Queue.QUICK, *(Queue(entry.queue) for entry in PARSERS.values())})
+TAKEN_BY = {Queue.CPU: "training worker", Queue.GPU: "GPU worker", Queue.QUICK: "quick worker"}
 
 
 @dataclass(frozen=True, slots=True)
 class Workers:
-    """How many workers are alive, and the runs that they have and that wait, over all worlds."""
+    """The queues that living workers serve, and the work that runs and that waits (by queue), over all
+    worlds; ``noun`` is what to call it."""
 
-    alive: int
+    served: Set[str]
     running: int
-    queued: int
+    waiting: Mapping[str, int]
+    noun: str
+
+    @property
+    def missing(self) -> list[str]:
+        """The queues that no living worker serves although one should."""
+        wanted = NEEDED | {queue for queue, count in self.waiting.items() if count}
+        return [queue for queue in TAKEN_BY if queue in wanted - self.served]
 
     @property
     def is_alive(self) -> bool:
-        return self.alive > 0
+        return not self.missing
+
+    @property
+    def _missing_worker(self) -> str:
+        return TAKEN_BY[self.missing[0]] if self.served else "worker"
 
     @property
     def summary(self) -> str:
         """The state in two or three words, for the top bar."""
-        waiting = f", {self.queued} waiting" if self.queued else ""
-        if not self.alive:
-            return f"No worker{waiting}"
-        return f"{self.running} training{waiting}" if self.running else f"Worker idle{waiting}"
+        queued = sum(self.waiting.values())
+        waiting = f", {queued} waiting" if queued else ""
+        if self.missing:
+            return f"No {self._missing_worker}{waiting}"
+        return f"{self.running} running{waiting}" if self.running else f"Worker idle{waiting}"
+
+    @property
+    def headline(self) -> str:
+        """Which worker is missing, for the banner; empty where all is well."""
+        return f"No {self._missing_worker} is running." if self.missing else ""
 
     @property
     def sentence(self) -> str:
-        """What is wrong, for the banner; empty where all is well."""
-        waiting = self.queued + self.running
-        if self.alive:
+        """How much work waits for the missing worker; empty where all is well."""
+        if not self.missing:
             return ""
+        waiting = sum(self.waiting.get(queue, 0) for queue in self.missing)
+        if not self.served:
+            waiting += self.running
         if not waiting:
             return "A run that is started now would wait."
-        return f"{waiting} {'run waits' if waiting == 1 else 'runs wait'} for one."
+        return f"{waiting} {self.noun}{' waits' if waiting == 1 else 's wait'} for one."
 
 
 def workers_now() -> Workers:
-    """The state now: one count of workers and two of runs."""
-    runs = TrainingRun.objects
+    """Return the state now: one query for the workers and one per kind of work."""
+    counts: Counter[tuple[str, str]] = Counter()
+    nouns = set()
+    for kind in kinds():
+        rows = kind.model.objects.active().order_by().values_list("status", "queue")
+        for status, queue, count in rows.annotate(count=Count("pk")):
+            counts[status, queue] += count
+            nouns.add(kind.model.noun)
     return Workers(
-        alive=Worker.objects.alive().count(),
-        running=runs.running().count(),
-        queued=runs.queued().count(),
+        served={queue for worker in Worker.objects.alive() for queue in worker.queues},
+        running=sum(count for (status, _), count in counts.items() if status == Status.RUNNING),
+        waiting={queue: n for (status, queue), n in counts.items() if status == Status.QUEUED},
+        noun=nouns.pop() if len(nouns) == 1 else "job",
     )

@@ -10,4 +10,15 @@ class ParserServiceConfig(AppConfig):
     name = "parser_service"
 
     def ready(self) -> None:
-        keep_encoders_in(settings.ENCODERS_DIR, settings.VAR_DIR / "vectors")
+        from annotations.background import register
+        from annotations.jobs.kinds import register_verb
+        from annotations.models import JobKind
+        from annotations.splits.stale import register_results
+        from parser_service.models import TrainingRun
+
+        register(TrainingRun, "parser_service.runs.training.train")
+        register_verb(JobKind.PROPOSE, "parser_service.candidates.proposing.propose")
+        register_results("run", lambda keys: TrainingRun.objects.filter(split__in=keys).count())
+        keep_encoders_in(
+            settings.ENCODERS_DIR, settings.VAR_DIR / "vectors", settings.ENCODER_PACKAGES
+        )

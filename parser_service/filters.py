@@ -6,17 +6,11 @@ from decimal import Decimal
 
 import django_filters
 from django import forms
-from django.db.models import QuerySet
+from django.db.models import Q, QuerySet
 from django.http import HttpRequest
 
-from annotations.filters import (
-    Choices,
-    Head,
-    PageFilters,
-    Search,
-    predicate_choices,
-    task_category_choices,
-)
+from annotations.lists.choices import Choices, predicate_choices, task_category_choices
+from annotations.lists.filtering import Head, PageFilters, Search
 from annotations.models import Split
 from annotations.models.splits import part_choices, source_choices
 from parser_service.models import Prediction, TrainingRun
@@ -42,10 +36,31 @@ def split_choices(request: HttpRequest) -> Choices:
     return [(name, name) for name in names]
 
 
+class RunSearch(Search):
+    """A run by its number, by its parser (registry name or title) or by its split."""
+
+    def __init__(self) -> None:
+        super().__init__("parser", "split__name")
+
+    def filter(self, rows: QuerySet[TrainingRun], value: str) -> QuerySet[TrainingRun]:
+        words = value.casefold()
+        titled = [name for name, title in parser_choices() if words in title.casefold()]
+        number = words.removeprefix("run").strip()
+        by_number = Q(pk=number) if number.isdecimal() and len(number) < 19 else Q()
+        condition = self.condition(value) | Q(parser__in=titled) | by_number
+        return rows.filter(condition) if value else rows
+
+
 class RunFilters(PageFilters):
+    q = RunSearch()
     status = django_filters.ChoiceFilter(label="Status", choices=status_choices)
     parser = django_filters.ChoiceFilter(label="Parser", choices=parser_choices)
     split = django_filters.ChoiceFilter("split__name", label="Split")
+    since = django_filters.ChoiceFilter(
+        label="Same parser and split",
+        choices=[("yes", "succeeded since"), ("no", "not succeeded since")],
+        method="by_success_since",
+    )
     seeds_of = django_filters.NumberFilter(
         label="Seeds of run", method="by_seeds_of", widget=forms.HiddenInput
     )
@@ -54,6 +69,11 @@ class RunFilters(PageFilters):
     class Meta:
         model = TrainingRun
         fields: list[str] = []
+
+    def by_success_since(
+        self, rows: TrainingRunQuerySet, name: str, value: str
+    ) -> TrainingRunQuerySet:
+        return rows.succeeded_since() if value == "yes" else rows.not_succeeded_since()
 
     def by_seeds_of(
         self, rows: TrainingRunQuerySet, name: str, value: Decimal

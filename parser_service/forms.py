@@ -7,18 +7,25 @@ from typing import Any
 from django import forms
 
 from annotations.models import World
-from parser_service.models.runs import TrainSources
+from parser_service.parsers.conditions import Protocol, TrainSources
 from parser_service.parsers.config_fields import ConfigField
 from parser_service.parsers.registry import config_fields, entry, make_config
 from parser_service.parsers.weight_files import missing_weights
-from parser_service.requesting import LARGEST_SEED, MOST_SEEDS, seeds_from
+from parser_service.runs.requesting import LARGEST_SEED, MOST_SEEDS, seeds_from
 
 SOURCE_LABELS = {
     TrainSources.GENERATED: "generated",
     TrainSources.PARAPHRASED: "paraphrased",
     TrainSources.BOTH: "generated and paraphrased",
 }
+PROTOCOL_LABELS = {
+    Protocol.STRICT: "strict: training pairs only",
+    Protocol.DOMAIN: "domain: also predicates and ontology",
+    Protocol.GRAMMAR: "grammar: also the annotated grammar",
+}
+GENERAL = ("split", "train_sources", "protocol", "seed", "seeds")  # the fields of every parser
 PREFIX = "config-"  # before the names of hyperparameters
+LABELS = {"least_overlap": "Minimum overlap"}  # of hyperparameters whose name says less
 
 
 class RunForm(forms.Form):
@@ -27,20 +34,22 @@ class RunForm(forms.Form):
 
     split = forms.ModelChoiceField(queryset=None, empty_label=None)
     train_sources = forms.ChoiceField(label="Train on", choices=list(SOURCE_LABELS.items()))
-    protocol = forms.ChoiceField(help_text="What training may know beside its pairs.")
+    protocol = forms.ChoiceField(help_text="What training may know besides its pairs.")
     seed = forms.IntegerField(min_value=0, max_value=LARGEST_SEED, initial=0)
     seeds = forms.IntegerField(
         min_value=1,
         max_value=MOST_SEEDS,
         initial=1,
-        help_text="How many runs, one a seed from this seed up. Results show mean and spread.",
+        help_text="One run per seed, counting up. Results show mean and spread.",
     )
 
     def __init__(self, world: World, parser: str, *args: Any, **kwargs: Any):
         super().__init__(*args, **kwargs)
         self.parser = parser
         self.fields["split"].queryset = world.splits.all()
-        self.fields["protocol"].choices = [(name, name) for name in entry(parser).protocols]
+        self.fields["protocol"].choices = [
+            (name, PROTOCOL_LABELS[Protocol(name)]) for name in entry(parser).protocols
+        ]
         self.fields["protocol"].initial = entry(parser).protocols[0]
         self.fields["train_sources"].initial = TrainSources.GENERATED
         for declared in config_fields(parser):
@@ -49,11 +58,25 @@ class RunForm(forms.Form):
     @property
     def general(self) -> list[forms.BoundField]:
         """The fields that every parser has."""
-        return [self[name] for name in ("split", "train_sources", "protocol", "seed", "seeds")]
+        return [self[name] for name in GENERAL]
 
     @property
     def hyperparameters(self) -> list[forms.BoundField]:
         return [self[name] for name in self.fields if name.startswith(PREFIX)]
+
+    @property
+    def changed(self) -> list[str]:
+        """The labels of the hyperparameters that are not at their default as the form stands."""
+        declared = {PREFIX + each.name: each for each in config_fields(self.parser)}
+        return [
+            str(field.label)
+            for field in self.hyperparameters
+            if str(field.value() or "") != str(declared[field.name].default or "")
+        ]
+
+    @property
+    def has_faulty_hyperparameter(self) -> bool:
+        return any(name.startswith(PREFIX) for name in self.errors)
 
     @property
     def missing(self) -> str | None:
@@ -64,7 +87,7 @@ class RunForm(forms.Form):
             if each.type is str and not each.choices
             if (named := str(self[PREFIX + each.name].value() or "").strip())
         }
-        return missing_weights(make_config(self.parser, names))
+        return missing_weights(make_config(self.parser, names), anywhere=False)
 
     def clean(self) -> dict[str, Any]:
         cleaned = super().clean()
@@ -85,8 +108,8 @@ class RunForm(forms.Form):
             self.add_error("seeds", str(error))
 
     def _check_config(self) -> None:
-        """The parser has the last word on its hyperparameters. A sentence that opens with the name of
-        one, as they usually do, stands beside its field."""
+        """Let the parser check its hyperparameters; a complaint that begins with the name of one is shown
+        beside its field."""
         try:
             make_config(self.parser, self.config)
         except ValueError as error:
@@ -94,12 +117,21 @@ class RunForm(forms.Form):
             self.add_error(field if field in self.fields else None, str(error))
 
 
+def say_default(declared: ConfigField) -> str:
+    """The default of a hyperparameter as a sentence, such as ``Default 0.1.``"""
+    if declared.type is bool:
+        return f"Default {'on' if declared.default else 'off'}."
+    if declared.type is float:
+        return f"Default {declared.default:g}."
+    return f"Default {declared.default}." if declared.default != "" else "Default: none."
+
+
 def field_for(declared: ConfigField) -> forms.Field:
     """A form field for one hyperparameter, with its default and its bounds."""
     common = {
-        "label": declared.name.replace("_", " "),
+        "label": LABELS.get(declared.name, declared.name.replace("_", " ").capitalize()),
         "initial": declared.default,
-        "help_text": declared.description,
+        "help_text": f"{declared.description} {say_default(declared)}",
     }
     if declared.type is bool:
         return forms.BooleanField(required=False, **common)

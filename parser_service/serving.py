@@ -1,25 +1,26 @@
-"""Answers an utterance with a trained parser. Loads torch where the parser needs it."""
+"""Answer an utterance with a trained parser. Loads torch where the parser needs it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
-from annotations.language.anonymizer import Anonymized, Anonymizer
-from annotations.language.deanonymizer import deanonymize
 from annotations.language.errors import LanguageError
-from annotations.language.logic import Form, read_form, to_corpus, to_reading
+from annotations.language.forms import CLASS_TOKEN, Form, read_form, to_corpus, to_reading
+from annotations.language.grounding import Anonymized, Anonymizer, Deanonymized, deanonymize
 from annotations.language.ontology import Ontology
 from annotations.language.predicates import Predicate, gloss
+from annotations.language.symbols import ENTITY_CLASSES
 from annotations.models import World
-from annotations.reading import ontology_of, predicates_of
-from parser_service.checkpoints import model_folder
-from parser_service.knowledge import knowledge_of
+from annotations.models.background import Status
+from annotations.rows.from_rows import ontology_of, predicates_of
 from parser_service.models import Evaluation, TrainingRun
-from parser_service.models.runs import Status, TrainSources
+from parser_service.parsers.conditions import TrainSources
 from parser_service.parsers.interface import Candidate, Parser
 from parser_service.parsers.registry import load_class
+from parser_service.runs.checkpoints import model_folder
+from parser_service.runs.knowledge import knowledge_of
 
 LOADED_PARSERS = 2
 # What a person says is what counts; of runs that were never tested on it, the next best.
@@ -28,8 +29,9 @@ EVIDENCE = ("para", "mixed", "gen")
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """One candidate. ``grounded`` names the entities of the utterance where that is certain; the
-    texts but ``form`` and ``score`` are empty where the parser wrote no well-formed form."""
+    """One candidate. ``grounded`` names the entities of the utterance where that is certain, and
+    ``remarks`` say why where it is not; the texts but ``form`` and ``score`` are empty where the
+    parser wrote no well-formed form."""
 
     form: str
     score: float
@@ -37,19 +39,22 @@ class Answer:
     grounded: str = ""
     reading: str = ""
     gloss: str = ""
+    remarks: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Parse:
-    """What became of an utterance. ``parsed_text`` is what the parser was given."""
+    """The answers to an utterance. ``parsed_text`` is what the parser was given; ``remarks`` say what
+    of it the world does not know."""
 
     utterance: str
     parsed_text: str
     answers: tuple[Answer, ...]
+    remarks: tuple[str, ...] = ()
 
 
 def best_run(world: World) -> TrainingRun:
-    """The succeeded run of ``world`` that is most often right on validation paraphrases.
+    """Return the succeeded run of ``world`` that is most often right on validation paraphrases.
 
     Of equally good ones the newest; where nothing was tested on paraphrases, generated commands
     decide. Raises ValueError, a sentence, where no run has succeeded.
@@ -65,7 +70,7 @@ def best_run(world: World) -> TrainingRun:
 
 
 def parse(run: TrainingRun, utterance: str, beam_width: int = 5) -> Parse:
-    """The answers of ``run`` to ``utterance``, best first. Raises ValueError where it cannot answer.
+    """Return the answers of ``run`` to ``utterance``, best first. Raises ValueError where it cannot answer.
 
     A parser that was trained on generated commands alone has only ever seen class tokens, so it is
     given the utterance with its entities replaced.
@@ -75,13 +80,13 @@ def parse(run: TrainingRun, utterance: str, beam_width: int = 5) -> Parse:
     anonymized = Anonymizer(ontology).anonymize(utterance)
     is_anonymous = run.train_sources == TrainSources.GENERATED
     text = anonymized.command if is_anonymous else utterance
-    found: Sequence[Candidate] = parser.predict([text], beam_width)[0]
-    answers = (_answer(each, anonymized, ontology, predicates) for each in found)
-    return Parse(utterance, text, tuple(answers))
+    candidates = parser.predict([text], beam_width)[0]
+    answers = (_answer(each, anonymized, ontology, predicates) for each in candidates)
+    return Parse(utterance, text, tuple(answers), tuple(_unknown_tokens(utterance, ontology)))
 
 
 def load_parser(run: TrainingRun) -> Parser:
-    """The saved parser of a succeeded run; the last few stay loaded. Raises ValueError."""
+    """Load the saved parser of a succeeded run; the last few stay loaded. Raises ValueError."""
     if run.status != Status.SUCCEEDED:
         raise ValueError(f"Run {run.pk} is {run.status}, so there is no parser to ask.")
     return _load(run.pk)
@@ -108,7 +113,8 @@ def _answer(
         form: Form = read_form(candidate.form)
     except LanguageError:
         return Answer(candidate.form, candidate.score)
-    grounded = deanonymize(form, anonymized, ontology).form
+    deanonymized = deanonymize(form, anonymized, ontology)
+    grounded = deanonymized.form
     return Answer(
         form=candidate.form,
         score=candidate.score,
@@ -116,4 +122,27 @@ def _answer(
         grounded=to_corpus(grounded),
         reading=to_reading(grounded),
         gloss=gloss(grounded, predicates),
+        remarks=tuple(dict.fromkeys(_open_slots(deanonymized, ontology))),
     )
+
+
+def _unknown_tokens(utterance: str, ontology: Ontology) -> Iterator[str]:
+    """Yield a sentence for each class token of ``utterance`` that stands for nothing in the world."""
+    for token in dict.fromkeys(CLASS_TOKEN.findall(utterance)):
+        entity_class = token.rstrip("0123456789")
+        if entity_class not in ENTITY_CLASSES:
+            known = ", ".join(f"<{name}>" for name in ENTITY_CLASSES)
+            yield f"<{token}> is not a class of entities. There are: {known}."
+        elif not ontology.of_class(entity_class):
+            yield f"<{token}>: this world has no entity of the class {entity_class}."
+
+
+def _open_slots(deanonymized: Deanonymized, ontology: Ontology) -> Iterator[str]:
+    """Yield a sentence for each slot of an answer that no entity fills with certainty."""
+    for slot in deanonymized.open_slots:
+        if slot.is_ambiguous:
+            yield f"{slot.token} stays open: it may be {' or '.join(slot.candidates)}."
+        elif slot.entity_class and not ontology.of_class(slot.entity_class):
+            yield f"{slot.token} stays open: this world has no entity of the class {slot.entity_class}."
+        elif slot.entity_class:
+            yield f"{slot.token} stays open: the utterance names no {slot.entity_class} of this world."

@@ -1,4 +1,4 @@
-"""Fixtures that any test may ask for: the real files, a world, and people with roles in it."""
+"""Fixtures that any test may ask for: the real files, worlds, people with roles, their browsers."""
 
 from __future__ import annotations
 
@@ -6,14 +6,25 @@ import os
 import signal
 from pathlib import Path
 
+import hypothesis
 import pytest
 from django.conf import settings as site
+from django.core.cache import cache
 from django.db import connection
+from django.test import Client
+from hypothesis import HealthCheck
 
 from annotations.models import Membership, User, World
 from annotations.models.worlds import Role
+from tests.sample_world import SampleWorld, fill_world
 
 ROOT = Path(__file__).resolve().parent.parent
+
+# The same examples in every run, however slow the machine; --hypothesis-profile=search looks for others.
+STEADY = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
+hypothesis.settings.register_profile("steady", max_examples=60, derandomize=True, **STEADY)
+hypothesis.settings.register_profile("search", max_examples=2_000, **STEADY)
+hypothesis.settings.load_profile("steady")
 
 
 def pytest_configure() -> None:
@@ -40,6 +51,15 @@ def quick_and_plain(settings):
         "staticfiles": {"BACKEND": "django.contrib.staticfiles.storage.StaticFilesStorage"},
     }
     settings.PASSWORD_HASHERS = ["django.contrib.auth.hashers.MD5PasswordHasher"]
+    settings.REQUEST_SECONDS = 600  # for a page that a busy machine is slow to make
+
+
+@pytest.fixture(autouse=True)
+def no_earlier_attempts(request):
+    """What is counted in the shared cache is rolled back with the test; but for committed data."""
+    if "transactional_db" in request.fixturenames:
+        request.getfixturevalue("transactional_db")
+        cache.clear()
 
 
 @pytest.fixture(scope="session")
@@ -65,9 +85,20 @@ def world(db) -> World:
 
 
 @pytest.fixture
+def sample(world) -> SampleWorld:
+    """``world`` with something of every kind in it."""
+    return fill_world(world)
+
+
+@pytest.fixture
 def other_world(db) -> World:
     """A world in which only ``stranger`` has a role."""
     return World.objects.create(name="laboratory")
+
+
+@pytest.fixture
+def other_sample(other_world) -> SampleWorld:
+    return fill_world(other_world)
 
 
 def member(world: World, name: str, role: Role) -> User:
@@ -96,6 +127,30 @@ def admin(world) -> User:
 def stranger(other_world) -> User:
     """An admin of ``other_world``, who is nobody in ``world``."""
     return member(other_world, "stina", Role.ADMIN)
+
+
+@pytest.fixture
+def anna(annotator) -> Client:
+    """A browser in which the annotator is logged in."""
+    return client_of(annotator)
+
+
+@pytest.fixture
+def rene(reviewer) -> Client:
+    """A browser in which the reviewer is logged in."""
+    return client_of(reviewer)
+
+
+@pytest.fixture
+def adam(admin) -> Client:
+    """A browser in which the admin is logged in."""
+    return client_of(admin)
+
+
+def client_of(user: User) -> Client:
+    client = Client()
+    client.force_login(user)
+    return client
 
 
 @pytest.fixture

@@ -30,6 +30,22 @@ THEIR_OWN = (
     "parser_service.analysis",
 )
 
+# The rooms of a package in the order of their imports: each may import only from rooms before it.
+ROOMS = {
+    "annotations/language": (
+        "errors", "limits", "decoding", "english", "symbols", "forms", "grammar", "ontology", "predicates", "templates",
+        "writing", "suggesting", "grounding", "renaming", "corpus", "agreement", "auditing",
+    ),
+    "parser_service/neural": (
+        "device", "weights", "pretrained", "training", "word_vectors", "sentence_encoder", "seq2seq",
+        "ranker",
+    ),
+    "parser_service": (
+        "parsers", "neural", "analysis", "models", "runs", "serving", "results", "benchmarking", "audit",
+    ),
+}  # fmt: skip
+MOST_MODULES, MOST_FILES = 3, 15
+
 
 def imports_of(path: Path) -> set[str]:
     """The dotted names that a module imports, anywhere in it."""
@@ -39,7 +55,17 @@ def imports_of(path: Path) -> set[str]:
             found.update(alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
             found.add(node.module)
+            found.update(
+                f"{node.module}.{alias.name}" for alias in node.names if _is_ours(node, alias)
+            )
     return found
+
+
+def _is_ours(node: ast.ImportFrom, alias: ast.alias) -> bool:
+    """Whether ``from a.b import c`` names a module."""
+    return (ROOT / node.module.replace(".", "/") / alias.name).with_suffix(".py").is_file() or (
+        ROOT / node.module.replace(".", "/") / alias.name
+    ).is_dir()
 
 
 def modules_below(folder: str) -> list[Path]:
@@ -66,6 +92,62 @@ def test_parsers_networks_and_analysis_know_only_the_language_core(folder):
         for name in imports_of(path):
             if name.split(".")[0] in OURS:
                 assert name.startswith(THEIR_OWN), f"{path} imports {name}"
+
+
+@pytest.mark.parametrize("folder", ROOMS)
+def test_rooms_import_only_from_rooms_before_them(folder):
+    order, package = ROOMS[folder], folder.replace("/", ".")
+    for path in modules_below(folder):
+        room = path.relative_to(ROOT / folder).with_suffix("").parts[0]
+        if room not in order:
+            continue  # views, forms and commands look at every room
+        for name in imports_of(path):
+            other = name.removeprefix(f"{package}.").split(".")[0]
+            if name.startswith(f"{package}.") and other != room:
+                assert order.index(other) < order.index(room), f"{path} imports {name}"
+
+
+def test_a_room_of_the_language_core_is_entered_by_its_front_door():
+    rooms = {path.name for path in (ROOT / "annotations/language").iterdir() if path.is_dir()}
+    for folder in OURS:
+        for path in modules_below(folder):
+            for name in imports_of(path):
+                room, _, module = name.removeprefix("annotations.language.").partition(".")
+                is_inside = ROOT / "annotations/language" / room in path.parents
+                if name.startswith("annotations.language.") and room in rooms and not is_inside:
+                    assert not module, f"{path} imports {name}, not annotations.language.{room}"
+
+
+def test_a_network_imports_nothing_of_another_one():
+    networks = {"seq2seq", "ranker"}
+    for network in networks:
+        for path in modules_below(f"parser_service/neural/{network}"):
+            for name in imports_of(path):
+                room = name.removeprefix("parser_service.neural.").split(".")[0]
+                assert room not in networks - {network}, f"{path} imports {name}"
+
+
+@pytest.mark.parametrize("folder", ["annotations/language", "parser_service/neural"])
+def test_a_package_fits_a_glance(folder):
+    top = [path for path in (ROOT / folder).glob("*.py") if path.name != "__init__.py"]
+    assert len(top) <= MOST_MODULES
+    for room in (path.parent for path in (ROOT / folder).rglob("__init__.py")):
+        assert len(list(room.glob("*.py"))) <= MOST_FILES, room
+
+
+@pytest.mark.parametrize("folder", ["annotations", "parser_service", "gpsr_site"])
+def test_what_a_front_door_offers_is_not_hidden_by_a_module_of_the_same_name(folder):
+    """The first import of ``a.b`` puts the module where the function ``b`` of package ``a`` was."""
+    for door in (ROOT / folder).rglob("__init__.py"):
+        offered = {
+            alias.asname or alias.name
+            for node in ast.walk(ast.parse(door.read_text(encoding="utf-8")))
+            if isinstance(node, ast.ImportFrom)
+            for alias in node.names
+            if not (node.module or "").endswith(f".{alias.name}")  # imported before it is hidden
+        }
+        beside = {path.stem for path in door.parent.iterdir()} - {"__init__"}
+        assert not offered & beside, door
 
 
 def test_every_relation_between_modules_is_spelled_absolutely():

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import os
+import random
 import signal
 import socket
 import sqlite3
 import subprocess
 import sys
-import time
 import urllib.request
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
+from tests.waiting import PATIENCE_SECONDS, wait_for
+
 ROOT = Path(__file__).resolve().parent.parent
 pytestmark = pytest.mark.processes
-SERVES_WITHIN = 60
-STOPS_WITHIN = 10
+# Below those that systems give to whoever asks for any free port.
+PORTS = range(15_000, 30_000)
 
 
 class Installation:
@@ -25,9 +28,7 @@ class Installation:
 
     def __init__(self, folder: Path):
         self.folder = folder
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            self.port = probe.getsockname()[1]
+        self.port = free_port()
         given = {key: value for key, value in os.environ.items() if key != "DATABASE_URL"}
         self.environment = {**given, "GPSR_VAR_DIR": str(folder), "PORT": str(self.port)}
         self.process: subprocess.Popen[bytes] | None = None
@@ -42,7 +43,7 @@ class Installation:
             stderr=subprocess.STDOUT,
             start_new_session=True,
         )
-        wait_until(self.announces, SERVES_WITHIN, "the address is printed")
+        wait_for(self.announces, "the address is printed")
 
     def announces(self) -> bool:
         assert self.process is not None and self.process.poll() is None, self.said()
@@ -52,36 +53,39 @@ class Installation:
         return self.log.read_text(encoding="utf-8")
 
     def page(self, path: str) -> tuple[int, str]:
-        with urllib.request.urlopen(f"http://127.0.0.1:{self.port}{path}", timeout=10) as answer:
+        with urllib.request.urlopen(
+            f"http://127.0.0.1:{self.port}{path}", timeout=PATIENCE_SECONDS
+        ) as answer:
             return answer.status, answer.read().decode()
 
     def count(self, query: str) -> int:
-        with sqlite3.connect(self.folder / "db.sqlite3", timeout=20) as connection:
+        with sqlite3.connect(self.folder / "db.sqlite3", timeout=PATIENCE_SECONDS) as connection:
             return connection.execute(query).fetchone()[0]
 
     def stop(self) -> int:
         assert self.process is not None
         self.process.send_signal(signal.SIGTERM)
-        return self.process.wait(timeout=STOPS_WITHIN)
+        return self.process.wait(PATIENCE_SECONDS)
 
     def remaining_processes(self) -> list[str]:
         """The processes that carry this installation's folder in their environment."""
         mark = f"GPSR_VAR_DIR={self.folder}".encode()
-        found = []
+        processes = []
         for process in Path("/proc").glob("[0-9]*"):
             try:
                 if mark in (process / "environ").read_bytes().split(b"\0"):
-                    found.append((process / "cmdline").read_text().replace("\0", " "))
+                    processes.append((process / "cmdline").read_text().replace("\0", " "))
             except OSError:
                 continue
-        return found
+        return processes
 
 
-def wait_until(condition, seconds: float, what: str) -> None:
-    deadline = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < deadline, f"{what}: not within {seconds} s"
-        time.sleep(0.1)
+def free_port() -> int:
+    while True:
+        with socket.socket() as probe, suppress(OSError):
+            port = random.choice(PORTS)
+            probe.bind(("127.0.0.1", port))
+            return port
 
 
 @pytest.fixture
@@ -101,7 +105,7 @@ def test_it_serves_trains_and_stops_twice_over(installation):
     assert installation.page("/healthz")[0] == 200
     assert "Log in" in installation.page("/")[1]
     finished = "SELECT count(*) FROM parser_service_trainingrun WHERE status = 'succeeded'"
-    wait_until(lambda: installation.count(finished) >= 2, 60, "the quick parsers are trained")
+    wait_for(lambda: installation.count(finished) >= 2, "the quick parsers are trained")
     assert installation.stop() == 0
     assert installation.remaining_processes() == []
 
@@ -115,6 +119,15 @@ def test_it_serves_trains_and_stops_twice_over(installation):
     assert installation.remaining_processes() == []
 
 
+@pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="Linux ends them")
+def test_what_it_started_ends_with_it_even_when_it_is_killed(installation):
+    installation.start()
+    assert len(installation.remaining_processes()) >= 4
+    installation.process.kill()
+    installation.process.wait()
+    wait_for(lambda: installation.remaining_processes() == [], "all processes are gone")
+
+
 def test_a_port_that_is_taken_is_refused_with_another_way(installation):
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", installation.port))
@@ -125,7 +138,7 @@ def test_a_port_that_is_taken_is_refused_with_another_way(installation):
             env=installation.environment,
             capture_output=True,
             text=True,
-            timeout=60,
+            timeout=PATIENCE_SECONDS,
             check=False,
         )
     assert answer.returncode == 1

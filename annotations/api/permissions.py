@@ -1,4 +1,4 @@
-"""Who may do what over the API. A route that names no duty is closed to everybody."""
+"""Decides who may do what over the API. A route that names no duty is closed to everybody."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ class DenyByDefault(BasePermission):
 
 
 class HasDuty(BasePermission):
-    """Asks ``World.allows(user, view.duty)`` of the world in the URL, and puts it at ``view.world``.
+    """Checks ``World.allows(user, view.duty)`` for the world in the URL, and sets ``view.world``.
 
-    A world that the caller is no member of is a 404, as if it did not exist; a duty that their
-    role does not carry is a 403; a caller without a valid token is a 401.
+    A world that the caller is not a member of is a 404, as if it did not exist. A duty that their
+    role does not include is a 403. A caller without a valid token gets a 401.
     """
 
     message = "Your role in this world does not allow this."

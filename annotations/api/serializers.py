@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from rest_framework import serializers
 
-from annotations.exporting import FIELDS, Format
+from annotations.exporting.split_export import FIELDS, Format
 from annotations.models import Example
-from annotations.models.splits import Part, Source
+from annotations.models.splits import Source, part_choices
 
 
 class ExampleSerializer(serializers.ModelSerializer):
@@ -20,7 +20,7 @@ class ExampleSerializer(serializers.ModelSerializer):
 class ExportQuery(serializers.Serializer):
     """What may be asked of an export. Text needs ``part`` and ``source``: it is one pair file."""
 
-    part = serializers.ChoiceField(choices=Part.choices, required=False)
+    part = serializers.ChoiceField(choices=part_choices(), required=False)
     source = serializers.ChoiceField(choices=Source.choices, required=False)
 
     def get_fields(self) -> dict[str, serializers.Field]:

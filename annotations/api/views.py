@@ -11,7 +11,7 @@ from rest_framework.views import APIView
 
 from annotations.api.permissions import HasDuty
 from annotations.api.serializers import ExampleSerializer, ExportQuery
-from annotations.exporting import Format, export_lines
+from annotations.exporting.split_export import Format, export_lines
 from annotations.models import Duty, Split, World
 
 CONTENT_TYPES = {

@@ -6,16 +6,22 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from annotations.importing.predicates_file import PREDICATES_FILE, read_predicates
-from annotations.language.errors import LanguageError, Position, Problem, warning
-from annotations.language.expansion import Generated, TaskCategory, generate
-from annotations.language.generator_folder import GeneratorFolder, read_generator_files
-from annotations.language.grammar_files import TRIPLE_FILES, is_grammar_name
-from annotations.language.logic import read_form
+from annotations.language.errors import LanguageError, Position, Problem, warning_at
+from annotations.language.forms import read_form
+from annotations.language.grammar import TRIPLE_FILES, is_grammar_name
 from annotations.language.ontology import ONTOLOGY_FILES, Ontology, read_ontology
 from annotations.language.predicates import Predicate, infer_signatures
-from annotations.language.task_categories import is_template_name
-from annotations.language.template_sets import set_problems
+from annotations.language.templates import (
+    Generated,
+    GeneratorFolder,
+    TaskCategory,
+    generate,
+    is_template_name,
+    read_generator_files,
+    set_problems,
+)
 from annotations.models.problems import Subject
+from annotations.rows.problems import first_problems
 
 # Above this many pairs signatures are inferred from the templates as they are, unexpanded.
 INFERENCE_LIMIT = 100_000
@@ -23,7 +29,10 @@ INFERENCE_LIMIT = 100_000
 
 @dataclass(frozen=True)
 class Generator:
-    """What the files of one generator say. ``problems`` are by the part of a world they are about."""
+    """What the files of one generator say.
+
+    ``problems`` are by the part of a world they are about, as many as ``first_problems`` lists.
+    """
 
     texts: GeneratorFolder
     ontology: Ontology
@@ -32,7 +41,7 @@ class Generator:
 
     @property
     def all_problems(self) -> tuple[Problem, ...]:
-        return tuple(problem for found in self.problems.values() for problem in found)
+        return tuple(problem for problems in self.problems.values() for problem in problems)
 
 
 def read_generator(
@@ -46,26 +55,26 @@ def read_generator(
     ontology, ontology_problems = read_ontology(files)
     texts = read_generator_files(files)
     problems = [*texts.problems, *_unread(files)]
-    declared, found = _declared(files)
-    problems += found
+    declared, further = _read_declared(files)
+    problems += further
     predicates = dict(declared or {})
     if not texts.has_errors:
-        inferred, found = _examined(texts.categories(), declared, edited or {})
+        inferred, further = _examine(texts.categories(), declared, edited or {})
         predicates = predicates or inferred
-        problems += found
+        problems += further
     return Generator(texts, ontology, predicates, _by_subject(problems, ontology_problems))
 
 
-def _declared(files: Mapping[str, bytes]) -> tuple[dict[str, Predicate] | None, list[Problem]]:
+def _read_declared(files: Mapping[str, bytes]) -> tuple[dict[str, Predicate] | None, list[Problem]]:
     if PREDICATES_FILE not in files:
         return None, []
     try:
         return read_predicates(files[PREDICATES_FILE]), []
-    except LanguageError as trouble:
-        return None, [trouble.problem]
+    except LanguageError as error:
+        return None, [error.problem]
 
 
-def _examined(
+def _examine(
     categories: tuple[TaskCategory, ...],
     declared: Mapping[str, Predicate] | None,
     edited: Mapping[str, Predicate],
@@ -74,6 +83,9 @@ def _examined(
     try:
         generated = generate(categories, INFERENCE_LIMIT)
         forms = [read_form(text) for text in {each.form_text for each in generated.expansions}]
+        by_name = {category.name: category.templates for category in categories}
+        left_out = generated.left_out
+        forms += [by_name[each.task_category][each.template_index].form for each in left_out]
     except LanguageError:
         # Too many, or a template with an error that set_problems finds at its place.
         generated = Generated((), (), ())
@@ -84,22 +96,22 @@ def _examined(
 
 
 def _unread(files: Iterable[str]) -> Iterator[Problem]:
-    """A warning for each file that is none of a generator; a README is nobody's surprise."""
+    """A warning for each file that is not a generator's; a README needs none."""
     known = {*ONTOLOGY_FILES, *TRIPLE_FILES, PREDICATES_FILE}
     for name in files:
         is_read = name in known or is_grammar_name(name) or is_template_name(name)
         if not is_read and not name.lower().startswith("readme"):
             hint = f"known are *.txt, {', '.join(ONTOLOGY_FILES)} and {PREDICATES_FILE}"
-            yield warning(Position(name), "this file is none of a generator; it is left out", hint)
+            yield warning_at(Position(name), "not a generator file; ignored", hint)
 
 
 def _by_subject(
     texts: Iterable[Problem], ontology: Iterable[Problem]
 ) -> dict[Subject, tuple[Problem, ...]]:
-    distinct = sorted(set(texts))
+    distinct = set(texts)
     of_templates = {each for each in distinct if is_template_name(each.position.source)}
     return {
-        Subject.ONTOLOGY: tuple(sorted(set(ontology))),
-        Subject.GRAMMAR: tuple(each for each in distinct if each not in of_templates),
-        Subject.TEMPLATES: tuple(each for each in distinct if each in of_templates),
+        Subject.ONTOLOGY: first_problems(set(ontology)),
+        Subject.GRAMMAR: first_problems(distinct - of_templates),
+        Subject.TEMPLATES: first_problems(of_templates),
     }

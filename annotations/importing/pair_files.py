@@ -6,10 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from annotations.language.decoding import read_folder
-from annotations.language.errors import LanguageError, Position, Problem, error, warning
-from annotations.language.grammar_files import TRIPLE_FILES
-from annotations.language.pairs import (
+from annotations.language.corpus import (
     CORPUS_FOLDERS,
     PART_FILES,
     GroundedTriple,
@@ -17,6 +14,9 @@ from annotations.language.pairs import (
     read_pairs,
     read_triples,
 )
+from annotations.language.decoding import read_folder
+from annotations.language.errors import LanguageError, Position, Problem, error_at, warning_at
+from annotations.language.grammar import TRIPLE_FILES
 
 PARTS = {file: part for part, file in PART_FILES.items()}
 
@@ -53,12 +53,14 @@ def read_pair_folder(folder: Path) -> PairFolder:
             pairs[criterion, source, PARTS[name]] = records.records
         else:
             hint = f"known are {', '.join(PARTS)}"
-            problems.append(warning(Position(path), "this file is left out", hint))
+            problems.append(warning_at(Position(path), "not a pair file; ignored", hint))
             continue
         problems += records.problems
     if not (pairs or triples or problems):
         names = ", ".join([*CORPUS_FOLDERS, *sorted(TRIPLE_FILES)])
-        problems.append(error(Position(folder.name), "no pairs are here", f"known are {names}"))
+        problems.append(
+            error_at(Position(folder.name), "there are no pairs here", f"known are {names}")
+        )
     return PairFolder(pairs, tuple(triples), tuple(sorted(problems)))
 
 
@@ -72,5 +74,5 @@ def _contents(folder: Path, problems: list[Problem]) -> Iterator[tuple[str, byte
             if (folder / directory).is_dir():
                 for name, data in read_folder(folder / directory, "*.txt").items():
                     yield f"{directory}/{name}", data
-    except LanguageError as trouble:
-        problems.append(trouble.problem)
+    except LanguageError as failure:
+        problems.append(failure.problem)

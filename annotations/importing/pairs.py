@@ -3,24 +3,26 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from django.db import transaction
 from django.db.models import Max
 
-from annotations.freezing import store_split
+from annotations.background.progress import UNWATCHED, Progress
 from annotations.importing.pair_files import PairFolder, read_pair_folder
+from annotations.importing.prompts import Source, SourceFinder
 from annotations.importing.worlds import locked_world, require_world_name
-from annotations.language.distances import distance
+from annotations.language.corpus import GroundedTriple, WrittenPair, distance
 from annotations.language.errors import LanguageError, Problem
-from annotations.language.pairs import GroundedTriple, WrittenPair
 from annotations.models import Example, Paraphrase, User, World
-from annotations.problems import as_json
-from annotations.prompts import Source, SourceFinder
-from annotations.rows import BATCH
+from annotations.rows.problems import as_json, first_problems
+from annotations.rows.synchronise import BATCH
+from annotations.splits.freezing import PreparedSplit
+
+MOST_ATTEMPTS = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +59,11 @@ class PairsReport:
 
 
 def import_pairs(
-    world_name: str, name: str, folder: Path | str, by: User | None = None
+    world_name: str,
+    name: str,
+    folder: Path | str,
+    by: User | None = None,
+    progress: Progress = UNWATCHED,
 ) -> PairsReport:
     """Takes the splits and paraphrases of ``folder`` into a world, all of them or nothing.
 
@@ -69,16 +75,20 @@ def import_pairs(
     A split that is there already with the same pairs is left alone; one with other pairs is an
     error, since a frozen split never changes. A paraphrase that is there already is not doubled.
     """
+    progress.report(0, "reading the pairs")
     files = read_pair_folder(Path(folder))
     report = _report(world_name, name, files)
     try:
         require_world_name(world_name)
         if report.is_refused:
             return report
-        with transaction.atomic():
-            return replace(report, added=_store(locked_world(world_name, by), name, files, by))
-    except LanguageError as trouble:
-        return replace(report, problems=(*report.problems, trouble.problem))
+        for _ in range(MOST_ATTEMPTS):
+            stored = _store(report, name, files, by, progress)
+            if stored is not None:
+                return stored
+        raise LanguageError("the commands were generated anew meanwhile", hint="import once more")
+    except LanguageError as error:
+        return replace(report, problems=(*report.problems, error.problem))
 
 
 def _report(world_name: str, name: str, files: PairFolder) -> PairsReport:
@@ -90,26 +100,57 @@ def _report(world_name: str, name: str, files: PairFolder) -> PairsReport:
         counts=counts,
         splits={criterion: f"{name}-{criterion}" for criterion in files.criteria},
         paraphrases=len(files.triples),
-        problems=files.problems,
+        problems=first_problems(files.problems),
     )
 
 
-def _store(world: World, name: str, files: PairFolder, by: User | None) -> int:
-    """How many rows were added."""
+def _store(
+    report: PairsReport, name: str, files: PairFolder, by: User | None, progress: Progress
+) -> PairsReport | None:
+    """Prepares everything, then writes it. None where commands were generated in between."""
+    world = World.objects.filter(name=report.world).first()
     finder = SourceFinder(world)
-    sources = [finder.source(triple.command, triple.form) for triple in files.triples]
-    added = _store_paraphrases(world, files.triples, sources)
+    progress.report(0.3, "finding the source of each paraphrase")
+    sources = []
+    for triple in files.triples:
+        progress.check()
+        sources.append(finder.source(triple.command, triple.form))
+    progress.report(0.5, "preparing the splits")
+    with ExitStack() as stack:
+        splits = [
+            stack.enter_context(split)
+            for split in _prepared_splits(name, files, sources, finder, progress)
+        ]
+        progress.report(0.9, "writing")
+        with progress.writing():
+            locked = locked_world(report.world, by)
+            if world is not None and locked.generations != world.generations:
+                return None
+            added = _store_paraphrases(locked, files.triples, sources)
+            for split in splits:
+                _, is_new = split.store(locked, by)
+                added += is_new * (1 + len(split.examples))
+            stored = replace(report, added=added)
+            progress.conclude(stored.as_json())
+    return stored
+
+
+def _prepared_splits(
+    name: str,
+    files: PairFolder,
+    sources: Sequence[Source],
+    finder: SourceFinder,
+    progress: Progress,
+) -> Iterator[PreparedSplit]:
     behind = _by_utterance(files.triples, sources)
     for criterion in files.criteria:
-        examples = [
-            _example(pair, position, part, source, behind, finder)
-            for (of, source, part), pairs in files.pairs.items()
-            for position, pair in enumerate(pairs)
-            if of == criterion
-        ]
-        _, is_new = store_split(world, f"{name}-{criterion}", criterion, examples, by=by)
-        added += is_new * (1 + len(examples))
-    return added
+        examples = []
+        for (of, source, part), pairs in files.pairs.items():
+            if of == criterion:
+                for position, pair in enumerate(pairs):
+                    progress.check()
+                    examples.append(_example(pair, position, part, source, behind, finder))
+        yield PreparedSplit(f"{name}-{criterion}", criterion, examples)
 
 
 Behind = Mapping[str, Sequence[tuple[GroundedTriple, Source]]]
@@ -117,10 +158,10 @@ Behind = Mapping[str, Sequence[tuple[GroundedTriple, Source]]]
 
 def _by_utterance(triples: Sequence[GroundedTriple], sources: Sequence[Source]) -> Behind:
     """Utterance → the records it stands in."""
-    found: dict[str, list[tuple[GroundedTriple, Source]]] = defaultdict(list)
+    records: dict[str, list[tuple[GroundedTriple, Source]]] = defaultdict(list)
     for triple, source in zip(triples, sources, strict=True):
-        found[triple.paraphrase].append((triple, source))
-    return found
+        records[triple.paraphrase].append((triple, source))
+    return records
 
 
 def _example(

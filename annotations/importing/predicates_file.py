@@ -1,7 +1,7 @@
 """``predicates.json``: declared predicates beside a generator, read and written.
 
 A list of ``{"name", "kind", "signatures", "gloss"}``: the kind is ``action`` or ``description``, a
-signature a list of argument kinds, the gloss a pattern (``annotations.language.gloss_patterns``).
+signature a list of argument kinds, the gloss a pattern (``annotations.language.predicates.gloss_patterns``).
 """
 
 from __future__ import annotations
@@ -12,6 +12,13 @@ from typing import Any
 
 from annotations.language.decoding import decode
 from annotations.language.errors import LanguageError, Position
+from annotations.language.limits import (
+    MAX_GLOSS,
+    MAX_PREDICATE,
+    require_length,
+    require_name,
+    require_writable,
+)
 from annotations.language.predicates import ArgumentKind, Predicate, PredicateKind, Signature
 
 PREDICATES_FILE = "predicates.json"
@@ -29,19 +36,21 @@ def read_predicates(data: bytes, source: str = PREDICATES_FILE) -> dict[str, Pre
         rows = json.loads(text)
     except RecursionError:
         raise LanguageError("the file nests too deep", Position(source), _EXAMPLE) from None
-    except json.JSONDecodeError as trouble:
-        place = Position(source, trouble.lineno, trouble.colno)
-        raise LanguageError(f"this is no JSON: {trouble.msg}", place, _EXAMPLE) from trouble
+    except json.JSONDecodeError as error:
+        place = Position(source, error.lineno, error.colno)
+        raise LanguageError(f"this is not JSON: {error.msg}", place, _EXAMPLE) from error
+    except ValueError as error:  # a number of more digits than Python reads
+        raise LanguageError("a number has too many digits", Position(source), _EXAMPLE) from error
     if not isinstance(rows, list):
-        raise LanguageError("this is no list of predicates", Position(source), _EXAMPLE)
-    found: dict[str, Predicate] = {}
+        raise LanguageError("this is not a list of predicates", Position(source), _EXAMPLE)
+    predicates: dict[str, Predicate] = {}
     for row in rows:
         place = _place(text, row, source)
         predicate = _predicate(row, place)
-        if predicate.name in found:
+        if predicate.name in predicates:
             raise LanguageError(f"{predicate.name} is declared twice", place, "merge the two")
-        found[predicate.name] = predicate
-    return found
+        predicates[predicate.name] = predicate
+    return predicates
 
 
 def write_predicates(predicates: Iterable[Predicate]) -> str:
@@ -62,6 +71,11 @@ def _row(predicate: Predicate) -> dict[str, Any]:
 def _predicate(row: Any, place: Position) -> Predicate:
     if not (isinstance(row, dict) and isinstance(row.get("name"), str) and row["name"]):
         raise LanguageError("this row has no name", place, _EXAMPLE)
+    gloss = str(row.get("gloss", ""))
+    require_name(row["name"], "predicate", MAX_PREDICATE, place)
+    require_writable(row["name"], place)
+    require_length(gloss, "gloss", MAX_GLOSS, place)
+    require_writable(gloss, place)
     signatures = row.get("signatures")
     if not isinstance(signatures, list) or not all(isinstance(each, list) for each in signatures):
         raise LanguageError(
@@ -70,11 +84,11 @@ def _predicate(row: Any, place: Position) -> Predicate:
     try:
         kind = PredicateKind(row.get("kind", ""))
         read = tuple(Signature(tuple(map(ArgumentKind, each))) for each in signatures)
-    except ValueError as trouble:
+    except ValueError as error:
         kinds = ", ".join(ArgumentKind)
         hint = f"a predicate is an action or a description; kinds of arguments are {kinds}"
-        raise LanguageError(f"{row['name']}: {trouble}", place, hint) from trouble
-    return Predicate(row["name"], kind, read, str(row.get("gloss", "")))
+        raise LanguageError(f"{row['name']}: {error}", place, hint) from error
+    return Predicate(row["name"], kind, read, gloss)
 
 
 def _place(text: str, row: Any, source: str) -> Position:

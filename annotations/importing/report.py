@@ -1,4 +1,4 @@
-"""What an import found and did."""
+"""What an import read and did."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from annotations.importing.storing import Removals
 from annotations.language.errors import Problem
-from annotations.problems import as_json
-from annotations.rows import Changes
+from annotations.rows.problems import as_json
+from annotations.rows.synchronise import Changes
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,7 +17,8 @@ class ImportReport:
     """``productions`` counts lines by file, ``templates`` by task category, ``entities`` by class.
 
     With an error among the ``problems`` the import was refused whole: nothing was stored, and the
-    counts say what could be read.
+    counts say what could be read. Where there are ``removals`` that were not allowed, nothing was
+    stored either.
     """
 
     world: str
@@ -26,6 +28,8 @@ class ImportReport:
     predicates: int = 0
     problems: tuple[Problem, ...] = ()
     changes: Changes = field(default_factory=Changes)
+    removals: Removals = field(default_factory=Removals)
+    is_waiting: bool = False
 
     @property
     def errors(self) -> tuple[Problem, ...]:
@@ -48,4 +52,6 @@ class ImportReport:
             "predicates": self.predicates,
             "problems": [as_json(problem) for problem in self.problems],
             "changes": self.changes.as_json(),
+            "removals": self.removals.as_json(),
+            "is_waiting": self.is_waiting,
         }

@@ -13,9 +13,9 @@ def require_world_name(name: str) -> None:
     """Raises LanguageError, a sentence, where no world can have this name."""
     try:
         World(name=name).clean_fields()
-    except ValidationError as trouble:
-        sentences = " ".join(trouble.messages)
-        raise LanguageError(f"“{name}” cannot be the name of a world: {sentences}") from trouble
+    except ValidationError as error:
+        sentences = " ".join(error.messages)
+        raise LanguageError(f"“{name}” cannot be the name of a world: {sentences}") from error
 
 
 def locked_world(name: str, by: User | None = None) -> World:

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 from django.db import DatabaseError
 
+from annotations.language.decoding import decode
 from annotations.language.errors import LanguageError, Problem
 from annotations.models import Split, World
 from annotations.models.splits import Criterion
 
 PROBLEM = "  {file}:{line}:{column}: {severity}: {message} ({hint})"
+
+MOST_EXCERPTS = 20  # errors that are shown with their line
 
 
 class Refused(Exception):
@@ -24,10 +28,12 @@ class Refused(Exception):
         self.report = report
 
     @classmethod
-    def because(cls, errors: Sequence[Problem], report: Mapping[str, Any]) -> Refused:
-        """An import that was refused for its errors."""
+    def because(cls, errors: Sequence[Problem], report: Mapping[str, Any], folder: Path) -> Refused:
+        """An import of ``folder`` that was refused for its errors, each shown with its line."""
         count = f"{len(errors)} error{'s' if len(errors) > 1 else ''}"
-        return cls(report, [*map(str, errors), f"Nothing was imported: {count}."])
+        shown = [_show(problem, folder) for problem in errors[:MOST_EXCERPTS]]
+        rest = map(str, errors[MOST_EXCERPTS:])
+        return cls(report, [*shown, *rest, f"Nothing was imported: {count}."])
 
 
 class ReportingCommand(BaseCommand):
@@ -40,6 +46,10 @@ class ReportingCommand(BaseCommand):
 
     # The checks read every URL and view; a script that runs often should not pay for them.
     requires_system_checks: list[str] = []
+
+    def create_parser(self, *args: Any, **options: Any) -> CommandParser:
+        """Refuse abbreviated options: else ``--set`` would be Django's ``--settings``."""
+        return super().create_parser(*args, allow_abbrev=False, **options)
 
     def add_arguments(self, parser: CommandParser) -> None:
         self.add_options(parser)
@@ -86,6 +96,17 @@ def _sentence(failure: LanguageError) -> str:
     if failure.source:
         return str(failure)
     return f"{failure.message} ({failure.hint})" if failure.hint else failure.message
+
+
+def _show(problem: Problem, folder: Path) -> str:
+    """The problem, and below it the line of its file with a caret at its column."""
+    try:
+        path = folder / problem.position.source
+        excerpt = problem.position.excerpt(decode(path.read_bytes()))
+    except (OSError, LanguageError, ValueError):
+        return str(problem)  # of no file, or of one that cannot be read
+    lines = "".join(f"\n    {line}" for line in excerpt.splitlines() if excerpt.strip(" ^\n"))
+    return f"{problem}{lines}"
 
 
 def _in_words(value: Any) -> str:

@@ -1,30 +1,59 @@
+from annotations.models.comments import Comment, Notice
 from annotations.models.corpus import Command, LogicalForm, Paraphrase
+from annotations.models.drafts import Draft
+from annotations.models.editable import Editable
 from annotations.models.grammar import Grammar, Production, TaskCategory
+from annotations.models.jobs import Job, JobKind
 from annotations.models.ontology import Entity, Ontology
 from annotations.models.people import ApiToken, User
 from annotations.models.predicates import Predicate
 from annotations.models.problems import StoredProblem
 from annotations.models.splits import Example, Split
 from annotations.models.templates import SemanticTemplate
+from annotations.models.utterances import (
+    Label,
+    Origin,
+    Proposal,
+    Utterance,
+    UtteranceStatus,
+    Verdict,
+)
+from annotations.models.work_items import Assignment, WorkItem, WorkKind, WorkShare
 from annotations.models.worlds import Duty, Membership, World
 
 __all__ = [
     "ApiToken",
+    "Assignment",
     "Command",
+    "Comment",
+    "Draft",
     "Duty",
+    "Editable",
     "Entity",
     "Example",
     "Grammar",
+    "Job",
+    "JobKind",
+    "Label",
     "LogicalForm",
     "Membership",
+    "Notice",
     "Ontology",
+    "Origin",
     "Paraphrase",
     "Predicate",
     "Production",
+    "Proposal",
     "SemanticTemplate",
     "Split",
     "StoredProblem",
     "TaskCategory",
     "User",
+    "Utterance",
+    "UtteranceStatus",
+    "Verdict",
+    "WorkItem",
+    "WorkKind",
+    "WorkShare",
     "World",
 ]

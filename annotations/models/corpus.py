@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from django.db import models
 
+from annotations.models.editable import Editable
 from annotations.models.templates import SemanticTemplate
 from annotations.models.worlds import World
 
@@ -66,17 +67,23 @@ class ParaphraseQuerySet(models.QuerySet["Paraphrase"]):
         return self.filter(status=ParaphraseStatus.ACCEPTED)
 
 
-class Paraphrase(models.Model):
+class Paraphrase(Editable):
     """``utterance`` is how somebody said the grounded ``prompt``; the forms are canonical corpus text.
 
-    ``command`` is the generated command behind the prompt where it is known. Distances are to the prompt:
+    ``command`` is the generated command behind the prompt where it is known. Where that is gone,
+    ``command_text`` says what it was, so that it is known again when templates make it again; it is
+    empty otherwise. Distances are to the prompt:
     ``edit_distance`` in characters (Levenshtein), ``jaccard_distance`` over words, in 0–1.
     """
+
+    edited_fields = ("prompt", "utterance", "grounded_form", "logical_form", "status")
+    fields_beside = ("edit_distance", "jaccard_distance")
 
     world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="paraphrases")
     command = models.ForeignKey(
         Command, null=True, on_delete=models.SET_NULL, related_name="paraphrases"
     )
+    command_text = models.TextField(blank=True, default="", db_default="", editable=False)
     prompt = models.TextField()
     utterance = models.TextField()
     grounded_form = models.TextField()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from django.db import models
 
 from annotations.language.symbols import ENTITY_CLASSES
+from annotations.models.editable import Editable
 from annotations.models.worlds import World
 
 
@@ -23,12 +24,15 @@ class EntityQuerySet(models.QuerySet["Entity"]):
     def count_by_class(self) -> dict[str, int]:
         """How many entities each class has, in the order of the classes; those that have none are left out."""
         counted = self.order_by().values_list("entity_class").annotate(models.Count("pk"))
-        found = dict(counted)
-        return {name: found[name] for name in ENTITY_CLASSES if name in found}
+        counts = dict(counted)
+        return {name: counts[name] for name in ENTITY_CLASSES if name in counts}
 
 
-class Entity(models.Model):
+class Entity(Editable):
     """One row of an ontology file. Rows may repeat a text (a name of either gender, a sink in two rooms)."""
+
+    world_path = "ontology__world"
+    edited_fields = ("entity_class", "text", "aliases", "attributes")
 
     ontology = models.ForeignKey(Ontology, on_delete=models.CASCADE, related_name="entities")
     entity_class = models.CharField(max_length=20, choices=entity_class_choices)

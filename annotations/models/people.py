@@ -5,14 +5,23 @@ from __future__ import annotations
 import hashlib
 import secrets
 from datetime import timedelta
+from typing import Any
 
 from django.contrib.auth.models import AbstractUser
-from django.db import models
+from django.db import models, transaction
 from django.utils import timezone
 
 
 class User(AbstractUser):
     """A person with an account. What they may do is said by their memberships, per world."""
+
+    def save(self, *args: Any, **kwargs: Any) -> None:
+        """Save the account. A new password ends its tokens, as it ends its sessions."""
+        has_new_password = self._password is not None and self.pk is not None
+        with transaction.atomic():
+            super().save(*args, **kwargs)
+            if has_new_password:
+                self.api_tokens.all().delete()
 
 
 class ApiTokenQuerySet(models.QuerySet["ApiToken"]):
@@ -20,7 +29,7 @@ class ApiTokenQuerySet(models.QuerySet["ApiToken"]):
         return self.filter(expires_at__gt=timezone.now(), user__is_active=True)
 
     def for_key(self, key: str) -> ApiToken | None:
-        """The valid token whose secret is ``key``, or None."""
+        """Return the valid token whose secret is ``key``, or None."""
         return self.valid().select_related("user").filter(digest=digest_of(key)).first()
 
 
@@ -40,7 +49,7 @@ class ApiToken(models.Model):
 
     @classmethod
     def issue(cls, user: User, name: str, days: int = 90) -> tuple[ApiToken, str]:
-        """A new token and its secret, which is not to be had again."""
+        """Issue a token and return it with its secret, which cannot be retrieved later."""
         key = secrets.token_urlsafe(32)
         expires_at = timezone.now() + timedelta(days=days)
         token = cls.objects.create(

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from django.db import models
 
+from annotations.models.editable import Editable
+from annotations.models.people import User
 from annotations.models.worlds import World
 
 
@@ -11,11 +13,14 @@ def predicate_kind_choices() -> list[tuple[str, str]]:
     return [("action", "action"), ("description", "description")]
 
 
-class Predicate(models.Model):
+class Predicate(Editable):
     """A name with its signatures (a list of lists of argument kinds) and its English gloss.
 
     ``is_edited`` says that a person has changed it: from then on an import leaves it alone.
     """
+
+    edited_fields = ("name", "kind", "signatures", "gloss")
+    bears_on_commands = True  # templates are checked against it
 
     world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="predicates")
     name = models.CharField(max_length=80)
@@ -30,3 +35,6 @@ class Predicate(models.Model):
 
     def __str__(self) -> str:
         return self.name
+
+    def note_editor(self, by: User) -> None:
+        self.is_edited = True

@@ -4,22 +4,9 @@ from __future__ import annotations
 
 from django.db import models
 
+from annotations.language.corpus import Criterion, Part
 from annotations.models.people import User
 from annotations.models.worlds import World
-
-
-class Criterion(models.TextChoices):
-    """What two parts of a split never share."""
-
-    COMMAND = "command"
-    SOURCE_COMMAND = "source_command"
-    LOGICAL_FORM = "logical_form"
-
-
-class Part(models.TextChoices):
-    TRAIN = "train"
-    VALIDATION = "validation"
-    TEST = "test"
 
 
 class Source(models.TextChoices):
@@ -28,11 +15,11 @@ class Source(models.TextChoices):
 
 
 def criterion_choices() -> list[tuple[str, str]]:
-    return Criterion.choices
+    return [(each.value, each.replace("_", " ").title()) for each in Criterion]
 
 
 def part_choices() -> list[tuple[str, str]]:
-    return Part.choices
+    return [(each.value, each.title()) for each in Part]
 
 
 def source_choices() -> list[tuple[str, str]]:
@@ -42,8 +29,10 @@ def source_choices() -> list[tuple[str, str]]:
 class SplitQuerySet(models.QuerySet["Split"]):
     def named(self, name: str, criterion: str = Criterion.COMMAND) -> Split | None:
         """The split ``name``, or ``name-criterion`` where one name stands for several criteria."""
-        found = {split.name: split for split in self.filter(name__in=[name, f"{name}-{criterion}"])}
-        return found.get(name) or found.get(f"{name}-{criterion}")
+        splits = {
+            split.name: split for split in self.filter(name__in=[name, f"{name}-{criterion}"])
+        }
+        return splits.get(name) or splits.get(f"{name}-{criterion}")
 
 
 class Split(models.Model):

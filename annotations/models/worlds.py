@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
+
 from django.core.validators import RegexValidator
 from django.db import models
 
@@ -36,11 +38,32 @@ class WorldQuerySet(models.QuerySet["World"]):
         """The worlds that ``user`` is a member of; all of them for an administrator of the site."""
         if not user.is_authenticated:
             return self.none()
-        return self if user.is_superuser else self.filter(memberships__user=user).distinct()
+        worlds = self.present()
+        return worlds if user.is_superuser else worlds.filter(memberships__user=user).distinct()
+
+    def present(self) -> WorldQuerySet:
+        """Without those that are being deleted."""
+        return self.filter(deletion_requested_at__isnull=True)
+
+    def duties_by_world(self, user: User) -> dict[int, frozenset[Duty]]:
+        """What ``user`` may do in each of these worlds, by key: ``World.duties_of`` in one query."""
+        if user.is_superuser and user.is_active:
+            return dict.fromkeys(self.values_list("pk", flat=True), frozenset(Duty))
+        roles = self.filter(memberships__user=user).values_list("pk", "memberships__role")
+        duties: dict[int, frozenset[Duty]] = defaultdict(frozenset)
+        for world, role in roles if user.is_active else ():
+            duties[world] |= DUTIES[role]
+        return duties
 
 
 class World(models.Model):
-    """One ontology, grammar, set of predicates, templates, commands, paraphrases and splits."""
+    """One ontology, grammar, set of predicates, templates, commands, paraphrases and splits.
+
+    ``revision`` counts the changes of its grammar and of templates that make commands;
+    ``generated_revision`` is the one that its commands were made from, ``generations`` how often
+    they were. A world whose deletion was
+    requested is shown to nobody, until its last row is gone.
+    """
 
     name = models.CharField(
         max_length=60,
@@ -51,6 +74,10 @@ class World(models.Model):
     )
     description = models.TextField(blank=True)
     created_at = models.DateTimeField(auto_now_add=True)
+    revision = models.PositiveIntegerField(default=0, editable=False)
+    generated_revision = models.PositiveIntegerField(default=0, editable=False)
+    generations = models.PositiveIntegerField(default=0, editable=False)
+    deletion_requested_at = models.DateTimeField(null=True, blank=True, editable=False)
 
     objects = WorldQuerySet.as_manager()
 
@@ -59,6 +86,15 @@ class World(models.Model):
 
     def __str__(self) -> str:
         return self.name
+
+    @property
+    def commands_are_stale(self) -> bool:
+        """Whether grammar or templates have changed since commands were last generated."""
+        return self.generated_revision < self.revision
+
+    def mark_changed(self) -> None:
+        """Record a change of the grammar or of a template that makes commands."""
+        World.objects.filter(pk=self.pk).update(revision=models.F("revision") + 1)
 
     def allows(self, user: User, duty: Duty) -> bool:
         """Whether ``user`` may do ``duty`` here."""

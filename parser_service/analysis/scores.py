@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import sqrt
 
-from annotations.language.canonical import canonical_text, equivalent
 from annotations.language.errors import LanguageError
-from annotations.language.logic import read_form
+from annotations.language.forms import canonical_text, equivalent, read_form
 
 Z_95 = 1.959963984540054
 
@@ -38,7 +37,7 @@ class Score:
 
 
 def judge(answer: str, annotated: str) -> Judgement:
-    """Compares a parser's answer, a form or not, with a form. Equivalence also ignores the order of
+    """Compare a parser's answer, which may be no form, with a form. Equivalence also ignores the order of
     conjuncts; an answer is well-formed where it reads as a form with every variable bound."""
     try:
         form = read_form(answer)
@@ -50,7 +49,7 @@ def judge(answer: str, annotated: str) -> Judgement:
 
 
 def score(judgements: Sequence[Judgement]) -> Score:
-    """The share of right answers. Raises ValueError where there is nothing to count."""
+    """Return the share of right answers. Raises ValueError where there is nothing to count."""
     count = len(judgements)
     if not count:
         raise ValueError("There is no example to score.")
@@ -66,8 +65,8 @@ def score(judgements: Sequence[Judgement]) -> Score:
 
 
 def wilson_interval(correct: int, count: int) -> tuple[float, float]:
-    """The 95 % score interval of a proportion (Wilson 1927): honest near 0 and 1 and for few
-    examples, where the usual ± is not. Both ends lie in 0–1."""
+    """Return the 95 % score interval of a proportion (Wilson 1927). Unlike the usual ± it is also right
+    near 0 and 1 and for few examples. Both ends are in 0–1."""
     share = correct / count
     spread = Z_95**2 / count
     centre = share + spread / 2

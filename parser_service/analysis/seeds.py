@@ -1,4 +1,4 @@
-"""One accuracy out of several: the same parser, trained with other seeds."""
+"""The accuracy of a parser over several seeds of its training."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from statistics import fmean, stdev
 class OverSeeds:
     """``mean`` and ``spread`` of ``n_seeds`` accuracies, fractions of 1.
 
-    ``spread`` is the sample standard deviation (divisor n - 1), None of a single one.
+    ``spread`` is the sample standard deviation (divisor n - 1), None for a single seed.
     """
 
     mean: float
@@ -20,7 +20,7 @@ class OverSeeds:
 
 
 def over_seeds(accuracies: Sequence[float]) -> OverSeeds:
-    """Mean and spread of one accuracy a seed. Raises ValueError where there is none."""
+    """Return mean and spread of one accuracy per seed. Raises ValueError where there is none."""
     if not accuracies:
         raise ValueError("There is no seed to take a mean over.")
     spread = stdev(accuracies) if len(accuracies) > 1 else None

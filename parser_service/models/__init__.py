@@ -1,3 +1,4 @@
+from parser_service.models.folders import RunFolder
 from parser_service.models.predictions import Evaluation, Prediction
 from parser_service.models.runs import Checkpoint, EpochMetric, RunEvent, TrainingRun
 from parser_service.models.workers import Worker
@@ -8,6 +9,7 @@ __all__ = [
     "Evaluation",
     "Prediction",
     "RunEvent",
+    "RunFolder",
     "TrainingRun",
     "Worker",
 ]

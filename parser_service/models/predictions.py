@@ -1,4 +1,4 @@
-"""What a run's parser says of a split, and how often it is right."""
+"""The answers of a run's parser to the examples of a split, and how often they are right."""
 
 from __future__ import annotations
 
@@ -34,19 +34,14 @@ class Evaluation(models.Model):
     def __str__(self) -> str:
         return f"{self.run}: {self.accuracy:.3f} on {self.test_source} {self.part}"
 
-    @property
-    def half_width(self) -> float:
-        """Half the width of the interval, which is not quite symmetric."""
-        return (self.interval_high - self.interval_low) / 2
-
 
 class PredictionQuerySet(models.QuerySet["Prediction"]):
     def best(self) -> PredictionQuerySet:
-        """The first-ranked prediction of each example."""
+        """Return the first-ranked prediction of each example."""
         return self.filter(rank=1)
 
     def with_outcome(self, outcome: str) -> PredictionQuerySet:
-        """Those that came out as ``correct``, ``wrong``, ``equivalent`` (but not exact), ``malformed``
+        """Return those with the outcome ``correct``, ``wrong``, ``equivalent`` (but not exact), ``malformed``
         or ``none`` (no answer)."""
         conditions = {
             "correct": models.Q(is_exact_match=True),

@@ -1,4 +1,4 @@
-"""The processes that train. The banner reads these rows."""
+"""The processes that carry out background work. The banner reads these rows."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Worker(models.Model):
     name = models.CharField(max_length=200, unique=True)
     host = models.CharField(max_length=200)
     process_id = models.PositiveIntegerField()
-    queue = models.CharField(max_length=20)
+    queue = models.CharField(max_length=20)  # those that it serves, with commas between them
     started_at = models.DateTimeField(default=timezone.now)
     last_seen = models.DateTimeField(default=timezone.now)
 
@@ -32,3 +32,7 @@ class Worker(models.Model):
 
     def __str__(self) -> str:
         return self.name
+
+    @property
+    def queues(self) -> list[str]:
+        return self.queue.split(",")

@@ -1,4 +1,4 @@
-"""Pretrained encoders: from a folder, an installed package or the cache of a hub, in that order.
+"""Pretrained encoders from a folder, an installed package or the cache of a hub.
 
 Nothing is downloaded, only safetensors are read, and no code that comes with weights is run.
 """
@@ -9,23 +9,20 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
-
-from transformers import AutoModel, AutoTokenizer, PreTrainedModel, PreTrainedTokenizerFast
-from transformers.utils import logging
+from typing import TYPE_CHECKING
 
 from parser_service.parsers.encoder_places import CONFIG, TOKENIZERS, WEIGHTS, find_encoder
 from parser_service.parsers.storage import file_hash
 
-# What matters of a load report is raised here; the rest and the bars would fill the log of a run.
-logging.disable_progress_bar()  # type: ignore[no-untyped-call]
-logging.set_verbosity_error()  # type: ignore[no-untyped-call]
+if TYPE_CHECKING:
+    from transformers import PreTrainedModel, PreTrainedTokenizerFast
 
-UNUSED = "pooler."  # the part that reads the last layer: nothing here does
+UNUSED = "pooler."  # a layer above the last one, which nothing here reads
 
 
 @dataclass(frozen=True, slots=True)
 class Pretrained:
-    """An encoder as it was published: its network and how it cuts texts into subwords."""
+    """A published encoder: its network and its tokenizer."""
 
     model: PreTrainedModel
     tokenizer: PreTrainedTokenizerFast  # the one with a Rust core
@@ -33,8 +30,15 @@ class Pretrained:
 
 
 def load_encoder(name: str, encoders: Path | None = None) -> Pretrained:
-    """The encoder ``name``, found as by ``find_encoder``. Raises ValueError, a sentence."""
+    """Load the encoder ``name``, from where ``find_encoder`` finds it. Raises ValueError, a sentence."""
     folder = find_encoder(name, encoders)
+    # Importing it takes seconds, and a saved ranker answers without it.
+    from transformers import AutoModel, AutoTokenizer, PreTrainedTokenizerFast
+    from transformers.utils import logging
+
+    # What matters in a load report is raised below; the rest and the bars would fill the log of a run.
+    logging.disable_progress_bar()  # type: ignore[no-untyped-call]
+    logging.set_verbosity_error()  # type: ignore[no-untyped-call]
     try:
         tokenizer = AutoTokenizer.from_pretrained(
             folder, local_files_only=True, trust_remote_code=False
@@ -46,9 +50,9 @@ def load_encoder(name: str, encoders: Path | None = None) -> Pretrained:
             use_safetensors=True,
             output_loading_info=True,
         )
-    except Exception as problem:  # transformers raises whatever its parts raise
-        text = " ".join(str(problem).split())[:200]
-        raise ValueError(f"{folder} holds no encoder that can be read: {text}") from problem
+    except Exception as error:  # transformers raises whatever its parts raise
+        text = " ".join(str(error).split())[:200]
+        raise ValueError(f"{folder} holds no encoder that can be read: {text}") from error
     if not isinstance(tokenizer, PreTrainedTokenizerFast):
         raise ValueError(f"{folder} holds no tokenizer.json that can be read. Put that file there.")
     _refuse_gaps(folder, report["missing_keys"])
@@ -56,14 +60,15 @@ def load_encoder(name: str, encoders: Path | None = None) -> Pretrained:
 
 
 def encoder_hash(folder: Path) -> str:
-    """The SHA-256 of what decides an encoder's vectors: configuration, weights and subwords."""
+    """Return the SHA-256 of what decides an encoder's vectors: configuration, weights and tokenizer."""
     names = (CONFIG, WEIGHTS, *TOKENIZERS)
     hashes = [f"{name} {file_hash(folder / name)}" for name in names if (folder / name).is_file()]
     return sha256("\n".join(hashes).encode()).hexdigest()
 
 
 def _refuse_gaps(folder: Path, absent: Collection[str]) -> None:
-    """Transformers draws at random what the file has not: nobody should train on that unawares."""
+    """Refuse a file without all weights: transformers would draw them at random without a word. Raises
+    ValueError, a sentence."""
     used = sorted(name for name in absent if not name.startswith(UNUSED))
     if used:
         raise ValueError(

@@ -1,4 +1,4 @@
-"""Hyperparameters: declared on a frozen dataclass, read from JSON, shown in a form."""
+"""Hyperparameters, declared on a frozen dataclass, read from JSON and shown in a form."""
 
 from __future__ import annotations
 
@@ -30,20 +30,20 @@ def hyperparameter(
     maximum: float | None = None,
     choices: tuple[str, ...] = (),
 ) -> Any:
-    """A dataclass field that carries its description and its bounds (both included)."""
+    """Declare a dataclass field with its description and its bounds (both included)."""
     bounds = {"minimum": minimum, "maximum": maximum, "choices": choices}
     return field(default=default, metadata={"description": description, **bounds})
 
 
 def describe(config_class: type) -> tuple[ConfigField, ...]:
-    """The hyperparameters of a config dataclass, in order."""
-    return tuple(map(_described, _declared(config_class)))
+    """Return the hyperparameters of a config dataclass, in order."""
+    return tuple(map(_describe_field, _declared_fields(config_class)))
 
 
 def validate(config: Any) -> None:
-    """Checks every field of ``config`` against its declaration: for ``__post_init__``.
+    """Check every field of ``config`` against its declaration, for ``__post_init__``.
 
-    A whole number stands for a fraction where a fraction is expected, and is stored as one.
+    Where a fraction is expected, a whole number is taken, and stored as a fraction.
     Raises ValueError naming the field, the value and what is allowed.
     """
     for declared in describe(type(config)):
@@ -56,32 +56,32 @@ def validate(config: Any) -> None:
 
 
 def refuse_empty(config: Any, field: str) -> None:
-    """For weights that a parser cannot do without: it would be another one under its name. Raises
-    ValueError, a sentence."""
+    """Refuse a configuration without weights that the parser needs: without them it would be another
+    parser of the same name. Raises ValueError, a sentence."""
     if not getattr(config, field).strip():
-        raise ValueError(f"{field} is empty, but this parser reads it; name what it is to read.")
+        raise ValueError(f"{field} is empty, but this parser needs it. Name the weights to read.")
 
 
 def read_config(config_class: type[C], values: Mapping[str, Any]) -> C:
-    """A config from JSON ``values``, with defaults. Raises ValueError, a sentence."""
-    known = [item.name for item in _declared(config_class)]
+    """Make a config from JSON ``values``, with defaults. Raises ValueError, a sentence."""
+    known = [item.name for item in _declared_fields(config_class)]
     if unknown := sorted(set(values) - set(known)):
         names = ", ".join(unknown)
         raise ValueError(f"No hyperparameter is called {names}; there are: {', '.join(known)}.")
     return config_class(**values)
 
 
-def _declared(config_class: type) -> list[Field[Any]]:
+def _declared_fields(config_class: type) -> list[Field[Any]]:
     return [item for item in fields(config_class) if "description" in item.metadata]
 
 
-def _described(item: Field[Any]) -> ConfigField:
+def _describe_field(item: Field[Any]) -> ConfigField:
     default: Any = item.default
     return ConfigField(item.name, type(default), default, **item.metadata)
 
 
 def _fault(declared: ConfigField, value: Value) -> str:
-    """What ``value`` violates, as the end of a sentence; empty where it is allowed."""
+    """Return what is wrong with ``value``, as the end of a sentence; empty where it is allowed."""
     if type(value) is not declared.type:
         kinds = {bool: "true or false", int: "a whole number", float: "a number", str: "a text"}
         return f"it has to be {kinds[declared.type]}"

@@ -1,11 +1,14 @@
-"""Where pretrained weights lie: a folder, an installed package or the local cache of a hub.
+"""Where pretrained weights are: in a folder, an installed package or the local cache of a hub.
 
-Nothing is downloaded, no package is run and torch is not loaded: pages look here, too.
+Nothing is downloaded, no package is run and torch is not loaded: pages look here, too. Who has the
+command line may name any folder of the machine. Requests from pages and from the REST API may name
+what is in the installation's folder of encoders, and packages that the settings list: else their
+answers would tell which files a server has, and what is in them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -15,65 +18,89 @@ TOKENIZERS = ("tokenizer.json", "vocab.txt")
 
 _encoders: Path | None = None
 _vectors: Path | None = None
+_packages: frozenset[str] = frozenset()
 
 
-def keep_encoders_in(encoders: Path | None, vectors: Path | None = None) -> None:
-    """Says where this installation keeps its encoders (GPSR_ENCODERS_DIR), and where frozen ones may
-    leave the vectors of many utterances for the next training."""
-    global _encoders, _vectors
-    _encoders, _vectors = encoders, vectors
+def keep_encoders_in(
+    encoders: Path | None, vectors: Path | None = None, packages: Collection[str] = ()
+) -> None:
+    """Sets where this installation keeps its encoders (GPSR_ENCODERS_DIR), where frozen ones may
+    leave the vectors of many utterances for the next training, and the packages that any request
+    may name (GPSR_ENCODER_PACKAGES)."""
+    global _encoders, _vectors, _packages
+    _encoders, _vectors, _packages = encoders, vectors, frozenset(packages)
 
 
 def encoders_folder() -> Path | None:
-    """Where this installation keeps its encoders; None where nobody said."""
+    """Return where this installation keeps its encoders; None where nobody said."""
     return _encoders
 
 
 def vectors_folder() -> Path | None:
-    """Where computed vectors may be left; None where they stay in memory."""
+    """Return where computed vectors may be left; None where they stay in memory."""
     return _vectors
 
 
-def find_encoder(name: str, encoders: Path | None = None) -> Path:
-    """The folder in which the transformer ``name`` lies, in the files of Hugging Face.
+def refuse_path(field: str, name: str) -> None:
+    """Refuse a ``name`` that may lead out of the folder of encoders. Raises ValueError, a sentence
+    that is the same whether or not there is such a file."""
+    path = Path(name)
+    if path.is_absolute() or ".." in path.parts or "\0" in name:
+        raise ValueError(
+            f"{field} is {name!r}, but a request may only name what is in GPSR_ENCODERS_DIR. "
+            "Put the weights there and give their name without a path."
+        )
+
+
+def find_encoder(name: str, encoders: Path | None = None, anywhere: bool = True) -> Path:
+    """Return the folder that holds the transformer ``name`` in the files of Hugging Face.
 
     Args:
-        name: a folder, a folder inside ``encoders``, an importable package with the files somewhere
-            inside, or the name of a model in the local cache of the Hugging Face hub.
+        name: a folder inside ``encoders``, any other folder, an importable package with the files
+            somewhere inside, or the name of a model in the local cache of the Hugging Face hub.
         encoders: where an installation keeps its encoders.
+        anywhere: False to look in ``encoders`` and in the listed packages alone.
 
     Raises:
         ValueError: it is at none of these places, or incomplete; says what to put where.
     """
-    for folder in _places(name, encoders):
+    for folder in _places(name, encoders) if anywhere else _open_places(name, encoders):
         if (folder / CONFIG).is_file():
             _refuse_incomplete(folder)
             return folder
     there = (encoders or Path("ENCODERS")) / name
     download = f", for example with: hf download {name} --local-dir {there}" if "/" in name else ""
     raise ValueError(
-        f"There are no weights of {name}: it is no folder{inside(encoders)}, no installed package "
-        f"and not in the cache of the hub. Put its {CONFIG}, {WEIGHTS} and {TOKENIZERS[0]} into "
-        f"{there}{download}; or install the package that holds them."
+        f"There are no weights of {name}: neither a folder{inside(encoders)} nor a package that may "
+        f"be named. Put its {CONFIG}, {WEIGHTS} and {TOKENIZERS[0]} into {there}{download}; or "
+        "install the package that holds them and list it in GPSR_ENCODER_PACKAGES."
     )
 
 
 def inside(encoders: Path | None) -> str:
-    """Where names of folders were looked for as well, as a part of a sentence."""
+    """Return where names of folders were looked for as well, as a part of a sentence."""
     return f" in {encoders}" if encoders else ""
 
 
-def _places(name: str, encoders: Path | None) -> Iterator[Path]:
-    """Where the encoder may lie, in the order in which it is looked for."""
-    yield Path(name)
+def _open_places(name: str, encoders: Path | None) -> Iterator[Path]:
+    """Yield where a request may have the encoder looked for."""
     if encoders is not None:
         yield encoders / name
+    if name in _packages:
+        yield from _in_package(name)
+
+
+def _places(name: str, encoders: Path | None) -> Iterator[Path]:
+    """Yield where the encoder may be, in the order in which it is looked for. What a request may
+    name comes first, so that a training reads the files that its request was checked for."""
+    yield from _open_places(name, encoders)
+    yield Path(name)
     yield from _in_package(name)
     yield from _in_cache(name)
 
 
 def _in_package(name: str) -> Iterator[Path]:
-    """The folders of an installed package that hold an encoder; the package is not run."""
+    """Yield the folders of an installed package that hold an encoder; the package is not run."""
     spec = find_spec(name) if name.isidentifier() else None
     for root in (spec.submodule_search_locations or ()) if spec else ():
         for path in sorted(Path(root).rglob(CONFIG)):
@@ -95,6 +122,6 @@ def _refuse_incomplete(folder: Path) -> None:
     if not (folder / WEIGHTS).is_file():
         pickled = any(folder.glob("*.bin")) or any(folder.glob("*.pt"))
         reason = "only pickled weights, which are never read" if pickled else f"no {WEIGHTS}"
-        raise ValueError(f"{folder} holds {reason}. Put {WEIGHTS} of the same model there.")
+        raise ValueError(f"{folder} holds {reason}. Put the {WEIGHTS} of the same model there.")
     if not any((folder / name).is_file() for name in TOKENIZERS):
-        raise ValueError(f"{folder} holds no {TOKENIZERS[0]}. Put that of the same model there.")
+        raise ValueError(f"{folder} holds no {TOKENIZERS[0]}. Put the one of the same model there.")

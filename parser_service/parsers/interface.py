@@ -1,4 +1,4 @@
-"""What a parser is: three verbs (fit, predict, save and load) and the values they pass."""
+"""The interface of a parser (fit, predict, save and load) and the values that it passes."""
 
 from __future__ import annotations
 
@@ -8,16 +8,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
+from parser_service.parsers.conditions import Protocol
+
 if TYPE_CHECKING:
-    from annotations.language.expansion import TaskCategory
     from annotations.language.ontology import Ontology
     from annotations.language.predicates import Predicate
-
-Protocol = Literal["strict", "domain", "grammar"]
-PROTOCOLS: tuple[Protocol, ...] = ("strict", "domain", "grammar")
+    from annotations.language.templates import TaskCategory
 
 Check = Callable[[], None]
-"""Called between batches; raises ``Cancelled`` when the work is to stop."""
+"""Called between batches; raises ``Cancelled`` when the work has to stop."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +33,8 @@ class Pair:
 class Candidate:
     """One answer.
 
-    ``form`` is canonical corpus text, or the text that the parser made where that is no form;
-    ``score`` orders the candidates of one utterance and is comparable within one parser only.
+    ``form`` is canonical corpus text, or the text that the parser wrote where that is not a form;
+    ``score`` orders the candidates of one utterance and can be compared within one parser only.
     """
 
     form: str
@@ -44,7 +43,7 @@ class Candidate:
 
 @dataclass(frozen=True, slots=True)
 class Knowledge:
-    """What a parser may know beside its training pairs (DESIGN §5).
+    """What a parser may know besides its training pairs (DESIGN §5).
 
     *strict* knows nothing, *domain* the declared predicates and the ontology, *grammar* the
     annotated grammar as well: the task categories with their rules and templates.
@@ -56,16 +55,18 @@ class Knowledge:
 
     @property
     def protocol(self) -> Protocol:
-        """The least protocol that allows what this holds."""
+        """Return the strictest protocol that allows what this holds."""
         if self.grammar is not None:
-            return "grammar"
-        return "strict" if self.predicates is None and self.ontology is None else "domain"
+            return Protocol.GRAMMAR
+        is_strict = self.predicates is None and self.ontology is None
+        return Protocol.STRICT if is_strict else Protocol.DOMAIN
 
-    def limited_to(self, protocol: Protocol) -> Knowledge:
-        """The part of this that ``protocol`` allows a parser to see."""
-        if protocol == "grammar":
+    def limited_to(self, protocol: str) -> Knowledge:
+        """Return the part of this that ``protocol`` allows a parser to see."""
+        if protocol == Protocol.GRAMMAR:
             return self
-        return Knowledge(self.predicates, self.ontology) if protocol == "domain" else Knowledge()
+        is_domain = protocol == Protocol.DOMAIN
+        return Knowledge(self.predicates, self.ontology) if is_domain else Knowledge()
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,41 +86,38 @@ class Cancelled(Exception):
 
 
 class Observer:
-    """What a parser tells whoever trains it. This one listens to nothing and keeps nothing."""
+    """Receives what a parser reports while it is trained. This one ignores everything."""
 
     def check(self) -> None:
-        """Called every batch. Raises ``Cancelled`` when the run is to stop."""
+        """Is called every batch. Raises ``Cancelled`` when the run has to stop."""
 
     def progress(self, fraction: float, message: str = "") -> None:
-        """How far the work is, from 0 to 1."""
+        """Take how much of the work is done, from 0 to 1."""
 
     def epoch(self, report: EpochReport) -> None:
-        """An epoch is over."""
+        """Take the report of a finished epoch."""
 
     def log(self, message: str) -> None:
-        """One line for the run's log."""
+        """Take one line for the run's log."""
 
     def checkpoint(self, epoch: int, is_best: bool, write: Callable[[Path], None]) -> None:
-        """Keep the state after ``epoch``: ``write`` fills an empty folder with it."""
+        """Keep the state after ``epoch``; ``write`` writes it into an empty folder."""
 
     def last_checkpoint(self) -> Path | None:
-        """The folder of the newest checkpoint of this run, from which ``fit`` goes on."""
-        return None
-
-    def best_checkpoint(self) -> Path | None:
-        """The folder of the best checkpoint of this run; a parser can be loaded from it."""
+        """Return the folder of the newest checkpoint of this run, from which ``fit`` resumes."""
         return None
 
 
 def keep_going() -> None:
-    """The ``Check`` of work that nobody stops."""
+    """Is the ``Check`` of work that nobody stops."""
 
 
 class Parser(ABC):
     """Maps utterances to logical forms.
 
-    A subclass names itself as the registry does and raises ``version`` whenever the same pairs,
-    configuration and seed may give another result. Forms are canonical corpus text on both sides.
+    A subclass has the name that the registry gives it. Its ``version`` is raised whenever the same
+    pairs, configuration and seed may give another result, or saved parsers can no longer be loaded.
+    Forms are canonical corpus text on both sides.
     """
 
     name: ClassVar[str]
@@ -141,38 +139,38 @@ class Parser(ABC):
         validation: Sequence[Pair] = (),
         observe: Observer | None = None,
     ) -> None:
-        """Learns from ``train``; ``validation`` serves only to choose among what was learned.
+        """Learn from ``train``; ``validation`` serves only to choose among what was learned.
 
-        Goes on from ``observe.last_checkpoint()`` where there is one, to the same end as an
-        undisturbed run. Raises ``Cancelled`` from ``observe.check()`` and ValueError, a sentence,
-        where the pairs or the knowledge do not suffice.
+        Resumes from ``observe.last_checkpoint()`` where there is one, with the same result as a run
+        that was never stopped. Raises ``Cancelled`` from ``observe.check()``, and ValueError, a
+        sentence, where the pairs or the knowledge do not suffice.
         """
 
     @abstractmethod
     def predict(
         self, utterances: Sequence[str], beam_width: int = 1, check: Check = keep_going
     ) -> list[list[Candidate]]:
-        """For each utterance at most ``beam_width`` distinct candidates, best first; none where the
-        parser has no answer."""
+        """Return for each utterance at most ``beam_width`` distinct candidates, best first; none where
+        the parser has no answer."""
 
     def for_test_part(self, validation: Sequence[Pair]) -> Parser:
-        """The parser with which the test part is scored, leaving this one unchanged.
+        """Return the parser that the test part is scored with; this one stays unchanged.
 
-        Itself, unless the method consults the validation pairs as well by then (``knn``, as in
-        the paper). Scores on the validation part never go through here.
+        It is this one, unless the method also uses the validation pairs for the test part (``knn``,
+        as in the paper). The validation part is never scored with it.
         """
         return self
 
     @abstractmethod
     def save(self, folder: Path) -> None:
-        """Writes the fitted parser into ``folder`` (made if absent) as JSON and safetensors."""
+        """Write the fitted parser into ``folder`` (made if absent) as JSON and safetensors."""
 
     @classmethod
     @abstractmethod
     def load(cls, folder: Path, knowledge: Knowledge | None = None) -> Self:
-        """The parser that ``save`` wrote. Raises ValueError, a sentence, where a file is missing,
-        altered since or not what its name says."""
+        """Load the parser that ``save`` wrote. Raises ValueError, a sentence, where a file is missing,
+        was altered or has other contents than its name says."""
 
     @abstractmethod
     def parameters(self) -> int:
-        """The number of learned weights; 0 where nothing is learned by weights."""
+        """Return the number of learned weights; 0 for a parser without weights."""

@@ -10,6 +10,7 @@ from typing import Self
 
 import numpy as np
 
+from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.config_fields import hyperparameter, validate
 from parser_service.parsers.interface import (
     Candidate,
@@ -28,11 +29,11 @@ PAIRS = "pairs.json"
 
 @dataclass(frozen=True)
 class NearestNeighbourConfig:
-    """How much of an utterance and a neighbour has to be shared."""
+    """How much an utterance and its neighbour have to share."""
 
     least_overlap: float = hyperparameter(
         0.0,
-        "Share of common words (0 to 1) below which there is no answer; 0 always answers.",
+        "Share of common words (0 to 1) below which the parser gives no answer; 0: it always answers.",
         minimum=0.0,
         maximum=1.0,
     )
@@ -44,18 +45,18 @@ class NearestNeighbourConfig:
 class NearestNeighbour(Parser):
     """K = 1 under the Jaccard distance between sets of words (Walker et al. 2019, baselines).
 
-    Ties: of several nearest utterances the form that most of them carry wins; of forms that are
-    equal in this too, the first in alphabetical order. The order of the training pairs is without
-    effect. Further candidates are the forms of the next nearest utterances, one each.
-    A form that no neighbour carries is never answered.
+    Ties: of several nearest utterances, the form that most of them have wins; of equally frequent
+    forms, the first in alphabetical order. The order of the training pairs has no effect. Further
+    candidates are the forms of the next nearest utterances, each form once. A form that no neighbour
+    has is never answered.
 
     Neighbours are the training pairs. The paper adds the validation pairs before it scores the
-    test part: that is ``for_test_part(validation)``.
+    test part; ``for_test_part(validation)`` does that.
     """
 
     name = "knn"
     version = 1
-    protocols = ("strict",)
+    protocols = (Protocol.STRICT,)
     Config = NearestNeighbourConfig
 
     def __init__(
@@ -73,22 +74,22 @@ class NearestNeighbour(Parser):
         validation: Sequence[Pair] = (),
         observe: Observer | None = None,
     ) -> None:
-        """Remembers ``train``. Raises ValueError where it is empty."""
+        """Store ``train``. Raises ValueError where it is empty."""
         if not train:
             raise ValueError("There is no training pair, so there is no neighbour to answer with.")
         (observe or Observer()).check()
-        self._remember([(pair.utterance, pair.form) for pair in train])
+        self._store([(pair.utterance, pair.form) for pair in train])
 
     def for_test_part(self, validation: Sequence[Pair]) -> NearestNeighbour:
-        """A nearest neighbour among the training pairs and ``validation``."""
+        """Return a nearest neighbour among the training pairs and ``validation``."""
         other = NearestNeighbour(self.config, self.seed, self.knowledge)
-        other._remember(self._pairs + [(pair.utterance, pair.form) for pair in validation])
+        other._store(self._pairs + [(pair.utterance, pair.form) for pair in validation])
         return other
 
     def predict(
         self, utterances: Sequence[str], beam_width: int = 1, check: Check = keep_going
     ) -> list[list[Candidate]]:
-        """The nearest forms; the score is the share of common words, 1 − distance."""
+        """Return the nearest forms; the score is the share of common words, 1 − distance."""
         answers = []
         for utterance in utterances:
             check()
@@ -104,14 +105,14 @@ class NearestNeighbour(Parser):
     def load(cls, folder: Path, knowledge: Knowledge | None = None) -> Self:
         saved = open_sealed(folder, cls, [PAIRS])
         parser = cls(saved.config, saved.seed, knowledge)
-        parser._remember([(utterance, form) for utterance, form in read_json(folder / PAIRS)])
+        parser._store([(utterance, form) for utterance, form in read_json(folder / PAIRS)])
         return parser
 
     def parameters(self) -> int:
         return 0
 
-    def _remember(self, pairs: list[tuple[str, str]]) -> None:
-        """Builds the inverted index: for each word the positions of the pairs that have it."""
+    def _store(self, pairs: list[tuple[str, str]]) -> None:
+        """Build the inverted index: for each word, the positions of the pairs that have it."""
         self._pairs = pairs
         self._forms = sorted({form for _, form in pairs})
         number = {form: index for index, form in enumerate(self._forms)}
@@ -140,10 +141,10 @@ class NearestNeighbour(Parser):
         ]
 
     def _overlap(self, utterance: str) -> np.ndarray:
-        """1 − Jaccard distance to every pair. Shape [pairs]; equal ratios are equal floats."""
+        """Return 1 − the Jaccard distance to every pair. Shape [pairs]; equal ratios are equal floats."""
         vocabulary = set(words(utterance))
-        found = [self._postings[word] for word in vocabulary if word in self._postings]
-        positions = np.concatenate(found) if found else np.array([], dtype=np.int64)
+        postings = [self._postings[word] for word in vocabulary if word in self._postings]
+        positions = np.concatenate(postings) if postings else np.array([], dtype=np.int64)
         shared = np.bincount(positions, minlength=len(self._pairs))  # [pairs]
         union = self._sizes + len(vocabulary) - shared  # [pairs]
         return np.asarray(shared / np.maximum(union, 1))

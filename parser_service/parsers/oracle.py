@@ -1,4 +1,4 @@
-"""The grammar oracle: chart-parses a command with the annotated grammar it was generated from."""
+"""The grammar oracle, a chart parser with the annotated grammar that commands are generated from."""
 
 from __future__ import annotations
 
@@ -7,12 +7,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
 
-from annotations.language.anonymizer import Anonymizer
-from annotations.language.expansion import TaskCategory
 from annotations.language.grammar import Grammar, print_production, read_production
+from annotations.language.grounding import Anonymizer
 from annotations.language.ontology import Ontology, read_ontology, write_ontology
-from annotations.language.template_chart import TemplateChart
-from annotations.language.templates import print_template, read_template
+from annotations.language.templates import (
+    TaskCategory,
+    TemplateChart,
+    print_template,
+    read_template,
+)
+from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.config_fields import validate
 from parser_service.parsers.interface import (
     Candidate,
@@ -30,7 +34,7 @@ GRAMMAR, ONTOLOGY = "grammar.json", "ontology.json"
 
 @dataclass(frozen=True)
 class OracleConfig:
-    """There is nothing to choose."""
+    """The oracle has no hyperparameters."""
 
     def __post_init__(self) -> None:
         validate(self)
@@ -39,14 +43,14 @@ class OracleConfig:
 class GrammarOracle(Parser):
     """Returns the form of the template that derives the command (Walker et al. 2019, baselines).
 
-    Right on every generated command by construction, without an answer for any other. A command
-    with entities in it is read once more with their class tokens. Learns nothing from pairs: it is
-    the annotated grammar and the ontology of ``Knowledge``, and a saved one carries a copy of both.
+    It is right on every generated command by construction and has no answer for any other. A command
+    with entities is parsed once more with class tokens in their place. It learns nothing from pairs:
+    it consists of the annotated grammar and the ontology of ``Knowledge``, and saves a copy of both.
     """
 
     name = "grammar-oracle"
     version = 2
-    protocols = ("grammar",)
+    protocols = (Protocol.GRAMMAR,)
     Config = OracleConfig
 
     def __init__(
@@ -67,7 +71,7 @@ class GrammarOracle(Parser):
         validation: Sequence[Pair] = (),
         observe: Observer | None = None,
     ) -> None:
-        """Learns nothing. Raises ValueError where there is no template to parse with."""
+        """Check that there is a template to parse with; nothing is learned. Raises ValueError."""
         if not any(category.templates for category in self._categories):
             raise ValueError(
                 "The grammar oracle parses with templates over a grammar, and it was given none. "
@@ -77,8 +81,8 @@ class GrammarOracle(Parser):
     def predict(
         self, utterances: Sequence[str], beam_width: int = 1, check: Check = keep_going
     ) -> list[list[Candidate]]:
-        """The forms of all derivations, the one that generation keeps first; none outside the
-        grammar. The score is minus the rank, from 0."""
+        """Return the forms of all derivations, first the one that generation keeps; none outside the
+        grammar. The score is minus the rank, which counts from 0."""
         answers = []
         for utterance in utterances:
             check()
@@ -94,15 +98,15 @@ class GrammarOracle(Parser):
 
     def save(self, folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
-        write_json(folder / GRAMMAR, [_printed(category) for category in self._categories])
+        write_json(folder / GRAMMAR, [_to_json(category) for category in self._categories])
         write_json(folder / ONTOLOGY, write_ontology(self.knowledge.ontology or Ontology(())))
         seal(folder, self, [GRAMMAR, ONTOLOGY])
 
     @classmethod
     def load(cls, folder: Path, knowledge: Knowledge | None = None) -> Self:
-        """The saved oracle with its own copies, whatever ``knowledge`` says today."""
+        """Load the saved oracle with its own grammar and ontology, whatever ``knowledge`` is now."""
         saved = open_sealed(folder, cls, [GRAMMAR, ONTOLOGY])
-        grammar = tuple(_read(category) for category in read_json(folder / GRAMMAR))
+        grammar = tuple(_read_category(category) for category in read_json(folder / GRAMMAR))
         files = {name: text.encode() for name, text in read_json(folder / ONTOLOGY).items()}
         ontology, _ = read_ontology(files)
         return cls(saved.config, saved.seed, Knowledge(ontology=ontology, grammar=grammar))
@@ -111,7 +115,7 @@ class GrammarOracle(Parser):
         return 0
 
 
-def _printed(category: TaskCategory) -> dict[str, Any]:
+def _to_json(category: TaskCategory) -> dict[str, Any]:
     return {
         "name": category.name,
         "productions": [print_production(each) for each in category.grammar.productions],
@@ -119,7 +123,7 @@ def _printed(category: TaskCategory) -> dict[str, Any]:
     }
 
 
-def _read(category: Mapping[str, Any]) -> TaskCategory:
+def _read_category(category: Mapping[str, Any]) -> TaskCategory:
     return TaskCategory(
         category["name"],
         Grammar(tuple(read_production(line) for line in category["productions"])),

@@ -1,23 +1,38 @@
-"""The parsers there are. Paths, not classes: reading this file loads neither torch nor a parser."""
+"""The parsers by name. It holds paths, not classes: importing it loads neither torch nor a parser."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import gc
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
+from enum import StrEnum
 from importlib import import_module
 from typing import Any
 
+from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.config_fields import ConfigField, describe, read_config
-from parser_service.parsers.interface import Parser, Protocol
+from parser_service.parsers.interface import Parser
+
+
+class Needs(StrEnum):
+    """What a parser needs most before it can be trained."""
+
+    NOTHING = "nothing"
+    CPU = "minutes on a CPU"
+    GPU = "a GPU recommended"
+    WEIGHTS = "weights to bring"
 
 
 @dataclass(frozen=True, slots=True)
 class Entry:
     """One parser as pages, the worker and the command line see it.
 
+    ``in_short`` says in one plain sentence what it does, ``description`` how.
+
     ``dotted`` is the path of its class (which may import torch), ``config`` of its hyperparameters
-    (which may not); ``queue`` names the workers that may run it, ``cpu`` or ``gpu``. ``loss_unit`` is
-    that of the losses it reports.
+    (which may not); ``queue`` names the workers that may run it: ``quick`` where training takes seconds and
+    needs no torch, otherwise ``cpu`` or ``gpu``. ``loss_unit`` is that of the losses it reports.
     """
 
     dotted: str
@@ -26,6 +41,8 @@ class Entry:
     description: str
     version: int
     protocols: tuple[Protocol, ...]
+    in_short: str = ""
+    needs: Needs = Needs.CPU
     queue: str = "cpu"
     loss_unit: str = "nats a token"
 
@@ -38,122 +55,155 @@ PARSERS: dict[str, Entry] = {
         description="Chart-parses with the annotated grammar and returns the template's form. "
         "Learns nothing; has no answer outside the grammar.",
         version=2,
-        protocols=("grammar",),
+        protocols=(Protocol.GRAMMAR,),
+        in_short="Reads a command with the annotated grammar; knows no other way to say it.",
+        needs=Needs.NOTHING,
+        queue="quick",
     ),
     "knn": Entry(
         dotted="parser_service.parsers.knn.NearestNeighbour",
         config="parser_service.parsers.knn.NearestNeighbourConfig",
         title="Nearest neighbour",
-        description="Returns the form of the training utterance that shares most words "
-        "(Jaccard distance). Never answers a form it has not seen.",
+        description="Returns the form of the training utterance that shares the most words "
+        "(Jaccard distance). Never answers with a form it has not seen.",
         version=1,
-        protocols=("strict",),
+        protocols=(Protocol.STRICT,),
+        in_short="Answers as for the most similar training utterance.",
+        needs=Needs.NOTHING,
+        queue="quick",
     ),
     "seq2seq": Entry(
-        dotted="parser_service.neural.seq2seq.Seq2Seq",
+        dotted="parser_service.neural.seq2seq.parser.Seq2Seq",
         config="parser_service.parsers.seq2seq_config.Seq2SeqConfig",
         title="Sequence to sequence",
         description="Bidirectional LSTM encoder, bilinear attention, LSTM decoder, beam search; "
         "word vectors learned from the training pairs alone.",
         version=1,
-        protocols=("strict",),
+        protocols=(Protocol.STRICT,),
+        in_short="A small neural network that writes the form word by word; the paper's baseline.",
     ),
     "seq2seq-glove": Entry(
-        dotted="parser_service.neural.seq2seq_vectors.Seq2SeqGlove",
+        dotted="parser_service.neural.seq2seq.rows.Seq2SeqGlove",
         config="parser_service.parsers.vectors_config.GloveConfig",
         title="Seq2seq + GloVe",
-        description="Sequence to sequence with word vectors that start as GloVe's and are trained "
-        "on.",
+        description="Sequence to sequence with word vectors that start as GloVe's and are "
+        "trained further.",
         version=1,
-        protocols=("strict",),
+        protocols=(Protocol.STRICT,),
+        in_short="The same network with GloVe word vectors.",
+        needs=Needs.WEIGHTS,
     ),
     "seq2seq-glove-elmo": Entry(
-        dotted="parser_service.neural.seq2seq_vectors.Seq2SeqGloveElmo",
+        dotted="parser_service.neural.seq2seq.rows.Seq2SeqGloveElmo",
         config="parser_service.parsers.vectors_config.GloveElmoConfig",
         title="Seq2seq + GloVe, ELMo",
         description="Sequence to sequence with GloVe and, frozen, the layers of ELMo under a "
         "learned mix.",
         version=1,
-        protocols=("strict",),
+        protocols=(Protocol.STRICT,),
+        in_short="The same network with GloVe and ELMo; the first pass over the texts is slow on a CPU.",
+        needs=Needs.WEIGHTS,
     ),
     "seq2seq-glove-gpt": Entry(
-        dotted="parser_service.neural.seq2seq_vectors.Seq2SeqGloveGpt",
+        dotted="parser_service.neural.seq2seq.rows.Seq2SeqGloveGpt",
         config="parser_service.parsers.vectors_config.GloveGptConfig",
         title="Seq2seq + GloVe, GPT",
         description="Sequence to sequence with GloVe and, frozen, the last layer of OpenAI's GPT.",
         version=1,
-        protocols=("strict",),
+        protocols=(Protocol.STRICT,),
+        in_short="The same network with GloVe and OpenAI's first GPT.",
+        needs=Needs.WEIGHTS,
     ),
     "seq2seq-glove-bert-base": Entry(
-        dotted="parser_service.neural.seq2seq_vectors.Seq2SeqGloveBertBase",
+        dotted="parser_service.neural.seq2seq.rows.Seq2SeqGloveBertBase",
         config="parser_service.parsers.vectors_config.GloveBertBaseConfig",
         title="Seq2seq + GloVe, BERT base",
         description="Sequence to sequence with GloVe and, frozen, the last layer of BERT base.",
         version=1,
-        protocols=("strict",),
+        protocols=(Protocol.STRICT,),
+        in_short="The same network with GloVe and BERT base.",
+        needs=Needs.WEIGHTS,
     ),
     "seq2seq-glove-bert-large": Entry(
-        dotted="parser_service.neural.seq2seq_vectors.Seq2SeqGloveBertLarge",
+        dotted="parser_service.neural.seq2seq.rows.Seq2SeqGloveBertLarge",
         config="parser_service.parsers.vectors_config.GloveBertLargeConfig",
         title="Seq2seq + GloVe, BERT large",
         description="Sequence to sequence with GloVe and, frozen, the last layer of BERT large.",
         version=1,
-        protocols=("strict",),
+        protocols=(Protocol.STRICT,),
+        in_short="The same network with GloVe and BERT large; a GPU is recommended.",
+        needs=Needs.WEIGHTS,
     ),
     "seq2seq-minilm": Entry(
-        dotted="parser_service.neural.seq2seq_vectors.Seq2SeqMiniLm",
+        dotted="parser_service.neural.seq2seq.rows.Seq2SeqMiniLm",
         config="parser_service.parsers.vectors_config.MiniLmConfig",
         title="Seq2seq + MiniLM",
         description="Sequence to sequence with learned word vectors and, frozen, the last layer of "
         "a small sentence encoder.",
         version=1,
-        protocols=("strict",),
+        protocols=(Protocol.STRICT,),
+        in_short="The small network with a sentence encoder that comes with this installation.",
     ),
     "ranker": Entry(
-        dotted="parser_service.neural.ranker.FormRanker",
+        dotted="parser_service.neural.ranker.parser.FormRanker",
         config="parser_service.parsers.ranker_config.RankerConfig",
         title="Form ranker",
         description="A fine-tuned sentence encoder chooses among whole forms, by their examples and "
-        "by their English glosses; also among new forms, made from those of the training pairs.",
-        version=6,
-        protocols=("strict", "domain", "grammar"),
+        "by their English glosses; new forms, made from those of the training pairs, are among them.",
+        version=7,
+        protocols=(Protocol.STRICT, Protocol.DOMAIN, Protocol.GRAMMAR),
+        in_short="Chooses the form that fits best among known and new ones; the most accurate on new wording.",
         loss_unit="nats an utterance",
     ),
 }
 
 
 def entry(name: str) -> Entry:
-    """The entry called ``name``. Raises ValueError naming those there are."""
+    """Return the entry called ``name``. Raises ValueError with the names there are."""
     if name not in PARSERS:
         raise ValueError(f"No parser is called {name!r}; there are: {', '.join(PARSERS)}.")
     return PARSERS[name]
 
 
 def load_class(name: str) -> type[Parser]:
-    """The class of a parser. Loads torch where the parser needs it: for workers, not for pages."""
-    parser: type[Parser] = _attribute(entry(name).dotted)
+    """Import the class of a parser, and torch where it needs that: for workers, not for pages."""
+    with _garbage_kept():
+        parser: type[Parser] = _attribute(entry(name).dotted)
     return parser
 
 
 def config_class(name: str) -> type:
-    """The config dataclass of a parser; never loads torch."""
-    found: type = _attribute(entry(name).config)
-    return found
+    """Import the config dataclass of a parser; never loads torch."""
+    config: type = _attribute(entry(name).config)
+    return config
 
 
 def config_fields(name: str) -> tuple[ConfigField, ...]:
-    """The hyperparameters of a parser with their defaults, bounds and descriptions."""
+    """Return the hyperparameters of a parser with their defaults, bounds and descriptions."""
     return describe(config_class(name))
 
 
 def make_config(name: str, values: Mapping[str, Any] | None = None) -> Any:
-    """A validated config from JSON ``values``. Raises ValueError, a sentence."""
+    """Make a validated config from JSON ``values``. Raises ValueError, a sentence."""
     return read_config(config_class(name), values or {})
 
 
 def config_values(config: Any) -> dict[str, Any]:
-    """A config as JSON, every field named: what is stored with the run and hashed."""
+    """Return a config as JSON with every field: what is stored with the run and hashed."""
     return asdict(config)
+
+
+@contextmanager
+def _garbage_kept() -> Iterator[None]:
+    """Pause the garbage collector inside the block. Importing torch makes hundreds of thousands of
+    objects that stay; looking through them again and again takes time."""
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
 
 
 def _attribute(dotted: str) -> Any:

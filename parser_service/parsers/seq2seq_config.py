@@ -1,4 +1,4 @@
-"""The hyperparameters of the sequence-to-sequence parser, free of torch for the pages."""
+"""The hyperparameters of the sequence-to-sequence parser. Pages read them, so torch is not imported."""
 
 from __future__ import annotations
 
@@ -25,29 +25,38 @@ class Seq2SeqConfig:
         maximum=2048,
     )
     minimum_count: int = hyperparameter(
-        2, "Words seen less often in training are read as unknown.", minimum=1, maximum=100
+        2,
+        "Words seen less often than this in training are read as unknown.",
+        minimum=1,
+        maximum=100,
     )
     dropout: float = hyperparameter(
-        0.1, "Share of the encoder's values dropped in training.", minimum=0.0, maximum=0.9
+        0.1, "Share of the encoder's values that is dropped in training.", minimum=0.0, maximum=0.9
     )
     learning_rate: float = hyperparameter(
-        0.004, "Step of the Adam optimiser.", minimum=1e-6, maximum=1.0
+        0.004, "Learning rate of Adam.", minimum=1e-6, maximum=1.0
     )
-    batch_size: int = hyperparameter(32, "Pairs a training step.", minimum=1, maximum=4096)
+    batch_size: int = hyperparameter(32, "Pairs per step.", minimum=1, maximum=4096)
     clip: float = hyperparameter(
-        5.0, "Longest gradient; longer ones are shortened to it.", minimum=1e-3, maximum=1e6
+        5.0,
+        "Largest norm of the gradient; larger ones are scaled down to it.",
+        minimum=1e-3,
+        maximum=1e6,
     )
-    epochs: int = hyperparameter(150, "Passes over the training pairs, at most.", 1, 10_000)
+    epochs: int = hyperparameter(150, "Maximum passes over the training pairs.", 1, 10_000)
     patience: int = hyperparameter(
         10, "Epochs without a better validation result before training stops.", 1, 10_000
     )
     beam_width: int = hyperparameter(
-        5, "Forms kept while decoding, in validation and by default in prediction.", 1, 100
+        5,
+        "Forms kept while decoding: in validation, and in prediction unless more are asked for.",
+        1,
+        100,
     )
-    # More threads than free cores wait for each other: beside other work two were ten times slower
-    # than one. And another number rounds differently, so that one is the same on every machine.
+    # More threads than free cores wait for each other: beside other work, two are ten times slower
+    # than one. Another number also rounds differently; one gives the same result on every machine.
     threads: int = hyperparameter(
-        1, "Processor cores to compute on; 0 takes all. Another number rounds differently.", 0, 256
+        1, "Processor cores to compute on; 0: all. Another number rounds differently.", 0, 256
     )
 
     def __post_init__(self) -> None:

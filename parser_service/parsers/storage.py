@@ -1,11 +1,11 @@
-"""A saved parser: files in one folder under a ``config.json`` that has their hashes."""
+"""A saved parser: files in one folder, and a ``config.json`` with their hashes."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from hashlib import sha256
+from hashlib import file_digest
 from pathlib import Path
 from typing import Any
 
@@ -24,64 +24,61 @@ class Saved:
 
 
 def write_json(path: Path, value: Any) -> None:
-    """Writes ``value`` so that equal values give equal bytes."""
+    """Write ``value`` so that equal values give equal bytes."""
     text = json.dumps(value, ensure_ascii=False, indent=1)
     path.write_text(text + "\n", encoding="utf-8")
 
 
 def read_json(path: Path) -> Any:
-    """The value in a JSON file. Raises ValueError where it is absent or holds something else."""
+    """Read a JSON file. Raises ValueError where it is absent or holds something else."""
     try:
         return json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
-        raise ValueError(f"{path} is missing: this folder holds no complete parser.") from None
+        raise ValueError(f"{path} is missing: the parser in this folder is incomplete.") from None
     except ValueError:  # not UTF-8, or not JSON
-        raise ValueError(f"{path} is not a JSON file; save the parser again.") from None
+        raise ValueError(f"{path} is not a JSON file; train the parser again.") from None
 
 
 def seal(folder: Path, parser: Parser, files: Sequence[str]) -> None:
-    """Writes ``config.json`` beside ``files``, which are there already."""
+    """Write ``config.json`` beside ``files``, which are there already."""
     hashes = {name: file_hash(folder / name) for name in files}
     about = {"parser": parser.name, "version": parser.version, "seed": parser.seed}
     write_json(folder / CONFIG, {**about, "config": asdict(parser.config), "sha256": hashes})
 
 
 def open_sealed(folder: Path, parser: type[Parser], files: Sequence[str]) -> Saved:
-    """What ``seal`` wrote, after checking that ``files`` are the bytes that were saved.
+    """Read what ``seal`` wrote, after checking that ``files`` have the bytes that were saved.
 
     Raises ValueError, a sentence, where the folder holds another parser, another version of this
     one, or a file that is missing or was altered.
     """
     about = read_json(folder / CONFIG)
     try:
-        found = (about["parser"], about["version"])
+        name, version = about["parser"], about["version"]
         hashes, config, seed = dict(about["sha256"]), dict(about["config"]), int(about["seed"])
     except (KeyError, TypeError, ValueError):
         raise ValueError(f"{folder / CONFIG} does not describe a parser.") from None
-    if found != (parser.name, parser.version):
+    if (name, version) != (parser.name, parser.version):
         raise ValueError(
-            f"{folder} holds version {found[1]} of {found[0]}, not version {parser.version} of "
+            f"{folder} holds version {version} of {name}, not version {parser.version} of "
             f"{parser.name}; train it again."
         )
-    for name in files:
-        _verify(folder / name, hashes.get(name))
+    for file in files:
+        _verify(folder / file, hashes.get(file))
     return Saved(read_config(parser.Config, config), seed)
 
 
 def file_hash(path: Path) -> str:
-    """The SHA-256 of a file, in hexadecimal."""
-    digest = sha256()
+    """Return the SHA-256 of a file, in hexadecimal."""
     with path.open("rb") as stream:
-        while block := stream.read(1 << 20):
-            digest.update(block)
-    return digest.hexdigest()
+        return file_digest(stream, "sha256").hexdigest()
 
 
 def _verify(path: Path, expected: str | None) -> None:
     if not path.is_file():
-        raise ValueError(f"{path} is missing: this folder holds no complete parser.")
+        raise ValueError(f"{path} is missing: the parser in this folder is incomplete.")
     if file_hash(path) != expected:
         raise ValueError(
             f"{path} is not the file that was saved: its SHA-256 differs from the one in "
-            f"{CONFIG}. Copy the folder again or train the parser again."
+            f"{CONFIG}. Copy the folder again, or train the parser again."
         )

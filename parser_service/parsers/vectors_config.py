@@ -1,4 +1,5 @@
-"""The hyperparameters of the paper's rows with pretrained vectors, free of torch for the pages."""
+"""The hyperparameters of the paper's rows with pretrained vectors. Pages read them, so torch is not
+imported."""
 
 from __future__ import annotations
 
@@ -7,17 +8,15 @@ from dataclasses import dataclass
 from parser_service.parsers.config_fields import hyperparameter, refuse_empty
 from parser_service.parsers.seq2seq_config import Seq2SeqConfig
 
-_ENCODER = (
-    "Frozen contextual encoder: a folder (of GPSR_ENCODERS_DIR, too), a package or a hub name."
-)
+_ENCODER = "Frozen contextual encoder: its name in GPSR_ENCODERS_DIR, or a package."
 
 
 @dataclass(frozen=True)
 class GloveConfig(Seq2SeqConfig):
-    """Word vectors start as GloVe's and are trained on; ``embedding_size`` is theirs."""
+    """Word vectors start as GloVe's and are trained further; ``embedding_size`` is their width."""
 
     glove: str = hyperparameter(
-        "glove.6B.100d.txt", "GloVe's text file, plain or gzipped, here or in GPSR_ENCODERS_DIR."
+        "glove.6B.100d.txt", "GloVe's text file in GPSR_ENCODERS_DIR, plain or gzipped."
     )
 
     def __post_init__(self) -> None:
@@ -30,7 +29,7 @@ class GloveElmoConfig(GloveConfig):
     """GloVe, and ELMo's layers mixed by learned weights."""
 
     elmo: str = hyperparameter(
-        "elmo", "Folder with ELMo's options JSON and HDF5 weights, here or in GPSR_ENCODERS_DIR."
+        "elmo", "Folder in GPSR_ENCODERS_DIR with ELMo's options JSON and HDF5 weights."
     )
 
     def __post_init__(self) -> None:

@@ -1,6 +1,6 @@
-"""Published weights that are no transformers: GloVe's text file, ELMo's options and HDF5 file.
+"""Published weights of other kinds than transformers: GloVe's text file, ELMo's options and HDF5 file.
 
-And whether all that a configuration needs is there, answered without loading torch.
+Also tells, without loading torch, whether everything that a configuration needs is there.
 """
 
 from __future__ import annotations
@@ -9,7 +9,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from parser_service.parsers.encoder_places import encoders_folder, find_encoder, inside
+from parser_service.parsers.encoder_places import (
+    encoders_folder,
+    find_encoder,
+    inside,
+    refuse_path,
+)
 
 OPTIONS_ENDING = "options.json"
 WEIGHTS_ENDING = "weights.hdf5"
@@ -27,12 +32,13 @@ class ElmoFiles:
     weights: Path
 
 
-def find_glove(name: str, encoders: Path | None = None) -> Path:
-    """GloVe's text file ``name``, here or in the folder ``encoders``, plain or gzipped.
+def find_glove(name: str, encoders: Path | None = None, anywhere: bool = True) -> Path:
+    """Return GloVe's text file ``name``, plain or gzipped: in the folder ``encoders`` or, ``anywhere``,
+    under any other path.
 
     Raises ValueError, a sentence that says what to put where.
     """
-    for folder in _folders(encoders):
+    for folder in _folders(encoders, anywhere):
         for path in (folder / name, folder / f"{name}.gz"):
             if path.is_file():
                 return path
@@ -43,12 +49,13 @@ def find_glove(name: str, encoders: Path | None = None) -> Path:
     )
 
 
-def find_elmo(name: str, encoders: Path | None = None) -> ElmoFiles:
-    """The files of the ELMo in the folder ``name``, here or inside ``encoders``.
+def find_elmo(name: str, encoders: Path | None = None, anywhere: bool = True) -> ElmoFiles:
+    """Return the files of the ELMo in the folder ``name``: inside ``encoders`` or, ``anywhere``, under
+    any other path.
 
     Raises ValueError, a sentence that says what to put where.
     """
-    for folder in _folders(encoders):
+    for folder in _folders(encoders, anywhere):
         options = sorted((folder / name).glob(f"*{OPTIONS_ENDING}"))
         weights = sorted((folder / name).glob(f"*{WEIGHTS_ENDING}"))
         if len(options) == len(weights) == 1:
@@ -60,30 +67,49 @@ def find_elmo(name: str, encoders: Path | None = None) -> ElmoFiles:
     )
 
 
-def missing_weights(config: Any, encoders: Path | None = None) -> str | None:
-    """What a parser with this configuration lacks before it can be trained, and where to put it.
+def missing_weights(config: Any, encoders: Path | None = None, anywhere: bool = True) -> str | None:
+    """Return what a parser with this configuration lacks before it can be trained, and where to put it.
 
     None where nothing is missing. ``encoders`` is the installation's folder of encoders unless
-    given. The fields ``glove``, ``elmo`` and ``encoder`` name weights; an empty name needs none.
+    given; ``anywhere`` is False for requests from pages and the REST API, which look there and in
+    the listed packages alone. The fields ``glove``, ``elmo`` and ``encoder`` name weights; an empty
+    name needs none.
     """
+    return " ".join(each.sentence for each in find_gaps(config, encoders, anywhere)) or None
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """Weights that are not there: their name, and a sentence that says what to put where."""
+
+    name: str
+    sentence: str
+
+
+def find_gaps(config: Any, encoders: Path | None = None, anywhere: bool = True) -> list[Gap]:
+    """Return the weights that ``missing_weights`` tells of, one by one."""
     encoders = encoders or encoders_folder()
-    problems = []
+    gaps = []
     for field, find in (("glove", find_glove), ("elmo", find_elmo), ("encoder", find_encoder)):
         if name := getattr(config, field, ""):
             try:
-                find(name, encoders)
-            except ValueError as problem:
-                problems.append(str(problem))
-            except OSError as problem:  # a name longer than the system allows, say
-                problems.append(f"{field} cannot be looked for: {problem.strerror or problem}.")
-    return " ".join(problems) or None
+                if not anywhere:
+                    refuse_path(field, name)
+                find(name, encoders, anywhere)
+            except ValueError as error:
+                gaps.append(Gap(name, str(error)))
+            except OSError as error:  # a name longer than the system allows, say
+                sentence = f"{field} cannot be looked for: {error.strerror or error}."
+                gaps.append(Gap(name, sentence))
+    return gaps
 
 
-def refuse_missing_weights(config: Any) -> None:
-    """Raises ValueError, the sentence of ``missing_weights``, where it has one."""
-    if problem := missing_weights(config):
-        raise ValueError(problem)
+def refuse_missing_weights(config: Any, anywhere: bool = True) -> None:
+    """Raise ValueError, the sentence of ``missing_weights``, where it has one."""
+    if sentence := missing_weights(config, anywhere=anywhere):
+        raise ValueError(sentence)
 
 
-def _folders(encoders: Path | None) -> list[Path]:
-    return [Path(), encoders] if encoders else [Path()]
+def _folders(encoders: Path | None, anywhere: bool) -> list[Path]:
+    """The folders that names start from; the installation's comes first."""
+    return [*([encoders] if encoders else []), *([Path()] if anywhere else [])]

@@ -1,4 +1,4 @@
-"""How parsers that read words cut an utterance into them."""
+"""The words of an utterance, for parsers that read words."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ _WORD = re.compile(r"<\w+>|\w+(?:['’]\w+)*")
 
 
 def words(utterance: str) -> tuple[str, ...]:
-    """The words in order, lower-cased, without punctuation.
+    """Return the words in order, lower-cased, without punctuation.
 
     A class token (``<object>``) and a contraction (``what's``) are one word each. Case and
-    punctuation carry next to nothing in spoken commands: without them the nearest neighbour finds
-    4 points more of the published paraphrases.
+    punctuation mean next to nothing in spoken commands: without them the nearest neighbour is right
+    on 4 percentage points more of the published paraphrases.
     """
     return tuple(_WORD.findall(utterance.lower()))

@@ -1,13 +1,13 @@
-"""What a run says of each example, beside what it should have said."""
+"""The answers of a run beside the annotated forms."""
 
 from __future__ import annotations
 
 from django.http import Http404, HttpRequest, HttpResponse
 from django.shortcuts import get_object_or_404, render
 
-from annotations.access import world_view
-from annotations.listing import Listing, Sort
+from annotations.lists.listing import Listing, Sort
 from annotations.models import Duty, World
+from annotations.people.access import world_view
 from parser_service.filters import PredictionFilters
 from parser_service.models import TrainingRun
 
@@ -20,15 +20,16 @@ SORTS = {
 
 @world_view(Duty.VIEW)
 def predictions(request: HttpRequest, world: World, pk: int) -> HttpResponse:
-    """The first answer to every example, filtered by the URL."""
+    """List the first answer to every example, filtered by the URL."""
     run = get_object_or_404(TrainingRun.objects.for_table(), world=world, pk=pk)
-    context = {"run": run, "listing": listing_of(request, run)}
+    aside = f"{run.parser}, run {run.pk}"
+    context = {"run": run, "aside": aside, "listing": listing_of(request, run)}
     return render(request, "parser_service/predictions.html", context)
 
 
 @world_view(Duty.VIEW)
 def prediction(request: HttpRequest, world: World, pk: int, example: int) -> HttpResponse:
-    """All candidates for one example; the neighbours are those of the filtered list."""
+    """Show all candidates for one example, with links to its neighbours in the filtered list."""
     run = get_object_or_404(TrainingRun.objects.for_table(), world=world, pk=pk)
     candidates = list(run.predictions.filter(example=example).select_related("example"))
     if not candidates:
@@ -49,7 +50,7 @@ def listing_of(request: HttpRequest, run: TrainingRun) -> Listing:
 
 
 def neighbours_of(listing: Listing, example: int) -> dict[str, int | None]:
-    """The examples before and after this one among those that pass the list's filters."""
+    """Return the examples before and after this one in the filtered list."""
     rows = listing.matching.order_by("example_id").values_list("example_id", flat=True)
     return {
         "before": rows.filter(example_id__lt=example).last(),

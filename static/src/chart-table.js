@@ -1,4 +1,5 @@
 // The same figures as a table, below the chart.
+import { watchScrolling } from "./scrolling.js";
 
 function cell(name, text, className) {
   const made = document.createElement(name);
@@ -16,11 +17,6 @@ function row(...cells) {
   return made;
 }
 
-function valueOf(series, at) {
-  const value = figure(series.values[at]);
-  return series.low && series.high ? `${value} (${figure(series.low[at])}–${figure(series.high[at])})` : value;
-}
-
 export function showTable(chart, data) {
   const details = chart.querySelector("details");
   if (!details) return;
@@ -30,7 +26,7 @@ export function showTable(chart, data) {
   );
   const body = document.createElement("tbody");
   data.x.values.forEach((x, at) => {
-    body.append(row(cell("th", x), ...data.series.map((one) => cell("td", valueOf(one, at), "number"))));
+    body.append(row(cell("th", x), ...data.series.map((one) => cell("td", figure(one.values[at]), "number"))));
   });
   const table = document.createElement("table");
   table.append(head, body);
@@ -39,5 +35,6 @@ export function showTable(chart, data) {
   wrap.append(table);
   details.querySelector(".table-wrap")?.remove();
   details.append(wrap);
+  watchScrolling(wrap);
   details.hidden = false;
 }

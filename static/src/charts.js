@@ -1,7 +1,6 @@
 // Charts from data that the page or the server gives (see templates/_chart.html):
-// {kind: "lines" | "bars", x: {label, values}, y: {label, max, unit}, y_right: …,
-//  series: [{name, values, low, high, axis: "right", class}], done}
-import { BarChart, CustomChart, LineChart } from "echarts/charts";
+// {x: {label, values}, y: {label, max, unit}, series: [{name, values}], done}
+import { LineChart } from "echarts/charts";
 import { AriaComponent, GridComponent, TooltipComponent } from "echarts/components";
 import { init, use } from "echarts/core";
 import { LabelLayout } from "echarts/features";
@@ -9,7 +8,7 @@ import { CanvasRenderer } from "echarts/renderers";
 import { optionOf } from "./chart-options.js";
 import { showTable } from "./chart-table.js";
 
-use([BarChart, CustomChart, LineChart, AriaComponent, GridComponent, TooltipComponent, LabelLayout, CanvasRenderer]);
+use([LineChart, AriaComponent, GridComponent, TooltipComponent, LabelLayout, CanvasRenderer]);
 
 const EVERY = 5000;
 const reduced = matchMedia("(prefers-reduced-motion: reduce)");

@@ -1,95 +1,132 @@
-// What was typed into a form with data-draft outlives a reload and a lost session. It is kept in
-// this browser under the form's name and comes back when the page differs from it. Sending the form
-// only marks the draft, because a lost session may swallow it; it is dropped when the server has shown
-// another page of the workbench, or the same with the same words. Only text is kept, never a password.
+// Keeps what a person types into a form with data-draft until the server has it, so that it outlives a reload, a lost
+// connection, an expired session, and can be taken up on another device. It is kept in this browser (draft-storage.js)
+// and, with data-draft-url, on the server (draft-server.js). Sending the form only marks the copy in this browser,
+// because an expired session may swallow it; it is removed when the server has shown another page, or the same form
+// with the same values. Passwords are never kept.
 import { onContent } from "./content.js";
+import { DraftServer } from "./draft-server.js";
+import { readDraft, removeAllOf, removeArrived, removeDraft, writeDraft } from "./draft-storage.js";
 
-const key = (form) => `draft:${form.dataset.draft}`;
-const KEPT = "textarea[name], input[type=text][name]";
+const TYPED = "textarea[name], select[name], input:is([type=text], [type=number])[name]";
+// The version that was edited comes back too, so that nobody's later version is overwritten unseen.
+const KEPT = `${TYPED}, input[type=hidden]:is([name=version], [name=once])`;
+const servers = new WeakMap(); // form → its DraftServer
+
 const fieldsOf = (form) => [...form.elements].filter((field) => field.matches(KEPT));
+const valuesOf = (form) => Object.fromEntries(fieldsOf(form).map((field) => [field.name, field.value]));
 
-function read(form) {
-  try {
-    return JSON.parse(localStorage.getItem(key(form)));
-  } catch {
-    return null;
-  }
-}
-
-function write(form, isSent = false) {
-  const fields = Object.fromEntries(fieldsOf(form).map((field) => [field.name, field.value]));
-  try {
-    localStorage.setItem(key(form), JSON.stringify({ fields, isSent }));
-  } catch {
-    // A full or forbidden storage loses the draft, not the form.
-  }
-}
-
-function drop(form) {
-  try {
-    localStorage.removeItem(key(form));
-  } catch {
-    // see write()
-  }
-}
-
-function restore(form, fields) {
+function fill(form, values) {
   for (const field of fieldsOf(form)) {
-    if (fields[field.name] === undefined) continue;
-    field.value = fields[field.name];
+    // The key of a new form is its own: an earlier one may have been sent already.
+    if (values[field.name] === undefined || field.name === "once") continue;
+    field.value = values[field.name];
     field.dispatchEvent(new CustomEvent("draft:restored"));
   }
+  // Whoever watches the form (checker, preview) looks at it again.
+  form.dispatchEvent(new Event("input", { bubbles: true }));
 }
 
-function note(form) {
-  const line = document.createElement("p");
+function differs(form, values) {
+  const typed = fieldsOf(form).filter((field) => field.matches(TYPED));
+  return typed.some((field) => (values[field.name] ?? field.value) !== field.value);
+}
+
+function keep(form) {
+  writeDraft(form, valuesOf(form));
+  servers.get(form)?.save(valuesOf(form));
+}
+
+function discard(form) {
+  removeDraft(form);
+  servers.get(form)?.discard();
+}
+
+function makeLine(element) {
+  const line = document.createElement(element);
   line.className = "saved";
   line.role = "status";
-  line.append("What you typed here before was not sent yet and is back. ");
-  const discard = document.createElement("button");
-  discard.type = "button";
-  discard.className = "link-button small-button";
-  discard.textContent = "Discard it";
-  discard.addEventListener("click", () => {
-    drop(form);
-    restore(form, Object.fromEntries(fieldsOf(form).map((field) => [field.name, field.defaultValue])));
+  return line;
+}
+
+/** Say a sentence, with a button for each action: text → what it does. */
+function say(line, sentence, actions = {}) {
+  line.replaceChildren(sentence);
+  for (const [text, action] of Object.entries(actions)) {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.className = "link-button small-button";
+    button.textContent = text;
+    button.addEventListener("click", action);
+    line.append(" ", button);
+  }
+}
+
+/** A line above the form, which a click on one of its buttons takes away. */
+function showNote(form, sentence, actions) {
+  const line = makeLine("p");
+  const closing = (action) => () => {
     line.remove();
-  });
-  line.append(discard);
+    action();
+  };
+  say(line, sentence, Object.fromEntries(Object.entries(actions).map(([text, action]) => [text, closing(action)])));
   form.prepend(line);
 }
 
-function differs(form, fields) {
-  return fieldsOf(form).some((field) => (fields[field.name] ?? field.value) !== field.value);
+function restore(form, draft) {
+  const shown = valuesOf(form);
+  fill(form, draft.fields);
+  showNote(form, "Restored your unsaved draft.", {
+    Discard: () => {
+      fill(form, shown);
+      discard(form);
+    },
+  });
+}
+
+function offer(form, draft) {
+  const where = draft.isElsewhere ? " from another device" : "";
+  showNote(form, `You have an unsaved draft of ${draft.clock}${where}:`, {
+    Restore: () => restore(form, draft),
+    // What has been typed here meanwhile takes its place.
+    "Discard it": () => (readDraft(form) ? keep(form) : discard(form)),
+  });
+}
+
+async function offerFromServer(form, hasLocal) {
+  const draft = await servers.get(form).load();
+  if (!draft || (hasLocal && !draft.isElsewhere)) return;
+  if (differs(form, draft.fields)) offer(form, draft);
+  else servers.get(form).discard();
+}
+
+/** Where the state of the draft is said: beside the buttons, so that nothing moves. */
+function stateLine(form) {
+  const line = makeLine("span");
+  (form.querySelector(".actions") ?? form).append(line);
+  return line;
 }
 
 function enhance(form) {
-  const draft = read(form);
-  if (draft && differs(form, draft.fields)) {
-    restore(form, draft.fields);
-    note(form);
-  } else if (draft) {
-    drop(form);
-  }
-  form.addEventListener("input", () => write(form));
-}
-
-// The sent drafts of forms that this page does not hold have arrived.
-function dropArrived() {
-  const here = new Set([...document.querySelectorAll("form[data-draft]")].map(key));
-  for (const name of Object.keys(localStorage)) {
-    if (!name.startsWith("draft:") || here.has(name)) continue;
-    if (JSON.parse(localStorage.getItem(name)).isSent) localStorage.removeItem(name);
-  }
+  const line = stateLine(form);
+  if (form.dataset.draftUrl) servers.set(form, new DraftServer(form, (...said) => say(line, ...said)));
+  form.addEventListener("input", () => keep(form));
+  // The page shows what was sent, merged: newer than any draft.
+  if (form.hasAttribute("data-draft-arrived")) return keep(form);
+  const draft = readDraft(form);
+  const hasLocal = draft !== null && differs(form, draft.fields);
+  if (hasLocal) restore(form, draft);
+  else if (draft) removeDraft(form);
+  if (servers.has(form)) offerFromServer(form, hasLocal);
 }
 
 document.addEventListener("submit", (event) => {
-  if (event.target.matches("form[data-draft]")) write(event.target, true);
+  const form = event.target;
+  if (form.matches("form[data-draft]")) {
+    writeDraft(form, valuesOf(form), true);
+    servers.get(form)?.stop();
+  }
+  if (form.dataset.logOutOf) removeAllOf(form.dataset.logOutOf);
 });
 
-try {
-  dropArrived();
-} catch {
-  // see write()
-}
+removeArrived();
 onContent((root) => root.querySelectorAll("form[data-draft]").forEach(enhance));

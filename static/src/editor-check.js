@@ -1,6 +1,9 @@
 // Asks the server what it thinks of a form's fields and shows the answer under each editor.
 import { setDiagnostics } from "@codemirror/lint";
-import { EditorView } from "@codemirror/view";
+import { format } from "./editor-format.js";
+import { applyRepair, repairButtons } from "./editor-repairs.js";
+import { lightSlot, showSlots } from "./editor-slots.js";
+import { tokenEnd } from "./symbols.js";
 
 const WAIT = 350;
 const checkers = new WeakMap();
@@ -11,31 +14,11 @@ export function checkerOf(form) {
   return checkers.get(form);
 }
 
-function offsetOf(doc, line, column) {
-  const found = doc.line(Math.min(Math.max(line ?? 1, 1), doc.lines));
-  return Math.min(found.from + Math.max((column ?? 1) - 1, 0), found.to);
-}
-
-function diagnosticOf(doc, problem) {
-  const from = offsetOf(doc, problem.line, problem.column);
-  const end = problem.end_column ? offsetOf(doc, problem.line, problem.end_column) : from + 1;
-  const to = Math.min(Math.max(end, from), doc.length);
-  return { from: Math.min(from, to), to, severity: problem.severity, message: problem.message };
-}
-
 function piece(text, className) {
   const made = document.createElement("span");
   made.className = className;
   made.textContent = text;
   return made;
-}
-
-function lineOf(problem) {
-  const line = document.createElement("li");
-  line.append(piece(`${problem.line ?? 1}:${problem.column ?? 1} ${problem.message}`, problem.severity));
-  if (problem.hint) line.append(" ", piece(problem.hint, "hint"));
-  if (problem.repair) line.append(" ", piece(`Alt+Enter: ${problem.repair.label}`, "hint"));
-  return line;
 }
 
 class Checker {
@@ -45,10 +28,10 @@ class Checker {
     this.editors = [];
     this.timer = 0;
     this.asked = 0;
-  }
-
-  extension(field) {
-    return EditorView.updateListener.of((update) => update.docChanged && this.ask(field));
+    this.answer = null; // of the texts that are there now; null while the server is being asked
+    // Every field counts, the task category too: what is right depends on its grammar.
+    form.addEventListener("input", () => this.ask());
+    form.querySelector("[data-format]")?.addEventListener("click", () => format(this));
   }
 
   add(field, view, place) {
@@ -56,21 +39,27 @@ class Checker {
     report.className = "editor-report";
     report.setAttribute("aria-live", "polite");
     place.append(report);
-    this.editors.push({ field, view, report, problems: [] });
-    this.ask(field);
+    this.editors.push({ field, view, report });
+    this.ask();
   }
 
   ask() {
     if (!this.address) return;
+    this.answer = null;
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.send(), WAIT);
   }
 
+  /** Ask at once. Returns the answer, or null where there is none or the text has changed meanwhile. */
   async send() {
+    clearTimeout(this.timer);
     const asked = ++this.asked;
     const answer = await this.fetch();
-    if (asked !== this.asked) return; // an older answer than the text
+    if (asked !== this.asked) return null; // an older answer than the text
+    this.answer = answer;
     this.editors.forEach((editor) => this.show(editor, answer));
+    this.editors.forEach(({ view }) => view.requestMeasure()); // the lines above may have moved it
+    return answer;
   }
 
   async fetch() {
@@ -86,31 +75,52 @@ class Checker {
     }
   }
 
-  show(editor, answer) {
-    const { field, view, report } = editor;
+  /** Make the edits of a repair, if they are about the texts as they are now. */
+  repair(repair) {
+    if (this.answer) applyRepair(this.editors, repair);
+  }
+
+  /** Take the first repair of the problems of `field`, or else of any other. */
+  async repairFirst(field) {
+    const answer = this.answer ?? (await this.send());
+    const problems = (answer?.problems ?? []).filter((problem) => problem.repairs.length);
+    const problem = problems.find((each) => each.field === field.name) ?? problems[0];
+    if (problem) this.repair(problem.repairs[0]);
+  }
+
+  /** Light a slot (its number in the answer, -1 for none) in every editor. */
+  light(slot) {
+    this.editors.forEach(({ view }) => lightSlot(view, slot));
+  }
+
+  show({ field, view, report }, answer) {
     if (!answer) {
       report.textContent = "The checker does not answer. What you typed is kept here.";
       return;
     }
-    editor.problems = answer.problems.filter((problem) => (problem.field ?? field.name) === field.name);
-    const diagnostics = editor.problems.map((problem) => diagnosticOf(view.state.doc, problem));
-    view.dispatch(setDiagnostics(view.state, diagnostics));
+    const problems = answer.problems.filter((problem) => problem.field === field.name);
+    view.dispatch(setDiagnostics(view.state, problems.map((problem) => this.diagnostic(view, problem))));
+    showSlots(view, (answer.slots ?? []).map((slot) => slot[field.name]));
     const list = document.createElement("ul");
-    list.append(...editor.problems.map(lineOf));
+    list.append(...problems.map((problem) => this.line(problem)));
     const isForm = field.dataset.editor === "form";
-    const gloss = isForm && !editor.problems.length ? [answer.gloss ?? ""] : [];
+    const gloss = isForm && !problems.length ? [answer.gloss ?? ""] : [];
     report.replaceChildren(list, ...gloss);
   }
 
-  /** Take the repair of the problem nearest to the caret; false where there is none. */
-  repair(field, view) {
-    const editor = this.editors.find((each) => each.field === field);
-    const caret = view.state.selection.main.head;
-    const distance = (problem) => Math.abs(offsetOf(view.state.doc, problem.line, problem.column) - caret);
-    const offered = editor.problems.filter((problem) => problem.repair).sort((a, b) => distance(a) - distance(b));
-    if (!offered.length) return false;
-    const insert = offered[0].repair.text;
-    view.dispatch({ changes: { from: 0, to: view.state.doc.length, insert }, userEvent: "input.repair" });
-    return true;
+  diagnostic(view, problem) {
+    const text = view.state.doc.toString();
+    const from = Math.min(problem.at, text.length);
+    const actions = problem.repairs.map((repair) => ({ name: repair.label, apply: () => this.repair(repair) }));
+    const { severity, message } = problem;
+    return { from, to: Math.min(tokenEnd(text, from), text.length), severity, message, actions };
+  }
+
+  line(problem) {
+    const line = document.createElement("li");
+    line.append(piece(`${problem.line}:${problem.column} ${problem.message}`, problem.severity));
+    if (problem.hint) line.append(" ", piece(problem.hint, "hint"));
+    line.append(...repairButtons(problem, (repair) => this.repair(repair)));
+    return line;
   }
 }

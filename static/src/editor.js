@@ -1,11 +1,17 @@
 // One line of a pattern, or a form: CodeMirror in the place of a textarea, which stays the field that
 // is sent. The server's checker is asked, debounced, and is the only authority.
+import { closeBrackets, closeBracketsKeymap } from "@codemirror/autocomplete";
 import { defaultKeymap, history, historyKeymap } from "@codemirror/commands";
 import { bracketMatching } from "@codemirror/language";
 import { EditorState } from "@codemirror/state";
 import { EditorView, drawSelection, keymap, placeholder } from "@codemirror/view";
+import { lintKeymap } from "@codemirror/lint";
 import { checkerOf } from "./editor-check.js";
+import { completion } from "./editor-completion.js";
+import { format } from "./editor-format.js";
 import { highlighting } from "./editor-highlight.js";
+import { slotLighting } from "./editor-slots.js";
+import { grow, shrink } from "./editor-structure.js";
 
 const nonce = () => document.querySelector('meta[name="csp-nonce"]')?.nonce ?? "";
 
@@ -24,6 +30,26 @@ function send(field) {
   return true;
 }
 
+// No keyboard has a λ; a backslash means nothing in a form.
+const lambdaKey = EditorView.inputHandler.of((view, from, to, text) => {
+  if (text !== "\\") return false;
+  view.dispatch({ changes: { from, to, insert: "λ" }, selection: { anchor: from + 1 }, userEvent: "input.type" });
+  return true;
+});
+
+const BRACKETS = EditorState.languageData.of(() => [{ closeBrackets: { brackets: ["(", "{", '"'] } }]);
+
+function keysFor(field, checker) {
+  return [
+    { key: "Mod-Enter", run: () => send(field) },
+    { key: "Mod-.", run: () => Boolean(checker.repairFirst(field)) },
+    { key: "Mod-i", run: grow, preventDefault: true },
+    { key: "Alt-ArrowUp", run: grow, preventDefault: true },
+    { key: "Alt-ArrowDown", run: shrink, preventDefault: true },
+    { key: "Alt-Shift-f", run: () => Boolean(format(checker)), preventDefault: true },
+  ];
+}
+
 function extensionsFor(field, checker) {
   const isPattern = field.dataset.editor === "pattern";
   return [
@@ -37,15 +63,19 @@ function extensionsFor(field, checker) {
     history(),
     drawSelection(),
     bracketMatching(),
+    closeBrackets(),
+    BRACKETS,
     highlighting,
     placeholder(field.placeholder),
-    isPattern ? oneLine : [],
-    checker.extension(field),
+    isPattern ? oneLine : lambdaKey,
+    completion(field, checker),
+    slotLighting((slot) => checker.light(slot)),
     // Tab is left alone: it leaves the editor, as in any field.
     keymap.of([
-      { key: "Mod-Enter", run: () => send(field) },
-      { key: "Enter", run: () => isPattern && send(field) },
-      { key: "Alt-Enter", run: (view) => checker.repair(field, view) },
+      ...keysFor(field, checker),
+      { key: "Enter", run: () => isPattern }, // one line, and a half-filled form is not sent
+      ...closeBracketsKeymap,
+      ...lintKeymap,
       ...historyKeymap,
       ...defaultKeymap,
     ]),

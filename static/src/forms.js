@@ -75,10 +75,12 @@ function addTools(form) {
   tools.append(button("Copy", { copy: "" }));
   if (form.querySelector('code[data-notation="corpus"]')) {
     const toggle = button("Tree", { treeToggle: "" });
-    toggle.setAttribute("aria-expanded", "false");
+    toggle.setAttribute("aria-expanded", String(Boolean(form.querySelector(".tree"))));
     tools.append(toggle);
   }
-  form.append(tools);
+  const tree = form.querySelector(".tree");
+  if (tree) tree.before(tools);
+  else form.append(tools);
 }
 
 async function toggleTree(form, toggle) {

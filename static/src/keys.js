@@ -1,5 +1,4 @@
-// Keys: j and k move through the rows of a table, Enter opens, x selects, / searches, ? tells the keys.
-import { selectRow } from "./selection.js";
+// Keys: j and k move through the rows of a table, Enter opens, n and p turn the page, / searches, ? lists the keys.
 import { copyForm } from "./forms.js";
 
 const TYPING = "input:not([type=checkbox], [type=radio]), textarea, select, [contenteditable], .cm-editor";
@@ -26,8 +25,7 @@ function open(row) {
 }
 
 function search() {
-  const own = document.querySelector("main input[type=search]");
-  (own ?? document.querySelector("[data-search]"))?.focus();
+  (document.querySelector("[data-search]") ?? document.querySelector("main input[type=search]"))?.focus();
 }
 
 function dialog(isOpen) {
@@ -45,15 +43,16 @@ const actions = {
   p: () => turn("prev"),
   "/": search,
   "?": () => dialog(true),
-  x: () => currentRow() && selectRow(currentRow(), false),
-  X: () => currentRow() && selectRow(currentRow(), true),
   c: () => copyForm(currentRow()?.querySelector("[data-form]") ?? document.querySelector("[data-tools]")),
 };
+
+/** Whether a key belongs to a field or a dialog, and is no command. */
+export const isTyping = (event) => Boolean(event.target.closest(TYPING) || document.querySelector("dialog[open]"));
 
 function onKey(event) {
   if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
   if (event.key === "Escape" && event.target.matches("input[type=search]")) event.target.blur();
-  if (event.target.closest(TYPING) || document.querySelector("dialog[open]")) return;
+  if (isTyping(event)) return;
   if (event.key === "Enter" && event.target === currentRow()) {
     event.preventDefault();
     open(event.target);

@@ -1,23 +1,29 @@
 // What every page needs; the large pieces are fetched where a page holds something for them.
 import "./requests.js";
 import "./keys.js";
-import "./selection.js";
 import "./sheet.js";
 import "./menus.js";
 import "./drafts.js";
+import "./merge.js";
+import "./mentions.js";
+import "./suggestions.js";
 import { onContent } from "./content.js";
 import { enhanceForms } from "./forms.js";
 import { loadModule } from "./modules.js";
+import { watchScrolling } from "./scrolling.js";
 
 onContent((root) => {
   enhanceForms(root);
+  const within = (selector) =>
+    [root, ...root.querySelectorAll(selector)].filter((element) => element.matches?.(selector));
+  within(".table-wrap").forEach(watchScrolling);
   for (const [selector, name] of [
     ["[data-chart]", "charts"],
     ["[data-tree]", "tree"],
     ["[data-editor]", "editor"],
+    ["[data-label-page]", "label"],
   ]) {
-    const found = [...root.querySelectorAll(selector)];
-    if (root.matches?.(selector)) found.push(root);
-    if (found.length) loadModule(name).then((module) => found.forEach(module.enhance));
+    const elements = within(selector);
+    if (elements.length) loadModule(name).then((module) => elements.forEach(module.enhance));
   }
 });

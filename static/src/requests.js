@@ -1,6 +1,7 @@
 // How htmx behaves here: what did not change is not swapped, polls rest in hidden tabs, a lost
 // session goes to the log-in page, and a server that does not answer is said so.
 import htmx from "htmx.org";
+import { csrfToken } from "./csrf.js";
 
 const answers = new WeakMap();
 const isPoll = (element) => /\bevery\b/.test(element.getAttribute("hx-trigger") || "");
@@ -23,9 +24,19 @@ function toLogin(xhr) {
   const login = document.querySelector('meta[name="login-url"]')?.content;
   if (!login || !xhr.responseURL) return false;
   if (new URL(xhr.responseURL).pathname !== login) return false;
+  // Somebody writes here: they are told beside the form, and log in without leaving it.
+  if (document.querySelector("form[data-draft-url]")) {
+    document.dispatchEvent(new CustomEvent("session:ended"));
+    return true;
+  }
   location.assign(`${login}?next=${encodeURIComponent(location.pathname + location.search)}`);
   return true;
 }
+
+// Logging in again changes the token; the cookie always has the present one.
+document.addEventListener("htmx:configRequest", (event) => {
+  if (csrfToken()) event.detail.headers["X-CSRFToken"] = csrfToken();
+});
 
 document.addEventListener("htmx:beforeRequest", (event) => {
   if (document.hidden && isPoll(event.detail.elt)) event.preventDefault();

@@ -34,3 +34,9 @@ const PARTS = [
 ];
 
 export const TOKEN = new RegExp(PARTS.map((part) => part.source).join("|"), "g");
+
+/** Where the symbol that begins at `from` ends; at least one character further. */
+export function tokenEnd(text, from) {
+  const match = text.slice(from).match(new RegExp(`^(?:${TOKEN.source})`));
+  return from + Math.max(match?.[0].length ?? 1, 1);
+}

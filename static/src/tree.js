@@ -9,7 +9,7 @@ const GAP = 14;
 const CHARACTER = 7.4;
 
 function tokensOf(text) {
-  return text.match(/"[^"]*"|[()]|[^\s()"]+/g) ?? [];
+  return text.match(/"[^"]*"|\{[^{}]*\}|[()]|[^\s()"]+/g) ?? [];
 }
 
 function leaf(token) {
@@ -17,7 +17,9 @@ function leaf(token) {
     const text = token.slice(1, -1).trim();
     return { label: text, kind: "constant", entityClass: text.startsWith("<") ? classOf(text) : "", children: [] };
   }
-  return { label: token, kind: token.startsWith("$") ? "variable" : "name", entityClass: "", children: [] };
+  if (token.startsWith("{")) return { label: token, kind: "slot", entityClass: classOf(token), children: [] };
+  const kind = /^\$\d/.test(token) ? "variable" : token.startsWith("$") ? "nonterminal" : "name";
+  return { label: token, kind, entityClass: "", children: [] };
 }
 
 function branch(children) {

@@ -24,8 +24,11 @@ def rows_of(world: World) -> dict[str, list[dict]]:
 
 
 def contents_of(world: World) -> dict[str, list[dict]]:
-    """The same in order of position, without what says where a row came from or which it is."""
-    without = {"id", "line", "world_id", "grammar_id", "ontology_id", "template_id"}
+    """The same in order of position, without what says where a row came from or which it is.
+
+    Problems name lines of the files, so they go too.
+    """
+    without = {"id", "line", "problems", "world_id", "grammar_id", "ontology_id", "template_id"}
     rows = rows_of(world)
     del rows["StoredProblem"]
     return {

@@ -7,12 +7,18 @@ from functools import cache
 from pathlib import Path
 
 from annotations.importing.predicates_file import read_predicates
-from annotations.language.expansion import Generated, TaskCategory, generate
-from annotations.language.generator_folder import GeneratorFolder, read_generator_folder
-from annotations.language.ontology import Ontology, read_ontology_folder
+from annotations.language.grammar import Production
+from annotations.language.ontology import Ontology
 from annotations.language.predicates import Predicate
-from annotations.language.productions import Production
 from annotations.language.symbols import Choice, Symbol, Wildcard
+from annotations.language.templates import (
+    Generated,
+    GeneratorFolder,
+    TaskCategory,
+    generate,
+    read_generator_folder,
+)
+from tests.annotations.language.ontology_files import read_ontology_folder
 
 STARTER = Path(__file__).parents[2] / "annotations" / "starter"
 

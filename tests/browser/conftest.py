@@ -1,4 +1,4 @@
-"""A browser, a server with a furnished world, and somebody logged in."""
+"""A browser, a server with a sample world, and somebody logged in."""
 
 from __future__ import annotations
 
@@ -8,17 +8,20 @@ from pathlib import Path
 
 import pytest
 from django.test import Client
-from playwright.sync_api import Browser, BrowserContext, Page
+from playwright.sync_api import Browser, BrowserContext, Page, expect
 
 from annotations.models import User
-from parser_service import requesting
+from parser_service.runs import requesting
 from tests.browser.screenshots import CHROMIUM
 from tests.browser.variants import Variant
-from tests.furnishing import House, furnish
-from tests.parser_service.running import RunningWorker
+from tests.parser_service.worker_process import RunningWorker
+from tests.sample_world import SampleWorld, fill_world
+from tests.waiting import PATIENCE_SECONDS
 
 # Playwright keeps an event loop in this thread, in which Django would refuse to ask its database.
 os.environ["DJANGO_ALLOW_ASYNC_UNSAFE"] = "true"
+
+expect.set_options(timeout=PATIENCE_SECONDS * 1000)
 
 BUNDLE = Path(__file__).resolve().parents[2] / "static" / "dist" / "main.js"
 
@@ -36,8 +39,8 @@ def browser_type_launch_args() -> dict[str, object]:
 
 
 @pytest.fixture
-def house(transactional_db, world) -> House:
-    return furnish(world)
+def sample(transactional_db, world) -> SampleWorld:
+    return fill_world(world)
 
 
 @pytest.fixture
@@ -51,7 +54,7 @@ def logged_in(browser: Browser, live_server) -> Iterator[Callable[..., BrowserCo
         context = browser.new_context(**(variant.options if variant else {}), **options)
         cookie = {"name": "sessionid", "value": client.cookies["sessionid"].value}
         context.add_cookies([{**cookie, "url": live_server.url}])
-        context.set_default_timeout(15_000)
+        context.set_default_timeout(PATIENCE_SECONDS * 1000)
         made.append(context)
         return context
 
@@ -61,13 +64,13 @@ def logged_in(browser: Browser, live_server) -> Iterator[Callable[..., BrowserCo
 
 
 @pytest.fixture
-def page_of(logged_in, house) -> Callable[..., Page]:
+def page_of(logged_in, sample) -> Callable[..., Page]:
     """A page in such a window."""
     return lambda user, **options: logged_in(user, **options).new_page()
 
 
 @pytest.fixture
-def worker(house, tmp_path) -> Iterator[RunningWorker]:
+def worker(sample, tmp_path) -> Iterator[RunningWorker]:
     """A real worker on the filesystem broker."""
     started = RunningWorker(tmp_path / "worker.log")
     yield started
@@ -76,6 +79,6 @@ def worker(house, tmp_path) -> Iterator[RunningWorker]:
 
 
 @pytest.fixture
-def waiting_run(house):
+def waiting_run(sample):
     """A run that nobody has begun."""
-    return requesting.request(house.world, house.split, "seq2seq", send=False)[0]
+    return requesting.request(sample.world, sample.split, "seq2seq", send=False)[0]

@@ -23,14 +23,30 @@ CHROMIUM = os.environ.get("CHROMIUM", "/usr/bin/chromium")
 PAGES = {
     "overview": "",
     "ontology": "ontology/",
+    "entity-new": "ontology/new/",
+    "entities-new": "ontology/paste/",
     "predicates": "predicates/",
+    "predicate-new": "predicates/new/",
     "grammar": "grammar/",
+    "production-new": "grammar/new/",
+    "uncovered": "coverage/",
+    "unmatched": "coverage/unmatched/",
+    "conflicts": "coverage/conflicts/",
+    "outside": "coverage/outside/",
     "templates": "templates/",
     "template-new": "templates/new/",
     "commands": "commands/",
     "forms": "forms/",
     "complexity": "commands/complexity/",
     "paraphrases": "paraphrases/",
+    "deleted": "history/template/deleted/",
+    "utterances": "utterances/",
+    "utterances-new": "utterances/new/",
+    "label": "label/",
+    "queue": "queue/",
+    "agreement": "queue/agreement/",
+    "progress": "queue/progress/",
+    "queue-settings": "queue/settings/",
     "import": "import/",
     "import-pairs": "import/pairs/",
     "splits": "splits/",
@@ -38,13 +54,19 @@ PAGES = {
     "runs": "runs/",
     "run-new": "runs/new/?parser=seq2seq",
     "results": "results/",
+    "search": "search/?q=the",
 }
 # The cells of one run; those of several seeds lead to their runs.
 TO_PREDICTIONS = "a.accuracy[href*=predictions]"
 # Name of the picture → the page and the link on it that leads there.
 DETAILS = {
     "template": ("templates/", "#list a.row-link"),
+    "predicate": ("predicates/", "#list a.row-link[href*=predicates]"),
+    "production": ("grammar/", "#list a.row-link[href*=grammar]"),
+    "entity": ("ontology/", "#list a.row-link"),
+    "command": ("commands/", "#list a.row-link"),
     "form": ("forms/", "#list td a"),
+    "paraphrase": ("paraphrases/", "#list a.row-link"),
     "split": ("splits/", "a.row-link"),
     "run": ("runs/?status=succeeded&parser=seq2seq", "#runs-table a.row-link"),
     "predictions": ("results/", TO_PREDICTIONS),
@@ -58,7 +80,7 @@ def log_in(page: Page, url: str, user: str, password: str) -> None:
     page.fill("#id_username", user)
     page.fill("#id_password", password)
     page.click("button[type=submit]")
-    page.wait_for_url(lambda found: "/login/" not in found)
+    page.wait_for_url(lambda address: "/login/" not in address)
 
 
 def addresses(page: Page, url: str, world: str) -> Iterator[tuple[str, str]]:

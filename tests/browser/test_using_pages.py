@@ -1,4 +1,4 @@
-"""Pages under the hand: keys, filters while one types, the checking editor, life without scripts."""
+"""Using the pages: keys, filters while typing, search, light and dark, pages without scripts."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import re
 
 import pytest
 from playwright.sync_api import expect
+
+from tests.annotations.views.test_lists import many_commands
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
@@ -19,7 +21,8 @@ def test_rows_are_walked_and_opened_by_keys(page_of, live_server, annotator):
     page.keyboard.press("j")
     expect(page.locator("tbody tr").nth(1)).to_be_focused()
     page.keyboard.press("Enter")
-    expect(page.locator("h1")).to_have_text("Logical form")
+    expect(page.locator("h1")).to_have_text("locate the object")
+    expect(page.locator("h2").first).to_have_text("Logical form")
 
 
 def test_a_slash_leads_to_the_search_of_every_page(page_of, live_server, annotator):
@@ -28,8 +31,44 @@ def test_a_slash_leads_to_the_search_of_every_page(page_of, live_server, annotat
     page.keyboard.press("/")
     page.keyboard.type("locate")
     page.keyboard.press("Enter")
+    expect(page).to_have_url(re.compile("/search/.q=locate"))
+    commands = page.get_by_role("region", name="Commands")
+    expect(commands.locator("tbody tr")).to_have_count(1)
+    commands.get_by_role("link", name="all 1").click()
     expect(page).to_have_url(re.compile("/commands/.q=locate"))
     expect(page.locator("#list tbody tr")).to_have_count(1)
+
+
+def test_lists_are_turned_by_keys(page_of, live_server, annotator, sample):
+    many_commands(sample.world, 70)
+    page = page_of(annotator)
+    page.goto(f"{live_server.url}/w/home/commands/")
+    first = page.locator("#list tbody tr td").first
+    expect(first).to_have_text("1")
+    page.keyboard.press("n")
+    expect(first).to_have_text("51")
+    page.keyboard.press("p")
+    expect(first).to_have_text("1")
+
+
+def test_the_keys_dialog_promises_what_works(page_of, live_server, annotator):
+    page = page_of(annotator)
+    page.goto(f"{live_server.url}/w/home/commands/")
+    page.keyboard.press("?")
+    keys = set(page.locator("#keys kbd").all_inner_texts())
+    of_lists, of_editors = (
+        {"/", "j", "k", "n", "p", "c", "Enter", "?"},
+        {"Ctrl", ".", "F8", "Alt", "↑", "↓", "Shift", "F", "\\"},
+    )
+    assert keys == of_lists | of_editors
+
+
+def test_enter_in_a_field_of_a_new_split_stores_nothing(page_of, live_server, annotator, sample):
+    page = page_of(annotator)
+    page.goto(f"{live_server.url}/w/home/splits/new/")
+    page.get_by_label("Name").press("Enter")
+    expect(page.get_by_role("heading", name="Preview")).to_be_visible()
+    assert sample.world.splits.count() == 1
 
 
 def test_a_list_follows_what_one_types_and_so_does_the_address(page_of, live_server, annotator):
@@ -43,30 +82,14 @@ def test_a_list_follows_what_one_types_and_so_does_the_address(page_of, live_ser
 
 
 def test_near_duplicates_are_compared_when_they_are_asked_for(
-    page_of, live_server, annotator, house
+    page_of, live_server, annotator, sample
 ):
     page = page_of(annotator)
-    page.goto(f"{live_server.url}/w/home/splits/{house.split.pk}/")
+    page.goto(f"{live_server.url}/w/home/splits/{sample.split.pk}/")
     near = page.get_by_label("Near duplicates")
     expect(near).to_have_attribute("aria-busy", "true")
     page.locator("summary", has_text="Near duplicates").click()
     expect(near).to_contain_text("of 12 pairs of validation")
-
-
-def test_the_editor_says_what_the_checker_finds_and_shows_what_comes_out(
-    page_of, live_server, annotator
-):
-    page = page_of(annotator)
-    page.goto(f"{live_server.url}/w/home/templates/new/")
-    expect(page.locator(".cm-editor")).to_have_count(2)  # before, the plain fields stand there
-    page.get_by_role("textbox", name="Pattern").fill("$vbfind the {kobject} now")
-    form = page.get_by_role("textbox", name="Logical form")
-    form.fill("(find {room})")
-    expect(page.locator(".editor-report").nth(1)).to_contain_text("the pattern never produces")
-    form.fill("(find {kobject})")
-    expect(page.locator("#preview")).to_contain_text("2 commands")
-    page.keyboard.press("Control+Enter")
-    expect(page.locator(".message.success")).to_contain_text("Saved")
 
 
 def test_light_and_dark_are_a_choice_that_stays(page_of, live_server, annotator):
@@ -77,7 +100,7 @@ def test_light_and_dark_are_a_choice_that_stays(page_of, live_server, annotator)
     expect(page.locator("html")).to_have_attribute("data-theme", "dark")
 
 
-def test_without_scripts_one_logs_in_and_filters(browser, live_server, house, annotator):
+def test_without_scripts_one_logs_in_and_filters(browser, live_server, sample, annotator):
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()
     page.goto(f"{live_server.url}/w/home/commands/")
@@ -90,9 +113,9 @@ def test_without_scripts_one_logs_in_and_filters(browser, live_server, house, an
     context.close()
 
 
-def test_one_reads_prediction_after_prediction_by_key(page_of, live_server, house, annotator):
+def test_one_reads_prediction_after_prediction_by_key(page_of, live_server, sample, annotator):
     page = page_of(annotator)
-    page.goto(f"{live_server.url}/w/home/runs/{house.run.pk}/predictions/?outcome=wrong")
+    page.goto(f"{live_server.url}/w/home/runs/{sample.run.pk}/predictions/?outcome=wrong")
     page.keyboard.press("j")
     page.keyboard.press("Enter")
     first = page.locator("h1").inner_text()

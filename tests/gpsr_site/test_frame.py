@@ -8,36 +8,36 @@ from datetime import timedelta
 import pytest
 from django.utils import timezone
 
-from annotations.models import Duty, StoredProblem, World
-from annotations.models.worlds import DUTIES, Role
-from gpsr_site.counts import counts_of, counts_of_all
-from gpsr_site.flow import next_steps
+from annotations.models import StoredProblem, World
+from gpsr_site.frame import PLACES
+from gpsr_site.overview.counts import counts_of, counts_of_all
 from gpsr_site.workers import workers_now
-from parser_service import requesting
 from parser_service.models import Worker
+from parser_service.runs import requesting
+from tests.gpsr_site.test_permissions import ROUTES_OF_WORLDS
 
 
 def worker(seconds_ago: float) -> Worker:
     seen = timezone.now() - timedelta(seconds=seconds_ago)
     return Worker.objects.create(
-        name="w1@host", host="host", process_id=1, queue="cpu", last_seen=seen
+        name="w1@host", host="host", process_id=1, queue="cpu,quick", last_seen=seen
     )
 
 
-def test_without_a_worker_every_page_says_so(house, annotator, client):
+def test_without_a_worker_every_page_says_so(sample, annotator, client):
     client.force_login(annotator)
     for page in ("/", "/w/home/", "/w/home/runs/", "/banner/"):
         assert "A run that is started now would wait." in client.get(page).content.decode(), page
 
 
-def test_a_worker_that_was_seen_lately_is_alive(house, annotator, client):
+def test_a_worker_that_was_seen_lately_is_alive(sample, annotator, client):
     worker(seconds_ago=3)
     client.force_login(annotator)
     assert "Worker idle" in client.get("/banner/").content.decode()
     assert "would wait" not in client.get("/w/home/").content.decode()
 
 
-def test_a_worker_that_fell_silent_is_missed_within_ten_seconds(house, annotator, client):
+def test_a_worker_that_fell_silent_is_missed_within_ten_seconds(sample, annotator, client):
     client.force_login(annotator)
     page = client.get("/w/home/").content.decode()
     seconds = float(re.search(r'/banner/" hx-trigger="every (\d+)s"', page)[1])
@@ -45,8 +45,8 @@ def test_a_worker_that_fell_silent_is_missed_within_ten_seconds(house, annotator
     assert not workers_now().is_alive
 
 
-def test_the_banner_counts_the_runs_that_wait(house, annotator, client):
-    requesting.request(house.world, house.split, "seq2seq", send=False)
+def test_the_banner_counts_the_runs_that_wait(sample, annotator, client):
+    requesting.request(sample.world, sample.split, "seq2seq", send=False)
     client.force_login(annotator)
     answer = client.get("/banner/").content.decode()
     assert "1 run waits for one." in answer
@@ -58,37 +58,74 @@ def test_the_banner_never_comes_from_a_cache(annotator, client):
     assert "no-store" in client.get("/banner/")["Cache-Control"]
 
 
-def test_the_rail_shows_counts_the_current_page_and_what_waits(house, annotator, client):
+def test_the_rail_shows_counts_the_current_page_and_what_waits(sample, annotator, client):
     StoredProblem.objects.create(
-        world=house.world, subject="grammar", severity="warning", message="m"
+        world=sample.world, subject="grammar", severity="warning", message="m"
     )
     client.force_login(annotator)
     rail = client.get("/w/home/templates/").context["rail"]
     entries = {entry.label: entry for entry in rail}
     assert [entry.label for entry in rail if entry.is_current] == ["Templates"]
     assert entries["Commands"].count == 3
-    assert entries["Grammar"].dot == "1 remarks to read"
+    assert entries["Grammar"].dot == "1 remark to read"
     assert entries["Templates"].dot == ""
 
 
-def test_a_page_below_belongs_to_its_entry(house, annotator, client):
+def test_a_page_below_belongs_to_its_entry(sample, annotator, client):
     client.force_login(annotator)
-    page = client.get(f"/w/home/runs/{house.run.pk}/predictions/")
+    page = client.get(f"/w/home/runs/{sample.run.pk}/predictions/")
     assert [entry.label for entry in page.context["rail"] if entry.is_current] == ["Results"]
 
 
-def test_counts_are_those_of_the_world_alone(house, other_house):
-    counts = counts_of(house.world)
+def test_a_page_about_any_row_belongs_to_the_list_of_its_kind(sample, annotator, client):
+    client.force_login(annotator)
+    for kind, label in (("template", "Templates"), ("entity", "Ontology")):
+        page = client.get(f"/w/home/history/{kind}/deleted/")
+        assert [entry.label for entry in page.context["rail"] if entry.is_current] == [label]
+
+
+def test_every_page_of_a_world_belongs_to_one_entry():
+    """What is no page of its own: parts of pages, files, actions, and the search over all kinds."""
+    parts = {
+        "coverage",
+        "template_check",
+        "template_preview",
+        "template_consequences",
+        "generate",
+        "near_duplicates",
+    }
+    parts |= {"production_check", "production_preview", "predicate_preview"}
+    parts |= {"download_part"}
+    parts |= {"template_completion", "template_suggestions", "template_repair"}
+    parts |= {"template_duplicate", "delete_row"}
+    parts |= {"runs_table", "run_state", "run_charts", "run_curves", "run_cancel", "results_table"}
+    parts |= {"label_item", "label_answer", "label_check", "label_mend", "label_take_back"}
+    parts |= {"history", "deleted", "comments", "draft", "rename"}  # of rows of any kind
+    parts |= {"queue_next", "queue_act", "queue_settle", "queue_ask", "queue_assign"}
+    parts |= {name for name in ROUTES_OF_WORLDS if name.startswith("api:")}
+    parts |= {"label_send"}
+    parts |= {"results_csv", "download", "search", "member"}
+    names = [name for place in PLACES for name in (place.name, *place.below)]
+    assert len(names) == len(set(names))
+    assert set(names) - {"job"} == ROUTES_OF_WORLDS - parts
+
+
+def test_counts_are_those_of_the_world_alone(sample, other_sample):
+    counts = counts_of(sample.world)
     assert (counts.entities, counts.templates, counts.commands, counts.forms) == (7, 2, 3, 2)
     assert (counts.splits, counts.runs, counts.evaluated, counts.runs_active) == (1, 1, 1, 0)
 
 
-def test_counts_of_all_worlds_take_one_query(house, other_house, django_assert_num_queries):
+def test_counts_of_all_worlds_take_one_query(sample, other_sample, django_assert_num_queries):
     with django_assert_num_queries(1):
         assert len(counts_of_all(World.objects.all())) == 2
 
 
-def test_one_sees_only_the_worlds_that_one_belongs_to(house, other_house, annotator, client):
+def test_counts_of_no_world_are_none(db):
+    assert counts_of_all(World.objects.none()) == {}
+
+
+def test_one_sees_only_the_worlds_that_one_belongs_to(sample, other_sample, annotator, client):
     client.force_login(annotator)
     page = client.get("/").content.decode()
     assert "/w/home/" in page
@@ -100,19 +137,8 @@ def test_whoever_belongs_nowhere_is_told_what_to_do(db, django_user_model, clien
     assert "Ask an admin to add you to one." in client.get("/").content.decode()
 
 
-def test_an_empty_world_asks_its_admin_for_files(world):
-    (step,) = next_steps(counts_of(world), DUTIES[Role.ADMIN])
-    assert step.name == "import"
-    assert next_steps(counts_of(world), DUTIES[Role.REVIEWER]) == []
-
-
-def test_next_steps_are_those_that_the_person_may_take(house):
-    names = [step.name for step in next_steps(counts_of(house.world), frozenset({Duty.VIEW}))]
-    assert names == ["results"]
-
-
 @pytest.mark.parametrize("path", ["", "runs/", "results/", "commands/", "splits/"])
-def test_every_page_forbids_foreign_and_inline_scripts(path, house, annotator, client):
+def test_every_page_forbids_foreign_and_inline_scripts(path, sample, annotator, client):
     client.force_login(annotator)
     answer = client.get(f"/w/home/{path}")
     policy = answer["Content-Security-Policy"]

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+import threading
+from ipaddress import ip_network
+from itertools import cycle, islice
+from types import SimpleNamespace
+
 import pytest
 
-from annotations.rates import FAILED_LOG_INS
-from gpsr_site.accounts import TOO_OFTEN
+from annotations.models import User
+from gpsr_site import accounts
+from gpsr_site.accounts import BY_ADDRESS, BY_NAME, BY_NAME_AND_ADDRESS, TOO_OFTEN
+from tests.waiting import PATIENCE_SECONDS
 
 RIGHT = {"username": "anna", "password": "correct horse"}
 WRONG = {**RIGHT, "password": "wrong"}
+LIMIT = BY_NAME_AND_ADDRESS.limit
 
 
 @pytest.fixture(autouse=True)
@@ -29,8 +37,12 @@ def test_the_right_password_leads_to_the_page_that_was_asked_for(client):
     assert answer.url == "/w/home/commands/"
 
 
-def test_one_is_not_led_to_another_site(client):
-    answer = client.post("/login/", {**RIGHT, "next": "https://elsewhere.example/"})
+@pytest.mark.parametrize(
+    "elsewhere",
+    ["https://elsewhere.example/", "//elsewhere.example", "/\\elsewhere.example", "javascript:a"],
+)
+def test_one_is_not_led_to_another_site(elsewhere, client):
+    answer = client.post("/login/", {**RIGHT, "next": elsewhere})
     assert answer.url == "/"
 
 
@@ -41,27 +53,114 @@ def test_a_wrong_password_is_told_on_the_page(client):
 
 
 def test_after_too_many_failures_even_the_right_password_waits(client):
-    assert fail(client, FAILED_LOG_INS.limit).status_code == 200
+    assert fail(client, LIMIT).status_code == 200
     answer = client.post("/login/", RIGHT)
     assert answer.status_code == 429
+    assert answer["Retry-After"] == "600"
     assert TOO_OFTEN in answer.content.decode()
 
 
-def test_spelling_the_name_otherwise_does_not_help(client):
-    fail(client, FAILED_LOG_INS.limit)
-    assert client.post("/login/", {**RIGHT, "username": " ANNA "}).status_code == 429
+@pytest.mark.parametrize("name", [" ANNA ", "ａｎｎａ", "Anna\u2003"])
+def test_spelling_the_name_otherwise_does_not_help(name, client):
+    fail(client, LIMIT)
+    assert client.post("/login/", {**RIGHT, "username": name}).status_code == 429
+
+
+def test_django_s_admin_has_no_door_of_its_own(superuser, client):
+    answer = client.post("/admin/login/", {"username": "root", "password": "correct horse"})
+    assert answer.url == "/login/?next=/admin/"
+    assert client.get("/admin/").url == "/admin/login/?next=/admin/"
+    assert client.get("/admin/login/?next=/admin/").url == "/login/?next=/admin/"
+
+
+def test_whoever_may_not_enter_the_admin_is_told_rather_than_led_in_circles(annotator, client):
+    client.force_login(annotator)
+    assert client.get("/admin/", follow=True).status_code == 403
 
 
 def test_somebody_elsewhere_is_not_locked_out(client):
-    fail(client, FAILED_LOG_INS.limit)
+    fail(client, LIMIT)
     assert client.post("/login/", RIGHT, REMOTE_ADDR="192.0.2.7").status_code == 302
 
 
+def test_behind_a_trusted_proxy_clients_are_told_apart(client, settings):
+    settings.TRUSTED_PROXIES = [ip_network("127.0.0.1")]
+    fail(client, LIMIT, HTTP_X_FORWARDED_FOR="203.0.113.9")
+    again = client.post("/login/", RIGHT, HTTP_X_FORWARDED_FOR="203.0.113.9")
+    elsewhere = client.post("/login/", RIGHT, HTTP_X_FORWARDED_FOR="192.0.2.7")
+    assert (again.status_code, elsewhere.status_code) == (429, 302)
+
+
+def test_a_made_up_address_does_not_help(client):
+    for number in range(LIMIT):
+        client.post("/login/", WRONG, HTTP_X_FORWARDED_FOR=f"192.0.2.{number}")
+    assert client.post("/login/", RIGHT, HTTP_X_FORWARDED_FOR="192.0.2.99").status_code == 429
+
+
+def test_one_address_cannot_try_many_names(client):
+    for number in range(BY_ADDRESS.limit):
+        client.post("/login/", {"username": f"name{number}", "password": "guess"})
+    assert client.post("/login/", RIGHT).status_code == 429
+
+
+def test_a_class_behind_one_address_logs_in(client):
+    names = [f"pupil{number}" for number in range(1 + BY_ADDRESS.limit // (BY_NAME.limit // 2))]
+    for name in names:
+        User.objects.create_user(name, password=RIGHT["password"])
+    for name in islice(cycle(names), BY_ADDRESS.limit + 1):
+        assert client.post("/login/", {**RIGHT, "username": name}).status_code == 302
+        client.post("/logout/")
+
+
+def test_a_name_that_the_world_tries_is_slow_and_not_locked(client, monkeypatch):
+    waited = []
+    monkeypatch.setattr(accounts, "time", SimpleNamespace(sleep=waited.append))
+    while BY_NAME.take("anna"):
+        pass
+    assert client.post("/login/", RIGHT).status_code == 302
+    assert waited == [accounts.SLOW_SECONDS]
+
+
+def test_slow_attempts_never_hold_all_threads(client, monkeypatch):
+    everybody_waits, over = threading.Barrier(3), threading.Event()
+
+    def sleep(seconds):
+        if not over.is_set():
+            everybody_waits.wait(PATIENCE_SECONDS)
+            over.wait(PATIENCE_SECONDS)
+
+    monkeypatch.setattr(accounts, "time", SimpleNamespace(sleep=sleep))
+    while BY_NAME.take("anna"):
+        pass
+    waiting = [threading.Thread(target=accounts.wait_slowly) for _ in range(2)]
+    for thread in waiting:
+        thread.start()
+    everybody_waits.wait(PATIENCE_SECONDS)
+    assert client.post("/login/", RIGHT).status_code == 429
+    over.set()
+    for thread in waiting:
+        thread.join()
+    assert client.post("/login/", RIGHT).status_code == 302
+
+
+def test_the_limit_survives_many_other_names(client):
+    fail(client, LIMIT)
+    for number in range(400):
+        BY_NAME_AND_ADDRESS.take(f"192.0.2.1 somebody{number}")
+    assert client.post("/login/", RIGHT).status_code == 429
+
+
 def test_a_success_forgets_the_failures(client):
-    fail(client, FAILED_LOG_INS.limit - 1)
+    fail(client, LIMIT - 1)
     assert client.post("/login/", RIGHT).status_code == 302
     client.post("/logout/")
-    assert fail(client, FAILED_LOG_INS.limit - 1).status_code == 200
+    assert fail(client, LIMIT - 1).status_code == 200
+
+
+def test_a_password_of_a_megabyte_is_not_hashed(client, monkeypatch):
+    monkeypatch.setattr("django.contrib.auth.authenticate", lambda *a, **k: pytest.fail("hashed"))
+    answer = client.post("/login/", {**RIGHT, "password": "a" * 50_000})
+    assert "at most 1000 characters" in answer.content.decode()
 
 
 def test_logging_out_takes_a_post(client, annotator):

@@ -8,11 +8,11 @@ import pytest
 from celery import current_app
 from django.conf import settings
 
+from annotations.background import message_queue
 from annotations.models import Split
-from parser_service.models.runs import Queue
-from parser_service.waking import message_queue
+from annotations.models.background import Queue
 from tests.parser_service.made_up import make_split
-from tests.parser_service.running import RunningWorker
+from tests.parser_service.worker_process import RunningWorker
 
 
 @pytest.fixture
@@ -31,12 +31,13 @@ def tidy_broker() -> Iterator[None]:
 
 
 @pytest.fixture
-def start_worker(transactional_db, tmp_path) -> Iterator[Callable[[], RunningWorker]]:
+def start_worker(transactional_db, tmp_path) -> Iterator[Callable[..., RunningWorker]]:
     """Starts workers; whatever is left of them is killed in the end."""
     workers: list[RunningWorker] = []
 
-    def start() -> RunningWorker:
-        workers.append(RunningWorker(tmp_path / f"worker-{len(workers)}.log"))
+    def start(*queues: str, **options: float) -> RunningWorker:
+        log = tmp_path / f"worker-{len(workers)}.log"
+        workers.append(RunningWorker(log, *queues, **options))
         return workers[-1]
 
     yield start

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import product
 from pathlib import Path
 
-from annotations.language.pairs import by_length, write_pairs
+from annotations.language.corpus import by_length, write_pairs
 from annotations.models import Example, Split, World
 
 # A network that learns the made-up pairs in seconds, and one that is not done before it is stopped.

@@ -7,10 +7,10 @@ from typing import Any
 
 from django.core.management.base import CommandError, CommandParser
 
-from annotations.language.expansion import DEFAULT_LIMIT
+from annotations.language.templates import DEFAULT_LIMIT
 from annotations.management.base import Refused, ReportingCommand, find_world
 from annotations.models import TaskCategory, World
-from annotations.reading import grammar_of
+from annotations.rows.from_rows import grammar_of
 
 
 class Command(ReportingCommand):
@@ -38,8 +38,8 @@ class Command(ReportingCommand):
 
 def _find_category(world: World, name: str) -> TaskCategory:
     categories = TaskCategory.objects.filter(grammar__world=world)
-    found = categories.filter(name=name).first()
-    if found is None:
+    category = categories.filter(name=name).first()
+    if category is None:
         names = ", ".join(categories.values_list("name", flat=True)) or "none"
         raise CommandError(f"“{world}” has no task category “{name}”. It has: {names}.")
-    return found
+    return category

@@ -8,7 +8,7 @@ from typing import Any
 
 from django.core.management.base import CommandParser
 
-from annotations.exporting import Format, export_split
+from annotations.exporting.split_export import Format, export_split
 from annotations.management.base import ReportingCommand, find_split, find_world
 
 

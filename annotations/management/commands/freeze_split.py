@@ -9,11 +9,11 @@ from typing import Any
 from django.core.management.base import CommandError, CommandParser
 from django.db import transaction
 
-from annotations.freezing import freeze_split
-from annotations.language.splitting import Criterion
+from annotations.language.corpus import Criterion
 from annotations.management.base import ReportingCommand, find_world
 from annotations.models import Split
-from annotations.parts import counts_of
+from annotations.splits.freezing import freeze_split
+from annotations.splits.split_statistics import counts_of
 
 
 class Command(ReportingCommand):
@@ -36,12 +36,12 @@ class Command(ReportingCommand):
     def report(
         self, *, world: str, name: str, criterion: str, seed: int, parts: str, **options: Any
     ) -> Mapping[str, Any]:
-        found = find_world(world)
+        chosen = find_world(world)
         criteria = _criteria(criterion)
         names = {each: name if len(criteria) == 1 else f"{name}-{each}" for each in criteria}
         shares = _shares(parts)
         with transaction.atomic():
-            splits = [freeze_split(found, names[each], each, seed, shares) for each in criteria]
+            splits = [freeze_split(chosen, names[each], each, seed, shares) for each in criteria]
         return {"world": world, "splits": _described(splits)}
 
 

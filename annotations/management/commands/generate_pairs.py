@@ -8,10 +8,10 @@ from typing import Any
 
 from django.core.management.base import CommandError, CommandParser
 
-from annotations.generating import generate_pairs
-from annotations.grounded_pairs import grounded_pairs
-from annotations.language.expansion import DEFAULT_LIMIT
-from annotations.language.pairs import by_length, write_pairs
+from annotations.generation.generating import generate_pairs
+from annotations.generation.grounded_pairs import grounded_pairs
+from annotations.language.corpus import by_length, write_pairs
+from annotations.language.templates import DEFAULT_LIMIT
 from annotations.management.base import ReportingCommand, find_world
 from annotations.models import World
 
@@ -40,11 +40,11 @@ class Command(ReportingCommand):
     ) -> Mapping[str, Any]:
         if grounded is not None and (grounded < 1 or output is None):
             raise CommandError("--grounded takes a number above 0, and --output for its file.")
-        found = find_world(world)
-        report = generate_pairs(found, limit).as_json()
+        chosen = find_world(world)
+        report = generate_pairs(chosen, limit).as_json()
         if output is None:
             return report
-        pairs = grounded_pairs(found, grounded, seed) if grounded else _pairs_of(found)
+        pairs = grounded_pairs(chosen, grounded, seed) if grounded else _pairs_of(chosen)
         with output.open("w", encoding="utf-8", newline="") as file:
             file.writelines(write_pairs(by_length(pairs)))
         return {**report, "output": {"path": str(output), "pairs": len(pairs)}}

@@ -11,6 +11,8 @@ from django.core.management.base import CommandParser
 from annotations.importing import import_generator
 from annotations.management.base import Refused, ReportingCommand
 
+MOST_LISTED = 40
+
 
 class Command(ReportingCommand):
     help = (
@@ -21,9 +23,29 @@ class Command(ReportingCommand):
     def add_options(self, parser: CommandParser) -> None:
         parser.add_argument("folder", type=Path)
         parser.add_argument("--world", required=True, help="made where there is none")
+        parser.add_argument(
+            "--remove-missing",
+            action="store_true",
+            help="remove what the world has and the files do not; refused without it",
+        )
 
-    def report(self, *, folder: Path, world: str, **options: Any) -> Mapping[str, Any]:
-        report = import_generator(world, folder)
+    def report(
+        self, *, folder: Path, world: str, remove_missing: bool, **options: Any
+    ) -> Mapping[str, Any]:
+        report = import_generator(world, folder, may_remove=remove_missing)
+        if report.is_waiting:
+            raise Refused(report.as_json(), _question(world, report.removals.as_json()))
         if report.is_refused:
-            raise Refused.because(report.errors, report.as_json())
+            raise Refused.because(report.errors, report.as_json(), folder)
         return report.as_json()
+
+
+def _question(world: str, removals: Mapping[str, list[str]]) -> list[str]:
+    """What would go, a line each, and how to let it go."""
+    lines = [f"  {name}: {text}" for name, texts in removals.items() for text in texts]
+    return [
+        f"The files lack rows that “{world}” has:",
+        *lines[:MOST_LISTED],
+        *([f"  and {len(lines) - MOST_LISTED} more"] if len(lines) > MOST_LISTED else []),
+        "Nothing was imported. With --remove-missing these are removed.",
+    ]

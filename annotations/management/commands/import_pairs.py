@@ -26,5 +26,5 @@ class Command(ReportingCommand):
     def report(self, *, folder: Path, world: str, name: str, **options: Any) -> Mapping[str, Any]:
         report = import_pairs(world, name, folder)
         if report.is_refused:
-            raise Refused.because(report.errors, report.as_json())
+            raise Refused.because(report.errors, report.as_json(), folder)
         return report.as_json()

@@ -8,9 +8,9 @@ from typing import Any
 
 from django.core.management.base import CommandParser
 
-from annotations.language.leakage import Leak
+from annotations.language.corpus import Leak
 from annotations.management.base import ReportingCommand, find_split, find_world
-from annotations.parts import leakage_of, near_duplicates_of
+from annotations.splits.split_statistics import leakage_of, near_duplicates_of
 
 
 class Command(ReportingCommand):
@@ -34,7 +34,7 @@ class Command(ReportingCommand):
             "criterion": split.criterion,
             "shared": [_row(leak) for leak in [*leakage_of(split), *(each.leak for each in near)]],
             "near_duplicates": {
-                each.leak.part: [asdict(found) for found in each.found[: max(examples, 0)]]
+                each.leak.part: [asdict(pair) for pair in each.found[: max(examples, 0)]]
                 for each in near
             },
         }
@@ -44,8 +44,8 @@ class Command(ReportingCommand):
         for row in report["shared"]:
             counts = f"{row['shared']:>6} of {row['pairs']:>6}  {row['share']:6.1%}"
             lines.append(f"  {row['part']:10}  {row['what']:15}  {counts}")
-        for part, found in report["near_duplicates"].items():
-            for each in found:
+        for part, pairs in report["near_duplicates"].items():
+            for each in pairs:
                 lines += [
                     f"{part}: {each['utterance']}",
                     f"  {each['similarity']:.2f}: {each['training']}",

@@ -15,9 +15,9 @@ from django.core.management import call_command
 from django.core.management.base import BaseCommand, CommandError
 
 from annotations.models import User
-from annotations.starting import load_starter_world
+from annotations.worlds.starter_world import load_starter_world
 from gpsr_site.processes import Supervisor, web_server_command, worker_command
-from parser_service.first_runs import request_first_runs
+from parser_service.runs.first_runs import request_first_runs
 
 HEALTH_PATIENCE_SECONDS = 60
 
@@ -25,7 +25,7 @@ HEALTH_PATIENCE_SECONDS = 60
 class Command(BaseCommand):
     help = (
         "Prepare the database, load the starter world, create an admin on the first start, "
-        "then serve the pages and run one worker until stopped."
+        "then serve the pages and run two workers until stopped: one that trains, one for short work."
     )
 
     def handle(self, *args: Any, **options: Any) -> None:
@@ -35,8 +35,9 @@ class Command(BaseCommand):
         self.create_admin()
         request_first_runs(load_starter_world(self.say))
         commands = {
-            "web server": web_server_command(settings.HOST, settings.PORT),
-            "worker": worker_command(),
+            "web server": web_server_command(),
+            "training worker": worker_command("cpu", "gpu"),
+            "quick worker": worker_command("quick"),
         }
         supervisor = Supervisor(commands, self.say)
         supervisor.start()
@@ -58,11 +59,11 @@ class Command(BaseCommand):
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             try:
                 probe.bind((settings.HOST, settings.PORT))
-            except OSError as reason:
+            except OSError as error:
                 raise CommandError(
-                    f"Cannot serve on {settings.HOST}:{settings.PORT}: {reason.strerror}. "
+                    f"Cannot serve on {settings.HOST}:{settings.PORT}: {error.strerror}. "
                     f"Stop what uses it, or choose another port: PORT={settings.PORT + 1} make run"
-                ) from reason
+                ) from error
 
     def create_admin(self) -> None:
         """The first administrator, with a password that is printed now and never again."""

@@ -1,4 +1,4 @@
-"""``parse TEXT --world W``: what a trained parser makes of an utterance."""
+"""``parse TEXT --world W``: the answers of a trained parser to an utterance."""
 
 from __future__ import annotations
 
@@ -10,19 +10,21 @@ from django.core.management.base import CommandParser
 
 from annotations.management.base import ReportingCommand, find_world
 from annotations.models import World
-from parser_service.evaluating import BEAM_WIDTH
 from parser_service.models import TrainingRun
+from parser_service.runs.evaluating import BEAM_WIDTH
 from parser_service.serving import best_run, parse
 
 
 class Command(ReportingCommand):
-    help = "Parses an utterance with the best parser that was trained in a world, or with a run's."
+    help = "Parse an utterance with the best parser trained in a world, or with that of a run."
 
     def add_options(self, parser: CommandParser) -> None:
         parser.add_argument("text")
         parser.add_argument("--world", required=True)
         parser.add_argument("--run", type=int, help="number of a succeeded run (default: the best)")
-        parser.add_argument("--beam", type=int, default=BEAM_WIDTH, help="candidates, at most")
+        parser.add_argument(
+            "--beam", type=int, default=BEAM_WIDTH, help="largest number of candidates"
+        )
 
     def report(self, *, text: str, world: str, **options: Any) -> Mapping[str, Any]:
         if not text.strip():
@@ -30,13 +32,14 @@ class Command(ReportingCommand):
         if options["beam"] < 1:
             raise ValueError("--beam has to be at least 1.")
         run = find_run(find_world(world), options["run"])
-        found = parse(run, text, options["beam"])
+        parsed = parse(run, text, options["beam"])
         return {
-            "utterance": found.utterance,
-            "parsed_text": found.parsed_text,
+            "utterance": parsed.utterance,
+            "parsed_text": parsed.parsed_text,
             "run": run.pk,
             "parser": run.parser,
-            "candidates": [asdict(answer) for answer in found.answers],
+            "remarks": list(parsed.remarks),
+            "candidates": [asdict(answer) for answer in parsed.answers],
         }
 
     def describe(self, report: Mapping[str, Any]) -> str:
@@ -44,11 +47,12 @@ class Command(ReportingCommand):
         for candidate in report["candidates"]:
             shown = candidate["reading"] or f"{candidate['form']}   (no well-formed form)"
             lines.append(f"{candidate['score']:8.3f}  {shown}")
-        return "\n".join(lines if report["candidates"] else [*lines, "no answer"])
+        best = report["candidates"][0]["remarks"] if report["candidates"] else ["no answer"]
+        return "\n".join([*lines, *report["remarks"], *best])
 
 
 def find_run(world: World, number: int | None) -> TrainingRun:
-    """Run ``number`` of ``world``, or its best. Raises ValueError where there is none."""
+    """Return run ``number`` of ``world``, or its best. Raises ValueError where there is none."""
     if number is None:
         return best_run(world)
     run = world.runs.filter(pk=number).first()

@@ -9,31 +9,36 @@ from typing import Any
 from celery import current_app
 from django.core.management.base import BaseCommand, CommandParser
 
-from parser_service.models.runs import Queue
-from parser_service.waking import message_queue
+from annotations.background import message_queue
+from annotations.models.background import Queue
 
 
 class Command(BaseCommand):
-    help = "Train queued runs, one at a time, until stopped (Ctrl-C or SIGTERM, within 5 seconds)."
+    help = (
+        "Carry out queued runs and jobs, one at a time, until stopped (Ctrl-C or SIGTERM, within "
+        "5 seconds)."
+    )
     requires_system_checks = []
 
     def add_arguments(self, parser: CommandParser) -> None:
         parser.add_argument(
             "--queue",
+            nargs="+",
             choices=Queue.values,
-            default=Queue.CPU,
-            help="which runs to train: those that need no GPU (cpu) or those that do (gpu)",
+            default=Queue.values,
+            help="which work to take: training on the processor (cpu) or on a GPU (gpu), imports and "
+            "parsers that train in seconds (quick). Without it: all of them",
         )
 
-    def handle(self, *args: Any, queue: str, **options: Any) -> None:
+    def handle(self, *args: Any, queue: list[str], **options: Any) -> None:
         os.environ.setdefault("CELERY_SKIP_CHECKS", "1")  # they load the pages, which train nothing
         level = logging.getLevelName(logging.getLogger().level)
         current_app.worker_main(
             [
                 "--quiet",
                 "worker",
-                f"--queues={message_queue(queue)}",
-                f"--hostname={queue}-{os.getpid()}@%h",
+                f"--queues={','.join(map(message_queue, queue))}",
+                f"--hostname={'-'.join(queue)}-{os.getpid()}@%h",
                 f"--loglevel={level}",
                 "--without-gossip",
                 "--without-mingle",

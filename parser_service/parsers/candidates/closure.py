@@ -1,9 +1,9 @@
-"""Forms that are one typed change away from forms there are.
+"""Forms that are one typed change away from given forms.
 
-Every step keeps to what it has seen: predicates stand where such predicates stood, beside those
-that they stood beside, with arguments of a kind that their signatures have. That gives far more
-forms than anybody says; those that several kinds of change arrive at are likely ones
-(``pool.Candidate.support``).
+Every change keeps to the contexts that it has seen: a predicate goes only where such a predicate was,
+beside predicates that it was seen with, and with arguments that its signatures allow. That still
+gives far more forms than people use. Those that several kinds of change arrive at are likely
+(``pool.CandidateForm.support``).
 """
 
 from __future__ import annotations
@@ -12,34 +12,39 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 
-from annotations.language.canonical import canonical_text
 from annotations.language.errors import LanguageError
-from annotations.language.logic import (
+from annotations.language.forms import (
     UNKNOWN,
     Application,
     Constant,
     Form,
     Lambda,
+    canonical_text,
     free_variables,
     read_form,
     to_corpus,
 )
-from annotations.language.predicates import Predicate
-from annotations.language.signatures import ENTITY_KINDS, ArgumentKind, Signature, signature_of
-from parser_service.parsers.candidates.pool import Made
-from parser_service.parsers.candidates.surroundings import (
+from annotations.language.predicates import (
+    ENTITY_KINDS,
+    ArgumentKind,
+    Predicate,
+    Signature,
+    signature_of,
+)
+from parser_service.parsers.candidates.contexts import (
+    Contexts,
     Place,
-    Surroundings,
     conjuncts,
+    find_contexts,
     is_leaf,
-    look_around,
     places,
     variables,
     with_children,
 )
+from parser_service.parsers.candidates.pool import Made
 
 Change = tuple[Form, str]
-Changes = Callable[[Place, Surroundings, Mapping[str, Predicate]], Iterator[Change]]
+Changes = Callable[[Place, Contexts, Mapping[str, Predicate]], Iterator[Change]]
 
 
 def close(
@@ -47,22 +52,22 @@ def close(
     predicates: Mapping[str, Predicate],
     changes: Mapping[str, Changes] | None = None,
 ) -> list[Made]:
-    """Everything one change away from ``forms``, once for each way that leads there.
+    """Return every form one change away from ``forms``, once for each way to it.
 
     Args:
-        forms: canonical texts; one that is no form is left out.
+        forms: canonical texts; a text that is not a form is skipped.
         predicates: with the signatures that a change may use.
-        changes: kinds of change by name, those of this module by default.
+        changes: kinds of change by name; those of this module by default.
     """
     kinds = CHANGES if changes is None else changes
     read = list(read_forms(forms))
-    around = look_around(read)
+    contexts = find_contexts(read)
     made: dict[Made, None] = {}
     for form in read:
         origin = canonical_text(form)
         for place in places(form):
             for name, changed in kinds.items():
-                for part, change in changed(place, around, predicates):
+                for part, change in changed(place, contexts, predicates):
                     whole = place.rebuild(part)
                     if not free_variables(whole):
                         made[Made(canonical_text(whole), name, origin, change)] = None
@@ -70,64 +75,60 @@ def close(
 
 
 def exchange(
-    place: Place, around: Surroundings, predicates: Mapping[str, Predicate]
+    place: Place, contexts: Contexts, predicates: Mapping[str, Predicate]
 ) -> Iterator[Change]:
-    """Another description of the same variables: ``male`` for ``female``."""
+    """Replace a description by another one of the same variables: ``male`` for ``female``."""
     for number, part in enumerate(conjuncts(place.part)):
         if is_leaf(part):
             others = _without(conjuncts(place.part), number)
-            for leaf in around.leaves:
+            for leaf in contexts.leaves:
                 is_like = leaf != part and variables(leaf) == variables(part)
-                if is_like and around.go_together(leaf, others):
+                if is_like and contexts.go_together(leaf, others):
                     parts = list(conjuncts(place.part))
                     parts[number] = leaf
-                    yield with_children(place.part, parts), f"{_said(part)} → {_said(leaf)}"
+                    yield with_children(place.part, parts), f"{to_corpus(part)} → {to_corpus(leaf)}"
 
 
-def drop(
-    place: Place, around: Surroundings, predicates: Mapping[str, Predicate]
-) -> Iterator[Change]:
-    """One description less."""
+def drop(place: Place, contexts: Contexts, predicates: Mapping[str, Predicate]) -> Iterator[Change]:
+    """Remove one description."""
     parts = conjuncts(place.part)
     for number, part in enumerate(parts):
         if is_leaf(part) and len(parts) > 1:
-            yield with_children(place.part, _without(parts, number)), f"− {_said(part)}"
+            yield with_children(place.part, _without(parts, number)), f"− {to_corpus(part)}"
 
 
-def add(
-    place: Place, around: Surroundings, predicates: Mapping[str, Predicate]
-) -> Iterator[Change]:
-    """One description more, of a variable that is described already."""
+def add(place: Place, contexts: Contexts, predicates: Mapping[str, Predicate]) -> Iterator[Change]:
+    """Add a description of a variable that is described already."""
     parts = conjuncts(place.part)
     described = {variables(part) for part in parts if is_leaf(part)}
-    for leaf in around.leaves:
-        if variables(leaf) in described and around.go_together(leaf, parts):
-            yield with_children(place.part, (*parts, leaf)), f"+ {_said(leaf)}"
+    for leaf in contexts.leaves:
+        if variables(leaf) in described and contexts.go_together(leaf, parts):
+            yield with_children(place.part, (*parts, leaf)), f"+ {to_corpus(leaf)}"
 
 
 def transplant(
-    place: Place, around: Surroundings, predicates: Mapping[str, Predicate]
+    place: Place, contexts: Contexts, predicates: Mapping[str, Predicate]
 ) -> Iterator[Change]:
-    """Another thing to do the same with: what a λ of another form describes."""
+    """Replace what an action is done with by what a λ of another form describes."""
     if place.holder is None or not isinstance(place.part, Lambda):
         return
-    for term in around.terms:
-        if term != place.part and around.may_hold(place.holder, term):
-            yield term, f"{_said(place.part)} → {_said(term)}"
+    for term in contexts.terms:
+        if term != place.part and contexts.may_hold(place.holder, term):
+            yield term, f"{to_corpus(place.part)} → {to_corpus(term)}"
 
 
 def retype(
-    place: Place, around: Surroundings, predicates: Mapping[str, Predicate]
+    place: Place, contexts: Contexts, predicates: Mapping[str, Predicate]
 ) -> Iterator[Change]:
-    """A constant of another kind, or one more or less, as a signature of the predicate allows."""
+    """Change the kind of a constant, add one or remove one, as a signature of the predicate allows."""
     part = place.part
     if not isinstance(part, Application) or str(part.predicate) not in predicates:
         return
     given = signature_of(part)
     for declared in predicates[str(part.predicate)].signatures:
-        for arguments in _retyped(part, given, declared):
+        for arguments in _retype_arguments(part, given, declared):
             other = replace(part, arguments=arguments)
-            yield other, f"{_said(part)} → {_said(other)}"
+            yield other, f"{to_corpus(part)} → {to_corpus(other)}"
 
 
 CHANGES: dict[str, Changes] = {
@@ -139,7 +140,7 @@ CHANGES: dict[str, Changes] = {
 }
 
 
-def _retyped(
+def _retype_arguments(
     part: Application, given: Signature, declared: Signature
 ) -> Iterator[tuple[Form, ...]]:
     mine, its = given.arguments, declared.arguments
@@ -155,14 +156,14 @@ def _retyped(
 
 
 def constant_of(kind: ArgumentKind) -> Form | None:
-    """What stands for an argument of some kind in an anonymized form."""
+    """Return what an anonymized form has for an argument of some kind; None where it has no constant."""
     if kind is ArgumentKind.UNKNOWN:
         return UNKNOWN
     return Constant(f"<{kind}>") if kind in ENTITY_KINDS else None
 
 
 def read_forms(texts: Iterable[str]) -> Iterator[Form]:
-    """The forms that can be changed: a text that is none can only be answered."""
+    """Read the texts that are forms. Other texts can be answers, but cannot be changed."""
     for text in texts:
         with suppress(LanguageError):
             yield read_form(text)
@@ -170,7 +171,3 @@ def read_forms(texts: Iterable[str]) -> Iterator[Form]:
 
 def _without(parts: Sequence[Form], number: int) -> tuple[Form, ...]:
     return (*parts[:number], *parts[number + 1 :])
-
-
-def _said(form: Form) -> str:
-    return to_corpus(form)

@@ -1,8 +1,7 @@
 """Good-enough compositional augmentation (Andreas 2020), on short forms and words.
 
-Two training commands that differ in one span, with forms that differ in one token, say that the
-spans stand for the tokens. Exchanging them in other training pairs gives commands with forms that
-training never showed.
+Where two training commands differ in one span, and their forms in one token, the spans mean the
+tokens. Exchanging them in other training pairs gives commands with forms that training never showed.
 """
 
 from __future__ import annotations
@@ -11,9 +10,8 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from annotations.language.canonical import canonical_text
 from annotations.language.errors import LanguageError
-from annotations.language.logic import read_form
+from annotations.language.forms import canonical_text, read_form
 from parser_service.parsers.candidates.pool import SURE, Made
 from parser_service.parsers.candidates.short import lengthen, name_of, shorten
 from parser_service.parsers.interface import Pair
@@ -30,7 +28,7 @@ Short = tuple[str, ...]
 
 @dataclass(frozen=True, slots=True, order=True)
 class Rule:
-    """Where ``words`` say ``token``, ``other_words`` say ``other_token``."""
+    """Where ``words`` mean ``token``, ``other_words`` mean ``other_token``."""
 
     token: str
     other_token: str
@@ -39,10 +37,10 @@ class Rule:
 
 
 def geca(pairs: Sequence[Pair]) -> list[Made]:
-    """New forms with their commands, from exchanges that ``pairs`` themselves show.
+    """Return new forms with their commands, from exchanges that ``pairs`` themselves show.
 
-    Rules come from the generated pairs where there are any: paraphrases differ in more than they
-    mean. A command to which two forms would be given is dropped.
+    Rules come from the generated pairs where there are any: paraphrases differ in more than their
+    meaning. A command that would get two forms is dropped.
     """
     generated = [pair for pair in pairs if pair.source == "generated"]
     rules = find_rules(_examples(generated or pairs))
@@ -50,25 +48,24 @@ def geca(pairs: Sequence[Pair]) -> list[Made]:
 
 
 def find_rules(examples: Sequence[tuple[Words, Short]]) -> list[Rule]:
-    """All exchanges that two examples show, in a fixed order."""
+    """Return all exchanges that two examples show, in a fixed order."""
     frames: defaultdict[tuple[Words, Words], set[tuple[Words, Short]]] = defaultdict(set)
     for sentence, short in examples:
         for begin, end in _spans(len(sentence)):
             frame = sentence[:begin], sentence[end:]
             frames[frame].add((sentence[begin:end], short))
-    found = {rule for filled in frames.values() for rule in _rules_of(sorted(filled))}
-    return sorted(found)
+    return sorted({rule for filled in frames.values() for rule in _rules_of(sorted(filled))})
 
 
 def recombine(examples: Sequence[tuple[Words, Short]], rules: Sequence[Rule]) -> list[Made]:
-    """The forms that the rules make of the examples and that no example has."""
+    """Return the forms that the rules make from the examples and that no example has."""
     by_token: defaultdict[str, list[Rule]] = defaultdict(list)
     for rule in rules:
         by_token[rule.token].append(rule)
     known = {short for _, short in examples}
     meanings: defaultdict[Words, dict[Short, tuple[Short, str]]] = defaultdict(dict)
     for sentence, short in examples:
-        for rule, made_words, made_short in _applied(sentence, short, by_token):
+        for rule, made_words, made_short in _apply(sentence, short, by_token):
             if made_short not in known:
                 change = f"{rule.token} → {rule.other_token}"
                 meanings[made_words].setdefault(made_short, (short, change))
@@ -80,17 +77,17 @@ def recombine(examples: Sequence[tuple[Words, Short]], rules: Sequence[Rule]) ->
             [(short, origin)] = forms.items()
             commands[short].append(" ".join(sentence))
             origins.setdefault(short, origin)
-    return [_made(short, said, *origins[short]) for short, said in commands.items()]
+    return [_make(short, said, *origins[short]) for short, said in commands.items()]
 
 
 def _examples(pairs: Sequence[Pair]) -> list[tuple[Words, Short]]:
-    found = []
+    examples = []
     for pair in pairs:
         try:
-            found.append((words(pair.utterance), shorten(read_form(pair.form))))
+            examples.append((words(pair.utterance), shorten(read_form(pair.form))))
         except LanguageError:
-            continue  # a text that is no form can be answered, not recombined
-    return list(dict.fromkeys(found))
+            continue  # a text that is not a form can be an answer, but not recombined
+    return list(dict.fromkeys(examples))
 
 
 def _spans(length: int) -> Iterator[tuple[int, int]]:
@@ -101,7 +98,7 @@ def _spans(length: int) -> Iterator[tuple[int, int]]:
 
 
 def _rules_of(filled: Sequence[tuple[Words, Short]]) -> Iterator[Rule]:
-    """The exchanges between the fillers of one frame."""
+    """Yield the exchanges between the fillers of one frame."""
     for span, short in filled:
         for other_span, other in filled:
             place = _only_difference(short, other)
@@ -116,7 +113,7 @@ def _only_difference(short: Short, other: Short) -> int | None:
     return places[0] if len(places) == 1 else None
 
 
-def _applied(
+def _apply(
     sentence: Words, short: Short, by_token: dict[str, list[Rule]]
 ) -> Iterator[tuple[Rule, Words, Short]]:
     for place, token in enumerate(short):
@@ -138,12 +135,12 @@ def _only_occurrence(span: Words, sentence: Words) -> int | None:
 
 
 def _repeats(short: Short) -> bool:
-    """Whether a predicate stands twice, which is rarely what somebody says."""
+    """Whether a predicate occurs twice, as hardly any command means it."""
     names = [name for name in map(name_of, short) if name]
     return len(names) > len(set(names))
 
 
-def _made(short: Short, commands: Sequence[str], origin: Short, change: str) -> Made:
+def _make(short: Short, commands: Sequence[str], origin: Short, change: str) -> Made:
     return Made(
         canonical_text(lengthen(short)),
         NAME,

@@ -1,4 +1,4 @@
-"""Forms in English, by what a protocol allows to be known of their predicates."""
+"""Glosses of forms in English, from what a protocol allows a parser to know of their predicates."""
 
 from __future__ import annotations
 
@@ -6,37 +6,37 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from annotations.language.errors import LanguageError
-from annotations.language.gloss_patterns import pattern_of_name
-from annotations.language.logic import Form, read_form
+from annotations.language.forms import Form, read_form
 from annotations.language.predicates import (
     Predicate,
     PredicateKind,
     gloss,
     infer_signatures,
+    pattern_of_name,
 )
 
 
 def glosses(forms: Sequence[str], predicates: Mapping[str, Predicate] | None) -> list[str]:
-    """One short English sentence for each form; a text that is no form is its own.
+    """Return a short English sentence for each form; a text that is not a form is its own gloss.
 
-    With declared ``predicates`` their glosses are used (*domain*). Without (*strict*), a predicate
-    is called by its name in words, whatever this program knows of names like it.
+    Declared ``predicates`` have glosses (*domain*). Without them (*strict*) a predicate is called by
+    the words of its name, even where this program knows better.
     """
     read = [_read(form) for form in forms]
-    known = _named(read) if predicates is None else predicates
+    known = _name_predicates(read) if predicates is None else predicates
     return [
         text if form is None else gloss(form, known) for text, form in zip(forms, read, strict=True)
     ]
 
 
-def _named(forms: Sequence[Form | None]) -> dict[str, Predicate]:
-    found = infer_signatures(form for form in forms if form is not None)
+def _name_predicates(forms: Sequence[Form | None]) -> dict[str, Predicate]:
+    inferred = infer_signatures(form for form in forms if form is not None)
     return {
         name: replace(
             each,
             gloss=pattern_of_name(name, each.kind == PredicateKind.ACTION, each.signatures),
         )
-        for name, each in found.items()
+        for name, each in inferred.items()
     }
 
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Sequence
 
-from annotations.language.expansion import TaskCategory, generate
+from annotations.language.templates import TaskCategory, generate
 from parser_service.parsers.candidates.pool import SURE, Made
 
 NAME = "grammar"
 
 
 def grammar_forms(categories: Sequence[TaskCategory]) -> list[Made]:
-    """Each form that the templates make, with its commands. Raises LanguageError as generation does."""
+    """Return each form that the templates make, with its commands. Raises LanguageError as generation does."""
     commands: defaultdict[str, list[str]] = defaultdict(list)
     first: dict[str, str] = {}
     for each in generate(categories).expansions:

@@ -1,4 +1,4 @@
-"""Candidate forms: which there are, which steps made each, and from what."""
+"""Candidate forms, with the steps that made each and what they made it from."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-TRAINING = "training"
-SURE = 2  # a support that is enough to be answered
+SURE = 2  # the support that a form needs to become a candidate
 
 
 @dataclass(frozen=True, slots=True)
@@ -15,8 +14,8 @@ class Made:
     """One way to a form.
 
     ``form`` is canonical corpus text; ``step`` names what made it from the form ``origin`` by
-    ``change``; ``commands`` are commands that mean it, if the step makes any. ``weight`` says how
-    many kinds of change a step is worth that reaches few forms, and mostly real ones.
+    ``change``; ``commands`` are commands that mean it, if the step makes any. ``weight`` is the number
+    of kinds of change that the step counts for: more than one where it makes few forms, mostly real.
     """
 
     form: str
@@ -28,20 +27,20 @@ class Made:
 
 
 @dataclass(frozen=True, slots=True)
-class Candidate:
-    """A form with every way that leads to it."""
+class CandidateForm:
+    """A form with every way to it."""
 
     form: str
     ways: tuple[Made, ...]
 
     @property
     def steps(self) -> tuple[str, ...]:
-        """The steps that made it, each once."""
+        """Return the steps that made it, each once."""
         return tuple(dict.fromkeys(way.step for way in self.ways))
 
     @property
     def support(self) -> int:
-        """How many kinds of step arrive at it.
+        """Count the kinds of step that arrive at it, by their weights.
 
         Of forms with a support of 1, one in 1,000 is real, that is held out of the published pairs;
         of those with 2 one in 50, with 3 one in 10, with 4 one in 4 (``benchmarks/candidates.py``).
@@ -53,13 +52,13 @@ class Candidate:
 
     @property
     def commands(self) -> tuple[str, ...]:
-        """What the steps say for it."""
+        """Return the commands that the steps made for it."""
         return tuple(dict.fromkeys(said for way in self.ways for said in way.commands))
 
 
 @dataclass
 class Pool:
-    """The ways that all steps found, by form, in the order in which they were found."""
+    """The ways of all steps, by form, in the order in which they were added."""
 
     ways: dict[str, list[Made]] = field(default_factory=dict)
 
@@ -67,11 +66,11 @@ class Pool:
         for each in made:
             self.ways.setdefault(each.form, []).append(each)
 
-    def candidates(self) -> Iterator[Candidate]:
-        """All forms, the best supported first, then in the order in which they were found."""
-        found = [Candidate(form, tuple(ways)) for form, ways in self.ways.items()]
-        yield from sorted(found, key=lambda each: -each.support)
+    def candidates(self) -> Iterator[CandidateForm]:
+        """Yield all forms, the best supported first, then in the order in which they were added."""
+        candidates = [CandidateForm(form, tuple(ways)) for form, ways in self.ways.items()]
+        yield from sorted(candidates, key=lambda each: -each.support)
 
     def counts(self) -> dict[str, int]:
-        """How many forms each step made."""
+        """Count the forms that each step made."""
         return dict(Counter(step for each in self.candidates() for step in each.steps))

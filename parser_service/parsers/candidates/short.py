@@ -1,9 +1,9 @@
-"""A shorter spelling of forms that can be read back: a fifth of the corpus tokens.
+"""A shorter notation of forms that can be read back, with a fifth of the corpus tokens.
 
 ``( bring ( lambda $1 e ( is_a $1 " <object> " ) ( at $1 " <room> " ) ) )`` is
 ``(bring L1 is_a:$1:<object> at:$1:<room>``. An application without λs and applications inside is
 one token; closing parentheses at the end are left out. Two forms that differ in one such token
-differ in one thing that is said, which is what augmentation and closure work on.
+differ in one part of their meaning, which is what augmentation exchanges.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from urllib.parse import quote, unquote
 
-from annotations.language.logic import (
+from annotations.language.forms import (
     UNKNOWN,
     Application,
     Constant,
@@ -27,7 +27,7 @@ _PLAIN = "<>'"  # beside letters, digits and _.-~, what stands in a token as it 
 
 
 def shorten(form: Form) -> tuple[str, ...]:
-    """The short tokens of a form. Raises ValueError for a form with slots, which is no form yet."""
+    """Return the short tokens of a form. Raises ValueError for a form with slots of a template."""
     tokens = list(_tokens(form))
     while tokens[-1] == CLOSE:
         tokens.pop()
@@ -35,19 +35,19 @@ def shorten(form: Form) -> tuple[str, ...]:
 
 
 def lengthen(tokens: Sequence[str]) -> Form:
-    """The form that ``shorten`` spelled. Raises ValueError for tokens that spell none."""
+    """Return the form that ``shorten`` wrote. Raises ValueError for tokens that are not a form."""
     waiting = list(reversed(tokens))
     try:
         form = _read(waiting)
     except (IndexError, ValueError):
         waiting = [""]
     if waiting:
-        raise ValueError(f"{' '.join(tokens)} spells no form.")
+        raise ValueError(f"{' '.join(tokens)} is not a form.")
     return form
 
 
 def name_of(token: str) -> str:
-    """The predicate that a token speaks of; empty where it speaks of none."""
+    """Return the predicate that a token names; empty where it names none."""
     if token.startswith("("):
         return unquote(token[1:])
     return unquote(token.partition(":")[0]) if is_leaf_application(token) else ""
@@ -60,16 +60,16 @@ def is_leaf_application(token: str) -> bool:
 
 def _tokens(form: Form) -> Iterator[str]:
     if isinstance(form, Lambda):
-        yield f"L{form.variable}" if form.type == "e" else f"L{form.variable}/{_quoted(form.type)}"
+        yield f"L{form.variable}" if form.type == "e" else f"L{form.variable}/{_quote(form.type)}"
     elif not isinstance(form, Application):
         yield _leaf(form, '"')
         return
     elif form.arguments and not any(map(_is_nested, form.arguments)):
         leaves = (_leaf(argument, "") for argument in form.arguments)
-        yield ":".join((_quoted(str(form.predicate)), *leaves))
+        yield ":".join((_quote(str(form.predicate)), *leaves))
         return
     else:
-        yield f"({_quoted(str(form.predicate))}"
+        yield f"({_quote(str(form.predicate))}"
     for child in children(form):
         yield from _tokens(child)
     yield CLOSE
@@ -80,18 +80,18 @@ def _is_nested(form: Form) -> bool:
 
 
 def _leaf(form: Form, mark: str) -> str:
-    """``mark`` stands before a text where it is a token of its own."""
+    """Write a leaf; ``mark`` comes before a text that is a token of its own."""
     if isinstance(form, Variable):
         return f"${form.index}"
     if isinstance(form, Unknown):
         return "?"
     if isinstance(form, Constant):
         is_number = isinstance(form.value, int)
-        return f"#{form.value}" if is_number else f"{mark}{_quoted(str(form.value))}"
+        return f"#{form.value}" if is_number else f"{mark}{_quote(str(form.value))}"
     raise ValueError(f"{form} is a slot of a template; only whole forms have a short spelling.")
 
 
-def _quoted(text: str) -> str:
+def _quote(text: str) -> str:
     return quote(text, safe=_PLAIN)
 
 
@@ -109,13 +109,13 @@ def _read(waiting: list[str]) -> Form:
 
 
 def _read_until_close(waiting: list[str]) -> tuple[Form, ...]:
-    """What an open parenthesis holds; the end of the tokens closes it too."""
-    found = []
+    """Read what an open parenthesis holds; the end of the tokens closes it, too."""
+    parts = []
     while waiting and waiting[-1] != CLOSE:
-        found.append(_read(waiting))
+        parts.append(_read(waiting))
     if waiting:
         waiting.pop()
-    return tuple(found)
+    return tuple(parts)
 
 
 def _read_leaf(token: str) -> Form:

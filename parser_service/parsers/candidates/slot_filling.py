@@ -1,13 +1,13 @@
-"""Entities for the class tokens of generated commands, so that they read as people speak."""
+"""Entities in place of the class tokens of generated commands, so that they read as people speak."""
 
 from __future__ import annotations
 
 from random import Random
 from re import Match
 
-from annotations.language.anonymizer import QUESTION_WORD
+from annotations.language.forms import CLASS_TOKEN
+from annotations.language.grounding import QUESTION_WORD
 from annotations.language.ontology import Ontology
-from annotations.language.terms import CLASS_TOKEN
 
 OPEN_CATEGORY = "objects"  # what ``{category?}`` says
 OBFUSCATED = 0.15  # share of object slots said by their category, as ``{object?}`` says them
@@ -21,7 +21,8 @@ class SlotFiller:
         self._singulars = tuple(ontology.singulars.values())
 
     def fill(self, text: str, random: Random) -> str:
-        """``bring me the <object>`` with an object. A class without entities keeps its token."""
+        """Return ``text`` with entities: ``bring me the <object>`` with an object. A class without entities
+        keeps its token."""
         return CLASS_TOKEN.sub(lambda token: self._draw(token, random), text)
 
     def _draw(self, token: Match[str], random: Random) -> str:

@@ -38,20 +38,20 @@ FAULTS = {
     "a cycle": Fault(GRAMMAR, "$Main = $a\n$a = $b\n$b = $a\n", 6, "a cycle: $a → $b → $a"),
     "an unbalanced choice": Fault(GRAMMAR, "$Main = ( a | b\n", 4, "never closed"),
     "an unknown wildcard": Fault(GRAMMAR, "$Main = see {planet}\n", 4, "planet"),
-    "an unbound variable": Fault(TEMPLATES, "go to {room} = (go $2)\n", 4, "bound by no λ"),
+    "an unbound variable": Fault(TEMPLATES, "go to {room} = (go $2)\n", 4, "no λ binds"),
     "a slot that only the form has": Fault(
         TEMPLATES, "go to the {room} = (go {beacon})\n", 4, "which the pattern never produces"
     ),
     "an import that leaves the folder": Fault(
-        GRAMMAR, "; import ../../etc/passwd\n", 4, "leaves the folder"
+        GRAMMAR, "; import ../../etc/passwd\n", 4, "leads out of the folder"
     ),
-    "a pattern 5,000 deep": Fault(GRAMMAR, "$Main = " + "(" * 5000 + "\n", 4, "deep"),
-    "a form 5,000 deep": Fault(TEMPLATES, "go = " + "(a " * 5000 + ")" * 5000, 4, "deep"),
+    "a pattern 5,000 deep": Fault(GRAMMAR, "$Main = " + "(" * 5_000 + "\n", 4, "deep"),
+    "a form 1,000 deep": Fault(TEMPLATES, "go = " + "(a " * 1_000 + ")" * 1_000, 4, "deep"),
     "an entity bomb": Fault("objects.xml", BOMB, 1, "entit", replaces=True),
     "an external entity": Fault("objects.xml", EXTERNAL, 1, "entit", replaces=True),
     "a picture for XML": Fault("objects.xml", PNG, 1, "UTF-8", replaces=True),
     "a picture for a grammar": Fault(GRAMMAR, PNG, 1, "UTF-8", replaces=True),
-    "XML for a grammar": Fault(GRAMMAR, "<rooms/>", 1, "no grammar", replaces=True),
+    "XML for a grammar": Fault(GRAMMAR, "<rooms/>", 1, "not a grammar file", replaces=True),
     "prose for templates": Fault(
         TEMPLATES, "Dear all,\n", 1, "no semantic template", replaces=True
     ),

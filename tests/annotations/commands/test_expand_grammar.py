@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from annotations.importing import import_generator
-from tests.annotations.commands.running import run
+from tests.annotations.commands.run_command import run
 
 
 def test_2019_expands_to_the_commands_of_the_published_reader(db, shared_data):

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from annotations.language.pairs import read_pairs
-from tests.annotations.commands.running import run
+from annotations.language.corpus import read_pairs
+from tests.annotations.commands.run_command import run
 
 
 def test_the_report_has_the_documented_keys(tiny_world):
@@ -66,7 +66,7 @@ def test_a_file_that_cannot_be_written_is_a_sentence(tiny_world, tmp_path):
 
 
 def test_more_than_the_limit_is_refused_with_the_number(tiny_world):
-    report, failure = run("generate_pairs", "home", "--limit", 1)
+    report, failure = run("generate_pairs", "home", "--limit", 2)
     assert report is None
     assert "up to 3 commands" in str(failure)
     assert not tiny_world.commands.exists()

@@ -7,7 +7,7 @@ from django.core.management import call_command
 
 from annotations.models import World
 from tests.annotations.commands.bad_inputs import FAULTS
-from tests.annotations.commands.running import run
+from tests.annotations.commands.run_command import run
 from tests.annotations.rows_of import counts, rows_of
 
 
@@ -63,7 +63,7 @@ def test_a_link_out_of_the_folder_is_refused(db, tiny_folder, tmp_path_factory):
     outside.write_text("$Main = secret\n")
     (tiny_folder / "linked.txt").symlink_to(outside)
     report, _ = run("import_generator", tiny_folder, "--world", "new")
-    assert "leads out of its folder" in report["problems"][0]["message"]
+    assert "points outside its folder" in report["problems"][0]["message"]
 
 
 def test_without_json_a_person_reads_figures_and_problems(db, tiny_folder, capsys):
@@ -72,3 +72,16 @@ def test_without_json_a_person_reads_figures_and_problems(db, tiny_folder, capsy
     lines = capsys.readouterr().out.splitlines()
     assert "templates: 1 2" in lines
     assert lines[-1].startswith("  notes.pdf:1:1: warning: ")
+
+
+def test_what_would_be_removed_is_named_and_needs_an_option(tiny_world, tiny_folder):
+    (tiny_folder / "tiny_category_1_semantics.txt").unlink()
+    arguments = ("import_generator", tiny_folder, "--world", tiny_world.name)
+    before = rows_of(tiny_world)
+    report, failure = run(*arguments)
+    assert len(report["removals"]["templates"]) == 2 and report["is_waiting"]
+    assert "go to the {room} = (go {room})" in str(failure)
+    assert "With --remove-missing these are removed." in str(failure)
+    assert rows_of(tiny_world) == before
+    report, failure = run(*arguments, "--remove-missing")
+    assert failure is None and not tiny_world.grammar.templates.exists()

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.generating import generate_pairs
+from annotations.generation.generating import generate_pairs
 from annotations.models import Split
-from tests.annotations.commands.running import run
+from tests.annotations.commands.run_command import run
 from tests.annotations.rows_of import counts
 
 

@@ -5,11 +5,13 @@ from itertools import chain
 
 import pytest
 
-from annotations.language.expansion import generate
-from annotations.language.generator_folder import read_generator_folder
-from annotations.language.recognizer import Recognizer
-from annotations.language.template_chart import TemplateChart
-from annotations.language.template_sets import set_problems
+from annotations.language.grammar import Recognizer
+from annotations.language.templates import (
+    TemplateChart,
+    generate,
+    read_generator_folder,
+    set_problems,
+)
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +78,7 @@ def test_only_warnings_come_up(folder, categories, generated):
         "nothing defines $pose",
         "nothing defines $pgenders",
     }
-    assert sum("stands at" in problem.message for problem in problems) == 3
+    assert sum("duplicate of" in problem.message for problem in problems) == 3
 
 
 def test_template_lines(folder, categories):

@@ -5,9 +5,9 @@ from itertools import islice
 import pytest
 
 from annotations.language.errors import LanguageError
-from annotations.language.generator_folder import read_generator_folder
-from annotations.language.grammar import print_productions, read_productions
-from annotations.language.recognizer import Recognizer
+from annotations.language.grammar import Recognizer, read_productions
+from annotations.language.grammar.productions import print_productions
+from annotations.language.templates import read_generator_folder
 
 
 @pytest.fixture(scope="module")

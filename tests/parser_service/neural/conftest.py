@@ -85,13 +85,8 @@ class Recorder(Observer):
             write(self.folder / name)
 
     def last_checkpoint(self):
-        return self._kept("last")
-
-    def best_checkpoint(self):
-        return self._kept("best")
-
-    def _kept(self, name):
-        return self.folder / name if (self.folder / name).exists() else None
+        folder = self.folder / "last"
+        return folder if folder.exists() else None
 
 
 class StoppedOnce(Recorder):
@@ -120,7 +115,7 @@ def pairs():
 @pytest.fixture(scope="session")
 def trained(pairs):
     """A parser that knows the toy language, from all pairs but one."""
-    from parser_service.neural.seq2seq import Seq2Seq
+    from parser_service.neural.seq2seq.parser import Seq2Seq
 
     parser = Seq2Seq(LONGER, seed=1)
     parser.fit([pair for pair in pairs if pair.utterance != HELD_OUT])

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import torch
 
-from parser_service.neural.checkpoints import WEIGHTS
+from parser_service.neural.weights import WEIGHTS
 from parser_service.parsers.storage import CONFIG, file_hash, read_json, write_json
 
 

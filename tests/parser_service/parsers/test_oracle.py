@@ -1,10 +1,13 @@
 import pytest
 
-from annotations.language.expansion import TaskCategory, generate
-from annotations.language.generator_folder import read_generator_folder
 from annotations.language.grammar import Grammar, read_productions
 from annotations.language.ontology import Entity, Ontology
-from annotations.language.templates import read_template
+from annotations.language.templates import (
+    TaskCategory,
+    generate,
+    read_generator_folder,
+    read_template,
+)
 from parser_service.parsers.interface import Cancelled, Knowledge
 from parser_service.parsers.oracle import GRAMMAR, GrammarOracle
 from tests.parser_service.parsers.pair_files import read_pairs

@@ -1,10 +1,12 @@
+import gc
 import subprocess
 import sys
 from dataclasses import FrozenInstanceError, is_dataclass
 
 import pytest
 
-from parser_service.parsers.interface import PROTOCOLS, Parser
+from parser_service.parsers.conditions import Protocol
+from parser_service.parsers.interface import Parser
 from parser_service.parsers.registry import (
     PARSERS,
     config_class,
@@ -21,8 +23,8 @@ def test_every_entry_agrees_with_its_class(name):
     assert issubclass(parser, Parser)
     assert (parser.name, parser.version, parser.protocols) == (name, entry.version, entry.protocols)
     assert parser.Config is config_class(name)
-    assert set(entry.protocols) <= set(PROTOCOLS)
-    assert entry.queue in ("cpu", "gpu")
+    assert set(entry.protocols) <= set(Protocol)
+    assert entry.queue in ("cpu", "gpu", "quick")
 
 
 @pytest.mark.parametrize("name", PARSERS)
@@ -57,3 +59,11 @@ def test_reading_the_hyperparameters_of_every_parser_loads_no_torch():
         "sys.exit('torch' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_loading_a_class_leaves_the_garbage_collector_on():
+    assert gc.isenabled()
+    load_class("knn")
+    with pytest.raises(ValueError, match="No parser is called"):
+        load_class("nobody")
+    assert gc.isenabled()

@@ -100,3 +100,48 @@ def test_looking_for_weights_loads_no_torch():
         "sys.exit('torch' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+THERE = {"glove": "vectors.txt", "elmo": "elmo", "encoder": "makers/bert"}
+
+
+@pytest.mark.parametrize("field", THERE)
+def test_a_request_names_no_path_and_learns_nothing_of_it(encoders, field):
+    for there in (f"../{THERE[field]}", str(encoders / THERE[field])):
+        for name in (there, there + "x", "a/../../b", "a\0b"):
+            sentence = missing_weights(Names(**{field: name}), encoders / "inner", anywhere=False)
+            assert sentence == (
+                f"{field} is {name!r}, but a request may only name what is in GPSR_ENCODERS_DIR. "
+                "Put the weights there and give their name without a path."
+            )
+
+
+def test_a_request_looks_in_the_folder_of_encoders_alone(encoders, tmp_path, monkeypatch):
+    monkeypatch.chdir(encoders)
+    names = Names("vectors.txt", "elmo", "makers/bert")
+    assert missing_weights(names, encoders, anywhere=False) is None
+    elsewhere = tmp_path / "other"
+    assert missing_weights(names, elsewhere) is None
+    sentence = missing_weights(names, elsewhere, anywhere=False)
+    assert all(each in sentence for each in ("vectors.txt", "elmo", "makers/bert"))
+
+
+def test_a_request_names_a_listed_package_and_no_other(encoders, monkeypatch):
+    package = encoders / "packages" / "tiny_weights"
+    package.mkdir(parents=True)
+    for name in ("__init__.py", "config.json", "model.safetensors", "tokenizer.json"):
+        (package / name).touch()
+    monkeypatch.syspath_prepend(package.parent)
+    names = Names(encoder="tiny_weights")
+    assert missing_weights(names, encoders) is None
+    assert "list it in GPSR_ENCODER_PACKAGES" in missing_weights(names, encoders, anywhere=False)
+    monkeypatch.setattr(encoder_places, "_packages", frozenset({"tiny_weights"}))
+    assert missing_weights(names, encoders, anywhere=False) is None
+
+
+def test_the_installations_folder_comes_before_the_working_directory(encoders, monkeypatch):
+    here = encoders / "here"
+    here.mkdir()
+    (here / "vectors.txt").touch()
+    monkeypatch.chdir(here)
+    assert find_glove("vectors.txt", encoders) == encoders / "vectors.txt.gz"

@@ -7,16 +7,16 @@ import pytest
 from parser_service.models import Prediction
 
 
-def predictions(client, house, **chosen):
-    return client.get(f"/w/home/runs/{house.run.pk}/predictions/", chosen)
+def predictions(client, sample, **chosen):
+    return client.get(f"/w/home/runs/{sample.run.pk}/predictions/", chosen)
 
 
-def totals(client, house, **chosen):
-    return predictions(client, house, **chosen).context["listing"].total
+def totals(client, sample, **chosen):
+    return predictions(client, sample, **chosen).context["listing"].total
 
 
-def test_every_example_has_one_line(house, anna):
-    assert totals(anna, house) == 12
+def test_every_example_has_one_line(sample, anna):
+    assert totals(anna, sample) == 12
 
 
 @pytest.mark.parametrize(
@@ -31,51 +31,51 @@ def test_every_example_has_one_line(house, anna):
         ({"q": "FETCH"}, 2),
     ],
 )
-def test_predictions_are_filtered_by_the_url(chosen, count, house, anna):
-    assert totals(anna, house, **chosen) == count
+def test_predictions_are_filtered_by_the_url(chosen, count, sample, anna):
+    assert totals(anna, sample, **chosen) == count
 
 
-def test_an_answer_that_is_right_but_for_the_order_is_found(house, anna):
+def test_an_answer_that_is_right_but_for_the_order_is_found(sample, anna):
     wrong = Prediction.objects.filter(is_exact_match=False).first()
     Prediction.objects.filter(pk=wrong.pk).update(is_equivalent=True)
-    assert totals(anna, house, outcome="equivalent") == 1
-    assert "equivalent" in predictions(anna, house, outcome="equivalent").content.decode()
+    assert totals(anna, sample, outcome="equivalent") == 1
+    assert "equivalent" in predictions(anna, sample, outcome="equivalent").content.decode()
 
 
-def test_the_head_predicate_of_the_annotated_form_filters(house, anna):
-    found = predictions(anna, house, head="find").context["listing"]
-    assert found.total == sum("( find " in row.example.logical_form for row in found.rows)
-    assert 0 < found.total < 12
+def test_the_head_predicate_of_the_annotated_form_filters(sample, anna):
+    listing = predictions(anna, sample, head="find").context["listing"]
+    assert listing.total == sum("( find " in row.example.logical_form for row in listing.rows)
+    assert 0 < listing.total < 12
 
 
-def test_a_wrong_answer_shows_the_difference(house, anna):
-    page = predictions(anna, house, outcome="wrong").content.decode()
+def test_a_wrong_answer_shows_the_difference(sample, anna):
+    page = predictions(anna, sample, outcome="wrong").content.decode()
     assert "<mark" in page or "<del" in page
     assert "✗ wrong" in page
 
 
-def test_no_answer_is_told_as_such(house, anna):
+def test_no_answer_is_told_as_such(sample, anna):
     Prediction.objects.filter(is_exact_match=False).update(logical_form="", is_well_formed=False)
-    assert "no answer" in predictions(anna, house, outcome="none").content.decode()
+    assert "no answer" in predictions(anna, sample, outcome="none").content.decode()
 
 
-def test_text_that_is_no_form_is_shown_as_it_is(house, anna):
+def test_text_that_is_no_form_is_shown_as_it_is(sample, anna):
     Prediction.objects.filter(is_exact_match=False).update(
         logical_form="( bring <b> (", is_well_formed=False
     )
-    page = predictions(anna, house, outcome="malformed").content.decode()
+    page = predictions(anna, sample, outcome="malformed").content.decode()
     assert "( bring &lt;b&gt; (" in page
     assert "malformed" in page
 
 
-def test_the_list_costs_no_query_a_row(house, anna, django_assert_max_num_queries):
+def test_the_list_costs_no_query_a_row(sample, anna, django_assert_max_num_queries):
     with django_assert_max_num_queries(16):
-        predictions(anna, house)
+        predictions(anna, sample)
 
 
-def test_one_goes_on_to_the_next_that_passes_the_filters(house, anna):
+def test_one_goes_on_to_the_next_that_passes_the_filters(sample, anna):
     wrong = list(Prediction.objects.filter(is_exact_match=False).order_by("example_id"))
-    base = f"/w/home/runs/{house.run.pk}/predictions"
+    base = f"/w/home/runs/{sample.run.pk}/predictions"
     page = anna.get(f"{base}/{wrong[1].example_id}/?outcome=wrong")
     assert page.context["neighbours"] == {
         "before": wrong[0].example_id,
@@ -85,10 +85,10 @@ def test_one_goes_on_to_the_next_that_passes_the_filters(house, anna):
     assert first.context["neighbours"]["before"] is None
 
 
-def test_all_candidates_are_shown_in_order(house, anna):
-    best = house.run.predictions.first()
+def test_all_candidates_are_shown_in_order(sample, anna):
+    best = sample.run.predictions.first()
     Prediction.objects.create(
-        run=house.run,
+        run=sample.run,
         example=best.example,
         rank=2,
         logical_form="( follow UNKNOWN )",
@@ -97,12 +97,12 @@ def test_all_candidates_are_shown_in_order(house, anna):
         is_equivalent=False,
         is_well_formed=True,
     )
-    page = anna.get(f"/w/home/runs/{house.run.pk}/predictions/{best.example_id}/")
+    page = anna.get(f"/w/home/runs/{sample.run.pk}/predictions/{best.example_id}/")
     assert [each.rank for each in page.context["candidates"]] == [1, 2]
     assert "0.250" in page.content.decode()
 
 
-def test_an_example_without_an_answer_of_this_run_is_not_found(house, anna):
-    other = house.split.examples.filter(part="train").first()
-    answer = anna.get(f"/w/home/runs/{house.run.pk}/predictions/{other.pk}/")
+def test_an_example_without_an_answer_of_this_run_is_not_found(sample, anna):
+    other = sample.split.examples.filter(part="train").first()
+    answer = anna.get(f"/w/home/runs/{sample.run.pk}/predictions/{other.pk}/")
     assert answer.status_code == 404

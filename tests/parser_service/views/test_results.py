@@ -7,61 +7,86 @@ import io
 from statistics import mean, stdev
 
 import pytest
+from django.db.models import F
 
 from annotations.models import Example, Split
-from parser_service import requesting
-from parser_service.accuracy import accuracy_tables
 from parser_service.models import TrainingRun
-from parser_service.published import SIZES, published_accuracy, published_criteria
-from tests.furnishing import scored_run
+from parser_service.results.accuracy import accuracy_tables
+from parser_service.results.published import SIZES, published_accuracy, published_criteria
+from parser_service.runs import requesting
 from tests.parser_service.made_up import make_split
+from tests.sample_world import scored_run
 
 
-def tables(house, part="validation", splits=None):
-    return accuracy_tables(house.world, part, splits or [house.split])
+def tables(sample, part="validation", splits=None):
+    return accuracy_tables(sample.world, part, splits or [sample.split])
 
 
-def test_a_cell_shows_percent_and_interval_and_leads_to_its_predictions(house):
-    (table,) = tables(house)
+def test_a_cell_shows_percent_and_interval_and_leads_to_its_wrong_answers(sample, anna):
+    (table,) = tables(sample)
     cell = table.rows[0].cells[0]
-    assert (cell.percent, cell.low, cell.high, cell.plus_minus) == (25.0, 10.0, 60.0, 25.0)
-    assert cell.url == f"/w/home/runs/{house.run.pk}/predictions/?part=validation&source=generated"
+    assert (cell.percent, cell.low, cell.high, cell.spread) == (25.0, 10.0, 60.0, None)
+    assert cell.url == (
+        f"/w/home/runs/{sample.run.pk}/predictions/?part=validation&outcome=wrong&source=generated"
+    )
+    listing = anna.get(cell.url).context["listing"]
+    assert not any(row.is_exact_match for row in listing.rows)
 
 
-def test_the_figure_and_the_list_behind_it_agree(house, anna):
-    (table,) = tables(house)
-    url = table.rows[0].cells[0].url
-    listing = anna.get(f"{url}&outcome=correct").context["listing"]
-    assert listing.total <= table.rows[0].cells[0].score.correct
+def test_where_all_answers_are_right_all_are_shown(sample):
+    sample.run.evaluations.update(correct=F("count"), accuracy=1)
+    assert "outcome" not in tables(sample)[0].rows[0].cells[0].url
 
 
-def test_the_best_of_a_column_is_marked(house):
-    scored_run(house.world, house.split, "seq2seq", right=5)
-    (table,) = tables(house)
+def test_the_interval_is_shown_as_it_is_and_not_as_if_it_were_symmetric(sample, anna):
+    sample.run.evaluations.update(accuracy=0, interval_low=0, interval_high=0.024)
+    page = anna.get("/w/home/results/").content.decode()
+    assert "0.0–2.4" in page
+    assert "±1.2" not in page
+
+
+def test_every_head_explains_itself(sample, anna):
+    page = anna.get("/w/home/results/").content.decode()
+    words = "Trained on generated commands, tested on generated commands"
+    assert f'<abbr title="{words}">gen → gen</abbr>' in page
+    assert "no two parts share a command" in page
+
+
+def test_hyperparameters_that_were_changed_are_named(sample, anna):
+    run = scored_run(sample.world, sample.split, "seq2seq")
+    changes = {**run.config, "epochs": 3, "dropout": 0.5}
+    TrainingRun.objects.filter(pk=run.pk).update(config=changes)
+    page = anna.get("/w/home/results/").content.decode()
+    assert ">epochs 3, dropout 0.5</span>" in page or ">dropout 0.5, epochs 3</span>" in page
+
+
+def test_the_best_of_a_column_is_marked(sample):
+    scored_run(sample.world, sample.split, "seq2seq", right=5)
+    (table,) = tables(sample)
     assert [(row.parser, row.cells[0].is_best) for row in table.rows] == [
         ("knn", False),
         ("seq2seq", True),
     ]
 
 
-def test_nothing_right_is_not_the_best(house):
-    house.run.evaluations.update(accuracy=0)
-    (table,) = tables(house)
+def test_nothing_right_is_not_the_best(sample):
+    sample.run.evaluations.update(accuracy=0)
+    (table,) = tables(sample)
     assert not table.rows[0].cells[0].is_best
 
 
-def test_protocols_never_share_a_table(house):
-    TrainingRun.objects.filter(pk=scored_run(house.world, house.split, "seq2seq").pk).update(
+def test_protocols_never_share_a_table(sample):
+    TrainingRun.objects.filter(pk=scored_run(sample.world, sample.split, "seq2seq").pk).update(
         protocol="grammar"
     )
-    assert [table.protocol for table in tables(house)] == ["strict", "grammar"]
+    assert [table.protocol for table in tables(sample)] == ["strict", "grammar"]
 
 
-def test_other_hyperparameters_are_another_row(house):
-    run = scored_run(house.world, house.split, "seq2seq")
+def test_other_hyperparameters_are_another_row(sample):
+    run = scored_run(sample.world, sample.split, "seq2seq")
     TrainingRun.objects.filter(pk=run.pk).update(config={**run.config, "epochs": 3})
-    requesting.request(house.world, house.split, "seq2seq", seed=1, send=False)
-    (table,) = tables(house)
+    requesting.request(sample.world, sample.split, "seq2seq", seed=1, send=False)
+    (table,) = tables(sample)
     assert [(row.parser, row.changes) for row in table.rows] == [
         ("knn", ()),
         ("seq2seq", ()),
@@ -69,85 +94,87 @@ def test_other_hyperparameters_are_another_row(house):
     ]
 
 
-def seeds(house, *right):
+def seeds(sample, *right):
     """Runs of seq2seq with seeds 0, 1, … of which so many answers are right."""
     return [
-        scored_run(house.world, house.split, "seq2seq", each, seed)
+        scored_run(sample.world, sample.split, "seq2seq", each, seed)
         for seed, each in enumerate(right)
     ]
 
 
-def seq2seq_cell(house):
-    (table,) = tables(house)
+def seq2seq_cell(sample):
+    (table,) = tables(sample)
     return table.rows[-1].cells[0]
 
 
-def test_several_seeds_show_their_mean_and_spread_and_lead_to_their_runs(house, anna):
-    runs = seeds(house, 2, 3, 7)
+def test_several_seeds_show_their_mean_and_spread_and_lead_to_their_runs(sample, anna):
+    runs = seeds(sample, 2, 3, 7)
     count = runs[0].evaluations.get().count
     shares = [right / count for right in (2, 3, 7)]
-    cell = seq2seq_cell(house)
+    cell = seq2seq_cell(sample)
     assert cell.n_seeds == 3
     assert cell.percent == pytest.approx(100 * mean(shares))
-    assert cell.plus_minus == pytest.approx(100 * stdev(shares))
-    assert "mean of 3 seeds ± standard deviation" in cell.note
+    assert cell.spread == pytest.approx(100 * stdev(shares))
+    assert "Mean of 3 seeds ± standard deviation" in cell.note
     listed = anna.get(cell.url).context["listing"].rows
     assert {run.pk for run in listed} == {run.pk for run in runs}
 
 
-def test_the_seeds_are_said_in_words_and_one_run_says_nothing_of_them(house, anna):
+def test_the_seeds_are_said_in_words_and_one_run_says_nothing_of_them(sample, anna):
     page = anna.get("/w/home/results/table/").content.decode()
     assert "seeds</span>" not in page
-    seeds(house, 2, 3, 7)
+    seeds(sample, 2, 3, 7)
     page = anna.get("/w/home/results/table/").content.decode()
     assert "mean and standard deviation of </span>3 seeds</span>" in page
 
 
-def test_the_best_of_a_column_is_the_best_mean(house):
-    house.run.evaluations.update(accuracy=0.5)
-    seeds(house, 1, 9)
+def test_the_best_of_a_column_is_the_best_mean(sample):
+    sample.run.evaluations.update(accuracy=0.5)
+    seeds(sample, 1, 9)
     TrainingRun.objects.get(parser="seq2seq", seed=1).evaluations.update(accuracy=0.6)
-    (table,) = tables(house)
+    (table,) = tables(sample)
     assert [row.cells[0].is_best for row in table.rows] == [True, False]
 
 
-def test_other_hyperparameters_and_protocols_are_not_seeds_of_one_cell(house):
-    _, other, third = seeds(house, 2, 3, 4)
+def test_other_hyperparameters_and_protocols_are_not_seeds_of_one_cell(sample):
+    _, other, third = seeds(sample, 2, 3, 4)
     TrainingRun.objects.filter(pk=other.pk).update(config={**other.config, "epochs": 3})
     TrainingRun.objects.filter(pk=third.pk).update(protocol="grammar")
-    cells = [row.cells[0] for table in tables(house) for row in table.rows]
+    cells = [row.cells[0] for table in tables(sample) for row in table.rows]
     assert [cell.n_seeds for cell in cells] == [1, 1, 1, 1]
 
 
-def test_of_a_seed_that_was_trained_twice_the_newest_run_counts(house):
-    old, new = seeds(house, 2, 4)
+def test_of_a_seed_that_was_trained_twice_the_newest_run_counts(sample):
+    old, new = seeds(sample, 2, 4)
     TrainingRun.objects.filter(pk=new.pk).update(seed=old.seed)
-    assert seq2seq_cell(house).scores == (new.evaluations.get(),)
+    assert seq2seq_cell(sample).scores == (new.evaluations.get(),)
 
 
-def test_versions_of_a_parser_are_not_averaged(house, anna):
-    old, *new = seeds(house, 2, 3, 4)
+def test_versions_of_a_parser_are_not_averaged(sample, anna):
+    old, *new = seeds(sample, 2, 3, 4)
     TrainingRun.objects.filter(pk=old.pk).update(parser_version=0)
-    cell = seq2seq_cell(house)
+    cell = seq2seq_cell(sample)
     assert cell.n_seeds == 2
     listed = anna.get(cell.url).context["listing"].rows
     assert {run.pk for run in listed} == {run.pk for run in new}
 
 
-def test_seeds_that_wait_show_as_one_and_lead_to_all_of_them(house, anna):
-    asked = requesting.request_seeds(house.world, house.split, "seq2seq", seeds=(3, 4), send=False)
+def test_seeds_that_wait_show_as_one_and_lead_to_all_of_them(sample, anna):
+    asked = requesting.request_seeds(
+        sample.world, sample.split, "seq2seq", seeds=(3, 4), send=False
+    )
     TrainingRun.objects.filter(pk=asked[0][0].pk).update(status="running", progress=0.5)
-    cell = seq2seq_cell(house)
+    cell = seq2seq_cell(sample)
     assert (cell.status, cell.progress_percent, cell.percent) == ("running", 25.0, None)
     assert anna.get(cell.url).context["listing"].total == 2
-    scored_run(house.world, house.split, "seq2seq", seed=5)
-    assert "2 more on the way" in seq2seq_cell(house).note
+    scored_run(sample.world, sample.split, "seq2seq", seed=5)
+    assert "2 more on the way" in seq2seq_cell(sample).note
 
 
-def test_a_run_at_work_shows_its_progress(house):
-    run, _ = requesting.request(house.world, house.split, "seq2seq", send=False)
+def test_a_run_at_work_shows_its_progress(sample):
+    run, _ = requesting.request(sample.world, sample.split, "seq2seq", send=False)
     TrainingRun.objects.filter(pk=run.pk).update(status="running", progress=0.3)
-    (table,) = tables(house)
+    (table,) = tables(sample)
     cell = table.rows[1].cells[0]
     assert (cell.status, cell.progress_percent, cell.percent) == ("running", 30.0, None)
     assert cell.url == f"/w/home/runs/{run.pk}/"
@@ -155,14 +182,14 @@ def test_a_run_at_work_shows_its_progress(house):
 
 
 @pytest.mark.parametrize("status", ["failed", "cancelled", "lost"])
-def test_what_came_to_nothing_is_not_in_the_table(status, house):
+def test_what_came_to_nothing_is_not_in_the_table(status, sample):
     TrainingRun.objects.update(status=status)
-    assert tables(house) == []
+    assert tables(sample) == []
 
 
-def test_columns_are_the_settings_that_somebody_trained(house):
-    requesting.request(house.world, house.split, "seq2seq", train_sources="gen+para", send=False)
-    (table,) = tables(house)
+def test_columns_are_the_settings_that_somebody_trained(sample):
+    requesting.request(sample.world, sample.split, "seq2seq", train_sources="gen+para", send=False)
+    (table,) = tables(sample)
     assert [column.setting for column in table.columns] == [
         ("gen", "gen"),
         ("gen", "para"),
@@ -171,36 +198,36 @@ def test_columns_are_the_settings_that_somebody_trained(house):
     ]
 
 
-def test_columns_are_named_by_criterion_where_that_tells_them_apart(house):
-    other = make_split(house.world, "other")
-    requesting.request(house.world, other, "knn", send=False)
-    both = [house.split, other]
-    assert {column.label for column in tables(house, splits=both)[0].columns} == {
+def test_columns_are_named_by_criterion_where_that_tells_them_apart(sample):
+    other = make_split(sample.world, "other")
+    requesting.request(sample.world, other, "knn", send=False)
+    both = [sample.split, other]
+    assert {column.label for column in tables(sample, splits=both)[0].columns} == {
         "home-split",
         "other",
     }
     Split.objects.filter(pk=other.pk).update(criterion="logical_form")
     both[1].refresh_from_db()
-    assert {column.label for column in tables(house, splits=both)[0].columns} == {
+    assert {column.label for column in tables(sample, splits=both)[0].columns} == {
         "command",
         "form",
     }
 
 
-def test_the_tables_cost_three_queries(house, django_assert_num_queries):
+def test_the_tables_cost_three_queries(sample, django_assert_num_queries):
     for seed in range(6):
-        requesting.request(house.world, house.split, "seq2seq", seed=seed, send=False)
+        requesting.request(sample.world, sample.split, "seq2seq", seed=seed, send=False)
     with django_assert_num_queries(3):
-        tables(house)
+        tables(sample)
 
 
-def test_scored_seeds_cost_no_query_each(house, django_assert_num_queries):
-    seeds(house, 1, 2, 3, 4)
+def test_scored_seeds_cost_no_query_each(sample, django_assert_num_queries):
+    seeds(sample, 1, 2, 3, 4)
     with django_assert_num_queries(3):
-        assert seq2seq_cell(house).n_seeds == 4
+        assert seq2seq_cell(sample).n_seeds == 4
 
 
-def test_the_page_shows_the_part_that_was_scored(house, anna):
+def test_the_page_shows_the_part_that_was_scored(sample, anna):
     page = anna.get("/w/home/results/")
     assert page.context["part"] == "validation"
     assert "25.0" in page.content.decode()
@@ -215,7 +242,7 @@ def test_an_empty_page_says_what_would_be_there(world, anna, adam):
     assert "Start a run" in adam.get("/w/home/results/").content.decode()
 
 
-def test_the_download_holds_one_line_a_scored_cell(house, anna):
+def test_the_download_holds_one_line_a_scored_cell(sample, anna):
     answer = anna.get("/w/home/results.csv")
     (row,) = csv.DictReader(io.StringIO(answer.content.decode()))
     assert answer["Content-Disposition"] == 'attachment; filename="home-results.csv"'
@@ -223,8 +250,8 @@ def test_the_download_holds_one_line_a_scored_cell(house, anna):
     assert (row["accuracy"], row["part"], row["split"]) == ("0.25", "validation", "home-split")
 
 
-def test_the_download_holds_mean_spread_and_number_of_seeds(house, anna):
-    newest = seeds(house, 2, 6)[-1]
+def test_the_download_holds_mean_spread_and_number_of_seeds(sample, anna):
+    newest = seeds(sample, 2, 6)[-1]
     answer = anna.get("/w/home/results.csv")
     one, several = csv.DictReader(io.StringIO(answer.content.decode()))
     assert (one["mean"], one["spread"], one["n_seeds"]) == ("0.25", "", "1")
@@ -235,7 +262,7 @@ def test_the_download_holds_mean_spread_and_number_of_seeds(house, anna):
     assert float(several["spread"]) == pytest.approx(stdev(shares))
 
 
-def test_no_cell_of_the_download_is_taken_for_a_formula(house, anna):
+def test_no_cell_of_the_download_is_taken_for_a_formula(sample, anna):
     Split.objects.update(name="-1-1")
     assert "'-1-1" in anna.get("/w/home/results.csv").content.decode()
 

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from parser_service.neural.ranker import FormRanker
+from parser_service.neural.ranker.parser import FormRanker
 from parser_service.parsers.candidates.glosses import glosses
 from parser_service.parsers.ranker_config import RankerConfig
 from tests.parser_service.neural.conftest import toy_pairs
-from tests.parser_service.neural.ranker.home import UNSEEN
+from tests.parser_service.neural.ranker.sample_domain import UNSEEN
 from tests.parser_service.neural.tiny_encoder import write_tiny_encoder
 
 EXTRA = "bring find is_a name at with given from apple jam kitchen sink Ann who one that is"

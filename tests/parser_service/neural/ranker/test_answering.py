@@ -5,9 +5,9 @@ from math import exp, log
 
 import pytest
 
-from parser_service.neural.ranker import FormRanker
+from parser_service.neural.ranker.parser import FormRanker
 from parser_service.parsers.interface import Cancelled
-from tests.parser_service.neural.ranker.home import UNSEEN, utterances
+from tests.parser_service.neural.ranker.sample_domain import UNSEEN, utterances
 
 
 def accuracy(parser, pairs):

@@ -1,22 +1,26 @@
 """Saved, loaded, tampered with, moved."""
 
+import subprocess
+import sys
 from dataclasses import replace
 
 import pytest
 import torch
+from transformers import BertConfig, BertModel
 
-from parser_service.neural.ranker import FormRanker
+from parser_service.neural.ranker.parser import FormRanker
+from parser_service.neural.sentence_encoder import SentenceEncoder
 from parser_service.parsers.interface import Knowledge
 from tests.parser_service.neural.conftest import Recorder
-from tests.parser_service.neural.elsewhere import CPU, ELSEWHERE, computing_on
-from tests.parser_service.neural.ranker.home import domain, utterances, weights
+from tests.parser_service.neural.fake_device import CPU, FAKE, computing_on
+from tests.parser_service.neural.ranker.sample_domain import domain, utterances, weights
 from tests.parser_service.neural.tampering import alter_weights, pickle_weights
 
 GPU = pytest.param(
     torch.device("cuda"),
     marks=pytest.mark.skipif(not torch.cuda.is_available(), reason="there is no GPU"),
 )
-PROCESSORS = [ELSEWHERE, GPU]
+PROCESSORS = [FAKE, GPU]
 
 
 @pytest.mark.parametrize("device", PROCESSORS, ids=str)
@@ -77,3 +81,40 @@ def test_nothing_is_pickled(config, pairs, tmp_path):
     FormRanker(replace(config, steps=2)).fit(pairs[:9], pairs[9:12], observe)
     names = {path.name for path in observe.last_checkpoint().iterdir()}
     assert {name.rsplit(".")[-1] for name in names} == {"json", "safetensors"}
+
+
+def test_saved_with_the_network_of_transformers_it_is_the_same_files(learned, tmp_path):
+    """Rankers were trained and saved with that network until this project had its own."""
+    learned.save(tmp_path / "now")
+    encoder = learned._model.encoder
+    network = BertModel(BertConfig(**encoder.description))
+    network.load_state_dict(encoder.model.state_dict())
+    earlier = FormRanker.load(tmp_path / "now")
+    earlier._model.encoder.model = network
+    earlier.save(tmp_path / "before")
+    for path in (tmp_path / "now").iterdir():
+        assert path.read_bytes() == (tmp_path / "before" / path.name).read_bytes()
+
+
+def test_a_loaded_ranker_answers_without_importing_transformers(learned, tmp_path):
+    learned.save(tmp_path)
+    code = (
+        "import pathlib, sys; from parser_service.neural.ranker.parser import FormRanker;"
+        f"FormRanker.load(pathlib.Path({str(tmp_path)!r})).predict(['bring the apple']);"
+        "print(*{'transformers', 'torch._dynamo', 'pandas'} & {*sys.modules})"
+    )
+    loading = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert (loading.stdout, loading.returncode) == ("\n", 0), loading.stderr
+
+
+def test_a_loaded_ranker_encodes_the_utterance_and_nothing_else(learned, tmp_path, monkeypatch):
+    learned.save(tmp_path)
+    encoded = []
+    forward = SentenceEncoder.forward
+    monkeypatch.setattr(
+        SentenceEncoder,
+        "forward",
+        lambda self, texts: encoded.extend(texts) or forward(self, texts),
+    )
+    FormRanker.load(tmp_path).predict(["bring the apple"])
+    assert encoded == ["bring the apple"]

@@ -7,10 +7,15 @@ import torch
 
 from annotations.language.ontology import Entity, Ontology
 from parser_service.neural.pretrained import load_encoder
-from parser_service.neural.ranker import FormRanker
-from parser_service.neural.ranker_training import RankerTraining
+from parser_service.neural.ranker.parser import FormRanker
+from parser_service.neural.ranker.training import RankerTraining
 from parser_service.parsers.interface import Knowledge, Pair
-from tests.parser_service.neural.ranker.home import domain, same_weights, utterances, weights
+from tests.parser_service.neural.ranker.sample_domain import (
+    domain,
+    same_weights,
+    utterances,
+    weights,
+)
 
 
 def test_equal_seeds_give_equal_weights_whatever_else_draws_random_numbers(config, pairs):
@@ -89,7 +94,7 @@ def test_without_training_pairs_it_refuses(config):
 
 
 def test_a_missing_encoder_is_said_before_training(config, pairs, tmp_path, monkeypatch):
-    monkeypatch.setattr("parser_service.neural.ranker.encoders_folder", lambda: tmp_path)
+    monkeypatch.setattr("parser_service.neural.ranker.parser.encoders_folder", lambda: tmp_path)
     with pytest.raises(
         ValueError, match=rf"no weights of absent.*Put its .* into {tmp_path}/absent"
     ):

@@ -1,0 +1,75 @@
+"""Work that a worker carries out: claimed by one, fenced, leased, cancelled, resumed.
+
+A kind of work is a model that extends ``BackgroundWork`` and a function ``carry_out(work, give_up)``,
+registered in an app config. Whoever wants some creates a queued row and calls ``wake``; a worker does
+the rest. The function brings the work to its end inside ``while_held``.
+"""
+
+from annotations.background.carrying_out import while_held
+from annotations.background.failures import failure_sentence, is_out_of_memory
+from annotations.background.fencing import (
+    Fenced,
+    acknowledge_cancel,
+    cancel,
+    claim,
+    extend,
+    fail,
+    finish,
+    held,
+    is_cancel_requested,
+    log,
+    record_progress,
+    write,
+)
+from annotations.background.kinds import Kind, carry_out, claim_next, kinds, register
+from annotations.background.lease_watch import LeaseWatch
+from annotations.background.leasing import Lease, Stopped
+from annotations.background.outages import DatabaseAway, outlasting
+from annotations.background.recovery import MOST_RESUMES, hand_back, requeue_expired
+from annotations.background.waking import (
+    TASK,
+    message_queue,
+    send_wake_up,
+    wake,
+    wake_for_forgotten,
+    wake_for_next,
+)
+from annotations.models.background import LEASE
+
+__all__ = [
+    "LEASE",
+    "MOST_RESUMES",
+    "TASK",
+    "DatabaseAway",
+    "Fenced",
+    "Kind",
+    "Lease",
+    "LeaseWatch",
+    "Stopped",
+    "acknowledge_cancel",
+    "cancel",
+    "carry_out",
+    "claim",
+    "claim_next",
+    "extend",
+    "fail",
+    "failure_sentence",
+    "finish",
+    "hand_back",
+    "held",
+    "is_cancel_requested",
+    "is_out_of_memory",
+    "kinds",
+    "log",
+    "message_queue",
+    "outlasting",
+    "record_progress",
+    "register",
+    "requeue_expired",
+    "send_wake_up",
+    "wake",
+    "wake_for_forgotten",
+    "wake_for_next",
+    "while_held",
+    "write",
+]

@@ -1,0 +1,73 @@
+"""Verbs: comment on a row, tell those whom it concerns, mark as read."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+from django.db import models, transaction
+from django.utils import timezone
+
+from annotations.commenting.subjects import Subject
+from annotations.models import Comment, Notice, User, World
+
+MOST_SHOWN = 100  # comments about one row, the newest
+MOST_MENTIONS = 20  # people that one comment names
+MENTION = re.compile(r"@([\w.@+-]+)")  # what Django allows in a name
+
+
+def comments_on(world: World, subject: Subject, row: models.Model) -> list[Comment]:
+    """Return the newest comments about ``row``, the oldest of them first."""
+    newest = _about(world, subject, row).select_related("author").order_by("-id")[:MOST_SHOWN]
+    return list(newest)[::-1]
+
+
+def add_comment(world: World, subject: Subject, row: models.Model, text: str, by: User) -> Comment:
+    """Store what ``by`` says about ``row``; it waits in the inbox of those it names or answers.
+
+    Members are named as ``@name``. Whoever has commented on the row before is answered.
+    """
+    with transaction.atomic():
+        comment = Comment.objects.create(
+            world=world, kind=subject.name, subject=row.pk, about=str(row), author=by, text=text
+        )
+        members = {user.pk: user for user in people_of(world)}
+        earlier = _about(world, subject, row).exclude(author=None).values_list("author", flat=True)
+        mentioned = {user.pk for user in mentioned_in(text, members.values())}
+        answered = set(earlier.order_by().distinct()) & members.keys()
+        notices = [
+            Notice(comment=comment, user_id=pk, is_mention=pk in mentioned)
+            for pk in sorted((mentioned | answered) - {by.pk})
+        ]
+        Notice.objects.bulk_create(notices)
+    return comment
+
+
+def mentioned_in(text: str, people: Iterable[User]) -> list[User]:
+    """Return those of ``people`` whom ``text`` names, at most ``MOST_MENTIONS``, in the order of the text."""
+    by_name = {user.get_username().casefold(): user for user in people}
+    mentioned: dict[int, User] = {}
+    for name in MENTION.findall(text):
+        # A full stop may end the sentence.
+        user = by_name.get(name.casefold()) or by_name.get(name.rstrip(".-").casefold())
+        if user and len(mentioned) < MOST_MENTIONS:
+            mentioned[user.pk] = user
+    return list(mentioned.values())
+
+
+def people_of(world: World) -> models.QuerySet[User]:
+    """The members of ``world`` who can log in, by name: whom a comment can mention."""
+    members = User.objects.filter(memberships__world=world, is_active=True)
+    return members.distinct().order_by("username")
+
+
+def mark_read(notices: models.QuerySet[Notice]) -> int:
+    """Take ``notices`` out of what waits; return how many did."""
+    return notices.filter(read_at__isnull=True).update(read_at=timezone.now())
+
+
+def _about(world: World, subject: Subject, row: models.Model) -> models.QuerySet[Comment]:
+    comments = Comment.objects.filter(world=world, kind=subject.name)
+    if subject.is_known_by_text:
+        return comments.filter(about=str(row))
+    return comments.filter(subject=row.pk)

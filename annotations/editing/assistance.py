@@ -1,0 +1,112 @@
+"""What the editor is told while somebody types: problems with repairs, slots, the canonical layout."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import asdict
+from hashlib import sha256
+from typing import Any
+
+from django.core.cache import cache
+
+from annotations.editing.template_check import Checked, check_template
+from annotations.editing.template_problems import as_stored
+from annotations.language.errors import Offsets, Problem, Repair
+from annotations.language.forms import to_reading
+from annotations.language.symbols import SlotPlace
+from annotations.language.writing import (
+    Sides,
+    completions,
+    correspondences,
+    format_form,
+    format_pattern,
+    with_repairs,
+)
+from annotations.models import TaskCategory, World
+from annotations.rows.from_rows import grammar_of, predicates_of
+
+KEPT_SECONDS = 3600
+
+
+def assist(world: World, category: TaskCategory | None, pattern: str, form: str) -> dict[str, Any]:
+    """Check a template as ``check_template`` does and say what can be done about it.
+
+    Returns:
+        JSON: ``problems`` (``field``, ``line``, ``column``, ``at``, ``severity``, ``message``, ``hint``,
+        ``repairs``), ``slots`` that both sides have (places by field), the ``formatted`` fields, the
+        ``reading`` and the ``gloss`` of the form. Offsets count UTF-16 units, as browsers do.
+    """
+    checked = check_template(world, category, pattern, form)
+    sides = Sides(pattern, form)
+    slots: list[dict[str, Any]] = []
+    problems = checked.problems
+    if checked.checker is not None:
+        problems = with_repairs(problems, sides, checked.checker)
+        slots = _slots(checked, sides)
+    return {
+        "problems": [shown_problem(each, sides) for each in problems],
+        "slots": slots,
+        "formatted": {"pattern": format_pattern(pattern), "form": format_form(form)},
+        "reading": to_reading(checked.template.form) if checked.template else "",
+        "gloss": checked.gloss,
+    }
+
+
+def completion_tag(category: TaskCategory) -> str:
+    """Return what changes whenever ``completions_of`` may return something else."""
+    world = category.grammar.world
+    predicates = world.predicates.values_list("name", "kind", "signatures", "gloss")
+    known = f"{category.pk} {world.revision} {list(predicates)}"
+    return sha256(known.encode()).hexdigest()
+
+
+def completions_of(category: TaskCategory) -> dict[str, Any]:
+    """Return the fields of ``Completions`` as JSON; kept until something changes."""
+    return cache.get_or_set(
+        f"completions:{completion_tag(category)}", lambda: _completions(category), KEPT_SECONDS
+    )
+
+
+def _completions(category: TaskCategory) -> dict[str, Any]:
+    return asdict(completions(grammar_of(category), predicates_of(category.grammar.world)))
+
+
+def shown_problem(problem: Problem, sides: Sides) -> dict[str, Any]:
+    """Return a problem as the editor asks for it: as it is stored, with its offset and its repairs."""
+    stored = as_stored(problem)
+    text = sides.text(stored["field"])
+    at = utf16_index(text, Offsets(text).index(problem.position))
+    return {**stored, "at": at, "repairs": [_repair(each, sides) for each in problem.repairs]}
+
+
+def _repair(repair: Repair, sides: Sides) -> dict[str, Any]:
+    edits = [
+        {
+            "field": edit.source,
+            "from": utf16_index(sides.text(edit.source), edit.start),
+            "to": utf16_index(sides.text(edit.source), edit.end),
+            "text": edit.text,
+        }
+        for edit in repair.edits
+    ]
+    return {"label": repair.label, "edits": edits}
+
+
+def _slots(checked: Checked, sides: Sides) -> list[dict[str, Any]]:
+    assert checked.checker is not None
+    return [
+        {
+            "pattern": _places(each.in_pattern, sides.pattern),
+            "form": _places(each.in_form, sides.form),
+        }
+        for each in correspondences(sides.pattern, sides.form, checked.checker.grammar)
+    ]
+
+
+def _places(places: Iterable[SlotPlace], text: str) -> list[list[int]]:
+    return [[utf16_index(text, place.start), utf16_index(text, place.end)] for place in places]
+
+
+def utf16_index(text: str, index: int) -> int:
+    """Return the index in UTF-16 units of the character at ``index``."""
+    return len(text[:index].encode("utf-16-le", "surrogatepass")) // 2

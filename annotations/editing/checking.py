@@ -1,0 +1,29 @@
+"""Keeps what the checker says of the ontology and of the grammar up to date with their rows."""
+
+from __future__ import annotations
+
+from annotations.language.errors import LanguageError, Problem
+from annotations.language.ontology import ontology_problems
+from annotations.models import Editable, Entity, Production, TaskCategory, World
+from annotations.models.problems import Subject
+from annotations.rows.from_rows import grammar_of, ontology_of
+from annotations.rows.problems import store_problems
+
+
+def check_again(world: World, model: type[Editable]) -> None:
+    """Store the problems of what rows of ``model`` make up, after one of them has changed."""
+    if model is Entity:
+        store_problems(world, Subject.ONTOLOGY, tuple(ontology_problems(ontology_of(world))))
+    elif model is Production:
+        store_problems(world, Subject.GRAMMAR, grammar_problems(world))
+
+
+def grammar_problems(world: World) -> tuple[Problem, ...]:
+    """Return the problems of the grammars of all task categories, each once, in the order of the files."""
+    problems: set[Problem] = set()
+    for category in TaskCategory.objects.filter(grammar__world=world):
+        try:
+            problems |= set(grammar_of(category).problems())
+        except LanguageError as error:
+            problems.add(error.problem)
+    return tuple(sorted(problems))

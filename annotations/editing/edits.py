@@ -1,0 +1,288 @@
+"""Verbs: add, change, delete and restore a row that people edit. Nobody's work is overwritten unseen.
+
+Each is one transaction that keeps the history of the row and brings up to date what is made from it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, TypeVar
+
+from django.db import models, transaction
+from django.db.models import Max
+
+from annotations.editing.checking import check_again
+from annotations.editing.drafts import discard_draft_of_new
+from annotations.editing.kinds import kind_of
+from annotations.editing.once import made_before, remember
+from annotations.jobs.starting import start_update
+from annotations.models import Editable, User, World
+from annotations.rows.history import (
+    ADDED,
+    CHANGED,
+    DELETED,
+    RESTORED,
+    entry_at,
+    history_of,
+    keep,
+    keep_first,
+)
+from annotations.rows.synchronise import BATCH, batches
+
+Row = TypeVar("Row", bound=Editable)
+
+
+class Overtaken(Exception):
+    """Somebody changed or deleted the row after the reader had opened it; nothing was saved.
+
+    Attributes:
+        current: the row as it is now; None where it was deleted.
+        base: the history entry of the version that the reader edited; None where it is not known.
+        last: the newest entry of its history, which says who was faster; None where there is none.
+    """
+
+    def __init__(
+        self,
+        current: Editable | None,
+        base: models.Model | None,
+        last: models.Model | None = None,
+    ) -> None:
+        who = (last and last.history_user) or "Somebody"
+        what = f"saved version {current.version}" if current else "deleted this"
+        super().__init__(
+            f"{who} has {what} in the meantime. Compare it with yours below, then save again."
+        )
+        self.current = current
+        self.base = base
+        self.last = last
+
+
+def add(row: Row, by: User, once: str = "") -> Row:
+    """Store an unsaved ``row``, behind the others of its kind where these have a position.
+
+    Args:
+        once: the key of the form; the same one again returns the row that it has made.
+
+    Raises ValidationError where there is such a row already.
+    """
+    with transaction.atomic():
+        world = _lock(row.owning_world)
+        rows = type(row)._default_manager
+        if made := rows.filter(pk=made_before(by, once)).first():
+            return made
+        row.version = 1
+        row.note_editor(by)
+        _insert(row)
+        keep([row], ADDED, by)
+        remember(by, once, row.pk)
+        if once:
+            discard_draft_of_new(by, world, kind_of(row).name, once)
+        _follow(row, world, by)
+        return row
+
+
+def add_many(rows: Sequence[Row], by: User, once: str = "") -> int:
+    """Store unsaved ``rows`` of one model and one world, behind the others; all of them or none.
+
+    Returns how many were added: 0 where ``once``, the key of the form, has added them before.
+    """
+    if not rows:
+        return 0
+    with transaction.atomic():
+        first = rows[0]
+        world = _lock(first.owning_world)
+        if made_before(by, once):
+            return 0
+        beside = type(first)._default_manager.filter(**{first.world_path: world})
+        last = beside.aggregate(last=Max("position"))["last"]
+        for position, row in enumerate(rows, start=0 if last is None else last + 1):
+            row.position, row.version = position, 1
+            row.note_editor(by)
+        stored = type(first)._default_manager.bulk_create(rows, batch_size=BATCH)
+        keep(stored, ADDED, by)
+        remember(by, once, stored[0].pk)
+        _follow(first, world, by)
+        return len(stored)
+
+
+def change(row: Row, values: Mapping[str, Any], by: User, version: int) -> Row:
+    """Make the next version of ``row``, which ``by`` edited while it was at ``version``.
+
+    Returns the row as it is stored; at the same version where it holds these values already.
+    Raises Overtaken where it is at another version or was deleted, and ValidationError where another
+    row says the same; nothing is changed then.
+    """
+    with transaction.atomic():
+        world = _lock_for(row)
+        stored = _stored(row, version)
+        if all(getattr(stored, name) == value for name, value in values.items()):
+            return stored
+        _require_version(stored, version)
+        keep_first(type(row), [row.pk])
+        did_make_commands = stored.makes_commands
+        for name, value in values.items():
+            setattr(stored, name, value)
+        stored.version += 1
+        stored.note_editor(by)
+        stored.validate_constraints(exclude={"position"})
+        stored.save()
+        keep([stored], CHANGED, by)
+        _follow(stored, world, by, did_make_commands)
+        return stored
+
+
+def change_many(
+    world: World, changes: Sequence[tuple[Editable, Mapping[str, Any]]], by: User
+) -> None:
+    """Make the next version of each row of ``world``, all of them or none.
+
+    The rows are as they were read. Raises Overtaken where one has changed since.
+    """
+    with transaction.atomic():
+        _lock(world)
+        by_model: dict[type[Editable], list[tuple[Editable, Mapping[str, Any]]]] = {}
+        for row, values in changes:
+            by_model.setdefault(type(row), []).append((row, values))
+        did_make_commands = any(row.makes_commands for row, _ in changes)
+        for model, some in by_model.items():
+            _change_rows(model, some, by)
+        for model in by_model:
+            check_again(world, model)
+        if did_make_commands:
+            _bring_up_to_date(world, by)
+
+
+def _change_rows(
+    model: type[Editable], changes: Sequence[tuple[Editable, Mapping[str, Any]]], by: User
+) -> None:
+    rows = [row for row, _ in changes]
+    for some in batches(rows):
+        keys = [row.pk for row in some]
+        stored = model._default_manager.select_for_update().in_bulk(keys)
+        for row in some:
+            if row.pk not in stored:
+                raise Overtaken(None, entry_at(row, row.version), _last_entry(row))
+            _require_version(stored[row.pk], row.version)
+    keep_first(model, [row.pk for row in rows])
+    fields = {"version"}
+    for row, values in changes:
+        for name, value in values.items():
+            setattr(row, name, value)
+        row.version += 1
+        row.note_editor(by)
+        fields |= values.keys()
+    fields |= {name for name in ("author", "is_edited") if hasattr(model, name)}
+    model._default_manager.bulk_update(rows, sorted(fields), batch_size=BATCH)
+    keep(rows, CHANGED, by)
+
+
+def delete(row: Editable, by: User, version: int) -> None:
+    """Delete ``row``, which ``by`` saw at ``version``. Its history stays, and ``restore`` brings it back.
+
+    Raises Overtaken where it is at another version or was deleted already.
+    """
+    with transaction.atomic():
+        world = _lock_for(row)
+        stored = _stored(row, version)
+        _require_version(stored, version)
+        keep_first(type(row), [row.pk])
+        keep([stored], DELETED, by)
+        type(row)._default_manager.filter(pk=stored.pk).delete()
+        _follow(stored, world, by)
+
+
+def restore(entry: models.Model, by: User) -> Editable:
+    """Make a row what the history ``entry`` says, as its next version; a deleted one is stored again.
+
+    Raises ValidationError where another row says the same by now.
+    """
+    with transaction.atomic():
+        row = _row_of(entry)
+        world = _lock(row.owning_world)
+        stored = type(row)._default_manager.filter(pk=row.pk).first()
+        if stored is not None:
+            names = row.edited_fields + row.fields_beside
+            values = {name: getattr(row, name) for name in names}
+            return change(stored, values, by, stored.version)
+        versions = history_of(type(row)).filter(id=row.pk).aggregate(last=Max("version"))
+        row.version = versions["last"] + 1
+        row.note_editor(by)
+        _insert(row)
+        keep([row], ADDED, by, RESTORED)
+        _follow(row, world, by)
+        return row
+
+
+def bring_back(row: Row, values: Mapping[str, Any], by: User, version: int) -> Row:
+    """Restore a deleted row and change it, in one step; ``version`` is that at which it was deleted.
+
+    Raises Overtaken where somebody else has restored it, and ValidationError as ``restore`` does.
+    """
+    with transaction.atomic():
+        _lock(row.owning_world)
+        last = _last_entry(row)
+        if last is not None and last.history_type == DELETED and last.version == version:
+            row = restore(last, by)
+            version = row.version
+        return change(row, values, by, version)
+
+
+def _follow(row: Editable, world: World, by: User, did_make_commands: bool = False) -> None:
+    """Bring up to date what is made from ``row``, which was just added, changed or deleted."""
+    check_again(world, type(row))
+    if did_make_commands or row.makes_commands:
+        _bring_up_to_date(world, by)
+
+
+def _bring_up_to_date(world: World, by: User) -> None:
+    """Bring the commands up to date with a change of something that makes them."""
+    world.mark_changed()
+    start_update(world, by)
+
+
+def _lock(world: World) -> World:
+    """Hold the world: imports and generation lock it too, and positions are counted by one at a time."""
+    return World.objects.select_for_update().get(pk=world.pk)
+
+
+def _lock_for(row: Editable) -> World:
+    """Hold what a change of the row bears on: its world where commands are made from it."""
+    return _lock(row.owning_world) if row.bears_on_commands else row.owning_world
+
+
+def _stored(row: Row, version: int) -> Row:
+    stored = type(row)._default_manager.select_for_update().filter(pk=row.pk).first()
+    if stored is None:
+        raise Overtaken(None, entry_at(row, version), _last_entry(row))
+    return stored
+
+
+def _require_version(stored: Editable, version: int) -> None:
+    if stored.version != version:
+        raise Overtaken(stored, entry_at(stored, version), _last_entry(stored))
+
+
+def _last_entry(row: Editable) -> models.Model | None:
+    return history_of(type(row)).filter(id=row.pk).order_by("-history_id").first()
+
+
+def _insert(row: Editable) -> None:
+    """Store a row that is not there, at the end unless its own place is free."""
+    if any(field.name == "position" for field in row._meta.concrete_fields):
+        beside = type(row)._default_manager.filter(**{row.world_path: row.owning_world})
+        if row.position is None or beside.filter(position=row.position).exists():
+            last = beside.aggregate(last=Max("position"))["last"]
+            row.position = 0 if last is None else last + 1
+    row.validate_constraints(exclude={"position"})
+    row.save(force_insert=True)
+
+
+def _row_of(entry: models.Model) -> Editable:
+    """Return an unsaved row that says what ``entry`` does, without what it refers to that is gone."""
+    row = entry.instance
+    for field in row._meta.concrete_fields:
+        if field.many_to_one and field.null:
+            key = getattr(row, field.attname)
+            is_there = field.related_model._default_manager.filter(pk=key).exists()
+            setattr(row, field.attname, key if is_there else None)
+    return row

@@ -1,0 +1,81 @@
+"""What a predicate sounds like, and what is wrong with templates once it is declared so."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from annotations.editing.template_problems import as_stored
+from annotations.language.errors import LanguageError, Position, Problem
+from annotations.language.forms import to_reading
+from annotations.language.predicates import Predicate, check_form, gloss, sample_forms
+from annotations.models import SemanticTemplate, World
+from annotations.rows.from_rows import predicates_of, template_of
+from annotations.rows.synchronise import BATCH
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """A form that uses the predicate, and its English sentence."""
+
+    form: str
+    sentence: str
+
+
+@dataclass(frozen=True, slots=True)
+class CheckedPredicate:
+    """``templates`` are those with a problem that they have not got now, with what it says."""
+
+    samples: tuple[Sample, ...]
+    templates: tuple[tuple[SemanticTemplate, tuple[str, ...]], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Verdict:
+    """The problems that a template has with its predicates, now and then."""
+
+    row: SemanticTemplate
+    before: tuple[Problem, ...]
+    after: tuple[Problem, ...]
+
+    @property
+    def new(self) -> list[Problem]:
+        return [each for each in self.after if each not in self.before]
+
+
+def check_predicate(world: World, predicate: Predicate) -> CheckedPredicate:
+    """Say ``predicate`` in English and check the templates of ``world`` with it."""
+    before = predicates_of(world)
+    after = {**before, predicate.name: predicate}
+    samples = (Sample(to_reading(form), gloss(form, after)) for form in sample_forms(predicate))
+    verdicts = _verdicts(world, predicate.name, before, after)
+    templates = ((each.row, tuple(problem.message for problem in each.new)) for each in verdicts)
+    return CheckedPredicate(tuple(samples), tuple(each for each in templates if each[1]))
+
+
+def store_verdicts(world: World, name: str, before: Mapping[str, Predicate]) -> None:
+    """Write into the rows of templates what the predicate ``name`` has changed in their problems."""
+    changed = []
+    for each in _verdicts(world, name, before, predicates_of(world)):
+        gone = {problem.message for problem in each.before} - {p.message for p in each.after}
+        kept = [remark for remark in each.row.problems if remark["message"] not in gone]
+        each.row.problems = [*kept, *map(as_stored, each.new)]
+        changed.append(each.row)
+    SemanticTemplate.objects.bulk_update(changed, ["problems"], batch_size=BATCH)
+
+
+def _verdicts(
+    world: World, name: str, before: Mapping[str, Predicate], after: Mapping[str, Predicate]
+) -> Iterator[_Verdict]:
+    """Yield the templates that name the predicate and whose problems differ."""
+    place = Position("form")
+    for row in SemanticTemplate.objects.filter(grammar__world=world, form__contains=name):
+        try:
+            form = template_of(row).form
+        except LanguageError:
+            continue
+        verdict = _Verdict(
+            row, tuple(check_form(form, before, place)), tuple(check_form(form, after, place))
+        )
+        if verdict.before != verdict.after:
+            yield verdict

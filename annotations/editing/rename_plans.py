@@ -1,0 +1,164 @@
+"""Which rows name a nonterminal, a predicate or an entity, and what they say once it has another name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Protocol
+
+from django.db.models import Q
+
+from annotations.editing.entity_rename import Changes, EntityRename, differing
+from annotations.language.errors import LanguageError
+from annotations.language.grammar import ROOT
+from annotations.language.renaming import (
+    rename_nonterminal_in_form,
+    rename_nonterminal_in_pattern,
+    rename_predicate,
+    require_nonterminal,
+    require_predicate,
+)
+from annotations.models import (
+    Editable,
+    Entity,
+    Label,
+    Paraphrase,
+    Predicate,
+    Production,
+    SemanticTemplate,
+    Utterance,
+)
+from annotations.rows.composition import split_entry
+
+
+class Plan(Protocol):
+    """What to do so that a row that was called ``old`` has another name."""
+
+    def require_free(self, new: str) -> None:
+        """Raise LanguageError where ``new`` is taken or means something else."""
+
+    def changes(self, new: str) -> Iterator[tuple[str, Changes]]:
+        """Yield each kind of row with the rows that change and their new values."""
+
+
+class NonterminalRename:
+    """Renames the nonterminal of a production, in all lines and templates of the world."""
+
+    def __init__(self, row: Production, old: str) -> None:
+        self.old = row.nonterminal
+        self.grammar = row.grammar
+
+    def require_free(self, new: str) -> None:
+        if self.old == ROOT:
+            raise LanguageError(f"${ROOT} cannot be renamed: commands begin there")
+        require_nonterminal(new)
+        same = Q(nonterminal=new) | Q(expansion__contains=f"${new}")
+        lines = self.grammar.productions.filter(same)
+        is_taken = any(
+            line.nonterminal == new
+            or rename_nonterminal_in_pattern(line.expansion, new, "") != line.expansion
+            for line in lines
+        )
+        if is_taken or any(
+            new == split_entry(entry)[1]
+            for category in self.grammar.task_categories.all()
+            for entry in category.rule_sources
+        ):
+            raise LanguageError(f"there is a ${new} already", hint="choose another name")
+
+    def changes(self, new: str) -> Iterator[tuple[str, Changes]]:
+        token, old = f"${self.old}", self.old
+        lines = self.grammar.productions.filter(Q(nonterminal=old) | Q(expansion__contains=token))
+        yield (
+            "production",
+            differing(
+                (
+                    line,
+                    {
+                        "nonterminal": new if line.nonterminal == old else line.nonterminal,
+                        "expansion": rename_nonterminal_in_pattern(line.expansion, old, new),
+                    },
+                )
+                for line in lines
+            ),
+        )
+        templates = self.grammar.templates.filter(
+            Q(pattern__contains=token) | Q(form__contains=token)
+        )
+        yield (
+            "template",
+            differing(
+                (
+                    row,
+                    {
+                        "pattern": rename_nonterminal_in_pattern(row.pattern, old, new),
+                        "form": rename_nonterminal_in_form(row.form, old, new),
+                    },
+                )
+                for row in templates
+            ),
+        )
+        yield (
+            "task category",
+            differing(
+                (
+                    row,
+                    {"rule_sources": [_renamed_entry(each, old, new) for each in row.rule_sources]},
+                )
+                for row in self.grammar.task_categories.all()
+            ),
+        )
+
+
+class PredicateRename:
+    """Renames a predicate in templates, and in the stored forms of paraphrases, utterances and labels."""
+
+    def __init__(self, row: Predicate, old: str) -> None:
+        self.row = row
+        self.old = row.name
+
+    def require_free(self, new: str) -> None:
+        require_predicate(new)
+        templates = SemanticTemplate.objects.filter(
+            grammar__world=self.row.world, form__contains=new
+        )
+        is_used = any(
+            rename_predicate(each.form, new, f"{new}0") != each.form for each in templates
+        )
+        if is_used or self.row.world.predicates.filter(name=new).exists():
+            raise LanguageError(f"there is a predicate {new} already", hint="choose another name")
+
+    def changes(self, new: str) -> Iterator[tuple[str, Changes]]:
+        yield "predicate", [(self.row, {"name": new})]
+        world, old = self.row.world, self.old
+        for noun, rows, names in (
+            ("template", SemanticTemplate.objects.filter(grammar__world=world), ("form",)),
+            (
+                "paraphrase",
+                Paraphrase.objects.filter(world=world),
+                ("grounded_form", "logical_form"),
+            ),
+            ("utterance", Utterance.objects.filter(world=world), ("logical_form",)),
+            ("label", Label.objects.filter(utterance__world=world), ("form",)),
+        ):
+            naming = Q()
+            for name in names:
+                naming |= Q(**{f"{name}__contains": old})
+            yield (
+                noun,
+                differing(
+                    (row, {name: rename_predicate(getattr(row, name), old, new) for name in names})
+                    for row in rows.filter(naming).iterator()
+                ),
+            )
+
+
+def _renamed_entry(entry: str, old: str, new: str) -> str:
+    source, alias = split_entry(entry)
+    return f"{source} as ${new}" if alias == old else entry
+
+
+PLANS: dict[type[Editable], type[Plan]] = {
+    Production: NonterminalRename,
+    Predicate: PredicateRename,
+    Entity: EntityRename,
+}

@@ -1,0 +1,108 @@
+"""Verb: rename an entity, a nonterminal or a predicate wherever a world names it, in one transaction."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from django.db import models, transaction
+
+from annotations.editing.edits import Overtaken, change_many
+from annotations.editing.rename_plans import PLANS
+from annotations.language.english import say_count
+from annotations.models import Editable, Label, TaskCategory, User, Utterance, World
+from annotations.rows.synchronise import BATCH
+
+MOST_EXAMPLES = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Example:
+    """A text of a row before and after."""
+
+    before: str
+    after: str
+
+
+@dataclass(frozen=True, slots=True)
+class Touched:
+    """The rows of one kind, a ``noun``, that a new name changes."""
+
+    noun: str
+    changes: tuple[tuple[models.Model, Mapping[str, Any]], ...]
+
+    def __len__(self) -> int:
+        return len(self.changes)
+
+    @property
+    def sentence(self) -> str:
+        return say_count(len(self), self.noun)
+
+    @property
+    def examples(self) -> list[Example]:
+        """The first texts that change."""
+        return [example for change in self.changes[:MOST_EXAMPLES] for example in _texts(*change)]
+
+
+def touched_by(row: Editable, old: str, new: str) -> tuple[Touched, ...]:
+    """Return what calling ``row`` ``new`` instead of ``old`` changes, by kind. Writes nothing.
+
+    ``old`` is the text or an alias of an entity, a predicate, or the nonterminal of a production.
+
+    Raises:
+        LanguageError: a sentence: the new name is taken, or means something else.
+    """
+    plan = PLANS[type(row)](row, old)
+    plan.require_free(new)
+    return tuple(Touched(noun, tuple(changes)) for noun, changes in plan.changes(new) if changes)
+
+
+def rename(row: Editable, old: str, new: str, by: User, version: int) -> tuple[Touched, ...]:
+    """Change every row of ``touched_by``, and bring the commands up to date. All of it or nothing.
+
+    Raises:
+        Overtaken: ``row`` is not at ``version`` any more.
+        LanguageError: as ``touched_by``.
+    """
+    with transaction.atomic():
+        world = World.objects.select_for_update().get(pk=row.owning_world.pk)
+        stored = type(row)._default_manager.filter(pk=row.pk).first()
+        if stored is None or stored.version != version:
+            raise Overtaken(stored, None)
+        touched = touched_by(stored, old, new)
+        changes = [change for each in touched for change in each.changes]
+        edited = [(each, values) for each, values in changes if isinstance(each, Editable)]
+        for each, values in changes:
+            if not isinstance(each, Editable):
+                _set(each, values)
+        for model in (TaskCategory, Utterance, Label):
+            _store(model, [each for each, _ in changes if type(each) is model])
+        change_many(world, edited, by)
+        return touched
+
+
+def _set(row: models.Model, values: Mapping[str, Any]) -> None:
+    for name, value in values.items():
+        setattr(row, name, value)
+    if isinstance(row, Utterance):
+        row.version += 1
+
+
+COLUMNS = {
+    TaskCategory: ["rule_sources"],
+    Utterance: ["spans", "logical_form", "version"],
+    Label: ["form"],
+}
+
+
+def _store(model: type[models.Model], rows: list[models.Model]) -> None:
+    if rows:
+        model._default_manager.bulk_update(rows, COLUMNS[model], batch_size=BATCH)
+
+
+def _texts(row: models.Model, values: Mapping[str, Any]) -> Iterator[Example]:
+    for name, value in values.items():
+        before, after = getattr(row, name), value
+        if isinstance(before, str) and before != after:
+            yield Example(before, after)

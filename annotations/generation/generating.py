@@ -1,0 +1,117 @@
+"""Verb: make the commands of a world, each with its logical form, from its templates and grammar."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from annotations import models
+from annotations.background.progress import UNWATCHED, Progress
+from annotations.generation.complexity import Complexity, complexity
+from annotations.generation.generated_world import GeneratedWorld, counters_of
+from annotations.language.errors import LanguageError
+from annotations.language.templates import DEFAULT_LIMIT, Conflict, Generated, generate
+from annotations.rows.from_rows import AnnotatedCategory, annotated_categories
+from annotations.rows.synchronise import Changes
+
+MOST_ATTEMPTS = 3
+
+
+@dataclass(frozen=True)
+class GenerationReport:
+    """What a generation gave. ``columns`` are those of the complexity table, all of them last."""
+
+    generated: Generated
+    columns: tuple[Complexity, ...]
+    categories: tuple[AnnotatedCategory, ...]
+    changes: Changes
+
+    def as_json(self) -> dict[str, Any]:
+        """Figures by task category; under ``all`` those of all together."""
+        names = [column.task_category or "all" for column in self.columns]
+
+        def by_category(figure: str) -> dict[str, Any]:
+            values = (getattr(column, figure) for column in self.columns)
+            return dict(zip(names, map(_rounded, values), strict=True))
+
+        return {
+            "commands": by_category("commands"),
+            "forms": by_category("forms"),
+            "conflicts": [self._conflict(each) for each in self.generated.conflicts],
+            "outside_grammar": len(self.generated.outside_grammar),
+            "left_out": [
+                {
+                    "template": str(self._place(each.task_category, each.template_index)),
+                    "reason": each.problem.message,
+                }
+                for each in self.generated.left_out
+            ],
+            "unmatched_templates": [str(self._place(*each)) for each in self.generated.unmatched],
+            "mean_command_length": by_category("mean_command_length"),
+            "mean_form_length": by_category("mean_form_length"),
+            "commands_per_form": by_category("commands_per_form"),
+            "changes": self.changes.as_json(),
+        }
+
+    def _conflict(self, conflict: Conflict) -> dict[str, Any]:
+        return {
+            "task_category": conflict.task_category,
+            "command": conflict.command,
+            "kept": conflict.kept,
+            "candidates": [
+                {"template": str(self._place(conflict.task_category, index)), "form": form}
+                for index, form in conflict.candidates
+            ],
+        }
+
+    def _place(self, task_category: str, index: int) -> object:
+        return _templates(self.categories)[task_category][index].position
+
+
+def generate_pairs(
+    world: models.World, limit: int = DEFAULT_LIMIT, progress: Progress = UNWATCHED
+) -> GenerationReport:
+    """Stores the commands and logical forms of ``world`` and says what they are.
+
+    Rows that are right already are not touched; a command that no template makes any more goes,
+    and its paraphrases stay. Conflicts are stored as warnings. All is computed before anything is
+    written, so that others wait for the writing alone.
+
+    Raises:
+        LanguageError: the templates make more than ``limit`` commands (nothing is changed then), a
+            stored text cannot be read, or somebody else keeps changing the world meanwhile.
+    """
+    for _ in range(MOST_ATTEMPTS):
+        report = _generate_once(world, limit, progress)
+        if report is not None:
+            return report
+    raise LanguageError(
+        "the templates were changed while their commands were made", hint="generate once more"
+    )
+
+
+def _generate_once(world: models.World, limit: int, progress: Progress) -> GenerationReport | None:
+    """None where templates or commands have been changed by others before anything was written."""
+    progress.report(0, "expanding the templates")
+    counters = counters_of(models.World.objects.get(pk=world.pk))
+    categories = annotated_categories(world)
+    generated = generate([category.value for category in categories], limit)
+    progress.report(0.5, "comparing with the stored commands")
+    with GeneratedWorld(world, categories, generated, progress) as rows:
+        progress.report(0.9, "writing")
+        with progress.writing():
+            if counters_of(models.World.objects.select_for_update().get(pk=world.pk)) != counters:
+                return None
+            changes = rows.write(counters)
+            report = GenerationReport(generated, tuple(complexity(world)), categories, changes)
+            progress.conclude(report.as_json())
+    return report
+
+
+def _templates(categories: tuple[AnnotatedCategory, ...]) -> Mapping[str, Any]:
+    return {category.value.name: category.value.templates for category in categories}
+
+
+def _rounded(value: float | None) -> float | None:
+    return round(value, 4) if isinstance(value, float) else value

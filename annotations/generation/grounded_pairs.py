@@ -1,0 +1,81 @@
+"""Commands of a world with things of its ontology in them, drawn at random under a seed."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from itertools import islice
+from random import Random
+
+from annotations.language.errors import LanguageError
+from annotations.language.forms import canonical_text
+from annotations.language.grounding import ground
+from annotations.language.ontology import Ontology
+from annotations.language.templates import (
+    Derivation,
+    Expansion,
+    TaskCategory,
+    TemplateExpander,
+    generate,
+)
+from annotations.models import World
+from annotations.rows.from_rows import ontology_of, task_categories
+
+
+def grounded_pairs(world: World, count: int, seed: int = 0) -> list[tuple[str, str]]:
+    """``count`` pairs of a grounded command and its canonical form.
+
+    Every anonymized command has its turn before one comes again. A command for which the ontology
+    has no value is left out. The same world, count and seed give the same pairs.
+
+    Raises:
+        LanguageError: the world makes no command, or none that its ontology can ground.
+    """
+    categories = task_categories(world)
+    expansions = generate(categories).expansions
+    if not expansions:
+        raise LanguageError(f"the world {world} makes no command", hint="import templates first")
+    drawn = _draw(categories, expansions, ontology_of(world), Random(seed))
+    return list(islice(drawn, count))
+
+
+def _draw(
+    categories: Sequence[TaskCategory],
+    expansions: Sequence[Expansion],
+    ontology: Ontology,
+    random: Random,
+) -> Iterator[tuple[str, str]]:
+    """Endless, as long as a round over all commands gives anything."""
+    sources = {category.name: _Derivations(category) for category in categories}
+    while True:
+        failure: LanguageError | None = None
+        given = 0
+        for expansion in random.sample(expansions, len(expansions)):
+            derivation = random.choice(sources[expansion.task_category].of(expansion))
+            try:
+                grounded = ground(derivation.symbols, derivation.form, ontology, random)
+            except LanguageError as error:
+                failure = error
+                continue
+            given += 1
+            yield grounded.text, canonical_text(grounded.form)
+        if not given and failure is not None:
+            raise failure
+
+
+class _Derivations:
+    """The derivations behind the commands of one category, expanded a template at a time."""
+
+    def __init__(self, category: TaskCategory) -> None:
+        self._category = category
+        self._expander = TemplateExpander(category.grammar)
+        self._by_text: dict[int, dict[str, list[Derivation]]] = {}
+
+    def of(self, expansion: Expansion) -> list[Derivation]:
+        index = expansion.template_index
+        if index not in self._by_text:
+            by_text: dict[str, list[Derivation]] = defaultdict(list)
+            for each in self._expander.derivations(self._category.templates[index], index):
+                by_text[each.anonymized_text].append(each)
+            self._by_text[index] = by_text
+        return self._by_text[index][expansion.command]

@@ -1,0 +1,103 @@
+"""What templates of the grammars in use expand to, kept by this process."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import replace
+
+from annotations.language.errors import LanguageError, Problem
+from annotations.language.grammar import Budget, Grammar, readable
+from annotations.language.predicates import Predicate
+from annotations.language.templates import (
+    Generated,
+    GrammarExpansions,
+    Kept,
+    SemanticTemplate,
+    TaskCategory,
+    TemplateChecker,
+    generate,
+    generation_size,
+    template_checker,
+)
+
+# Pairs of a world that a request brings up to date: about two seconds on one core (docs/generation.md).
+MOST_AT_ONCE = 30_000
+STEPS_AT_ONCE = 10_000_000
+
+# Pairs of one grammar, about 200 bytes each: 12 grammars take at most 100 MB.
+MOST_PAIRS = 40_000
+_EXPANSIONS: Kept[int, GrammarExpansions] = Kept(12)
+# A world before and after a change: 100 bytes a command.
+_GENERATED: Kept[Hashable, Generated] = Kept(
+    4 * MOST_AT_ONCE, lambda generated: len(generated.expansions)
+)
+
+
+class _Checks:
+    """The checker of a grammar, and what it said. It holds the grammar, whose identity is the key."""
+
+    def __init__(self, grammar: Grammar) -> None:
+        self.checker = replace(template_checker(grammar), recognizer=expansions_of(grammar))
+        self.problems: Kept[Hashable, tuple[Problem, ...]] = Kept(5_000)
+
+
+_CHECKS: Kept[int, _Checks] = Kept(12)
+
+
+def expansions_of(grammar: Grammar) -> GrammarExpansions:
+    """Return what this process keeps of ``grammar``.
+
+    The same value is asked for again while ``annotations.rows.from_rows`` keeps it, so that its identity
+    stands for its content.
+    """
+    return _EXPANSIONS.get(id(grammar), lambda: GrammarExpansions(grammar, MOST_PAIRS))
+
+
+def generate_at_once(categories: Sequence[TaskCategory]) -> Generated:
+    """Return what ``generate`` does, for somebody who waits: only what is not kept is worked out.
+
+    Raises:
+        LanguageError: the templates make more than ``MOST_AT_ONCE`` commands, or as ``generate``.
+    """
+    return _GENERATED.get(_content(categories), lambda: _generate(categories))
+
+
+def _content(categories: Sequence[TaskCategory]) -> Hashable:
+    """Return what decides what is generated."""
+    return tuple(
+        (each.name, each.grammar.productions, tuple(map(_texts, each.templates)))
+        for each in categories
+    )
+
+
+def _texts(template: SemanticTemplate) -> tuple[str, str]:
+    return template.pattern_text, template.form_text
+
+
+def _generate(categories: Sequence[TaskCategory]) -> Generated:
+    size = generation_size(categories, expansions=expansions_of)
+    if size > MOST_AT_ONCE:
+        raise LanguageError(f"this world makes up to {readable(size)} commands")
+    return generate(categories, expansions=expansions_of, budget=Budget(STEPS_AT_ONCE))
+
+
+def checker_of(
+    grammar: Grammar, predicates: Mapping[str, Predicate], task_category: str
+) -> TemplateChecker:
+    """Return a checker of ``grammar``, whose rules are compiled once. Raises as ``template_checker``."""
+    return replace(_kept(grammar).checker, predicates=predicates, task_category=task_category)
+
+
+def problems_of(checker: TemplateChecker, template: SemanticTemplate) -> tuple[Problem, ...]:
+    """Return what ``checker`` says of ``template``; the same texts are checked once.
+
+    Raises:
+        LanguageError: the grammar has a cycle.
+    """
+    predicates = tuple((checker.predicates or {}).values())
+    key = (predicates, checker.task_category, _texts(template))
+    return _kept(checker.grammar).problems.get(key, lambda: checker.problems(template))
+
+
+def _kept(grammar: Grammar) -> _Checks:
+    return _CHECKS.get(id(grammar), lambda: _Checks(grammar))

@@ -1,0 +1,116 @@
+"""Which commands of the grammar have no form yet, by task category and nonterminal."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from annotations import models
+from annotations.language.errors import LanguageError, Problem
+from annotations.language.grammar import Budget, Grammar, passages
+from annotations.language.templates import Kept, TaskCategory
+from annotations.rows.from_rows import task_categories
+
+# Derivations of one task category that a page looks at: about a fifth of a second of processor time.
+MOST_LOOKED_AT = 20_000
+MOST_STEPS = 5_000_000
+# Grammar → its commands with their nonterminals, as ``passages`` gives them. The grammar is kept with them, so that its
+# identity stands for its content.
+_PASSAGES: Kept[int, tuple[Grammar, Mapping[str, frozenset[str]]]] = Kept(
+    3 * MOST_LOOKED_AT, lambda kept: len(kept[1])
+)
+
+
+@dataclass(frozen=True, slots=True)
+class UncoveredCommand:
+    """A command without a form; ``nonterminals`` are those that a derivation of it goes through."""
+
+    text: str
+    task_category: str
+    nonterminals: frozenset[str]
+
+
+@dataclass(frozen=True, slots=True)
+class Share:
+    """How many of the commands that go through a nonterminal have a form."""
+
+    nonterminal: str
+    commands: int
+    uncovered: int
+
+    @property
+    def covered_percent(self) -> float:
+        return 100 * (self.commands - self.uncovered) / self.commands
+
+
+@dataclass(frozen=True)
+class UncoveredReport:
+    """The commands without a form, and the share of each nonterminal that has such commands, worst first.
+
+    ``cut`` are the task categories of which only the first ``MOST_LOOKED_AT`` derivations were looked at;
+    ``problems`` say why one could not be looked at.
+    """
+
+    commands: tuple[UncoveredCommand, ...]
+    shares: tuple[Share, ...]
+    cut: tuple[str, ...] = ()
+    problems: tuple[Problem, ...] = field(default=())
+
+    def matching(self, nonterminal: str = "", text: str = "") -> list[UncoveredCommand]:
+        """Return the commands that go through ``nonterminal`` and say ``text``, whatever its case."""
+        said = " ".join(text.lower().split())
+        return [
+            command
+            for command in self.commands
+            if (not nonterminal or nonterminal in command.nonterminals)
+            and said in command.text.lower()
+        ]
+
+
+def uncovered_of(world: models.World, task_category: str = "") -> UncoveredReport:
+    """Compare what the grammar derives with the commands that have a form, of one task category or all."""
+    try:
+        categories = task_categories(world)
+    except LanguageError as error:
+        return UncoveredReport((), (), problems=(error.problem,))
+    covered = frozenset(world.commands.values_list("anonymized_text", flat=True))
+    chosen = [each for each in categories if task_category in ("", each.name)]
+    return _report(chosen, covered)
+
+
+def _report(categories: Sequence[TaskCategory], covered: frozenset[str]) -> UncoveredReport:
+    commands: list[UncoveredCommand] = []
+    all_of, uncovered_of = Counter[str](), Counter[str]()
+    cut: list[str] = []
+    problems: list[Problem] = []
+    for category in categories:
+        try:
+            through = _passages(category.grammar)
+            is_cut = category.grammar.size() > MOST_LOOKED_AT
+        except LanguageError as error:
+            problems.append(error.problem)
+            continue
+        cut.extend([category.name] * is_cut)
+        missing = list(_missing(category.name, through, covered))
+        commands += missing
+        all_of.update(name for names in through.values() for name in names)
+        uncovered_of.update(name for each in missing for name in each.nonterminals)
+    shares = [Share(name, all_of[name], count) for name, count in uncovered_of.items()]
+    shares.sort(key=lambda share: (share.covered_percent, -share.uncovered, share.nonterminal))
+    return UncoveredReport(tuple(commands), tuple(shares), tuple(cut), tuple(problems))
+
+
+def _passages(grammar: Grammar) -> Mapping[str, frozenset[str]]:
+    def make() -> tuple[Grammar, Mapping[str, frozenset[str]]]:
+        return grammar, passages(grammar, Budget(MOST_STEPS), MOST_LOOKED_AT)
+
+    return _PASSAGES.get(id(grammar), make)[1]
+
+
+def _missing(
+    task_category: str, through: Mapping[str, frozenset[str]], covered: frozenset[str]
+) -> Iterator[UncoveredCommand]:
+    for command, nonterminals in through.items():
+        if command not in covered:
+            yield UncoveredCommand(command, task_category, nonterminals)

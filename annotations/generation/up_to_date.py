@@ -1,0 +1,50 @@
+"""Verb: make commands and forms what templates and grammar say, with the change that was just made.
+
+Only what changed is expanded: the rest is kept from before (``kept_expansions``).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from annotations import models
+from annotations.generation.generated_world import GeneratedWorld, counters_of
+from annotations.generation.kept_expansions import generate_at_once
+from annotations.language.errors import LanguageError
+from annotations.rows.from_rows import annotated_categories
+from annotations.rows.synchronise import Changes
+
+NOTHING = Changes()
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """Whether the commands are those of the templates now, what it took, and how many got another form.
+
+    ``trouble`` is a sentence about why they are not.
+    """
+
+    is_up_to_date: bool
+    changes: Changes = NOTHING
+    new_forms: int = 0
+    trouble: str = ""
+
+
+def bring_up_to_date(world: models.World) -> Outcome:
+    """Write the commands, forms, conflicts and coverage that ``generate_pairs`` would give.
+
+    To be called inside the transaction that changed a template or the grammar, which has marked the
+    world as changed. A world that is too large, or that cannot be expanded, is left as it is and stays
+    marked. Rows that are right already are not touched.
+    """
+    locked = models.World.objects.select_for_update().get(pk=world.pk)
+    if not locked.commands_are_stale:
+        return Outcome(True)
+    try:
+        categories = annotated_categories(locked)
+        generated = generate_at_once([category.value for category in categories])
+    except LanguageError as error:
+        return Outcome(False, trouble=str(error))
+    with GeneratedWorld(locked, categories, generated) as rows:
+        changes = rows.write(counters_of(locked))
+        return Outcome(True, changes, rows.commands.new_forms)

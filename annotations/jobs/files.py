@@ -1,0 +1,52 @@
+"""The uploads of a job, kept under ``var/jobs/ID/`` until it has ended."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from secrets import token_hex
+from typing import IO, Any
+
+from django.conf import settings
+from django.core.files.base import File
+
+from annotations.models import Job
+
+
+def folder_of(job: Job) -> Path:
+    """Where the uploads of ``job`` lie, named by their numbers."""
+    return jobs_folder() / str(job.pk)
+
+
+def jobs_folder() -> Path:
+    return settings.VAR_DIR / "jobs"
+
+
+def keep_uploads(uploads: Sequence[Any]) -> Path:
+    """Copies uploads, in pieces, into a new folder that belongs to no job yet."""
+    folder = jobs_folder() / f"incoming-{token_hex(8)}"
+    folder.mkdir(parents=True, mode=0o700)
+    for number, upload in enumerate(uploads):
+        upload.seek(0)
+        with (folder / str(number)).open("wb") as target:
+            shutil.copyfileobj(upload, target)
+    return folder
+
+
+@contextmanager
+def kept_uploads(job: Job) -> Iterator[list[File]]:
+    """The uploads of ``job``, open, under the names that they came with."""
+    names = job.arguments.get("files", [])
+    with ExitStack() as stack:
+        opened: Iterable[IO[bytes]] = (
+            stack.enter_context((folder_of(job) / str(number)).open("rb"))
+            for number in range(len(names))
+        )
+        yield [File(file, name) for file, name in zip(opened, names, strict=True)]
+
+
+def forget_files(job: Job) -> None:
+    """Removes what was kept for ``job``."""
+    shutil.rmtree(folder_of(job), ignore_errors=True)

@@ -1,0 +1,117 @@
+"""Asks for jobs, and stops them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from django.db import transaction
+from django.utils import timezone
+
+from annotations import background
+from annotations.jobs.files import folder_of, forget_files, keep_uploads
+from annotations.models import Job, JobKind, User, World
+from annotations.models.background import Queue, Status
+
+
+def request_job(
+    kind: str,
+    world_name: str,
+    by: User | None,
+    arguments: Mapping[str, Any] | None = None,
+    uploads: Sequence[Any] = (),
+) -> Job:
+    """Queues a job for the world called ``world_name``, with its files, and wakes a worker."""
+    folder = keep_uploads(uploads) if uploads else None
+    job = _new_job(kind, world_name, by, arguments, uploads)
+    with transaction.atomic():
+        job.save()
+        _take_folder(job, folder)
+        background.wake(job)
+    return job
+
+
+def keep_question(
+    kind: str,
+    world_name: str,
+    by: User | None,
+    arguments: Mapping[str, Any],
+    uploads: Sequence[Any],
+    report: Mapping[str, Any],
+) -> Job:
+    """Keeps the files of an import that would remove something, as a job that has asked and ended."""
+    folder = keep_uploads(uploads)
+    job = _new_job(kind, world_name, by, arguments, uploads)
+    now = timezone.now()
+    job.status, job.progress, job.report = Status.SUCCEEDED, 1.0, dict(report)
+    job.started_at = job.finished_at = now
+    with transaction.atomic():
+        job.save()
+        _take_folder(job, folder)
+    return job
+
+
+def answer_job(job: Job, by: User) -> Job:
+    """Queues the import that ``job`` asked about, now allowed to remove what it said.
+
+    Raises ValueError, a sentence, where the question was answered already.
+    """
+    with transaction.atomic():
+        asked = Job.objects.select_for_update().get(pk=job.pk)
+        if not asked.is_waiting_for_answer:
+            raise ValueError("This import has been answered already.")
+        _settle_question(asked)
+        if not folder_of(asked).is_dir():
+            raise ValueError("The files are no longer here. Choose them again.")
+        answer = _new_job(asked.kind, asked.world_name, by, asked.arguments, ())
+        answer.arguments = {**asked.arguments, "may_remove": True}
+        answer.save()
+        _take_folder(answer, folder_of(asked))
+        background.wake(answer)
+    return answer
+
+
+def cancel_job(job: Job) -> None:
+    """Stops a job, or drops an import that asked. Raises ValueError, a sentence, where it has ended."""
+    if job.kind == JobKind.DELETE_WORLD:
+        raise ValueError("A deletion cannot be stopped: a part of the world may be gone already.")
+    with transaction.atomic():
+        asked = Job.objects.select_for_update().get(pk=job.pk)
+        if asked.is_waiting_for_answer:
+            _settle_question(asked)
+            transaction.on_commit(lambda: forget_files(asked))
+            return
+    background.cancel(job)
+    job.refresh_from_db()
+    if job.is_ended:
+        forget_files(job)
+
+
+def _settle_question(job: Job) -> None:
+    job.report = {**job.report, "is_waiting": False, "is_dropped": True}
+    job.save(update_fields=["report"])
+
+
+def _new_job(
+    kind: str,
+    world_name: str,
+    by: User | None,
+    arguments: Mapping[str, Any] | None,
+    uploads: Sequence[Any],
+) -> Job:
+    names = {"files": [upload.name for upload in uploads]} if uploads else {}
+    return Job(
+        kind=kind,
+        world=World.objects.present().filter(name=world_name).first(),
+        world_name=world_name,
+        created_by=by,
+        arguments={**(arguments or {}), **names},
+        queue=Queue.QUICK,
+    )
+
+
+def _take_folder(job: Job, folder: Path | None) -> None:
+    if folder is not None:
+        forget_files(job)
+        folder.rename(folder_of(job))

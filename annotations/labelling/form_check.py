@@ -1,0 +1,120 @@
+"""Reads and checks a form that somebody gives an utterance."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+from annotations.editing.assistance import shown_problem
+from annotations.language.errors import LanguageError, Offsets, Position, Problem, warning_at
+from annotations.language.forms import (
+    CLASS_TOKEN,
+    Constant,
+    Form,
+    Unknown,
+    canonical_text,
+    read_form,
+    to_reading,
+    walk,
+)
+from annotations.language.grammar import Grammar
+from annotations.language.limits import MAX_FORM
+from annotations.language.predicates import gloss
+from annotations.language.symbols import Nonterminal, Wildcard
+from annotations.language.templates import read_sides, template_checker
+from annotations.language.writing import Sides, format_form, with_repairs
+from annotations.models import Utterance
+from annotations.rows.from_rows import predicates_of
+
+PLACE = Position("form")
+STAND_IN = "do it"  # the pattern of a template whose form alone is looked at
+
+
+def canonical_label(text: str) -> str:
+    """Return a form in any notation as canonical corpus text.
+
+    Raises LanguageError where it cannot be read, is too long, or is a template's.
+    """
+    return canonical_text(_read(text))
+
+
+def check_label(utterance: Utterance, text: str) -> dict[str, Any]:
+    """Check a form in any notation for ``utterance``, against the predicates of its world.
+
+    Returns JSON as ``annotations.editing.assistance.assist`` does, without slots.
+    """
+    declared = predicates_of(utterance.world)
+    sides, checker = Sides(STAND_IN, text), template_checker(Grammar(()), declared)
+    reading = sentence = ""
+    if len(text) > MAX_FORM:
+        problems: tuple[Problem, ...] = (_refusal(text),)
+    else:
+        template, unread = read_sides(STAND_IN, text)
+        remarks = checker.problems(template) if template else unread
+        problems = tuple(each for each in remarks if each.position.source == PLACE.source)
+        problems = with_repairs(problems, sides, checker)
+        if template and not any(problem.is_error for problem in problems):
+            problems += tuple(_check_as_label(text, utterance))
+            reading, sentence = to_reading(template.form), gloss(template.form, declared)
+    return {
+        "problems": [shown_problem(each, sides) for each in problems],
+        "formatted": {"form": format_form(text)} if len(text) <= MAX_FORM else {},
+        "reading": reading,
+        "gloss": sentence,
+    }
+
+
+def _refusal(text: str) -> Problem:
+    """Return why ``text`` cannot be a label."""
+    try:
+        _read(text)
+    except LanguageError as error:
+        return error.problem
+    raise ValueError("this is a label")
+
+
+def _check_as_label(text: str, utterance: Utterance) -> Iterator[Problem]:
+    """Yield what is wrong with a form that can be read."""
+    try:
+        yield from _check_slots(_read(text), text, utterance)
+    except LanguageError as error:
+        yield error.problem
+
+
+def _read(text: str) -> Form:
+    form = read_form(text.strip(), PLACE)
+    if isinstance(form, Unknown):
+        raise LanguageError("UNKNOWN is an answer of its own", PLACE, "press u")
+    for part in walk(form):
+        for symbol in (part, getattr(part, "predicate", None)):
+            if isinstance(symbol, Nonterminal | Wildcard):
+                hint = "write a class token such as <object>, or a value"
+                raise LanguageError(
+                    "nonterminals and wildcards stand in templates only", PLACE, hint
+                )
+    return form
+
+
+def _check_slots(form: Form, text: str, utterance: Utterance) -> Iterator[Problem]:
+    """Yield a problem for each class token of the form that the utterance does not have."""
+    tokens_said = CLASS_TOKEN.findall(utterance.anonymized_text)
+    said = {token.rstrip("0123456789") for token in tokens_said}
+    tokens = (
+        part.token_class for part in walk(form) if isinstance(part, Constant) and part.token_class
+    )
+    for name in dict.fromkeys(tokens):
+        if name not in said:
+            message = f"the utterance names no {name}"
+            yield warning_at(
+                _place_of(name, text), message, "leave it out, or say which words name it"
+            )
+
+
+def _place_of(token_class: str, text: str) -> Position:
+    """Return where ``text`` has a token of this class first."""
+    match = re.search(rf"\b{token_class}\d*\b", text)
+    if match is None:
+        return PLACE
+    place = Offsets(text).position(match.start())
+    return Position(PLACE.source, place.line, place.column)

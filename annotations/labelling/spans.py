@@ -1,0 +1,78 @@
+"""Which words of an utterance name an entity: found by the anonymizer, mended by people."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from django.db import transaction
+from django.db.models import F
+
+from annotations.editing.edits import change
+from annotations.labelling.answers import AnsweredMeanwhile
+from annotations.language.grounding import Anonymizer
+from annotations.models import Entity, User, Utterance, World
+from annotations.rows.from_rows import ontology_of
+
+MOST_REREAD = 2_000  # utterances that are read again after an alias was added
+
+
+def anonymizer_of(world: World) -> Anonymizer:
+    return Anonymizer(ontology_of(world))
+
+
+def anonymized_by(anonymizer: Anonymizer, text: str) -> dict[str, Any]:
+    """Return the columns of an utterance that follow from its text."""
+    anonymized = anonymizer.anonymize(text)
+    spans = [
+        [span.start, span.end, span.entity_class, span.entity.text] for span in anonymized.spans
+    ]
+    return {"anonymized_text": anonymized.command, "spans": spans}
+
+
+def mend_span(
+    utterance: Utterance, start: int, end: int, entity: Entity, by: User, version: int
+) -> Utterance:
+    """Say that ``text[start:end]`` names ``entity``: the words become an alias of it.
+
+    The utterance, and the unlabelled ones that have these words too, are read again. Returns the
+    utterance as it is stored.
+
+    Raises:
+        AnsweredMeanwhile: the utterance is not at ``version`` any more.
+        ValueError: a sentence where the words are no name.
+    """
+    words = " ".join(utterance.text[start:end].split())
+    if not 0 <= start < end <= len(utterance.text) or not words:
+        raise ValueError("Select the words that name the entity.")
+    with transaction.atomic():
+        stored = Utterance.objects.select_for_update().get(pk=utterance.pk)
+        if stored.version != version:
+            raise AnsweredMeanwhile(stored)
+        _add_alias(entity, words, by)
+        anonymizer = anonymizer_of(stored.world)
+        _reread_others(stored, words, anonymizer)
+        for name, value in anonymized_by(anonymizer, stored.text).items():
+            setattr(stored, name, value)
+        stored.version += 1
+        stored.save()
+    return stored
+
+
+def _add_alias(entity: Entity, words: str, by: User) -> None:
+    row = Entity.objects.select_for_update().get(pk=entity.pk)
+    names = {name.casefold() for name in (row.text, *row.aliases)}
+    if words.casefold() not in names:
+        change(row, {"aliases": [*row.aliases, words]}, by, row.version)
+
+
+def _reread_others(utterance: Utterance, words: str, anonymizer: Anonymizer) -> None:
+    """Find the entities of other unlabelled utterances with these words."""
+    rows = utterance.world.utterances.unlabelled().filter(text__icontains=words)
+    changed = []
+    for row in rows.exclude(pk=utterance.pk)[:MOST_REREAD]:
+        for name, value in anonymized_by(anonymizer, row.text).items():
+            setattr(row, name, value)
+        changed.append(row)
+    Utterance.objects.bulk_update(changed, ["anonymized_text", "spans"], batch_size=500)
+    keys = [row.pk for row in changed]
+    Utterance.objects.filter(pk__in=keys[:MOST_REREAD]).update(version=F("version") + 1)

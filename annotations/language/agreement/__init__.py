@@ -1,0 +1,26 @@
+"""Measure how well people agree: exact match, Krippendorff's α and Gwet's AC1, with intervals."""
+
+from __future__ import annotations
+
+from annotations.language.agreement.estimates import (
+    Agreement,
+    Distances,
+    Estimate,
+    alpha,
+    exact_match,
+    gwet_ac1,
+    measure,
+)
+from annotations.language.agreement.ratings import Ratings, read_ratings
+
+__all__ = [
+    "Agreement",
+    "Distances",
+    "Estimate",
+    "Ratings",
+    "alpha",
+    "exact_match",
+    "gwet_ac1",
+    "measure",
+    "read_ratings",
+]

@@ -1,0 +1,33 @@
+"""English word lists, patterns and plurals: data kept apart from code."""
+
+from __future__ import annotations
+
+from annotations.language.english.contrasts import (
+    CONTRASTS,
+    NEAR_SYNONYMS,
+    NEGATIONS,
+    PREDICATE_WORDS,
+)
+from annotations.language.english.glosses import (
+    CLASS_WORDS,
+    KNOWN_PATTERNS,
+    NUMBERS,
+    PREPOSITIONS,
+    RELATIONS,
+)
+from annotations.language.english.inflection import plural, say_count, spellings
+
+__all__ = [
+    "CLASS_WORDS",
+    "CONTRASTS",
+    "KNOWN_PATTERNS",
+    "NEAR_SYNONYMS",
+    "NEGATIONS",
+    "NUMBERS",
+    "PREDICATE_WORDS",
+    "PREPOSITIONS",
+    "RELATIONS",
+    "plural",
+    "say_count",
+    "spellings",
+]

@@ -1,0 +1,74 @@
+"""Plurals of English nouns: the one to print, and likely spellings to recognise words by."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from annotations.language.english.glosses import PLURALS
+
+_VOWELS = "aeiou"
+_SIBILANTS = ("s", "x", "z", "ch", "sh")
+
+
+def plural(noun: str) -> str:
+    """Return the plural of a noun phrase: ``objects``, ``people``, ``objects of the category``."""
+    head, of, rest = noun.partition(" of ")
+    before, space, last = head.rpartition(" ")
+    return before + space + (PLURALS.get(last) or _regular_plural(last)) + of + rest
+
+
+def say_count(count: int, noun: str) -> str:
+    """Return ``0 arguments``, ``1 argument`` or ``2 arguments``."""
+    return f"{count} {noun if count == 1 else plural(noun)}"
+
+
+def spellings(noun: str) -> Iterator[str]:
+    """Yield likely plurals and singulars of a noun phrase; only its last word changes.
+
+    ``knife`` gives knives, ``dish`` dishes, ``cookies`` cookie and cooky, ``tea spoon`` tea spoons.
+    """
+    head, space, last = noun.rpartition(" ")
+    for spelling in (*_plurals(last), *_singulars(last)):
+        if spelling and spelling != last:
+            yield f"{head}{space}{spelling}"
+
+
+def _regular_plural(word: str) -> str:
+    return f"{word[:-1]}ies" if _ends_in_consonant_y(word) else _add_s(word)
+
+
+def _ends_in_consonant_y(word: str) -> bool:
+    lower = word.lower()
+    return lower.endswith("y") and lower[-2:-1] not in _VOWELS
+
+
+def _plurals(word: str) -> Iterator[str]:
+    lower = word.lower()
+    if _ends_in_consonant_y(word):
+        yield f"{word[:-1]}ies"
+    if lower.endswith("fe"):
+        yield f"{word[:-2]}ves"
+    elif lower.endswith("f"):
+        yield f"{word[:-1]}ves"
+    elif lower.endswith("o"):
+        yield f"{word}es"
+    elif lower.endswith("man"):
+        yield f"{word[:-2]}en"
+    yield _add_s(word)
+
+
+def _add_s(word: str) -> str:
+    return word + ("es" if word.lower().endswith(_SIBILANTS) else "s")
+
+
+def _singulars(word: str) -> Iterator[str]:
+    lower = word.lower()
+    if len(word) < 4 or not lower.endswith("s") or lower.endswith("ss"):
+        return
+    if lower.endswith("ies"):
+        yield f"{word[:-3]}y"
+    if lower.endswith("ves"):
+        yield from (f"{word[:-3]}f", f"{word[:-3]}fe")
+    if lower.endswith(("ses", "xes", "zes", "ches", "shes", "oes")):
+        yield word[:-2]
+    yield word[:-1]

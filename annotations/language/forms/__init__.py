@@ -1,0 +1,56 @@
+"""Read, print, canonicalize and compare logical forms."""
+
+from __future__ import annotations
+
+from annotations.language.forms.canonical import canonical_text, canonicalize, equivalent
+from annotations.language.forms.difference import Change, diff
+from annotations.language.forms.logic import read_form
+from annotations.language.forms.printing import to_corpus, to_reading, to_template
+from annotations.language.forms.spans import Span, read_spans
+from annotations.language.forms.terms import (
+    CLASS_TOKEN,
+    UNKNOWN,
+    Application,
+    Constant,
+    Form,
+    Lambda,
+    Unknown,
+    Variable,
+    children,
+    depth,
+    free_variables,
+    head_predicate,
+    predicates,
+    walk,
+)
+from annotations.language.forms.tree_distance import FormDistances, tree_distance
+
+__all__ = [
+    "CLASS_TOKEN",
+    "UNKNOWN",
+    "Application",
+    "Change",
+    "Constant",
+    "Form",
+    "FormDistances",
+    "Lambda",
+    "Span",
+    "Unknown",
+    "Variable",
+    "canonical_text",
+    "canonicalize",
+    "children",
+    "depth",
+    "diff",
+    "equivalent",
+    "free_variables",
+    "head_predicate",
+    "predicates",
+    "read_form",
+    "read_spans",
+    "to_corpus",
+    "to_reading",
+    "to_template",
+    "tree_distance",
+    "walk",
+]

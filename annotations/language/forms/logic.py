@@ -1,0 +1,234 @@
+"""Logical forms: frozen values (``terms``), read from and printed in three notations.
+
+template  ``(find (λ$1:e (is_a $1 {kobject})))``, what people annotate
+corpus    ``( find ( lambda $1 e ( is_a $1 " <object> " ) ) )``, what parsers learn
+reading   ``find(λx. is_a(x, ⟨object⟩))``, what pages show
+
+Several bodies under one λ mean their conjunction (``∧`` in the reading notation) and stay distinct
+from an explicit ``(and a b)``, as in the published corpus.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from functools import lru_cache
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+from lark import Lark, Token, Transformer, UnexpectedInput, v_args
+
+from annotations.language.errors import LanguageError, Offsets, Position
+from annotations.language.forms.errors import explain
+from annotations.language.forms.printing import letter, to_corpus, to_reading, to_template, tokens
+from annotations.language.forms.terms import (
+    UNKNOWN,
+    Application,
+    Constant,
+    Form,
+    Lambda,
+    Unknown,
+    Variable,
+    children,
+    depth,
+    free_variables,
+    head_predicate,
+    predicates,
+    walk,
+)
+from annotations.language.limits import (
+    MAX_FORM,
+    MAX_NESTING,
+    MAX_NONTERMINAL,
+    MAX_PREDICATE,
+    require_length,
+    require_name,
+    require_writable,
+)
+from annotations.language.symbols import Nonterminal, Wildcard, read_wildcard
+
+__all__ = [
+    "UNKNOWN",
+    "Application",
+    "Constant",
+    "Form",
+    "Lambda",
+    "Unknown",
+    "Variable",
+    "children",
+    "depth",
+    "free_variables",
+    "head_predicate",
+    "letter",
+    "predicates",
+    "read_form",
+    "to_corpus",
+    "to_reading",
+    "to_template",
+    "tokens",
+    "walk",
+]
+
+_SHIELDED = r'"[^"]*"|\{[^{}]*\}'  # parentheses in here do not count
+_NESTING = re.compile(
+    rf"{_SHIELDED}|(?P<call>(?<=[\w-])\()|(?P<open>\()|(?P<close>\))|(?P<reach>λ|lambda(?![\w-]))"
+)
+
+
+def read_form(text: str, position: Position | None = None) -> Form:
+    """Read a logical form in any of the three notations.
+
+    Args:
+        text: one form; λ or ``lambda``, spacing, ``:`` and ``.`` after a variable are free.
+        position: the position of the first character of ``text`` in its source.
+
+    Returns:
+        A λ, an application or ``UNKNOWN``, with every variable bound.
+
+    Raises:
+        LanguageError: with the position, for text that is not a form, for a variable that no λ binds,
+            and for a text, a name, a number or a nesting beyond ``limits``.
+    """
+    try:
+        return _read(text)
+    except LanguageError as error:
+        place = error.position.inside(position) if position else error.position
+        raise LanguageError(error.message, place, error.hint) from None
+
+
+@lru_cache(maxsize=1 << 16)
+def _read(text: str) -> Form:
+    require_length(text, "form", MAX_FORM, Position())
+    require_writable(text, Position())
+    start = start_rule(text)
+    try:
+        form: Form = _LARK.parse(text, start=start)  # type: ignore[assignment]
+    except UnexpectedInput as error:
+        raise explain(error, text) from None
+    _refuse_unbound(form, text, start)
+    if not isinstance(form, Lambda | Application | Unknown):
+        raise LanguageError(
+            "this is an argument, not a logical form",
+            Offsets(text).position(len(text) - len(text.lstrip())),
+            'write a predicate around it, as in (go "kitchen"), or UNKNOWN',
+        )
+    return form
+
+
+@v_args(inline=True)
+class _Builder(Transformer[Token, Form]):
+    """Makes the value of each grammar rule while lark parses, so that no tree is built."""
+
+    def abstraction(self, variable: Token, *rest: Any) -> Lambda:
+        type_, bodies = ("e", rest) if isinstance(rest[0], Lambda) else (rest[0], rest[1:])
+        return Lambda(_index(variable), str(type_ or "e"), tuple(bodies))
+
+    def application(self, predicate: str | Nonterminal, *arguments: Form) -> Application:
+        return Application(predicate, arguments)
+
+    def head(self, name: Token) -> str | Nonterminal:
+        if name.type == "NONTERMINAL":
+            return self.nonterminal(name)
+        require_name(name, "predicate", MAX_PREDICATE, _start(name))
+        return str(name)
+
+    def variable(self, name: Token) -> Variable:
+        return Variable(_index(name))
+
+    def class_token(self, token: Token) -> Constant:
+        return Constant(f"<{token[1:-1].strip()}>")
+
+    def text(self, quoted: Token) -> Constant:
+        constant = Constant(quoted[1:-1])
+        if not constant.value:
+            raise LanguageError(
+                "there is nothing between the quotation marks", _start(quoted), 'write "cereal"'
+            )
+        return constant
+
+    def integer(self, digits: Token) -> Constant:
+        return Constant(int(digits))
+
+    def unknown(self, _: Token) -> Unknown:
+        return UNKNOWN
+
+    def slot(self, braces: Token) -> Wildcard:
+        return read_wildcard(str(braces), _start(braces))
+
+    def nonterminal(self, name: Token) -> Nonterminal:
+        require_name(name[1:], "nonterminal", MAX_NONTERMINAL, _start(name))
+        return Nonterminal(name[1:])
+
+
+_LARK = Lark(
+    Path(__file__).with_name("logic.lark").read_text(encoding="utf-8"),
+    parser="lalr",
+    start=["expression", "reading"],
+    transformer=_Builder(),
+)
+
+
+def _index(variable: Token) -> int:
+    """Return the number of a variable: ``$2`` and ``y`` are 2, ``x4`` is 4."""
+    if variable.startswith("$"):
+        return int(variable[1:])
+    return int(variable[1:]) if variable[1:] else "xyz".index(variable) + 1
+
+
+def start_rule(text: str) -> str:
+    """Return the rule of ``logic.lark`` that reads a text in its notation.
+
+    Raises:
+        LanguageError: the text nests too deep, by its brackets alone, for anything recursive.
+    """
+    start = "expression" if text.lstrip().startswith("(") else "reading"
+    deepening = ("call", "reach") if start == "reading" else ("call", "open")
+    level = 0
+    outer: list[int] = []
+    for match in _NESTING.finditer(text):
+        if match["call"] or match["open"]:
+            outer.append(level)
+        elif match["close"]:
+            level = outer.pop() if outer else 0
+        level += match.lastgroup in deepening
+        if level > MAX_NESTING:
+            raise LanguageError(
+                f"the form nests more than {MAX_NESTING} deep",
+                Offsets(text).position(match.start()),
+                "split it, or close a parenthesis earlier",
+            )
+    return start
+
+
+def _refuse_unbound(form: Form, text: str, start: str) -> None:
+    """Refuse a variable that no λ binds.
+
+    Terms have no positions, so the n-th variable of the form is looked up as the n-th token.
+    """
+    number = next((n for n, is_bound in enumerate(_occurrences(form)) if not is_bound), None)
+    if number is None:
+        return
+    lexed = _LARK.parse_interactive(text, start=start).iter_parse()
+    names: Iterable[Token] = (token for token in lexed if token.type in ("VARIABLE", "LETTER"))
+    token = next(islice(names, number, None))
+    raise LanguageError(
+        f"no λ binds the variable {token}",
+        _start(token),
+        f"write (λ${_index(token)}:e …) around it, or use the variable of a λ that is already there",
+    )
+
+
+def _occurrences(form: Form, bound: frozenset[int] = frozenset()) -> Iterator[bool]:
+    """Yield for each variable as written, including those after a λ, whether it is bound."""
+    if isinstance(form, Lambda):
+        yield True
+        bound |= {form.variable}
+    elif isinstance(form, Variable):
+        yield form.index in bound
+    for child in children(form):
+        yield from _occurrences(child, bound)
+
+
+def _start(token: Token) -> Position:
+    return Position("", token.line or 1, token.column or 1)

@@ -1,0 +1,113 @@
+"""The terms of a logical form, as frozen values.
+
+Equality is literal and hashes agree with it; for equality up to the names of variables see
+``canonical``. Import the terms from ``forms``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from annotations.language.symbols import ENTITY_CLASSES, Nonterminal, Wildcard
+
+CLASS_TOKEN = re.compile(r"<([^\W\d]\w*)>")
+_BARE_TOKEN = re.compile(rf"({'|'.join(ENTITY_CLASSES)})[0-9]+")
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """``$index``, bound by a λ around it."""
+
+    index: int
+
+
+@dataclass(frozen=True, slots=True)
+class Constant:
+    """A quoted text (the name of an entity, a class token such as ``<object>``) or an integer.
+
+    Runs of whitespace become one space and quotation marks become apostrophes, so that every
+    constant can be printed in every notation.
+    """
+
+    value: str | int
+
+    def __post_init__(self) -> None:
+        if isinstance(self.value, str):
+            object.__setattr__(self, "value", " ".join(self.value.replace('"', "'").split()))
+
+    @property
+    def token_class(self) -> str:
+        """``object`` for ``<object>``, ``<object0>`` and ``object0``; empty for anything else."""
+        if not isinstance(self.value, str):
+            return ""
+        match = CLASS_TOKEN.fullmatch(self.value) or _BARE_TOKEN.fullmatch(self.value)
+        return match[1].rstrip("0123456789") if match else ""
+
+
+@dataclass(frozen=True, slots=True)
+class Unknown:
+    """``UNKNOWN``: a command without a form, or an argument that the command leaves open."""
+
+
+@dataclass(frozen=True, slots=True)
+class Application:
+    """``(predicate argument …)``; in a template a nonterminal may stand as the predicate."""
+
+    predicate: str | Nonterminal
+    arguments: tuple[Form, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Lambda:
+    """``(λ$variable:type body …)``: what satisfies every body."""
+
+    variable: int
+    type: str
+    bodies: tuple[Form, ...]
+
+
+Form: TypeAlias = "Lambda | Application | Variable | Constant | Wildcard | Nonterminal | Unknown"
+
+UNKNOWN = Unknown()
+
+
+def children(form: Form) -> tuple[Form, ...]:
+    """Return the bodies of a λ or the arguments of an application; nothing for a leaf."""
+    if isinstance(form, Lambda):
+        return form.bodies
+    return form.arguments if isinstance(form, Application) else ()
+
+
+def walk(form: Form) -> Iterator[Form]:
+    """Yield the form and everything inside it, each before its parts."""
+    yield form
+    for child in children(form):
+        yield from walk(child)
+
+
+def depth(form: Form) -> int:
+    """Return how deep λs and applications nest: 0 for a leaf, 1 for ``(go "kitchen")``."""
+    if isinstance(form, Lambda | Application):
+        return 1 + max(map(depth, children(form)), default=0)
+    return 0
+
+
+def predicates(form: Form) -> tuple[str, ...]:
+    """Return the names of the predicates in order of appearance, including repetitions."""
+    return tuple(str(node.predicate) for node in walk(form) if isinstance(node, Application))
+
+
+def head_predicate(form: Form) -> str:
+    """Return the outermost predicate (below a λ at the top); ``UNKNOWN`` for a form without any."""
+    return next(iter(predicates(form)), "UNKNOWN")
+
+
+def free_variables(form: Form) -> frozenset[int]:
+    """Return the variables that no λ of the form binds; none for a form from ``read_form``."""
+    if isinstance(form, Variable):
+        return frozenset((form.index,))
+    inside = frozenset[int]().union(*map(free_variables, children(form)))
+    return inside - {form.variable} if isinstance(form, Lambda) else inside

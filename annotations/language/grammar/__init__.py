@@ -1,0 +1,57 @@
+"""Command grammars: productions read from files, expanded, recognised and checked."""
+
+from __future__ import annotations
+
+from annotations.language.grammar.budget import CHECK_STEPS, Budget, TooManyCombinations
+from annotations.language.grammar.derivation_paths import passages
+from annotations.language.grammar.expander import Expander, anonymized, intact, readable
+from annotations.language.grammar.folder import (
+    TEMPLATE_SUFFIX,
+    TRIPLE_FILES,
+    GrammarFolder,
+    apply_alias,
+    is_grammar_name,
+    read_grammar_files,
+    resolve_import,
+)
+from annotations.language.grammar.grammar import ROOT, Grammar
+from annotations.language.grammar.graph import MAX_WORDS
+from annotations.language.grammar.productions import (
+    GrammarFile,
+    Production,
+    print_production,
+    read_production,
+    read_productions,
+)
+from annotations.language.grammar.recognizer import Alternative, Chart, Item, Recognizer, RuleBook
+
+__all__ = [
+    "CHECK_STEPS",
+    "MAX_WORDS",
+    "ROOT",
+    "TEMPLATE_SUFFIX",
+    "TRIPLE_FILES",
+    "Alternative",
+    "Budget",
+    "Chart",
+    "Expander",
+    "Grammar",
+    "GrammarFile",
+    "GrammarFolder",
+    "Item",
+    "Production",
+    "Recognizer",
+    "RuleBook",
+    "TooManyCombinations",
+    "anonymized",
+    "apply_alias",
+    "intact",
+    "is_grammar_name",
+    "passages",
+    "print_production",
+    "read_grammar_files",
+    "read_production",
+    "read_productions",
+    "readable",
+    "resolve_import",
+]

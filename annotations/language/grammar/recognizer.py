@@ -1,0 +1,162 @@
+"""Decide whether a grammar derives a command, with a chart and without enumerating commands.
+
+The chart remembers, for each rule and each place in the command, where that rule can end. The time
+is polynomial in the length of the command, however many commands the grammar has (after Earley, "An
+efficient context-free parsing algorithm", CACM 1970; top-down with one word of look-ahead, which is
+enough for grammars without recursion).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from annotations.language.grammar.budget import Budget
+from annotations.language.grammar.expander import Expander
+from annotations.language.grammar.grammar import ROOT, Grammar
+from annotations.language.symbols import Choice, Nonterminal, Symbols
+
+# A run of words, or the number of a rule.
+Item: TypeAlias = "tuple[str, ...] | int"
+Alternative: TypeAlias = "tuple[Item, ...]"
+
+# A rule that can begin with more words than this is not looked up by its first word: the tables would be too large.
+MOST_FIRST_WORDS = 1_000
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """A nonterminal, a choice or a template's pattern, ready for matching.
+
+    ``by_word`` maps a word to the alternatives that can begin with it. ``always`` are tried at
+    every word: they can be empty, or can begin with more than ``MOST_FIRST_WORDS`` words. ``first``
+    are the words that the rule can begin with (None: too many), ``names`` the nonterminals inside.
+    """
+
+    name: str
+    by_word: dict[str, tuple[Alternative, ...]]
+    always: tuple[Alternative, ...]
+    first: frozenset[str] | None
+    can_be_empty: bool
+    names: frozenset[str]
+
+    def candidates(self, word: str) -> tuple[Alternative, ...]:
+        return self.by_word.get(word, ()) + self.always
+
+
+class RuleBook:
+    """The rules of a grammar, numbered when they are first needed."""
+
+    def __init__(self, expander: Expander[str]) -> None:
+        self._expander = expander
+        self._numbers: dict[Nonterminal | Choice, int] = {}
+        self.rules: list[Rule] = []
+
+    def number(self, symbol: Nonterminal | Choice) -> int:
+        """Return the number of a symbol's rule. A new rule is made together with all rules below it."""
+        if symbol not in self._numbers:
+            name = symbol.name if isinstance(symbol, Nonterminal) else ""
+            alternatives = [self._items(parts) for parts in self._expander.rules(symbol)]
+            self._numbers[symbol] = self._add(name, alternatives)
+        return self._numbers[symbol]
+
+    def add_pattern(self, pattern: Symbols) -> int:
+        """Add a rule for a sequence that is not in any production, and return its number."""
+        return self._add("", [self._items(self._expander.parts(pattern))])
+
+    def _items(self, parts: tuple[tuple[str, ...] | Nonterminal | Choice, ...]) -> Alternative:
+        return tuple(part if isinstance(part, tuple) else self.number(part) for part in parts)
+
+    def _add(self, name: str, alternatives: list[Alternative]) -> int:
+        by_word: dict[str, list[Alternative]] = {}
+        always: list[Alternative] = []
+        first: set[str] = set()
+        names = {name} - {""}
+        firsts = [self._first(alternative) for alternative in alternatives]
+        for alternative, (words, can_be_empty) in zip(alternatives, firsts, strict=True):
+            first |= words or set()
+            if can_be_empty or words is None:
+                always.append(alternative)
+            else:
+                for word in words:
+                    by_word.setdefault(word, []).append(alternative)
+            names.update(*(self.rules[item].names for item in alternative if isinstance(item, int)))
+        table = {word: tuple(beginning) for word, beginning in by_word.items()}
+        has_many = len(first) > MOST_FIRST_WORDS or any(words is None for words, _ in firsts)
+        is_nullable = any(can_be_empty for _, can_be_empty in firsts)
+        known = None if has_many else frozenset(first)
+        self.rules.append(Rule(name, table, tuple(always), known, is_nullable, frozenset(names)))
+        return len(self.rules) - 1
+
+    def _first(self, alternative: Alternative) -> tuple[set[str] | None, bool]:
+        """Return the words it can begin with (None: too many) and whether it can be empty."""
+        words: set[str] | None = set()
+        for item in alternative:
+            if isinstance(item, tuple):
+                return None if words is None else words | {item[0]}, False
+            rule = self.rules[item]
+            words = None if words is None or rule.first is None else words | rule.first
+            if not rule.can_be_empty:
+                return words, False
+        return words, True
+
+
+class Chart:
+    """What the rules of a rule book match in one command; filled on demand."""
+
+    def __init__(
+        self, book: RuleBook, words: tuple[str, ...], budget: Budget | None = None
+    ) -> None:
+        self.rules = book.rules
+        self.words = words
+        self.budget = budget or Budget()
+        self._ends: dict[tuple[int, int], frozenset[int]] = {}
+
+    def ends(self, item: Item, start: int) -> frozenset[int]:
+        """Return the places (word counts) where an item that begins at ``start`` can end."""
+        if isinstance(item, tuple):
+            stop = start + len(item)
+            return frozenset((stop,)) if self.words[start:stop] == item else frozenset()
+        key = (item, start)
+        if key not in self._ends:
+            self._ends[key] = frozenset().union(
+                *(self._ends_of(alternative, start) for alternative in self.candidates(item, start))
+            )
+        return self._ends[key]
+
+    def candidates(self, rule: int, start: int) -> tuple[Alternative, ...]:
+        word = self.words[start] if start < len(self.words) else ""
+        return self.rules[rule].candidates(word)
+
+    def _ends_of(self, alternative: Alternative, start: int) -> frozenset[int]:
+        reached = frozenset((start,))
+        for item in alternative:
+            self.budget.spend(1 + len(reached))
+            if len(reached) == 1:
+                reached = self.ends(item, *reached)
+            else:
+                reached = frozenset().union(*(self.ends(item, place) for place in reached))
+            if not reached:
+                break
+        return reached
+
+
+class Recognizer:
+    """Accepts exactly the anonymized commands of a grammar.
+
+    Raises:
+        LanguageError: the grammar has a cycle.
+    """
+
+    def __init__(self, grammar: Grammar, root: str = ROOT) -> None:
+        self._book = RuleBook(grammar.expander)
+        self._root = self._book.number(Nonterminal(root))
+
+    def accepts(self, command: str, budget: Budget | None = None) -> bool:
+        """Return whether the grammar derives the command, given as words between spaces.
+
+        Raises:
+            TooManyCombinations: the budget is spent.
+        """
+        words = tuple(command.split())
+        return bool(words) and len(words) in Chart(self._book, words, budget).ends(self._root, 0)

@@ -1,0 +1,17 @@
+"""Replace wildcards and class tokens with entities, and back; ask for what is missing."""
+
+from __future__ import annotations
+
+from annotations.language.grounding.anonymizer import QUESTION_WORD, Anonymized, Anonymizer, Span
+from annotations.language.grounding.deanonymizer import Deanonymized, deanonymize
+from annotations.language.grounding.grounding import ground
+
+__all__ = [
+    "QUESTION_WORD",
+    "Anonymized",
+    "Anonymizer",
+    "Deanonymized",
+    "Span",
+    "deanonymize",
+    "ground",
+]

@@ -1,0 +1,158 @@
+"""Replace the entities that a text names with class tokens."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import IntEnum
+
+from annotations.language.english import spellings
+from annotations.language.ontology import Entity, Ontology
+from annotations.language.symbols import ENTITY_CLASSES
+
+_TOKEN = re.compile(r"<\w+>|\w+|[^\w\s]")
+_INFLECTED = ("object", "category", "location", "room")
+# A grounded question becomes this word; the question itself is only in the note.
+QUESTION_WORD = "question"
+
+
+class _Likeness(IntEnum):
+    """How a spelling relates to an entity; if several fit, the closest wins."""
+
+    EXACT = 0
+    ALIAS = 1
+    INFLECTED = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """``original[start:end]`` names an entity and became ``token``.
+
+    ``value`` is what a grounded form says: the entity's text, or the word for any object of a
+    category. ``others`` are further rows that match the words equally well.
+    """
+
+    start: int
+    end: int
+    token: str
+    entity_class: str
+    entity: Entity
+    value: str
+    others: tuple[Entity, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Anonymized:
+    """``text`` is ``original`` with each span replaced and nothing else changed."""
+
+    original: str
+    text: str
+    spans: tuple[Span, ...]
+
+    @property
+    def command(self) -> str:
+        """The text written like a generated command: commas apart, single spaces."""
+        return " ".join(self.text.replace(",", " , ").split())
+
+
+@dataclass(frozen=True, slots=True)
+class _Reading:
+    """One way to understand some words."""
+
+    likeness: _Likeness
+    entity_class: str
+    value: str
+    entity: Entity
+
+
+class Anonymizer:
+    """Finds entities by the longest match of whole words, left to right, ignoring case.
+
+    Texts, aliases, plurals and singulars count. An exact text wins over an alias, an alias over an
+    inflection; after that the order of ``ENTITY_CLASSES`` decides. The singular of a category is a
+    word for any of its objects, as in ``{object?}``, and becomes ``<object>``.
+
+    Args:
+        ontology: the entities that a text can name.
+        numbered: tokens ``<object0>``, ``<object1>``, …, one number for each value.
+    """
+
+    def __init__(self, ontology: Ontology, numbered: bool = False) -> None:
+        self._numbered = numbered
+        readings: defaultdict[tuple[str, ...], list[_Reading]] = defaultdict(list)
+        for entity in ontology.entities:
+            for words, reading in _readings(entity):
+                if key := tuple(_TOKEN.findall(words.casefold())):
+                    readings[key].append(reading)
+        self._readings = {key: _best(options) for key, options in readings.items()}
+        self._longest = max(map(len, self._readings), default=0)
+
+    def anonymize(self, text: str) -> Anonymized:
+        """Replace the names of entities; class tokens that are already there stay."""
+        pieces: list[str] = []
+        spans: list[Span] = []
+        numbers: defaultdict[str, dict[str, int]] = defaultdict(dict)
+        end = 0
+        for start, stop, (best, *rest) in self._find_matches(text):
+            token = self._token(best, numbers[best.entity_class])
+            others = tuple(each.entity for each in rest)
+            spans.append(
+                Span(start, stop, token, best.entity_class, best.entity, best.value, others)
+            )
+            pieces += [text[end:start], token]
+            end = stop
+        return Anonymized(text, "".join((*pieces, text[end:])), tuple(spans))
+
+    def _find_matches(self, text: str) -> Iterator[tuple[int, int, tuple[_Reading, ...]]]:
+        """Yield (start, end, readings) for each match."""
+        tokens = list(_TOKEN.finditer(text))
+        words = [token[0].casefold() for token in tokens]
+        place = 0
+        while place < len(words):
+            for length in range(min(self._longest, len(words) - place), 0, -1):
+                readings = self._readings.get(tuple(words[place : place + length]))
+                if readings:
+                    last = place + length - 1
+                    yield tokens[place].start(), tokens[last].end(), readings
+                    place = last
+                    break
+            place += 1
+
+    def _token(self, reading: _Reading, numbers: dict[str, int]) -> str:
+        if not self._numbered:
+            return f"<{reading.entity_class}>"
+        number = numbers.setdefault(reading.value, len(numbers))
+        return f"<{reading.entity_class}{number}>"
+
+
+def _readings(entity: Entity) -> Iterator[tuple[str, _Reading]]:
+    """Yield every spelling of an entity with its reading."""
+    entity_class, text = entity.entity_class, entity.text
+    exact = _Reading(_Likeness.EXACT, entity_class, text, entity)
+    yield text, exact
+    if entity_class == "question":
+        yield QUESTION_WORD, _Reading(_Likeness.EXACT, entity_class, QUESTION_WORD, entity)
+    for alias in entity.aliases:
+        yield alias, _Reading(_Likeness.ALIAS, entity_class, text, entity)
+    singular = entity.attribute("singular") if entity_class == "category" else None
+    if singular and singular != text:
+        yield singular, _Reading(_Likeness.EXACT, "object", singular, entity)
+        return
+    for noun in (text, *entity.aliases) if entity_class in _INFLECTED else ():
+        for spelling in spellings(noun):
+            yield spelling, _Reading(_Likeness.INFLECTED, entity_class, text, entity)
+
+
+def _best(readings: list[_Reading]) -> tuple[_Reading, ...]:
+    """Return the readings that share the closest likeness and then the first class."""
+
+    def rank(reading: _Reading) -> tuple[int, int]:
+        return reading.likeness, _CLASS_ORDER.get(reading.entity_class, len(_CLASS_ORDER))
+
+    closest = min(map(rank, readings))
+    return tuple(dict.fromkeys(each for each in readings if rank(each) == closest))
+
+
+_CLASS_ORDER = {name: place for place, name in enumerate(ENTITY_CLASSES)}

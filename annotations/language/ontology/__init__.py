@@ -1,0 +1,21 @@
+"""The ontology of a world: its entities, read from and written to the files of the generator."""
+
+from __future__ import annotations
+
+from annotations.language.ontology.additions import Additions, additions_to, read_entities
+from annotations.language.ontology.checks import ontology_problems
+from annotations.language.ontology.entities import Entity, Ontology
+from annotations.language.ontology.reading import ONTOLOGY_FILES, read_ontology
+from annotations.language.ontology.writing import write_ontology
+
+__all__ = [
+    "ONTOLOGY_FILES",
+    "Additions",
+    "Entity",
+    "Ontology",
+    "additions_to",
+    "ontology_problems",
+    "read_entities",
+    "read_ontology",
+    "write_ontology",
+]

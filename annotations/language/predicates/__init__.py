@@ -1,0 +1,42 @@
+"""Infer the predicates of a world from its forms, check forms against them, say forms in English."""
+
+from __future__ import annotations
+
+from annotations.language.predicates.gloss_patterns import pattern_of_name
+from annotations.language.predicates.notation import print_signatures, read_signatures
+from annotations.language.predicates.predicates import (
+    Misuse,
+    Predicate,
+    PredicateKind,
+    check_form,
+    find_misuses,
+    gloss,
+    infer_signatures,
+)
+from annotations.language.predicates.samples import sample_forms
+from annotations.language.predicates.signatures import (
+    ENTITY_KINDS,
+    ArgumentKind,
+    Signature,
+    argument_kind,
+    signature_of,
+)
+
+__all__ = [
+    "ENTITY_KINDS",
+    "ArgumentKind",
+    "Misuse",
+    "Predicate",
+    "PredicateKind",
+    "Signature",
+    "argument_kind",
+    "check_form",
+    "find_misuses",
+    "gloss",
+    "infer_signatures",
+    "pattern_of_name",
+    "print_signatures",
+    "read_signatures",
+    "sample_forms",
+    "signature_of",
+]

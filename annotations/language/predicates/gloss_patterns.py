@@ -1,0 +1,99 @@
+"""Gloss patterns: how a predicate is said in English.
+
+A pattern is a list of alternatives separated by ``|``; the one that uses most of the arguments
+wins, then the one that says most about their kinds, then the first. In an alternative
+
+- ``{2}`` is the second argument; ``{2:room}`` asks that it be of that kind; ``{2:text}`` takes a
+  text written out and gives it without an article, as ``{2:name}`` does with a name; ``{1:plural}``
+  says "objects", not "the object"; ``{2=current}`` asks for that text (or for ``UNKNOWN``) and says
+  nothing; ``{*}`` is all arguments, in order;
+- ``_`` in a description is the noun that it describes: ``heaviest _``, ``_ that is at {2}``. A
+  description without ``_`` gives the noun itself: ``person``. Its ``{1}`` is what it describes;
+- ``=`` in front of an action marks what it is called inside another: ``= the number of {1:plural}``.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import lru_cache
+
+from annotations.language.english import KNOWN_PATTERNS, PREPOSITIONS, RELATIONS
+from annotations.language.predicates.signatures import Signature
+
+_SLOT = re.compile(r"\{(?P<place>[1-9][0-9]?|\*)(?::(?P<kind>\w+)|=(?P<value>[^{}]*))?\}")
+
+
+@dataclass(frozen=True, slots=True)
+class Slot:
+    """An argument in a pattern; ``place`` counts from 0 and is None for ``{*}``."""
+
+    place: int | None
+    kind: str = ""
+    value: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Alternative:
+    """Texts and slots in turn; ``is_nested`` for one marked with ``=``."""
+
+    pieces: tuple[str | Slot, ...]
+    is_nested: bool = False
+
+    @property
+    def slots(self) -> tuple[Slot, ...]:
+        return tuple(piece for piece in self.pieces if isinstance(piece, Slot))
+
+
+@lru_cache(maxsize=1 << 12)
+def read_pattern(pattern: str) -> tuple[Alternative, ...]:
+    """Return the alternatives of a pattern. Any text is a pattern: what is not a slot is plain text."""
+    return tuple(_alternative(part.strip()) for part in pattern.split("|"))
+
+
+def default_pattern(name: str, is_action: bool, signatures: tuple[Signature, ...]) -> str:
+    """Return the pattern of a predicate of the published corpus, or else one made from the name."""
+    return KNOWN_PATTERNS.get(name) or pattern_of_name(name, is_action, signatures)
+
+
+def pattern_of_name(name: str, is_action: bool, signatures: tuple[Signature, ...]) -> str:
+    """Make a pattern from the words of the name and from what the predicate takes, and nothing else."""
+    words = name.replace("_", " ").replace("-", " ").strip() or name
+    arities = sorted({len(each.arguments) for each in signatures}) or [1]
+    if is_action:
+        return " | ".join(_action(words, arity, signatures) for arity in arities)
+    return " | ".join(dict.fromkeys(_description(name, words, arity) for arity in arities))
+
+
+def _alternative(text: str) -> Alternative:
+    is_nested = text.startswith("=")
+    pieces: list[str | Slot] = []
+    end = 0
+    text = text.removeprefix("=").strip()
+    for match in _SLOT.finditer(text):
+        place = None if match["place"] == "*" else int(match["place"]) - 1
+        pieces += [
+            text[end : match.start()],
+            Slot(place, match["kind"] or "", match["value"] or ""),
+        ]
+        end = match.end()
+    return Alternative(tuple(piece for piece in (*pieces, text[end:]) if piece), is_nested)
+
+
+def _action(words: str, arity: int, signatures: tuple[Signature, ...]) -> str:
+    """Return ``verb {1} preposition {2}``; the preposition depends on the kind of the argument."""
+    kinds = next(each.arguments for each in signatures if len(each.arguments) == arity)
+    later = (f"{PREPOSITIONS.get(kind, 'with')} {{{n}}}" for n, kind in enumerate(kinds[1:], 2))
+    return " ".join((words, *(["{1}"] if arity else []), *later))
+
+
+def _description(name: str, words: str, arity: int) -> str:
+    if arity <= 1:
+        return f"_ that is {words}" if name.endswith("ing") else f"{words} _"
+    if name.endswith(("est", "most")):
+        return f"{{2}} {words} _"
+    if name.startswith(("is_", "has_", "can_")):
+        return f"_ that {words} {{2}}"
+    if name in RELATIONS or name.endswith(("_of", "_to", "_by")):
+        return f"_ that is {words} {{2}}"
+    return f"_ whose {words} is {{2:text}} | _ whose {words} is {{2}}"

@@ -1,0 +1,255 @@
+"""Say a logical form as one English sentence, with the patterns of its predicates."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import TypeGuard
+
+from annotations.language.english import CLASS_WORDS, NUMBERS, plural
+from annotations.language.forms import (
+    Application,
+    Constant,
+    Form,
+    Lambda,
+    Unknown,
+    Variable,
+    to_reading,
+)
+from annotations.language.predicates.gloss_patterns import Alternative, Slot, read_pattern
+from annotations.language.predicates.signatures import ArgumentKind, argument_kind
+from annotations.language.symbols import Wildcard
+
+NOT_UNDERSTOOD = "a command that the robot does not understand"
+
+
+@dataclass(frozen=True, slots=True)
+class _Scope:
+    """How to say predicates, the conjuncts that hold here, the variables that are being described."""
+
+    patterns: Mapping[str, str]
+    actions: frozenset[str]
+    conjuncts: tuple[Application, ...] = ()
+    said: frozenset[int] = frozenset()
+
+    def about(self, variable: int) -> tuple[Application, ...]:
+        """Return the conjuncts that describe a variable, except by things already being described."""
+        if variable in self.said:
+            return ()
+        described = {Variable(index) for index in self.said}
+        return tuple(
+            each
+            for each in self.conjuncts
+            if each.arguments[:1] == (Variable(variable),)
+            and described.isdisjoint(each.arguments[1:])
+        )
+
+    def describes(self, form: Form) -> TypeGuard[Application]:
+        """Return whether a form describes a variable, rather than says what to do with it."""
+        return (
+            isinstance(form, Application)
+            and str(form.predicate) not in self.actions
+            and isinstance(next(iter(form.arguments), None), Variable)
+        )
+
+
+@dataclass(slots=True)
+class _NounPhrase:
+    """The adjectives, the noun and what follows it, while they are collected."""
+
+    noun: str = ""
+    before: list[str] = field(default_factory=list)
+    after: list[str] = field(default_factory=list)
+    is_plural: bool = False
+    is_person: bool = False
+
+    def words(self, is_plural: bool) -> str:
+        is_plural = is_plural or self.is_plural
+        noun = self.noun or ("one" if self.is_person else "object")
+        is_person = noun.endswith("person") or (not self.noun and self.is_person)
+        noun = plural(noun) if is_plural else noun
+        return " ".join([*self.before, noun, *_join_clauses(self.after, is_person, is_plural)])
+
+
+def sentence(form: Form, patterns: Mapping[str, str], actions: frozenset[str]) -> str:
+    """Return the gloss of a form, from the pattern of each predicate (see ``gloss_patterns``).
+
+    ``actions`` names the predicates that are actions; the others describe.
+    """
+    if isinstance(form, Unknown):
+        return NOT_UNDERSTOOD
+    scope = _Scope(patterns, actions)
+    if isinstance(form, Lambda):
+        bodies, scope = _open(form, scope)
+        to_do = [body for body in bodies if not scope.describes(body)]
+        if to_do:
+            return ", then ".join(_action(body, scope, False) for body in to_do)
+        return _describe(form.variable, scope)
+    return _action(form, scope, False) if isinstance(form, Application) else _phrase(form, scope)
+
+
+def _open(form: Lambda, scope: _Scope) -> tuple[tuple[Form, ...], _Scope]:
+    """Return the bodies below a chain of λs, with explicit conjunctions split, and their scope."""
+    bodies: list[Form] = []
+    waiting = list(form.bodies)
+    while waiting:
+        body = waiting.pop(0)
+        if isinstance(body, Lambda):
+            waiting = [*body.bodies, *waiting]
+        elif isinstance(body, Application) and body.predicate == "and":
+            waiting = [*body.arguments, *waiting]
+        else:
+            bodies.append(body)
+    conjuncts = tuple(body for body in bodies if isinstance(body, Application))
+    return tuple(bodies), replace(scope, conjuncts=scope.conjuncts + conjuncts)
+
+
+def _action(form: Form, scope: _Scope, is_nested: bool) -> str:
+    if not isinstance(form, Application):
+        return _phrase(form, scope)
+    form, scope = _gather(form, scope)
+    chosen = _choose(form, scope.patterns, is_nested)
+    return _fill(chosen, form.arguments, scope)
+
+
+def _gather(form: Application, scope: _Scope) -> tuple[Application, _Scope]:
+    """Turn ``(follow (person $1) (at $1 …))`` into ``(follow $1)``; the descriptions go into the scope."""
+    about = tuple(each for each in form.arguments if scope.describes(each))
+    if not about:
+        return form, scope
+    others = tuple(each for each in form.arguments if each not in about)
+    gathered = replace(form, arguments=(about[0].arguments[0], *others))
+    return gathered, replace(scope, conjuncts=about)
+
+
+def _choose(form: Application, patterns: Mapping[str, str], is_nested: bool) -> Alternative:
+    """Return the alternative that fits the arguments best."""
+    pattern = patterns.get(str(form.predicate)) or str(form.predicate).replace("_", " ")
+    alternatives = read_pattern(pattern)
+    fitting = [each for each in alternatives if _fits(each, form.arguments)] or [alternatives[0]]
+    return max(fitting, key=lambda each: _merit(each, is_nested))
+
+
+def _fits(alternative: Alternative, arguments: tuple[Form, ...]) -> bool:
+    return all(_slot_fits(slot, arguments) for slot in alternative.slots)
+
+
+def _slot_fits(slot: Slot, arguments: tuple[Form, ...]) -> bool:
+    if slot.place is None:
+        return True
+    if slot.place >= len(arguments):
+        return False
+    argument = arguments[slot.place]
+    if slot.value:
+        is_unknown = isinstance(argument, Unknown) and slot.value == "UNKNOWN"
+        return is_unknown or argument == Constant(slot.value)
+    return slot.kind in ("", "plural", argument_kind(argument))
+
+
+def _merit(alternative: Alternative, is_nested: bool) -> tuple[bool, int, int]:
+    slots = alternative.slots
+    specific = sum(bool(slot.value or slot.kind not in ("", "plural")) for slot in slots)
+    return alternative.is_nested == is_nested, len(slots), specific
+
+
+def _fill(alternative: Alternative, arguments: tuple[Form, ...], scope: _Scope) -> str:
+    """Return the text of an alternative with its slots filled."""
+    texts = (
+        piece if isinstance(piece, str) else _slot(piece, arguments, scope)
+        for piece in alternative.pieces
+    )
+    return " ".join("".join(texts).split())
+
+
+def _slot(slot: Slot, arguments: tuple[Form, ...], scope: _Scope) -> str:
+    if slot.place is None:
+        return ", then ".join(_phrase(each, scope) for each in arguments)
+    if slot.value or slot.place >= len(arguments):
+        return ""
+    argument = arguments[slot.place]
+    if slot.kind in (ArgumentKind.TEXT, ArgumentKind.NAME):
+        return _bare(argument)
+    return _phrase(argument, scope, slot.kind == "plural")
+
+
+def _phrase(form: Form, scope: _Scope, is_plural: bool = False) -> str:
+    """Say an argument: ``the object that is at the location``, ``three``, ``something``."""
+    if isinstance(form, Lambda):
+        _, inner = _open(form, replace(scope, conjuncts=()))
+        return _describe(form.variable, inner, is_plural)
+    if isinstance(form, Application):
+        return _action(form, scope, True)
+    if isinstance(form, Variable):
+        return _describe(form.index, scope) if scope.about(form.index) else "them"
+    if isinstance(form, Unknown):
+        return "something"
+    return _bare(form) if argument_kind(form) is ArgumentKind.NUMBER else f"the {_bare(form)}"
+
+
+def _bare(form: Form) -> str:
+    """Say a constant or a slot without an article."""
+    if isinstance(form, Constant) and isinstance(form.value, int):
+        return NUMBERS[form.value] if 0 <= form.value < len(NUMBERS) else str(form.value)
+    kind = argument_kind(form)
+    if kind is ArgumentKind.TEXT and isinstance(form, Constant):
+        return str(form.value)
+    if isinstance(form, Constant | Wildcard):
+        return CLASS_WORDS.get(kind, str(kind))
+    return to_reading(form)
+
+
+def _describe(variable: int, scope: _Scope, is_plural: bool = False) -> str:
+    """Return the noun phrase for what a λ describes."""
+    about = scope.about(variable)
+    if not about:
+        return _attribute(variable, scope)
+    inner = replace(scope, said=scope.said | {variable})
+    phrase = _NounPhrase()
+    for each in about:
+        _add(phrase, each, inner)
+    return ("" if is_plural else "the ") + phrase.words(is_plural)
+
+
+def _attribute(variable: int, scope: _Scope) -> str:
+    """Say ``(name $2 $1)`` from the side of ``$1``: the name of what ``$2`` stands for."""
+    for each in scope.conjuncts:
+        if Variable(variable) in each.arguments[1:] and isinstance(each.arguments[0], Variable):
+            inner = replace(scope, said=scope.said | {variable})
+            owner = _describe(each.arguments[0].index, inner)
+            return f"the {str(each.predicate).replace('_', ' ')} of {owner}"
+    return "something"
+
+
+def _add(phrase: _NounPhrase, conjunct: Application, scope: _Scope) -> None:
+    """Put one description before the noun, after it or in its place."""
+    kinds = [argument_kind(each) for each in conjunct.arguments]
+    phrase.is_person |= ArgumentKind.GESTURE in kinds or ArgumentKind.NAME in kinds
+    phrase.is_plural |= any(
+        isinstance(each, Constant) and isinstance(each.value, int) and each.value != 1
+        for each in conjunct.arguments
+    )
+    chosen = _choose(conjunct, scope.patterns, False)
+    if chosen.pieces == (Slot(1),):
+        phrase.noun = _bare(conjunct.arguments[1])
+        return
+    before, underscore, after = _fill(chosen, conjunct.arguments, scope).partition("_")
+    if not underscore:
+        phrase.noun = before
+        return
+    phrase.before += [before.strip()] * bool(before.strip())
+    phrase.after += [after.strip()] * bool(after.strip())
+
+
+def _join_clauses(clauses: Iterable[str], is_person: bool, is_plural: bool) -> list[str]:
+    """Fit clauses like ``that is at …`` to people and to plurals; join a second one with "and"."""
+    verb = "are" if is_plural else "is"
+    pronoun = "who" if is_person else "that"
+    joined: list[str] = []
+    has_clause = False
+    for clause in clauses:
+        if clause.startswith("that is "):
+            rest = clause.removeprefix("that is ")
+            clause = f"and {rest}" if has_clause else f"{pronoun} {verb} {rest}"
+            has_clause = True
+        joined.append(clause)
+    return joined

@@ -1,0 +1,178 @@
+"""Infer predicates from forms, check forms against them, and say forms in English."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from difflib import get_close_matches
+from enum import StrEnum
+
+from annotations.language.english import say_count
+from annotations.language.errors import Position, Problem, warning_at
+from annotations.language.forms import Application, Form, Lambda, Variable, children, walk
+from annotations.language.limits import MAX_GLOSS
+from annotations.language.predicates.gloss_patterns import default_pattern
+from annotations.language.predicates.glossing import sentence
+from annotations.language.predicates.signatures import (
+    ArgumentKind,
+    Signature,
+    argument_kind,
+    signature_of,
+)
+
+__all__ = [
+    "ArgumentKind",
+    "Misuse",
+    "Predicate",
+    "PredicateKind",
+    "Signature",
+    "argument_kind",
+    "check_form",
+    "find_misuses",
+    "gloss",
+    "infer_signatures",
+    "signature_of",
+]
+
+
+class PredicateKind(StrEnum):
+    """An ACTION is something to do; a DESCRIPTION says something about what a variable stands for."""
+
+    ACTION = "action"
+    DESCRIPTION = "description"
+
+
+@dataclass(frozen=True, slots=True)
+class Predicate:
+    """A name, its signatures (several if it is overloaded) and its gloss pattern.
+
+    The pattern is explained in ``gloss_patterns``.
+    """
+
+    name: str
+    kind: PredicateKind
+    signatures: tuple[Signature, ...]
+    gloss: str = ""
+
+
+def infer_signatures(forms: Iterable[Form]) -> dict[str, Predicate]:
+    """Return the predicates that occur in the forms, by name and sorted by it, with default glosses.
+
+    A predicate is an action if it heads a form, if it is inside an action and has no variable as an
+    argument itself (``(say (count …))``), or if it is next to such a predicate in a sequence. All
+    others are descriptions.
+    """
+    signatures: defaultdict[str, set[Signature]] = defaultdict(set)
+    actions: set[str] = set()
+    for form in dict.fromkeys(forms):
+        actions.update(_actions(form))
+        for application in _applications(form):
+            signatures[str(application.predicate)].add(signature_of(application))
+    return {
+        name: _predicate(name, name in actions, tuple(sorted(signatures[name])))
+        for name in sorted(signatures)
+    }
+
+
+@dataclass(frozen=True, slots=True)
+class Misuse:
+    """A predicate used as nothing declares it.
+
+    ``node`` is the number of the term that is wrong, the application or its argument, in the order
+    of ``walk``.
+    """
+
+    node: int
+    message: str
+    hint: str
+
+
+def check_form(
+    form: Form, predicates: Mapping[str, Predicate], position: Position | None = None
+) -> list[Problem]:
+    """Return warnings, all at ``position``: unknown predicate, wrong arity, wrong kind of argument."""
+    place = position or Position()
+    misuses = find_misuses(form, predicates)
+    return list(dict.fromkeys(warning_at(place, each.message, each.hint) for each in misuses))
+
+
+def find_misuses(form: Form, predicates: Mapping[str, Predicate]) -> Iterator[Misuse]:
+    """Yield what ``check_form`` warns of; a nonterminal in the place of a predicate is not known yet."""
+    for node, term in enumerate(walk(form)):
+        if isinstance(term, Application) and isinstance(term.predicate, str):
+            misuse = _misuse(node, term, predicates)
+            if misuse is not None:
+                yield misuse
+
+
+def gloss(form: Form, predicates: Mapping[str, Predicate]) -> str:
+    """Return a short English sentence for a form, the same on every call.
+
+    ``( bring ( lambda $1 e ( is_a $1 " <object> " ) ) )`` is "bring me the object". Predicates that
+    are not declared are glossed by their names.
+    """
+    known = {**infer_signatures([form]), **predicates}
+    patterns = {name: each.gloss or _default(each) for name, each in known.items()}
+    actions = frozenset(n for n, each in known.items() if each.kind == PredicateKind.ACTION)
+    return sentence(form, patterns, actions)
+
+
+def _predicate(name: str, is_action: bool, signatures: tuple[Signature, ...]) -> Predicate:
+    kind = PredicateKind.ACTION if is_action else PredicateKind.DESCRIPTION
+    predicate = Predicate(name, kind, signatures)
+    pattern = _default(predicate)
+    # A pattern too long to store is made again from the name whenever a form is glossed.
+    return replace(predicate, gloss=pattern if len(pattern) <= MAX_GLOSS else "")
+
+
+def _default(predicate: Predicate) -> str:
+    is_action = predicate.kind == PredicateKind.ACTION
+    return default_pattern(predicate.name, is_action, predicate.signatures)
+
+
+def _applications(form: Form) -> Iterator[Application]:
+    """Yield the applications with a named predicate; a nonterminal in its place is not known yet."""
+    for node in walk(form):
+        if isinstance(node, Application) and isinstance(node.predicate, str):
+            yield node
+
+
+def _actions(form: Form) -> Iterator[str]:
+    """Yield the predicates of a command that are actions."""
+    if isinstance(form, Lambda):
+        for body in form.bodies:
+            if isinstance(body, Lambda) or not _takes_variable(body):
+                yield from _actions(body)
+    elif isinstance(form, Application):
+        yield str(form.predicate)
+        inside = [each for each in form.arguments if isinstance(each, Application)]
+        if not all(map(_takes_variable, inside)):
+            for each in inside:
+                yield from _actions(each)
+
+
+def _takes_variable(form: Form) -> bool:
+    return any(isinstance(argument, Variable) for argument in children(form))
+
+
+def _misuse(node: int, form: Application, predicates: Mapping[str, Predicate]) -> Misuse | None:
+    name = str(form.predicate)
+    if name not in predicates:
+        close = get_close_matches(name, predicates, n=1)
+        hint = f"did you mean {close[0]}?" if close else "declare it, or use one that is declared"
+        return Misuse(node, f"there is no predicate {name}", hint)
+    declared = predicates[name].signatures
+    given = signature_of(form)
+    choices = " or ".join(f"{name}{each}" for each in declared)
+    candidates = [each for each in declared if len(each.arguments) == len(given.arguments)]
+    if not candidates:
+        message = f"{name} does not take {say_count(len(given.arguments), 'argument')}"
+        return Misuse(node, message, f"write {choices}" if choices else "declare a signature")
+    places = min((each.mismatches(given) for each in candidates), key=len)
+    if not places:
+        return None
+    kind = given.arguments[places[0]]
+    message = f"argument {places[0] + 1} of {name} cannot be of the kind {kind}"
+    before = sum(1 for each in form.arguments[: places[0]] for _ in walk(each))
+    return Misuse(node + 1 + before, message, f"write {choices}")

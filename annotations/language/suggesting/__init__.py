@@ -1,0 +1,17 @@
+"""Suggest a template for a command without a form: a pattern that is general enough, and likely forms."""
+
+from __future__ import annotations
+
+from annotations.language.suggesting.nearest import nearest_patterns
+from annotations.language.suggesting.patterns import PatternMaker
+from annotations.language.suggesting.suggester import MOST_SUGGESTIONS, FormSuggester, Suggestion
+from annotations.language.suggesting.transfer import transfer_form
+
+__all__ = [
+    "MOST_SUGGESTIONS",
+    "FormSuggester",
+    "PatternMaker",
+    "Suggestion",
+    "nearest_patterns",
+    "transfer_form",
+]

@@ -1,0 +1,130 @@
+"""What the forms of a world usually look like, and which words go with which predicate."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+from annotations.language.forms import Application, Form, Lambda, Variable, predicates, walk
+from annotations.language.predicates import signature_of
+from annotations.language.suggesting.examples import Example
+from annotations.language.suggesting.slots import key_of, labels_of
+from annotations.language.suggesting.units import Unit
+from annotations.language.symbols import Nonterminal, Wildcard
+
+# A word says a predicate where the two come together this often (F1 over templates).
+LEAST_ASSOCIATION = 0.8
+SEEN_WEIGHT = 3
+
+Shape = tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Habits:
+    """Counts over examples.
+
+    ``shapes`` counts λs by the heads of their bodies and applications by their signature; ``order`` how
+    often one conjunct comes before another; ``constraints`` the predicates of ``(predicate $1 slot)`` by the
+    label of the slot; ``senses`` maps a word to the predicates that it says, with the strength in 0–1.
+    """
+
+    shapes: Counter[Shape]
+    order: Counter[tuple[str, str]]
+    constraints: Mapping[str, Counter[str | Nonterminal]]
+    senses: Mapping[str, Mapping[str, float]]
+
+    def oddity(self, typed_form: Form) -> float:
+        """Return how unusual a form is: near 1 for each new shape in it, and near 0 for a frequent one."""
+        return sum(1 / (1 + SEEN_WEIGHT * self.shapes[shape]) for shape in _shapes(typed_form))
+
+    def place(self, conjuncts: Sequence[Form], added: Form) -> tuple[Form, ...]:
+        """Return the conjuncts with one more, at the place that agrees best with the usual order."""
+        heads, new = list(map(_head, conjuncts)), _head(added)
+
+        def agreement(place: int) -> int:
+            before = sum(self.order[head, new] - self.order[new, head] for head in heads[:place])
+            return before + sum(
+                self.order[new, head] - self.order[head, new] for head in heads[place:]
+            )
+
+        best = max(range(len(conjuncts) + 1), key=agreement)
+        return (*conjuncts[:best], added, *conjuncts[best:])
+
+    def said_by(self, words: Sequence[str], names: Iterable[str]) -> frozenset[str]:
+        """Return the predicates that a run of words says: by habit, or because it is their name."""
+        said = {predicate for word in words for predicate in self.senses.get(word, ())}
+        runs = {
+            "".join(words[start:stop]) for start, stop in combinations(range(len(words) + 1), 2)
+        }
+        return frozenset(said | {name for name in names if name.replace("_", "") in runs})
+
+
+def habits_of(examples: Sequence[Example]) -> Habits:
+    """Count what is usual in examples."""
+    order: Counter[tuple[str, str]] = Counter()
+    constraints: defaultdict[str, Counter[str | Nonterminal]] = defaultdict(Counter)
+    for example in examples:
+        labels = labels_of(example.units)
+        for conjuncts in _conjunctions(example.form):
+            order.update(combinations(map(_head, conjuncts), 2))
+            for slot, predicate in _constraints(conjuncts):
+                if key_of(slot) in labels:
+                    constraints[labels[key_of(slot)]][predicate] += 1
+    shapes = Counter(shape for each in examples for shape in _shapes(each.typed_form))
+    return Habits(shapes, order, constraints, _senses(examples))
+
+
+def words_of(unit: Unit) -> list[str]:
+    """Return the words of all phrases of a unit, in order for a single phrase."""
+    return [word for phrase in sorted(unit.phrases) for word in phrase.split()]
+
+
+def _senses(examples: Sequence[Example]) -> dict[str, dict[str, float]]:
+    said: Counter[str] = Counter()
+    meant: Counter[str] = Counter()
+    both: Counter[tuple[str, str]] = Counter()
+    for example in examples:
+        units = (unit for unit in example.units if not unit.is_entity)
+        words = {word for unit in units for word in words_of(unit)}
+        heads = set(predicates(example.form))
+        said.update(words)
+        meant.update(heads)
+        both.update((word, head) for word in words for head in heads)
+    senses: dict[str, dict[str, float]] = {}
+    for (word, head), count in both.items():
+        strength = 2 * count / (said[word] + meant[head])
+        if strength >= LEAST_ASSOCIATION:
+            senses.setdefault(word, {})[head] = strength
+    return senses
+
+
+def _shapes(typed_form: Form) -> Iterator[Shape]:
+    for node in walk(typed_form):
+        if isinstance(node, Lambda):
+            yield ("λ", *map(_head, node.bodies))
+        elif isinstance(node, Application):
+            yield (str(node.predicate), *signature_of(node).arguments)
+
+
+def _conjunctions(form: Form) -> Iterator[tuple[Form, ...]]:
+    for node in walk(form):
+        if isinstance(node, Lambda):
+            yield node.bodies
+        elif isinstance(node, Application) and node.predicate == "and":
+            yield node.arguments
+
+
+def _constraints(
+    conjuncts: Iterable[Form],
+) -> Iterator[tuple[Nonterminal | Wildcard, str | Nonterminal]]:
+    """Yield the slot and the predicate of every ``(predicate $1 slot)``."""
+    for form in conjuncts:
+        match form:
+            case Application(predicate, (Variable(), Wildcard() | Nonterminal() as slot)):
+                yield slot, predicate
+
+
+def _head(form: Form) -> str:
+    return str(form.predicate) if isinstance(form, Application) else type(form).__name__

@@ -1,0 +1,82 @@
+"""Read and check semantic templates, and expand them with a grammar into commands and forms."""
+
+from __future__ import annotations
+
+from annotations.language.templates.chart import TemplateChart
+from annotations.language.templates.consequences import (
+    ChangedForm,
+    Consequences,
+    Duplicate,
+    GeneratedState,
+    Shadowed,
+    consequences_of,
+)
+from annotations.language.templates.expansion import (
+    DEFAULT_LIMIT,
+    Conflict,
+    Expansion,
+    ExpansionsOf,
+    Generated,
+    LeftOut,
+    TaskCategory,
+    generate,
+    generation_size,
+)
+from annotations.language.templates.filling import bare, fill_anonymized
+from annotations.language.templates.generator_folder import (
+    GeneratorFolder,
+    read_generator_files,
+    read_generator_folder,
+)
+from annotations.language.templates.grammar_expansions import GrammarExpansions
+from annotations.language.templates.keeping import Kept
+from annotations.language.templates.problems import TemplateChecker, template_checker
+from annotations.language.templates.sets import set_problems, shared_problems
+from annotations.language.templates.synchronous import Derivation, TemplateExpander
+from annotations.language.templates.task_categories import Composition, is_template_name
+from annotations.language.templates.templates import (
+    SemanticTemplate,
+    make_template,
+    print_template,
+    read_sides,
+    read_template,
+)
+
+__all__ = [
+    "DEFAULT_LIMIT",
+    "ChangedForm",
+    "Composition",
+    "Conflict",
+    "Consequences",
+    "Derivation",
+    "Duplicate",
+    "Expansion",
+    "ExpansionsOf",
+    "Generated",
+    "GeneratedState",
+    "GeneratorFolder",
+    "GrammarExpansions",
+    "Kept",
+    "LeftOut",
+    "SemanticTemplate",
+    "Shadowed",
+    "TaskCategory",
+    "TemplateChart",
+    "TemplateChecker",
+    "TemplateExpander",
+    "bare",
+    "consequences_of",
+    "fill_anonymized",
+    "generate",
+    "generation_size",
+    "is_template_name",
+    "make_template",
+    "print_template",
+    "read_generator_files",
+    "read_generator_folder",
+    "read_sides",
+    "read_template",
+    "set_problems",
+    "shared_problems",
+    "template_checker",
+]

@@ -1,0 +1,129 @@
+"""What templates make with one grammar, and which commands the grammar derives: each worked out once."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from functools import cached_property
+from typing import TypeAlias
+
+from annotations.language.errors import LanguageError, Problem, warning_at
+from annotations.language.grammar import Budget, Grammar, Recognizer, readable
+from annotations.language.templates.keeping import Kept
+from annotations.language.templates.synchronous import TemplateExpander
+from annotations.language.templates.templates import SemanticTemplate
+
+# Command → its forms in the order of their texts; more than one where a template is ambiguous.
+Pairs: TypeAlias = Mapping[str, tuple[str, ...]]
+
+# A template that makes more commands than this by itself is left out.
+DEFAULT_LIMIT = 1_000_000
+
+# A grammar with more commands than this is never enumerated, and its commands are recognised singly.
+MOST_ENUMERATED = 50_000
+ENUMERATION_STEPS = 5_000_000
+# Recognising one command takes as long as enumerating so many.
+ENUMERATED_FOR_ONE = 15
+
+
+class GrammarExpansions:
+    """Expands templates over one grammar and keeps what they made.
+
+    Several threads may share one: what is kept never changes, and what two work out at once is equal.
+
+    Args:
+        most_kept: how many pairs are kept, those of the templates asked for longest ago go first.
+
+    Raises:
+        LanguageError: the grammar has a cycle.
+    """
+
+    def __init__(self, grammar: Grammar, most_kept: int = 0) -> None:
+        self.grammar = grammar
+        self._expander = TemplateExpander(grammar)
+        self._most_kept = most_kept
+        self._kept: Kept[tuple[str, str], Pairs] = Kept(most_kept, len)
+        self._sizes: Kept[tuple[str, str], int] = Kept(most_kept)
+        self._judged: dict[str, bool] = {}
+
+    def size(self, template: SemanticTemplate) -> int:
+        """Return an upper bound on the number of pairs of the template. Raises as ``TemplateExpander.size``."""
+        return self._sizes.get(_key(template), lambda: self._expander.size(template))
+
+    def has(self, template: SemanticTemplate) -> bool:
+        """Return whether the pairs of the template are here already."""
+        return _key(template) in self._kept
+
+    def pairs(self, template: SemanticTemplate, budget: Budget) -> Pairs:
+        """Return the distinct commands of the template in grammar order, with their forms.
+
+        Raises:
+            TooManyCombinations: the budget is spent.
+            LanguageError: as ``TemplateExpander.pairs``.
+        """
+        return self._kept.get(_key(template), lambda: _collect(self._expander, template, budget))
+
+    def derived(self, commands: Collection[str], budget: Budget) -> frozenset[str]:
+        """Return those of ``commands`` that the grammar derives.
+
+        Raises:
+            TooManyCombinations: the budget is spent.
+        """
+        enumerated = self.commands if self._is_worth_enumerating(len(commands)) else None
+        if enumerated is not None:
+            return self._command_set.intersection(commands)
+        judged = {} if len(self._judged) > self._most_kept else self._judged
+        for command in commands:
+            if command not in judged:
+                judged[command] = self._recognizer.accepts(command, budget)
+        self._judged = judged
+        return frozenset(command for command in commands if judged[command])
+
+    def accepts(self, command: str, budget: Budget | None = None) -> bool:
+        """Return whether the grammar derives ``command``. Raises TooManyCombinations."""
+        return bool(self.derived((command,), budget or Budget()))
+
+    @cached_property
+    def commands(self) -> tuple[str, ...] | None:
+        """The distinct commands of the grammar in its order; None where it has too many to look at."""
+        try:
+            if self.grammar.size() > MOST_ENUMERATED:
+                return None
+            return tuple(self.grammar.commands(budget=Budget(ENUMERATION_STEPS)))
+        except LanguageError:
+            return None
+
+    @cached_property
+    def _command_set(self) -> frozenset[str]:
+        return frozenset(self.commands or ())
+
+    @cached_property
+    def _recognizer(self) -> Recognizer:
+        return Recognizer(self.grammar)
+
+    def _is_worth_enumerating(self, n_commands: int) -> bool:
+        if "commands" in self.__dict__:
+            return True
+        return self.grammar.size() <= min(MOST_ENUMERATED, ENUMERATED_FOR_ONE * n_commands)
+
+
+def _key(template: SemanticTemplate) -> tuple[str, str]:
+    return template.pattern_text, template.form_text
+
+
+def _collect(expander: TemplateExpander, template: SemanticTemplate, budget: Budget) -> Pairs:
+    forms: dict[str, set[str]] = {}
+    for command, form in expander.pairs(template, budget):
+        forms.setdefault(command, set()).add(form)
+    return {command: tuple(sorted(alternatives)) for command, alternatives in forms.items()}
+
+
+def too_many_commands(template: SemanticTemplate, size: int, limit: int | None) -> Problem | None:
+    """Return the warning about a template that makes more than ``limit`` commands by itself."""
+    if limit is None or size <= limit:
+        return None
+    return warning_at(
+        template.position,
+        f"the pattern makes up to {readable(size)} commands, more than the limit of {limit:,}; "
+        "the template is left out",
+        "narrow the pattern",
+    )

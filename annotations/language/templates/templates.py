@@ -1,0 +1,197 @@
+"""Read and print semantic templates ``pattern = form`` (FORMATS §3)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+from annotations.language.errors import LanguageError, Position, Problem, error_at, warning_at
+from annotations.language.forms import UNKNOWN, Application, Form, read_form, to_template, walk
+from annotations.language.limits import MAX_PATTERN, require_length
+from annotations.language.symbols import (
+    Nonterminal,
+    SymbolReader,
+    Symbols,
+    Wildcard,
+    print_sequence,
+)
+
+# An escaped character, a brace, an equals sign, or the comment that ends the line.
+_MARK = re.compile(r"\\.|[{}=]|#.*")
+_EXAMPLE = "a template is pattern = form, as in: fetch the {object} = (bring {object})"
+
+
+@dataclass(frozen=True, slots=True)
+class SemanticTemplate:
+    """A partial expansion of a grammar and the form that all its commands share.
+
+    ``form_position`` is where the form begins; positions play no part in equality.
+    """
+
+    pattern: Symbols
+    form: Form
+    pattern_text: str
+    form_text: str
+    position: Position = field(default_factory=Position, compare=False)
+    form_position: Position = field(default_factory=Position, compare=False)
+
+    @property
+    def tracked(self) -> frozenset[str]:
+        """The nonterminals that the form mentions, as arguments or as predicates."""
+        return frozenset(slot.name for slot in self.slots() if isinstance(slot, Nonterminal))
+
+    def slots(self) -> Iterator[Nonterminal | Wildcard]:
+        """Yield every nonterminal and wildcard of the form, in order."""
+        for node in walk(self.form):
+            if isinstance(node, Application) and isinstance(node.predicate, Nonterminal):
+                yield node.predicate
+            elif isinstance(node, Nonterminal | Wildcard):
+                yield node
+
+
+def read_templates(
+    text: str, source: str = ""
+) -> tuple[tuple[SemanticTemplate, ...], tuple[Problem, ...]]:
+    """Read a template file; ``#`` begins a comment. Errors are returned, not raised.
+
+    Returns:
+        The templates in order, and the problems of the lines that are not templates.
+    """
+    templates: list[SemanticTemplate] = []
+    problems: list[Problem] = []
+    for number, line in enumerate(text.removeprefix("\ufeff").split("\n"), start=1):
+        try:
+            template = _read_line(line, Position(source, number))
+        except LanguageError as error:
+            problems.append(error.problem)
+            continue
+        if template is not None:
+            templates.append(template)
+    if not templates:
+        problems = [_not_templates(problems, source)]
+    return tuple(templates), tuple(problems)
+
+
+def read_template(line: str, position: Position | None = None) -> SemanticTemplate:
+    """Read one template line.
+
+    Raises:
+        LanguageError: no ``=`` outside braces, or more than one, a malformed pattern or form, a variable that
+            no λ binds, or nothing but a comment.
+    """
+    place = position or Position()
+    template = _read_line(line, place)
+    if template is None:
+        raise LanguageError("there is no template here", place, _EXAMPLE)
+    return template
+
+
+def make_template(pattern: str, form: str, position: Position | None = None) -> SemanticTemplate:
+    """Make a template from its two sides.
+
+    Positions in the pattern and in the form both count from ``position``.
+
+    Raises:
+        LanguageError: as ``read_template``.
+    """
+    place = position or Position()
+    return _template(pattern, place, form, place)
+
+
+def read_sides(pattern: str, form: str) -> tuple[SemanticTemplate | None, tuple[Problem, ...]]:
+    """Make a template as somebody types it; positions count in the texts ``pattern`` and ``form``.
+
+    Returns:
+        The template, or None and what keeps each of its sides from being read.
+    """
+    problems: list[Problem] = []
+    symbols: Symbols = ()
+    value: Form = UNKNOWN
+    try:
+        symbols, pattern_text, pattern_place = _pattern(pattern, Position("pattern"))
+    except LanguageError as error:
+        problems.append(error.problem)
+    try:
+        value, form_text, form_place = _form(form, Position("form"))
+    except LanguageError as error:
+        problems.append(error.problem)
+    if problems:
+        return None, tuple(problems)
+    return SemanticTemplate(symbols, value, pattern_text, form_text, pattern_place, form_place), ()
+
+
+def print_template(template: SemanticTemplate) -> str:
+    """Return the line that reads back as an equal pattern and form."""
+    return f"{print_sequence(template.pattern)} = {to_template(template.form)}"
+
+
+def _read_line(line: str, place: Position) -> SemanticTemplate | None:
+    equals, end = _marks(line)
+    if not line[:end].strip():
+        return None
+    if len(equals) != 1:
+        count = f"{len(equals)} equals signs" if equals else "no equals sign"
+        column = equals[1] if equals else len(line) - len(line.lstrip())
+        raise LanguageError(f"the line has {count} outside braces", place.shifted(column), _EXAMPLE)
+    start = equals[0] + 1
+    return _template(line[: equals[0]], place, line[start:end], place.shifted(start))
+
+
+def _marks(line: str) -> tuple[list[int], int]:
+    """Return where equals signs are outside braces, and where a comment begins or the line ends."""
+    depth = 0
+    equals: list[int] = []
+    for mark in _MARK.finditer(line):
+        if mark.group().startswith("#"):
+            return equals, mark.start()
+        depth += {"{": 1, "}": -1}.get(mark.group(), 0)
+        if mark.group() == "=" and depth <= 0:
+            equals.append(mark.start())
+    return equals, len(line)
+
+
+def _template(
+    pattern: str, pattern_place: Position, form: str, form_place: Position
+) -> SemanticTemplate:
+    symbols, pattern, pattern_place = _pattern(pattern, pattern_place)
+    value, form, form_place = _form(form, form_place)
+    return SemanticTemplate(symbols, value, pattern, form, pattern_place, form_place)
+
+
+def _pattern(text: str, place: Position) -> tuple[Symbols, str, Position]:
+    """Return what the pattern says, its text without the spaces around it, and where that begins."""
+    if not text.strip():
+        raise LanguageError("the template has no pattern", place, _EXAMPLE)
+    place, text = _behind_spaces(text, place), text.strip()
+    require_length(text, "pattern", MAX_PATTERN, place)
+    try:
+        return _symbols(text), text, place
+    except LanguageError as error:
+        raise LanguageError(error.message, error.position.inside(place), error.hint) from None
+
+
+@lru_cache(maxsize=1 << 12)
+def _symbols(text: str) -> Symbols:
+    return SymbolReader(text, Position()).whole_line()
+
+
+def _form(text: str, place: Position) -> tuple[Form, str, Position]:
+    """Return the form, its text without the spaces around it, and where that begins."""
+    place, text = _behind_spaces(text, place), text.strip()
+    return read_form(text, place), text, place
+
+
+def _behind_spaces(text: str, place: Position) -> Position:
+    return place.shifted(len(text) - len(text.lstrip()))
+
+
+def _not_templates(problems: list[Problem], source: str) -> Problem:
+    """Return one problem for a file without templates, instead of one for each line."""
+    if not problems:
+        return warning_at(Position(source), "the file holds no template", _EXAMPLE)
+    if "equals sign" not in problems[0].message:
+        return problems[0]
+    place = problems[0].position
+    return error_at(place, "the file holds no semantic template", _EXAMPLE)

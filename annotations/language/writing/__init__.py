@@ -1,0 +1,21 @@
+"""Help somebody who writes a template: completion, repairs, slots on both sides, layout."""
+
+from __future__ import annotations
+
+from annotations.language.writing.completion import Completion, Completions, completions
+from annotations.language.writing.correspondence import Correspondence, correspondences
+from annotations.language.writing.formatting import format_form, format_pattern
+from annotations.language.writing.offering import with_repairs
+from annotations.language.writing.trial import Sides
+
+__all__ = [
+    "Completion",
+    "Completions",
+    "Correspondence",
+    "Sides",
+    "completions",
+    "correspondences",
+    "format_form",
+    "format_pattern",
+    "with_repairs",
+]

@@ -1,0 +1,78 @@
+"""Filters that lists are made of. Each name is a parameter of the page's URL."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import django_filters
+from django import forms
+from django.db.models import Q, QuerySet, TextField
+from django.db.models.functions import Cast
+from django.db.models.lookups import IContains
+
+
+class PageFilters(django_filters.FilterSet):
+    """Filters whose choices may depend on the world of the page: see ``world_choices``."""
+
+    # Name of a filter → what gives its choices for a request.
+    world_choices: dict[str, Any] = {}
+
+    def __init__(self, *args: Any, **kwargs: Any):
+        super().__init__(*args, **kwargs)
+        for name, choices in self.world_choices.items():
+            self.filters[name].extra["choices"] = choices(self.request)
+        for each in self.filters.values():
+            if isinstance(each, django_filters.ChoiceFilter):
+                each.extra["empty_label"] = f"{each.label}: any"
+
+
+class Search(django_filters.CharFilter):
+    """A text somewhere in one of ``fields``, whatever its case."""
+
+    def __init__(self, *fields: str, label: str = "Search"):
+        super().__init__(label=label, widget=forms.SearchInput(attrs={"placeholder": label}))
+        self.searched = fields
+
+    def filter(self, rows: QuerySet[Any], value: str) -> QuerySet[Any]:
+        return rows.filter(self.condition(value)) if value else rows
+
+    def condition(self, value: str) -> Q:
+        """The rows with ``value`` in any of the fields."""
+        condition = Q()
+        for field in self.searched:
+            condition |= Q(**{f"{field}__icontains": value})
+        return condition
+
+
+class EntitySearch(Search):
+    """A text somewhere in the text or an alias of an entity."""
+
+    # Between aliases in the column, which holds a JSON list.
+    BETWEEN = frozenset("[],")
+
+    def __init__(self) -> None:
+        super().__init__("text")
+
+    def condition(self, value: str) -> Q:
+        condition = super().condition(value)
+        if not self.BETWEEN.isdisjoint(value):
+            return condition
+        column = Cast("aliases", TextField())
+        for written in {value, json.dumps(value)[1:-1]}:  # PostgreSQL's JSON, and SQLite's
+            condition |= Q(IContains(column, written))
+        return condition
+
+
+class Head(django_filters.ChoiceFilter):
+    """Forms in canonical corpus text that begin with a predicate."""
+
+    def filter(self, rows: QuerySet[Any], value: str) -> QuerySet[Any]:
+        return rows.filter(**{f"{self.field_name}__startswith": f"( {value} "}) if value else rows
+
+
+class Mentions(django_filters.ChoiceFilter):
+    """Forms in canonical corpus text that use a predicate anywhere."""
+
+    def filter(self, rows: QuerySet[Any], value: str) -> QuerySet[Any]:
+        return rows.filter(**{f"{self.field_name}__contains": f"( {value} "}) if value else rows

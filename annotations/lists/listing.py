@@ -1,0 +1,231 @@
+"""Lists as pages show them: filtered, sorted and paged by the URL."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from django.core.paginator import Paginator
+from django.db.models import QuerySet
+from django.http import HttpRequest, HttpResponse, QueryDict
+from django.shortcuts import render
+from django.utils.cache import patch_vary_headers
+from django_filters import FilterSet
+
+from annotations.lists.paging import PAGE_SIZE, Page, page_of
+
+PLACE = ("after", "before", "page")
+
+
+@dataclass(frozen=True, slots=True)
+class Chip:
+    """An active filter: its label and value, and the URL of the list without it."""
+
+    label: str
+    value: str
+    remove_url: str
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """The head of a sortable column: ``direction`` is empty, ``ascending`` or ``descending``."""
+
+    title: str
+    url: str
+    direction: str
+    is_number: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Sort:
+    """Something to sort a list by: the column's title and the field behind it, which is never null."""
+
+    title: str
+    field: str
+    is_number: bool = False
+
+
+class FilteredList:
+    """What all lists have in common: filters that stand in the URL, and links to the same list with others.
+
+    ``form`` holds the filters, bound to the URL.
+    """
+
+    query: QueryDict
+    form: Any
+
+    @property
+    def clear_url(self) -> str:
+        """The list without any filter."""
+        return "?"
+
+    @property
+    def has_unknown_filters(self) -> bool:
+        """Whether the URL has a value that its filter does not know; the list ignores it."""
+        return not self.form.is_valid()
+
+    @cached_property
+    def chips(self) -> list[Chip]:
+        """The active filters, each with the URL that removes it."""
+        self.form.is_valid()  # fills cleaned_data with what is valid
+        values = self.form.cleaned_data
+        return [
+            Chip(
+                str(self.form.fields[name].label), self._label(name, value), self.url(**{name: ""})
+            )
+            for name, value in values.items()
+            if value not in (None, "", [])
+        ]
+
+    def _label(self, name: str, value: Any) -> str:
+        choices = dict(getattr(self.form.fields[name], "choices", ()))
+        return str(choices.get(value, value))
+
+    def url(self, **changes: str) -> str:
+        """Return the URL of the first page of this list with ``changes``; an empty value is removed."""
+        query = QueryDict(mutable=True)
+        query.update({k: v for k, v in self.query.items() if k not in PLACE and v})
+        for name, value in changes.items():
+            query[name] = value
+        given = QueryDict(mutable=True)
+        given.update({name: value for name, value in query.items() if value})
+        return f"?{given.urlencode(safe='/')}"
+
+
+class Listing(FilteredList):
+    """``rows`` under the filters, order and page that the URL of ``request`` asks for.
+
+    ``sorts`` are the orders by the names that the URL may use; the first is the default.
+    """
+
+    def __init__(
+        self,
+        request: HttpRequest,
+        filters: type[FilterSet],
+        rows: QuerySet[Any],
+        sorts: Mapping[str, Sort],
+        size: int = PAGE_SIZE,
+        **options: Any,
+    ):
+        self.query = request.GET
+        self.filterset = filters(request.GET, queryset=rows, request=request, **options)
+        self.sorts = sorts
+        self.size = size
+
+    @property
+    def form(self) -> Any:
+        """The filters as a form, filled from the URL."""
+        return self.filterset.form
+
+    @cached_property
+    def matching(self) -> QuerySet[Any]:
+        """All rows that pass the filters."""
+        return self.filterset.qs
+
+    @cached_property
+    def total(self) -> int:
+        return self.matching.count()
+
+    @cached_property
+    def page(self) -> Page:
+        after, before = self.query.get("after", ""), self.query.get("before", "")
+        return page_of(self.matching, self.order, after, before, self.size)
+
+    @property
+    def rows(self) -> Sequence[Any]:
+        return self.page.rows
+
+    @property
+    def order(self) -> str:
+        field = self.sorts[self.sort_name].field
+        if not self.is_descending:
+            return field
+        return field[1:] if field.startswith("-") else f"-{field}"
+
+    @property
+    def sort_name(self) -> str:
+        name = self.query.get("sort", "").lstrip("-")
+        return name if name in self.sorts else next(iter(self.sorts))
+
+    @property
+    def is_descending(self) -> bool:
+        return self.query.get("sort", "") == f"-{self.sort_name}"
+
+    @cached_property
+    def columns(self) -> dict[str, Column]:
+        """The head of the column of each sort: a click sorts by it, or reverses the order."""
+        return {name: self._column(name, sort) for name, sort in self.sorts.items()}
+
+    def _column(self, name: str, sort: Sort) -> Column:
+        is_current = name == self.sort_name
+        next_sort = f"-{name}" if is_current and not self.is_descending else name
+        is_down = self.order.startswith("-")
+        direction = ("descending" if is_down else "ascending") if is_current else ""
+        return Column(sort.title, self.url(sort=next_sort), direction, sort.is_number)
+
+    @property
+    def summary(self) -> str:
+        """How many rows are shown and how many there are, such as ``50 of 1,211``."""
+        shown, total = len(self.rows), self.total
+        return f"{total:,}" if shown == total else f"{shown:,} of {total:,}"
+
+    @property
+    def next_url(self) -> str:
+        return self.url(after=self.page.after) if self.page.after else ""
+
+    @property
+    def previous_url(self) -> str:
+        return self.url(before=self.page.before) if self.page.before else ""
+
+
+class NumberedPages(FilteredList):
+    """A list that was computed rather than stored, filtered already and paged by number.
+
+    Args:
+        form: the filters, bound to the query of ``request``.
+    """
+
+    def __init__(
+        self, request: HttpRequest, form: Any, computed: Sequence[Any], size: int = PAGE_SIZE
+    ) -> None:
+        self.query = request.GET
+        self.form = form
+        self.paginator = Paginator(computed, size)
+        self.page = self.paginator.get_page(self.query.get("page"))
+
+    @property
+    def total(self) -> int:
+        return self.paginator.count
+
+    @property
+    def rows(self) -> Sequence[Any]:
+        return self.page.object_list
+
+    @property
+    def summary(self) -> str:
+        """Which rows are shown and how many there are, such as ``51–100 of 1,211``."""
+        first, last = self.page.start_index(), self.page.end_index()
+        return f"{first:,}–{last:,} of {self.total:,}"
+
+    @property
+    def next_url(self) -> str:
+        has_next = self.page.has_next()
+        return self.url(page=str(self.page.next_page_number())) if has_next else ""
+
+    @property
+    def previous_url(self) -> str:
+        has_previous = self.page.has_previous()
+        return self.url(page=str(self.page.previous_page_number())) if has_previous else ""
+
+
+def render_list(request: HttpRequest, template: str, context: dict[str, Any]) -> HttpResponse:
+    """Render a page with a list; htmx, which replaces the list alone, gets it without the frame.
+
+    The template extends the one that ``base`` names.
+    """
+    base = "_fragment.html" if request.htmx else "base.html"
+    response = render(request, template, {**context, "base": base})
+    patch_vary_headers(response, ["HX-Request"])  # so that no cache gives one for the other
+    return response

@@ -1,0 +1,26 @@
+"""``import_world FILE --world W``: makes the world of an archive again."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from django.core.management.base import CommandParser
+
+from annotations.management.base import ReportingCommand
+from annotations.world_archive import import_world
+
+
+class Command(ReportingCommand):
+    help = (
+        "Makes a world from an archive that export_world or the page Download wrote: the same rows "
+        "under another name. Refused whole where anything is wrong with the archive."
+    )
+
+    def add_options(self, parser: CommandParser) -> None:
+        parser.add_argument("file", type=Path)
+        parser.add_argument("--world", required=True, help="the name of the new world")
+
+    def report(self, *, file: Path, world: str, **options: Any) -> Mapping[str, Any]:
+        return import_world(world, file).as_json()

@@ -1,0 +1,87 @@
+"""Decides who may open which page: every view names the duty that it needs, here and nowhere else.
+
+``@world_view(Duty.VIEW)`` stands above every view of a world. The view receives the world itself
+instead of its name. People outside the world get a 404, as if it did not exist; members without the
+duty get a 403 with a sentence.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from typing import Any
+
+from django.core.exceptions import PermissionDenied
+from django.http import Http404, HttpRequest, HttpResponse
+from django.shortcuts import get_object_or_404
+from django.views.decorators.http import require_http_methods
+
+from annotations.models import Duty, World
+
+View = Callable[..., HttpResponse]
+
+READ = ("GET", "HEAD")
+READ_AND_WRITE = ("GET", "HEAD", "POST")
+WRITE = ("POST",)
+
+WHO_MAY = {
+    Duty.VIEW: "members of this world",
+    Duty.ANNOTATE: "annotators and admins of this world",
+    Duty.REVIEW: "reviewers and admins of this world",
+    Duty.MANAGE: "admins of this world",
+}
+
+
+def world_view(
+    duty: Duty, methods: tuple[str, ...] = READ, write_duty: Duty | None = None
+) -> Callable[[View], View]:
+    """A view at ``/w/<world>/…`` for people with ``duty``; a POST needs ``write_duty`` where given.
+
+    Sets ``request.world`` and ``request.duties`` (what the person may do here) for the templates.
+    """
+
+    def decorate(view: View) -> View:
+        @wraps(view)
+        def guarded(request: HttpRequest, world: str, **kwargs: Any) -> HttpResponse:
+            request.world = world_of(request, world)
+            request.duties = request.world.duties_of(request.user)
+            demand(request, write_duty if write_duty and request.method == "POST" else duty)
+            return view(request, request.world, **kwargs)
+
+        guarded.duty = duty
+        return require_http_methods(methods)(guarded)
+
+    return decorate
+
+
+def site_view(methods: tuple[str, ...] = READ) -> Callable[[View], View]:
+    """A view outside of any world, for the administrators of the site."""
+
+    def decorate(view: View) -> View:
+        @wraps(view)
+        def guarded(request: HttpRequest, **kwargs: Any) -> HttpResponse:
+            demand_site_admin(request)
+            return view(request, **kwargs)
+
+        return require_http_methods(methods)(guarded)
+
+    return decorate
+
+
+def world_of(request: HttpRequest, name: str) -> World:
+    """Return the world called ``name``. Raises Http404 for people who are not members of it."""
+    return get_object_or_404(World.objects.visible_to(request.user), name=name)
+
+
+def demand_site_admin(request: HttpRequest) -> None:
+    """Raise PermissionDenied for everybody but the administrators of the site."""
+    if not request.user.is_superuser:
+        raise PermissionDenied("Only administrators of this installation may do this.")
+
+
+def demand(request: HttpRequest, duty: Duty) -> None:
+    """Raise PermissionDenied with a sentence for people without ``duty`` in the world."""
+    if not request.duties:
+        raise Http404("No such world.")
+    if duty not in request.duties:
+        raise PermissionDenied(f"Only {WHO_MAY[duty]} may do this.")

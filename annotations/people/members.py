@@ -1,0 +1,67 @@
+"""Verbs: give people roles in a world, and take them away."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+from django.db import transaction
+
+from annotations.models import Membership, User, World
+from annotations.models.worlds import Role
+
+
+class NoAdminLeft(ValueError):
+    """The change would leave the world without an admin."""
+
+    def __init__(self, world: World) -> None:
+        super().__init__(
+            f"{world} needs an admin. Make somebody else an admin before you take this role away."
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A person and all their roles in one world, in the order of ``Role``."""
+
+    user: User
+    roles: tuple[str, ...]
+
+
+def members_of(world: World) -> list[Member]:
+    """Return everybody who has a role in ``world``, by name. One query."""
+    rows = world.memberships.select_related("user").order_by("user__username")
+    roles: dict[User, set[str]] = {}
+    for row in rows:
+        roles.setdefault(row.user, set()).add(row.role)
+    return [
+        Member(user, tuple(role for role in Role.values if role in held))
+        for user, held in roles.items()
+    ]
+
+
+def admins_of(world: World) -> list[str]:
+    """Return the names of the world's admins who can log in."""
+    admins = world.memberships.filter(role=Role.ADMIN, user__is_active=True)
+    return list(admins.order_by("user__username").values_list("user__username", flat=True))
+
+
+def find_account(name: str) -> User | None:
+    """Return the account called ``name`` that can log in, or None."""
+    return User.objects.filter(username=User.normalize_username(name), is_active=True).first()
+
+
+@transaction.atomic
+def set_roles(world: World, user: User, roles: Collection[str], by: User) -> None:
+    """Make ``roles`` the roles of ``user`` in ``world``; none removes them from it.
+
+    Raises:
+        NoAdminLeft: the last admin would lose that role. Administrators of the site, who see every
+            world, may do that all the same.
+    """
+    World.objects.select_for_update().get(pk=world.pk)
+    world.memberships.filter(user=user).exclude(role__in=roles).delete()
+    for role in roles:
+        Membership.objects.get_or_create(world=world, user=user, role=Role(role))
+    if not admins_of(world) and not by.is_superuser:
+        raise NoAdminLeft(world)

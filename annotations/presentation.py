@@ -1,0 +1,152 @@
+"""Prepare forms and commands for pages: three notations, an English sentence, chips, differences."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from difflib import SequenceMatcher
+from functools import lru_cache
+
+from annotations.language.errors import LanguageError
+from annotations.language.forms import (
+    Change,
+    Form,
+    canonicalize,
+    diff,
+    read_form,
+    to_corpus,
+    to_reading,
+    to_template,
+)
+from annotations.language.predicates import gloss
+from annotations.language.symbols import ENTITY_CLASSES, read_wildcard
+from annotations.models import World
+from annotations.rows.from_rows import predicates_of
+
+CLASS_TOKEN = re.compile(rf"<({'|'.join(ENTITY_CLASSES)})(\d*)>")
+
+
+@dataclass(frozen=True, slots=True)
+class ShownForm:
+    """A form in its three notations. A text that is not a form is its own reading; the others are empty."""
+
+    reading: str
+    corpus: str = ""
+    template: str = ""
+    gloss: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A part of a command: words, or one class token (``text`` is as written)."""
+
+    text: str
+    entity_class: str = ""
+
+
+@lru_cache(maxsize=8192)
+def form_of(text: str) -> Form | None:
+    """Read ``text`` (any notation) as a form; None where it is not one."""
+    try:
+        return read_form(text)
+    except LanguageError:
+        return None
+
+
+@lru_cache(maxsize=8192)
+def shown(text: str) -> ShownForm:
+    """Write ``text`` (any notation) in all three notations, without a gloss."""
+    form = form_of(text)
+    if form is None:
+        return ShownForm(reading=text)
+    return ShownForm(to_reading(form), to_corpus(form), to_template(form))
+
+
+def gloss_of(world: World, form: Form) -> str:
+    """Write ``form`` as an English sentence, with the glosses of the world's predicates."""
+    if not hasattr(world, "declared"):  # one query a page, however many forms it shows
+        world.declared = predicates_of(world)
+    return gloss(form, world.declared)
+
+
+@lru_cache(maxsize=8192)
+def pieces_of(command: str) -> tuple[Piece, ...]:
+    """Cut ``command`` at its class tokens; the texts together are the command again."""
+    pieces, end = [], 0
+    for token in CLASS_TOKEN.finditer(command):
+        if token.start() > end:
+            pieces.append(Piece(command[end : token.start()]))
+        pieces.append(Piece(token[0], token[1]))
+        end = token.end()
+    return (*pieces, Piece(command[end:])) if end < len(command) else tuple(pieces)
+
+
+@lru_cache(maxsize=1024)
+def wildcard_class(text: str) -> str:
+    """Return the entity class of a wildcard such as ``{placement 1}``; empty where it has none."""
+    try:
+        return read_wildcard(text).entity_class
+    except LanguageError:
+        return ""
+
+
+def difference(
+    expected: str, predicted: str
+) -> tuple[list[tuple[str, str]], list[tuple[str, str]]]:
+    """Return both forms in reading notation as lists of (change, text).
+
+    Where one of them is not a form there is nothing to compare, and both are unmarked.
+    """
+    left, right = form_of(expected), form_of(predicted)
+    if left is None or right is None:
+        return unmarked(expected), unmarked(predicted)
+    changes = diff(left, right)
+    return (
+        [(str(span.change), span.text) for span in changes.left_spans()],
+        [(str(span.change), span.text) for span in changes.right_spans()],
+    )
+
+
+# A text in pieces: what happened to each (a ``Change``), and its words.
+Pieces = list[tuple[str, str]]
+WORDS = re.compile(r"\s+|\w+|[^\w\s]")
+MOST_WORDS = 4_000  # of two texts together whose words are compared
+
+
+def compare(old: str, new: str, is_form: bool = False) -> tuple[Pieces, Pieces]:
+    """Return both texts with what is removed from ``old`` and added in ``new`` marked.
+
+    Forms are compared as trees where both can be read, everything else word by word.
+    """
+    if is_form and old and new and form_of(old) and form_of(new):
+        return difference(old, new)
+    left, right = WORDS.findall(old), WORDS.findall(new)
+    if len(left) + len(right) > MOST_WORDS:
+        return [(str(Change.REMOVED), old)], [(str(Change.ADDED), new)]
+    steps = SequenceMatcher(None, left, right, autojunk=False).get_opcodes()
+    return (
+        _pieces(Change.REMOVED, ((step[0], left[step[1] : step[2]]) for step in steps)),
+        _pieces(Change.ADDED, ((step[0], right[step[3] : step[4]]) for step in steps)),
+    )
+
+
+def _pieces(change: Change, parts: Iterable[tuple[str, Sequence[str]]]) -> Pieces:
+    return [
+        (str(Change.SAME if step == "equal" else change), "".join(words))
+        for step, words in parts
+        if words
+    ]
+
+
+def merged_difference(first: str, other: str) -> list[tuple[str, str]]:
+    """Return ``other`` in reading notation as a list of (change, text), with what only ``first`` has in it."""
+    left, right = form_of(first), form_of(other)
+    if left is None or right is None:
+        return unmarked(other)
+    return [(str(span.change), span.text) for span in diff(left, right).merged_spans()]
+
+
+def unmarked(text: str) -> list[tuple[str, str]]:
+    form = form_of(text)
+    return [(str(Change.SAME), to_reading(canonicalize(form)) if form else text)]

@@ -1,0 +1,49 @@
+"""Verbs: say what is to be done and why, give it to one person at a time, and record what came of it.
+
+``enqueue`` adds items and ``refill`` the ones that rows call for. ``next_item`` gives a person the item
+they hold or the most urgent free one, under a lease; ``finish``, ``skip``, ``give_back`` and ``take_back``
+end and reopen their part of it. A share of the utterances goes to two people, who do not see each
+other's labels; where these differ a third person compares them. ``answer`` labels an utterance and ends the part
+in one transaction.
+"""
+
+from annotations.queueing.answering import answer, part_in, take_answer_back
+from annotations.queueing.enqueuing import WantedItem, enqueue
+from annotations.queueing.finishing import Decision, finish, give_back, skip, take_back
+from annotations.queueing.giving import (
+    NoLongerYours,
+    NotForThem,
+    Wanted,
+    assign,
+    held_item,
+    next_item,
+    take,
+    withdraw,
+)
+from annotations.queueing.shares import DOUBLE_KINDS, set_share, shares_of
+from annotations.queueing.sources import refill
+
+__all__ = [
+    "DOUBLE_KINDS",
+    "Decision",
+    "NoLongerYours",
+    "NotForThem",
+    "Wanted",
+    "WantedItem",
+    "answer",
+    "assign",
+    "enqueue",
+    "finish",
+    "give_back",
+    "held_item",
+    "next_item",
+    "part_in",
+    "refill",
+    "set_share",
+    "shares_of",
+    "skip",
+    "take",
+    "take_answer_back",
+    "take_back",
+    "withdraw",
+]

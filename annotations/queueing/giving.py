@@ -1,0 +1,206 @@
+"""Verbs: give an item to somebody, so that nobody else gets the same place in it.
+
+The row of the item is locked and changed in one short transaction; whoever comes at the same time
+passes over it (PostgreSQL) or waits for the transaction to end (SQLite).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from datetime import datetime
+
+from django.db import connection, transaction
+from django.db.models import F
+from django.utils import timezone
+
+from annotations.models import Assignment, Duty, User, WorkItem, World
+from annotations.models.work_items import (
+    LEASE,
+    AssignmentQuerySet,
+    Outcome,
+    WorkItemQuerySet,
+    WorkKind,
+)
+from annotations.queueing.sources import refill
+
+MOST_EXPIRED = 100  # leases that one request takes back
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """Which items somebody asks for: ``labels_only`` are the utterances to label, and those with the keys
+    ``without`` are left out."""
+
+    labels_only: bool = False
+    without: Collection[int] = ()
+
+    def of_items(self, rows: WorkItemQuerySet) -> WorkItemQuerySet:
+        if self.without:
+            rows = rows.exclude(utterance__in=self.without)
+        if self.labels_only:
+            rows = rows.filter(utterance__isnull=False).exclude(kind=WorkKind.ADJUDICATION)
+        return rows
+
+    def of_assignments(self, rows: AssignmentQuerySet) -> AssignmentQuerySet:
+        if self == ANYTHING:
+            return rows
+        return rows.filter(item__in=self.of_items(WorkItem.objects.all()))
+
+
+ANYTHING = Wanted()
+
+
+class NoLongerYours(ValueError):
+    """The item is not the person's any more; a sentence says what happened to it."""
+
+
+class NotForThem(ValueError):
+    """An item cannot be given to a person; a sentence says why."""
+
+
+def held_item(person: User, world: World, wanted: Wanted = ANYTHING) -> Assignment | None:
+    """Return the most urgent item that ``person`` holds in ``world``, or None."""
+    rows = wanted.of_assignments(_held(person, world)).exclude(leased_until__lt=timezone.now())
+    rows = rows.select_related("item__utterance", "item__world")
+    return rows.order_by("-item__priority", "id").first()
+
+
+def next_item(person: User, world: World, wanted: Wanted = ANYTHING) -> Assignment | None:
+    """Give ``person`` the item they hold, with a fresh lease, or the most urgent one that is free.
+
+    Leases that have expired return first. An empty queue is filled from the rows that call for work.
+    Returns None where there is nothing that this person may do.
+    """
+    return_expired(world)
+    assignment = _hold_on(person, world, wanted) or _take_free(person, world, wanted)
+    if assignment is None and refill(world):
+        assignment = _take_free(person, world, wanted)
+    return assignment
+
+
+def take(person: User, item: WorkItem) -> Assignment:
+    """Give ``person`` this very item. Raises NotForThem where it is taken, done or not for them."""
+    return _give(item, person, timezone.now() + LEASE, by=None)
+
+
+def assign(item: WorkItem, person: User, by: User) -> Assignment:
+    """Give ``item`` to ``person`` without end, as an admin decides. Raises NotForThem."""
+    return _give(item, person, None, by=by)
+
+
+def withdraw(assignment: Assignment) -> None:
+    """Take a held item from its person, for others to do; does nothing where they no longer hold it."""
+    with transaction.atomic():
+        item = WorkItem.objects.select_for_update().get(pk=assignment.item_id)
+        held = Assignment.objects.held().filter(pk=assignment.pk)
+        if held.update(outcome=Outcome.RETURNED, leased_until=None):
+            WorkItem.objects.filter(pk=item.pk).update(places=F("places") + 1)
+
+
+def return_expired(world: World) -> None:
+    """Make free what people have kept beyond their leases."""
+    expired = Assignment.objects.expired().filter(item__world=world)
+    keys = list(expired.values_list("pk", "item_id")[:MOST_EXPIRED])
+    for key, item in keys:
+        with transaction.atomic():
+            rows = _unlocked(WorkItem.objects.filter(pk=item))
+            if not rows.exists():
+                continue  # somebody else is at it
+            if Assignment.objects.expired().filter(pk=key).update(outcome=Outcome.EXPIRED):
+                WorkItem.objects.filter(pk=item).update(places=F("places") + 1)
+
+
+def kinds_for(person: User, world: World) -> list[str]:
+    """Return the kinds of work that ``person`` may do: reviewers compare labels, annotators do all."""
+    duties = world.duties_of(person)
+    if Duty.ANNOTATE in duties:
+        return list(WorkKind.values)
+    return [WorkKind.ADJUDICATION] if Duty.REVIEW in duties else []
+
+
+def _held(person: User, world: World) -> AssignmentQuerySet:
+    return Assignment.objects.held().filter(person=person, item__world=world)
+
+
+def _hold_on(person: User, world: World, wanted: Wanted) -> Assignment | None:
+    """Return what the person holds, its lease extended."""
+    while held := held_item(person, world, wanted):
+        if held.item.is_outdated:
+            _close_held(held)
+            continue
+        if held.leased_until is None:
+            return held
+        held.leased_until = timezone.now() + LEASE
+        if Assignment.objects.held().filter(pk=held.pk).update(leased_until=held.leased_until):
+            return held
+    return None
+
+
+def _close_held(held: Assignment) -> None:
+    with transaction.atomic():
+        _close_outdated(WorkItem.objects.select_for_update().get(pk=held.item_id))
+
+
+def _take_free(person: User, world: World, wanted: Wanted) -> Assignment | None:
+    kinds = kinds_for(person, world)
+    rows = wanted.of_items(WorkItem.objects.filter(world=world, kind__in=kinds))
+    with transaction.atomic():
+        # What the person has had before comes last.
+        while item := _first(rows.takeable_by(person)) or _first(rows.returned_by(person)):
+            if not item.is_outdated:
+                return _hand_over(item, person, timezone.now() + LEASE, None)
+            _close_outdated(item)
+    return None
+
+
+def _close_outdated(item: WorkItem) -> None:
+    """Close an item, which is locked, that nobody has to do any more."""
+    item.assignments.held().update(outcome=Outcome.EXPIRED, leased_until=None)
+    item.places, item.closed_at = 0, timezone.now()
+    item.save(update_fields=["places", "closed_at"])
+
+
+def _first(rows: WorkItemQuerySet) -> WorkItem | None:
+    return _unlocked(rows.order_by("-priority", "id")).select_related("utterance").first()
+
+
+def _unlocked(rows: WorkItemQuerySet) -> WorkItemQuerySet:
+    """Lock the rows that nobody else has locked. On SQLite the transaction itself keeps others out."""
+    can_skip = connection.features.has_select_for_update_skip_locked
+    return rows.select_for_update(skip_locked=True, of=("self",)) if can_skip else rows
+
+
+def _give(item: WorkItem, person: User, until: datetime | None, by: User | None) -> Assignment:
+    with transaction.atomic():
+        stored = WorkItem.objects.select_for_update().get(pk=item.pk)
+        _require_for(stored, person)
+        return _hand_over(stored, person, until, by)
+
+
+def _require_for(item: WorkItem, person: User) -> None:
+    if not item.is_open:
+        raise NotForThem("This is done already.")
+    if item.kind not in kinds_for(person, item.world):
+        raise NotForThem(f"{person} has no role in this world that does this.")
+    rows = WorkItem.objects.filter(pk=item.pk)
+    if not rows.free().exists():
+        raise NotForThem("Somebody is doing this now. Withdraw it from them first.")
+    if not (rows.takeable_by(person) | rows.returned_by(person)).exists():
+        raise NotForThem(f"{person} has answered this already, so somebody else has to do it.")
+
+
+def _hand_over(item: WorkItem, person: User, until: datetime | None, by: User | None) -> Assignment:
+    """Give a place of an item that is locked."""
+    item.places -= 1
+    item.save(update_fields=["places"])
+    values = {
+        "outcome": Outcome.HELD,
+        "leased_until": until,
+        "assigned_by": by,
+        "taken_at": timezone.now(),
+    }
+    had_before = Assignment.objects.filter(item=item, person=person)
+    if had_before.update(**values):
+        return had_before.select_related("item").get()
+    return Assignment.objects.create(item=item, person=person, **values)

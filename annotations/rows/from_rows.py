@@ -1,0 +1,174 @@
+"""Turns rows back into the values of the language core. The one place for it."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from django.db.models import QuerySet
+
+from annotations import models
+from annotations.language.errors import Position
+from annotations.language.grammar import (
+    Grammar,
+    Production,
+    apply_alias,
+    read_production,
+)
+from annotations.language.ontology import Entity, Ontology
+from annotations.language.predicates import ArgumentKind, Predicate, PredicateKind, Signature
+from annotations.language.templates import Kept, SemanticTemplate, TaskCategory, make_template
+from annotations.models.templates import Status
+from annotations.rows.composition import split_entry
+
+# Texts read before, in this process: an editor asks for the same grammar with every key.
+_GRAMMARS: Kept[tuple[object, ...], Grammar] = Kept(12)
+_TEMPLATES: Kept[tuple[str, str, Position], SemanticTemplate] = Kept(20_000)
+
+
+# File → its productions in order: file, line, nonterminal, expansion.
+Line = tuple[str, int, str, str]
+Lines = Mapping[str, list[Line]]
+
+
+@dataclass(frozen=True)
+class AnnotatedCategory:
+    """A task category as a value, and the rows of its templates in the same order."""
+
+    value: TaskCategory
+    template_rows: tuple[models.SemanticTemplate, ...]
+
+
+def task_categories(world: models.World) -> tuple[TaskCategory, ...]:
+    """The task categories in order, with the templates that are ready; none without a grammar.
+
+    Raises:
+        LanguageError: a stored text that cannot be read, with its file and line.
+    """
+    return tuple(category.value for category in annotated_categories(world))
+
+
+def annotated_categories(
+    world: models.World,
+    rows: Iterable[models.SemanticTemplate] | None = None,
+    lines: Lines | None = None,
+) -> tuple[AnnotatedCategory, ...]:
+    """As ``task_categories``, beside the rows. Three queries; each text is read once.
+
+    ``rows`` are taken in place of the templates that are ready, in this order; each has a key.
+    ``lines`` are taken in place of the productions of the world.
+    """
+    categories = models.TaskCategory.objects.filter(grammar__world=world)
+    productions = lines_of(world) if lines is None else lines
+    if rows is None:
+        rows = ready_templates(world)
+    values = {row: template_of(row) for row in rows}
+    return tuple(_annotated(category, productions, values) for category in categories)
+
+
+def ready_templates(world: models.World) -> QuerySet[models.SemanticTemplate]:
+    """The templates of ``world`` that make commands, in order."""
+    return models.SemanticTemplate.objects.filter(grammar__world=world, status=Status.READY)
+
+
+def lines_of(world: models.World) -> Lines:
+    """The productions of the world, as they are stored."""
+    return _by_source(models.Production.objects.filter(grammar__world=world))
+
+
+def grammar_from(category: models.TaskCategory, lines: Lines) -> Grammar:
+    """The grammar that the task category has with these ``lines``. Raises LanguageError for bad ones."""
+    return _grammar(category, lines)
+
+
+def grammar_of(category: models.TaskCategory) -> Grammar:
+    """The grammar of one task category."""
+    sources = [split_entry(entry)[0] for entry in category.rule_sources]
+    rows = models.Production.objects.filter(grammar=category.grammar_id, source__in=sources)
+    return _grammar(category, _by_source(rows))
+
+
+def production_of(row: models.Production) -> Production:
+    """Raises LanguageError where the stored text is no expansion."""
+    return _production(row.source, row.line, row.nonterminal, row.expansion)
+
+
+def template_of(row: models.SemanticTemplate) -> SemanticTemplate:
+    """Raises LanguageError where the stored pattern or form cannot be read."""
+    place = Position(row.source, max(row.line, 1))
+    return _TEMPLATES.get(
+        (row.pattern, row.form, place), lambda: make_template(row.pattern, row.form, place)
+    )
+
+
+def ontology_of(world: models.World, rows: Iterable[models.Entity] | None = None) -> Ontology:
+    """The ontology in the order of its rows, empty where there are none; ``rows`` limits it to some."""
+    chosen = models.Entity.objects.filter(ontology__world=world) if rows is None else rows
+    return Ontology(tuple(map(entity_of, chosen)))
+
+
+def entity_of(row: models.Entity) -> Entity:
+    place = Position(row.source, max(row.line, 1))
+    return Entity(row.entity_class, row.text, tuple(row.aliases), dict(row.attributes), place)
+
+
+def predicates_of(
+    world: models.World, rows: Iterable[models.Predicate] | None = None
+) -> dict[str, Predicate]:
+    """The predicates by name; ``rows`` limits them to some of the world's."""
+    chosen = world.predicates.all() if rows is None else rows
+    return {row.name: predicate_of(row) for row in chosen}
+
+
+def predicate_of(row: models.Predicate) -> Predicate:
+    signatures = (Signature(tuple(map(ArgumentKind, kinds))) for kinds in row.signatures)
+    return Predicate(row.name, PredicateKind(row.kind), tuple(signatures), row.gloss)
+
+
+def _production(source: str, line: int, nonterminal: str, expansion: str) -> Production:
+    return read_production(f"${nonterminal} = {expansion}", Position(source, max(line, 1)))
+
+
+def _by_source(rows: QuerySet[models.Production]) -> dict[str, list[Line]]:
+    """File → its productions as they are stored: file, line, nonterminal, expansion."""
+    by_source: dict[str, list[Line]] = defaultdict(list)
+    for row in rows.values_list("source", "line", "nonterminal", "expansion"):
+        by_source[row[0]].append(row)
+    return by_source
+
+
+def _grammar(category: models.TaskCategory, stored: Lines) -> Grammar:
+    """The grammar of the category; the same value for the same texts, while it is kept."""
+    parts = [
+        (stored.get(source, []), alias) for source, alias in map(split_entry, category.rule_sources)
+    ]
+    key = tuple((tuple(lines), alias) for lines, alias in parts)
+    return _GRAMMARS.get(key, lambda: _read_grammar(parts))
+
+
+def _read_grammar(parts: Iterable[tuple[list[Line], str]]) -> Grammar:
+    productions: list[Production] = []
+    for lines, alias in parts:
+        productions += apply_alias([_production(*line) for line in lines], alias)
+    return Grammar(tuple(productions))
+
+
+def _annotated(
+    category: models.TaskCategory,
+    productions: Lines,
+    templates: Mapping[models.SemanticTemplate, SemanticTemplate],
+) -> AnnotatedCategory:
+    chosen = tuple(_in_sets(category.template_sources, templates))
+    values = tuple(templates[row] for row in chosen)
+    return AnnotatedCategory(
+        TaskCategory(category.name, _grammar(category, productions), values), chosen
+    )
+
+
+def _in_sets(
+    sources: list[str], rows: Iterable[models.SemanticTemplate]
+) -> Iterator[models.SemanticTemplate]:
+    """The rows of the sources, source by source, each in its own order."""
+    for source in sources:
+        yield from (row for row in rows if row.source == source)

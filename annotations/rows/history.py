@@ -1,0 +1,74 @@
+"""Keeps the history of rows: what they were at each version, when they became it, and by whom.
+
+A row that was imported has no history before somebody changes it; what it was is kept then, so that
+importing many rows costs nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from django.db import models
+from django.utils import timezone
+
+from annotations.models import Editable, User, World
+
+ADDED, CHANGED, DELETED = "+", "~", "-"
+BATCH = 500  # rows a statement
+AS_IMPORTED, OF_IMPORT, RESTORED = "as it was before", "import", "restored"
+
+
+def keep(rows: Iterable[Editable], kind: str, by: User | None = None, reason: str = "") -> None:
+    """Write what ``rows``, all of one model, are now into its history.
+
+    Args:
+        kind: what happened to them: ``ADDED``, ``CHANGED`` or ``DELETED``.
+        by: who did it; None for what no person did.
+    """
+    now, entries = timezone.now(), []
+    for row in rows:
+        model = history_of(type(row)).model
+        values = {field.attname: getattr(row, field.attname) for field in model.tracked_fields}
+        entries.append(
+            model(
+                history_date=now,
+                history_type=kind,
+                history_user=by,
+                history_change_reason=reason,
+                **values,
+            )
+        )
+    if entries:
+        type(entries[0]).objects.bulk_create(entries, batch_size=BATCH)
+
+
+def keep_first(model: type[Editable], keys: Sequence[int]) -> None:
+    """Keep what the rows with these ``keys`` are, where nothing is known of them. Call it before they change."""
+    for start in range(0, len(keys), BATCH):
+        some = keys[start : start + BATCH]
+        known = set(history_of(model).filter(id__in=some).values_list("id", flat=True))
+        unknown = [key for key in some if key not in known]
+        keep(model._default_manager.filter(pk__in=unknown), ADDED, reason=AS_IMPORTED)
+
+
+def history_of(model: type[Editable]) -> Any:
+    """Return the manager of the model's history, newest entry first."""
+    return model.history
+
+
+def keys_changed_by_people(model: type[Editable], world: World) -> set[int]:
+    """Return the keys of the rows that somebody changed here since they were imported."""
+    entries = history_of(model).filter(**{model.world_path: world}, history_user__isnull=False)
+    return set(entries.exclude(history_change_reason=OF_IMPORT).values_list("id", flat=True))
+
+
+def entry_at(row: Editable, version: int) -> models.Model | None:
+    """Return the history entry of ``row`` as it was at ``version``; None where nobody kept it."""
+    return (
+        history_of(type(row))
+        .filter(id=row.pk, version=version)
+        .exclude(history_type=DELETED)
+        .order_by("-history_id")
+        .first()
+    )

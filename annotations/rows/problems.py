@@ -1,0 +1,64 @@
+"""Problems that a check found, as rows beside what they are about and as commands print them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import Any
+
+from annotations import models
+from annotations.language.english import say_count
+from annotations.language.errors import Problem
+from annotations.models.problems import Subject
+from annotations.rows.synchronise import Changes, synchronise
+
+# Of one part of an upload. A file of another kind can have a problem in each of 200,000 lines.
+MOST_PROBLEMS = 1_000
+
+
+def first_problems(problems: Iterable[Problem]) -> tuple[Problem, ...]:
+    """Return the first ``MOST_PROBLEMS`` by place, errors before warnings, and one that counts the rest.
+
+    The result is in the order of the places, and has an error if ``problems`` has one.
+    """
+    ranked = sorted(problems, key=lambda each: (not each.is_error, each))
+    kept, rest = ranked[:MOST_PROBLEMS], ranked[MOST_PROBLEMS:]
+    if rest:
+        sentence = f"{say_count(len(rest), 'more problem')} from here on, not listed"
+        kept.append(replace(rest[0], message=sentence, hint="correct the listed ones first"))
+    return tuple(sorted(kept))
+
+
+def as_json(problem: Problem) -> dict[str, Any]:
+    """A problem as commands print it: file, line, column, severity, message, hint."""
+    place = problem.position
+    return {
+        "file": place.source,
+        "line": place.line,
+        "column": place.column,
+        "severity": str(problem.severity),
+        "message": problem.message,
+        "hint": problem.hint,
+    }
+
+
+def store_problems(world: models.World, subject: Subject, problems: Sequence[Problem]) -> Changes:
+    """Makes the stored problems about one part of a world these."""
+    wanted = [
+        models.StoredProblem(
+            world=world,
+            subject=subject,
+            source=problem.position.source,
+            line=problem.position.line,
+            column=problem.position.column,
+            severity=problem.severity,
+            message=problem.message,
+            hint=problem.hint,
+        )
+        for problem in problems
+    ]
+    return synchronise(world.problems.filter(subject=subject), wanted, _text_of, [])
+
+
+def _text_of(row: models.StoredProblem) -> tuple[object, ...]:
+    return (row.source, row.line, row.column, row.severity, row.message, row.hint)

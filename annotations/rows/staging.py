@@ -1,0 +1,118 @@
+"""Many rows written at once: they are collected in a temporary table first, which holds nobody up.
+
+A temporary table belongs to one connection. Filling it takes no lock on the database (SQLite has one
+writer), so that the transaction which moves the rows to their table is as short as it can be.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import count
+from types import TracebackType
+from typing import Any, Self
+
+from django.db import connection, models
+
+from annotations.background.progress import UNWATCHED, Progress
+from annotations.rows.synchronise import batches
+
+_NUMBERS = count()
+BATCH = 1000  # rows collected between two looks at whether to stop
+
+
+class Staging:
+    """Rows of ``model``: its ``columns`` (as the database calls them), an ``id``, and ``extra`` texts.
+
+    A row with an ``id`` is to change the row that is there; one without is to be new.
+    """
+
+    def __init__(
+        self, model: type[models.Model], columns: Sequence[str], extra: Sequence[str] = ()
+    ) -> None:
+        self.model = model
+        self.columns = tuple(columns)
+        self.extra = tuple(extra)
+        self._target = _quote(model._meta.db_table)
+        self._table = _quote(f"staged_{next(_NUMBERS)}_{model._meta.model_name}")
+        self._number = 0
+
+    def __enter__(self) -> Self:
+        taken = ["id AS staged_id", *map(_quote, self.columns)]
+        texts = [f"CAST('' AS text) AS {_quote(name)}" for name in self.extra]
+        selected = ", ".join(["0 AS staged_number", *taken, *texts])
+        with connection.cursor() as cursor:
+            cursor.execute(f"DROP TABLE IF EXISTS {self._table}")
+            cursor.execute(
+                f"CREATE TEMPORARY TABLE {self._table} AS SELECT {selected} FROM {self._target} WHERE 1 = 0"
+            )
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        if connection.connection is not None and not connection.needs_rollback:
+            with connection.cursor() as cursor:
+                cursor.execute(f"DROP TABLE IF EXISTS {self._table}")
+
+    def add(self, rows: Iterable[Sequence[Any]], progress: Progress = UNWATCHED) -> None:
+        """Collects rows: each an id or None, then the columns, then the extra texts."""
+        width = 2 + len(self.columns) + len(self.extra)
+        statement = f"INSERT INTO {self._table} VALUES ({', '.join(['%s'] * width)})"
+        with connection.cursor() as cursor:
+            for some in batches(rows, BATCH):
+                progress.check()
+                numbered = [(self._number + place, *row) for place, row in enumerate(some)]
+                self._number += len(some)
+                cursor.executemany(statement, numbered)
+
+    def add_new(self, rows: Iterable[models.Model], progress: Progress = UNWATCHED) -> None:
+        """Collects unsaved instances of the model."""
+        fields = [self.model._meta.get_field(name) for name in self._field_names()]
+        self.add(
+            (
+                (None, *(_for_database(field, getattr(row, field.attname)) for field in fields))
+                for row in rows
+            ),
+            progress,
+        )
+
+    def insert(self, **expressions: str) -> int:
+        """Writes the new rows in their order; ``expressions`` are SQL for further columns. Says how many.
+
+        An expression may use the extra texts as ``s.NAME``.
+        """
+        names = ", ".join(map(_quote, [*self.columns, *expressions]))
+        values = ", ".join([*(f"s.{_quote(name)}" for name in self.columns), *expressions.values()])
+        with connection.cursor() as cursor:
+            cursor.execute(
+                f"INSERT INTO {self._target} ({names}) SELECT {values} FROM {self._table} s "
+                "WHERE s.staged_id IS NULL ORDER BY s.staged_number"
+            )
+            return cursor.rowcount
+
+    def update(self, **expressions: str) -> int:
+        """Writes the rows that have an id over those that are there. Says how many."""
+        values = {_quote(name): f"s.{_quote(name)}" for name in self.columns}
+        values |= {_quote(name): value for name, value in expressions.items()}
+        changes = ", ".join(f"{name} = {value}" for name, value in values.items())
+        with connection.cursor() as cursor:
+            cursor.execute(
+                f"UPDATE {self._target} SET {changes} FROM {self._table} s "
+                f"WHERE s.staged_id = {self._target}.id"
+            )
+            return cursor.rowcount
+
+    def _field_names(self) -> list[str]:
+        by_column = {field.column: field.name for field in self.model._meta.concrete_fields}
+        return [by_column[column] for column in self.columns]
+
+
+def _quote(name: str) -> str:
+    return connection.ops.quote_name(name)
+
+
+def _for_database(field: models.Field, value: Any) -> Any:
+    return field.get_db_prep_save(value, connection)

@@ -1,0 +1,180 @@
+"""Makes stored rows equal to wanted ones and leaves every row alone that is right already."""
+
+from __future__ import annotations
+
+from collections import defaultdict, deque
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+from itertools import islice
+from typing import Any, Generic, TypeVar
+
+from django.db.models import F, Model, QuerySet
+
+from annotations.models import Editable, User
+from annotations.rows.history import CHANGED, DELETED, OF_IMPORT, keep, keep_first
+
+Row = TypeVar("Row", bound=Model)
+BATCH = 500  # rows a statement; SQLite takes a limited number of parameters
+PLACE_FIELDS = frozenset({"line", "position"})  # where a row stands, not what it says
+
+
+@dataclass(frozen=True, slots=True)
+class Changes:
+    """How many rows were added, changed and removed; ``moved`` ones differ by nothing but their place."""
+
+    added: int = 0
+    changed: int = 0
+    removed: int = 0
+    moved: int = 0
+
+    def as_json(self) -> dict[str, int]:
+        return asdict(self)
+
+    def __add__(self, other: Changes) -> Changes:
+        return Changes(
+            self.added + other.added,
+            self.changed + other.changed,
+            self.removed + other.removed,
+            self.moved + other.moved,
+        )
+
+    @property
+    def is_none(self) -> bool:
+        """Whether every row was right already, but perhaps for its place."""
+        return not (self.added or self.changed or self.removed)
+
+
+@dataclass
+class Plan(Generic[Row]):
+    """What it takes to make stored rows equal to wanted ones. Nothing is written before ``apply``."""
+
+    model: type[Row]
+    fields: Sequence[str]
+    new: list[Row]
+    changed: list[Row]
+    moved: list[Row]
+    removed: list[Row]
+
+    @property
+    def changes(self) -> Changes:
+        return Changes(len(self.new), len(self.changed), len(self.removed), len(self.moved))
+
+    def apply(self, by: User | None = None) -> Changes:
+        """Adds, changes and removes the rows. To be called inside a transaction.
+
+        ``by`` is the author of the changes in the history of rows that people edit.
+        """
+        self.apply_to_stored(by)
+        self.model._default_manager.bulk_create(self.new, batch_size=BATCH)
+        return self.changes
+
+    def apply_to_stored(self, by: User | None = None) -> None:
+        """Changes and removes rows, and leaves the new ones to the caller."""
+        fields = list(self.fields)
+        if issubclass(self.model, Editable):
+            self._keep_history(by)
+            fields.append("version")
+        _remove(self.model, self.removed)
+        if self.changed or self.moved:
+            _rewrite(self.model, self.changed + self.moved, fields)
+
+    def _keep_history(self, by: User | None) -> None:
+        """A row that only moves is no new version."""
+        keep_first(self.model, [row.pk for row in self.changed + self.removed])
+        for row in self.changed:
+            row.version += 1
+        keep(self.changed, CHANGED, by, OF_IMPORT)
+        keep(self.removed, DELETED, by, OF_IMPORT)
+
+
+def synchronise(
+    stored: QuerySet[Row],
+    wanted: Sequence[Row],
+    key: Callable[[Row], Hashable],
+    fields: Sequence[str],
+    is_kept: Callable[[Row], bool] = lambda row: False,
+    by: User | None = None,
+) -> Changes:
+    """Adds, changes and removes as few rows as it takes: ``plan``, carried out at once.
+
+    To be called inside a transaction.
+    """
+    return plan(stored, wanted, key, fields, is_kept).apply(by)
+
+
+def plan(
+    stored: QuerySet[Row],
+    wanted: Sequence[Row],
+    key: Callable[[Row], Hashable],
+    fields: Sequence[str],
+    is_kept: Callable[[Row], bool] = lambda row: False,
+) -> Plan[Row]:
+    """What it takes to make ``stored`` equal to ``wanted``.
+
+    Args:
+        stored: the rows that may be changed.
+        wanted: unsaved rows, in order. A wanted row is the stored one with the same ``key``, the
+            first with the first where several share it.
+        fields: what to compare and to change of such a row (foreign keys by their ``_id``).
+        is_kept: whether a stored row stays though nobody wants it. Where rows have a ``position``,
+            the kept ones stand behind the wanted ones.
+    """
+    waiting: dict[Hashable, deque[Row]] = defaultdict(deque)
+    for row in stored:
+        waiting[key(row)].append(row)
+    changed, moved, new = [], [], []
+    for target in wanted:
+        row = waiting[key(target)].popleft() if waiting[key(target)] else None
+        if row is None:
+            new.append(target)
+        elif differing := _take_over(row, target, fields):
+            (moved if differing <= PLACE_FIELDS else changed).append(row)
+    left = [row for rows in waiting.values() for row in rows]
+    kept = [row for row in left if is_kept(row)]
+    if "position" in fields:
+        moved += _move_behind(kept, len(wanted))
+    removed = [row for row in left if not is_kept(row)]
+    return Plan(stored.model, fields, new, changed, moved, removed)
+
+
+def _take_over(row: Row, target: Row, fields: Sequence[str]) -> set[str]:
+    """Makes ``row`` equal to ``target`` and returns the fields in which it differed."""
+    differing = {name for name in fields if getattr(row, name) != getattr(target, name)}
+    for name in differing:
+        setattr(row, name, getattr(target, name))
+    return differing
+
+
+def _move_behind(kept: list[Row], first: int) -> list[Row]:
+    moved = []
+    for position, row in enumerate(sorted(kept, key=lambda each: each.position), start=first):
+        if row.position != position:
+            row.position = position
+            moved.append(row)
+    return moved
+
+
+def _remove(model: type[Row], rows: list[Row]) -> None:
+    for batch in batches(rows):
+        model._default_manager.filter(pk__in=[row.pk for row in batch]).delete()
+
+
+def _rewrite(model: type[Row], rows: list[Row], fields: Sequence[str]) -> None:
+    if "position" in fields:
+        _clear_positions(model, rows)
+    names = [name.removesuffix("_id") for name in fields]
+    model._default_manager.bulk_update(rows, names, batch_size=BATCH)
+
+
+def _clear_positions(model: type[Row], rows: list[Row]) -> None:
+    """Moves the rows out of the way, so that no position is ever taken twice in between."""
+    for batch in batches(rows):
+        chosen = model._default_manager.filter(pk__in=[row.pk for row in batch])
+        chosen.update(position=F("position") + 1_000_000_000)
+
+
+def batches(rows: Iterable[Any], size: int = BATCH) -> Iterator[list[Any]]:
+    """The rows in lists of at most ``size``."""
+    remaining = iter(rows)
+    while batch := list(islice(remaining, size)):
+        yield batch

@@ -1,0 +1,223 @@
+"""Verb: freeze a split, a copy of texts in which two parts share nothing of a kind."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from types import TracebackType
+from typing import Self
+
+from django.core.exceptions import ValidationError
+from django.db import transaction
+
+from annotations.language.corpus import (
+    DEFAULT_PROPORTIONS,
+    Criterion,
+    FrozenExample,
+    SplitItem,
+    content_hash,
+    split,
+)
+from annotations.language.errors import LanguageError
+from annotations.models import Example, Split, User, World
+from annotations.models.splits import Source
+from annotations.rows.staging import Staging
+from annotations.rows.synchronise import BATCH
+
+
+def freeze_split(
+    world: World,
+    name: str,
+    criterion: str = Criterion.COMMAND,
+    seed: int = 0,
+    proportions: Sequence[float] = DEFAULT_PROPORTIONS,
+    by: User | None = None,
+) -> Split:
+    """Freezes the commands, accepted paraphrases and labelled utterances of ``world`` as the split ``name``.
+
+    Args:
+        criterion: what two parts never share: a ``command``, ``source_command`` or
+            ``logical_form``, over generated and paraphrased examples together.
+        seed: the same world, criterion, proportions and seed give the same split.
+        proportions: shares of train, validation and test that sum to 1.
+
+    Returns:
+        The split; the one that is there already where it holds just the same.
+
+    Raises:
+        LanguageError: there is nothing to split, the proportions are none, or the name is taken by
+            a split with other examples.
+    """
+    examples = plan_split(world, criterion, seed, proportions)
+    with PreparedSplit(name, criterion, examples, seed) as prepared, transaction.atomic():
+        World.objects.select_for_update().get(pk=world.pk)
+        return prepared.store(world, by)[0]
+
+
+def plan_split(
+    world: World,
+    criterion: str = Criterion.COMMAND,
+    seed: int = 0,
+    proportions: Sequence[float] = DEFAULT_PROPORTIONS,
+) -> list[Example]:
+    """The examples that ``freeze_split`` would store, each with its part and position. Raises likewise."""
+    examples = list(_candidates(world))
+    items = [
+        SplitItem(each.source, each.utterance, each.source_command, each.logical_form)
+        for each in examples
+    ]
+    parts = split(items, Criterion(criterion), proportions, seed)
+    for example, part in zip(examples, parts, strict=True):
+        example.part = str(part)
+    _number(examples)
+    return examples
+
+
+class PreparedSplit:
+    """Examples (without a split so far) that ``store`` makes a split of.
+
+    Entering it collects them, so that storing, inside a transaction, is quick.
+    """
+
+    COLUMNS = (
+        *("position", "part", "source", "utterance", "source_command", "task_category"),
+        *("logical_form", "written_form", "grounded_form"),
+    )
+
+    def __init__(
+        self, name: str, criterion: str, examples: Sequence[Example], seed: int | None = None
+    ) -> None:
+        """Raises LanguageError where no split can have the name."""
+        _require_split_name(name)
+        self.name = name
+        self.criterion = criterion
+        self.seed = seed
+        self.examples = sorted(examples, key=lambda each: (each.source, each.part, each.position))
+        self.content_hash = content_hash(map(_frozen, self.examples))
+        self._staging = Staging(Example, self.COLUMNS)
+
+    def __enter__(self) -> Self:
+        self._staging.__enter__().add_new(self.examples)
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self._staging.__exit__(kind, error, traceback)
+
+    def store(self, world: World, by: User | None = None) -> tuple[Split, bool]:
+        """Stores the split; inside a transaction.
+
+        Returns:
+            The split and whether it is new; one of that name with the same texts is left alone.
+
+        Raises:
+            LanguageError: there is one of that name with other texts.
+        """
+        existing = world.splits.filter(name=self.name).first()
+        if existing is not None:
+            self._require_same(existing)
+            return existing, False
+        created = Split.objects.create(
+            world=world,
+            name=self.name,
+            criterion=self.criterion,
+            seed=self.seed,
+            content_hash=self.content_hash,
+            created_by=by,
+        )
+        self._staging.insert(split_id=str(int(created.pk)))
+        return created, True
+
+    def _require_same(self, existing: Split) -> None:
+        is_same = existing.criterion == self.criterion
+        if not is_same or _texts(existing.examples.all()) != _texts(self.examples):
+            raise LanguageError(
+                f"there is a split {self.name} already, and it holds something else",
+                hint="a frozen split never changes: choose another name",
+            )
+
+
+def content_hash_of(split: Split) -> str:
+    """The hash of the examples that ``split`` has now; equal to its ``content_hash`` as long as nobody
+    changes them."""
+    return content_hash(map(_frozen, split.examples.all().iterator(chunk_size=BATCH)))
+
+
+def _require_split_name(name: str) -> None:
+    try:
+        Split(name=name).clean_fields(exclude={"world", "criterion", "content_hash"})
+    except ValidationError as error:
+        sentences = " ".join(error.messages)
+        raise LanguageError(f"“{name}” cannot be the name of a split: {sentences}") from error
+
+
+def _candidates(world: World) -> Iterator[Example]:
+    """Every command, accepted paraphrase and labelled utterance; a pair that occurs twice is taken once."""
+    for command in world.commands.select_related("logical_form"):
+        yield Example(
+            source=Source.GENERATED,
+            utterance=command.anonymized_text,
+            source_command=command.anonymized_text,
+            task_category=command.task_category,
+            logical_form=command.logical_form.text,
+        )
+    seen: set[tuple[str, str]] = set()
+    for said in world.paraphrases.accepted().select_related("command"):
+        if (said.utterance, said.logical_form) in seen:
+            continue
+        seen.add((said.utterance, said.logical_form))
+        yield Example(
+            source=Source.PARAPHRASED,
+            utterance=said.utterance,
+            source_command=said.command.anonymized_text if said.command else said.prompt,
+            task_category=said.command.task_category if said.command else "",
+            logical_form=said.logical_form,
+            grounded_form=said.grounded_form,
+        )
+    for labelled in world.utterances.labelled():
+        if (labelled.text, labelled.logical_form) not in seen:
+            yield Example(
+                source=Source.PARAPHRASED,
+                utterance=labelled.text,
+                source_command=labelled.text,  # no command is behind it
+                logical_form=labelled.logical_form,
+            )
+
+
+def _number(examples: Sequence[Example]) -> None:
+    """Positions in the order of pair files: by the number of characters of the utterance."""
+    following: dict[tuple[str, str], int] = {}
+    for example in sorted(examples, key=lambda each: len(each.utterance)):
+        place = (example.source, example.part)
+        example.position = following.get(place, 0)
+        following[place] = example.position + 1
+
+
+def _texts(examples: Sequence[Example]) -> list[tuple[object, ...]]:
+    """What a pair file holds of each example, and where."""
+    return [
+        (
+            each.source,
+            each.part,
+            each.position,
+            each.utterance,
+            each.logical_form,
+            each.written_form,
+        )
+        for each in examples
+    ]
+
+
+def _frozen(example: Example) -> FrozenExample:
+    return FrozenExample(
+        example.part,
+        example.source,
+        example.utterance,
+        example.source_command,
+        example.task_category,
+        example.logical_form,
+        example.grounded_form,
+    )

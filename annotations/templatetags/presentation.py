@@ -1,0 +1,259 @@
+"""Template tags and filters: heads of pages, forms, commands, figures."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import Any
+
+from django import template
+from django.template.loader import render_to_string
+from django.urls import reverse
+from django.utils import timezone
+from django.utils.html import format_html, format_html_join
+from django.utils.safestring import SafeString, mark_safe
+
+from annotations.language.forms import Change
+from annotations.models.drafts import NEW
+from annotations.presentation import (
+    Piece,
+    difference,
+    form_of,
+    gloss_of,
+    merged_difference,
+    pieces_of,
+    shown,
+    wildcard_class,
+)
+
+register = template.Library()
+
+PATTERN_TOKEN = re.compile(r"(\$\w+|\{[^{}]*\})")
+
+
+@register.simple_block_tag(takes_context=True, end_name="end_page_head")
+def page_head(context: Any, content: str, title: str, aside: str = "", actions: str = "") -> str:
+    """Render the head of a page (see ``_page_head.html``) with ``content`` as its sentence."""
+    # The content was rendered by the template, so it is escaped already.
+    values = {
+        "title": title,
+        "aside": aside,
+        "about": mark_safe(content.strip()),
+        "actions": actions,
+    }
+    with context.push(**values):
+        return context.template.engine.get_template("_page_head.html").render(context)
+
+
+@register.simple_block_tag(end_name="end_empty_state")
+def empty_state(content: str, url: str = "", action: str = "") -> str:
+    """Render what stands in the place of an empty list: a sentence and the button that fills it."""
+    values = {"sentence": mark_safe(content.strip()), "action_url": url, "action": action}
+    return render_to_string("_empty.html", values)
+
+
+@register.simple_tag(takes_context=True)
+def draft_attributes(context: Any, kind: str, row: Any = None, name: str = "") -> SafeString:
+    """Return the attributes of a form whose text is kept as a draft while it is typed.
+
+    ``kind`` is a name in ``annotations.editing.kinds``; without a ``row`` the form makes a new one.
+    ``name``, a short slug, tells apart the forms that make new rows for different reasons.
+    """
+    new = f"{NEW}-{name}" if name else NEW
+    world, subject = context["world"], str(row.pk) if row else new
+    path = reverse("draft", kwargs={"world": world.name, "kind": kind, "subject": subject})
+    return format_html(
+        'data-draft="{}-{}-{}" data-draft-of="{}" data-draft-url="{}"',
+        *(world.name, kind, subject, context["request"].user.pk, path),
+    )
+
+
+@register.inclusion_tag("_logical_form.html", takes_context=True)
+def logical_form(
+    context: Any,
+    text: str,
+    gloss: bool = False,
+    tools: bool = False,
+    url: str = "",
+    tree: bool = False,
+) -> dict[str, Any]:
+    """Show a form in the notation that the page shows.
+
+    With ``gloss`` its English sentence stands beneath, linked to ``url`` where one is given; with
+    ``tree`` the form as a tree.
+    """
+    form = shown(text)
+    if gloss and form.corpus:
+        form = replace(form, gloss=gloss_of(context["world"], form_of(text)))
+    return {"form": form, "tools": tools, "url": url, "tree": tree}
+
+
+@register.simple_tag(takes_context=True)
+def gloss_of_form(context: Any, text: str) -> str:
+    """Write a form as an English sentence; empty for what is not a form."""
+    form = form_of(text)
+    return gloss_of(context["world"], form) if form else ""
+
+
+@register.simple_tag
+def form_beside(first: str, other: str) -> SafeString:
+    """Show ``other`` with what it has beyond ``first`` and what it lacks marked; a button may hold it."""
+    pieces = merged_difference(first, other)
+    marked = format_html_join("", "{}", ((_marked_piece(*piece),) for piece in pieces))
+    return format_html('<span class="lf"><code>{}</code></span>', marked)
+
+
+@register.simple_tag
+def template_notation(text: str) -> str:
+    """Write a form as people edit it; empty for what is not a form."""
+    return shown(text).template
+
+
+@register.filter
+def chips(text: str) -> SafeString:
+    """Show a command with its class tokens as chips."""
+    return format_html_join("", "{}", ((_chip(piece),) for piece in pieces_of(text)))
+
+
+@register.filter
+def grounded(utterance: Any) -> SafeString:
+    """Show the text of an utterance with the words that name an entity marked by its class."""
+    pieces, end = [], 0
+    for start, stop, entity_class, entity in utterance.spans:
+        pieces.append((utterance.text[end:start],))
+        pieces.append((_name(utterance.text[start:stop], entity_class, entity),))
+        end = stop
+    return format_html_join("", "{}", [*pieces, (utterance.text[end:],)])
+
+
+def _name(words: str, entity_class: str, entity: str) -> SafeString:
+    return format_html(
+        '<span class="chip" data-class="{0}" title="{2}"><span class="value">{1}</span>{0}</span>',
+        entity_class,
+        words,
+        entity,
+    )
+
+
+@register.simple_tag
+def command(text: str) -> SafeString:
+    """Show a command with its class tokens as chips."""
+    return chips(text)
+
+
+def _chip(piece: Piece) -> str:
+    if not piece.entity_class:
+        return piece.text
+    return format_html('<span class="chip" data-class="{0}">{0}</span>', piece.entity_class)
+
+
+@register.simple_tag
+def pattern(text: str) -> SafeString:
+    """Show a pattern or an expansion with its nonterminals and wildcards marked."""
+    return format_html_join("", "{}", ((_mark(token),) for token in PATTERN_TOKEN.split(text)))
+
+
+@register.simple_tag(takes_context=True)
+def linked_pattern(context: Any, text: str) -> SafeString:
+    """Show a pattern as ``pattern`` does, each nonterminal a link to its productions."""
+    grammar = reverse("grammar", kwargs={"world": context["world"].name})
+    tokens = PATTERN_TOKEN.split(text)
+    return format_html_join("", "{}", ((_mark(token, grammar),) for token in tokens))
+
+
+def _mark(token: str, grammar_url: str = "") -> str:
+    if token.startswith("$") and grammar_url:
+        link = '<a class="lf-nonterminal" href="{}?nonterminal={}">{}</a>'
+        return format_html(link, grammar_url, token[1:], token)
+    if token.startswith("$"):
+        return format_html('<span class="lf-nonterminal">{}</span>', token)
+    if token.startswith("{"):
+        hue = wildcard_class(token)
+        return format_html('<span class="lf-slot" data-class="{}">{}</span>', hue, token)
+    return token
+
+
+@register.simple_tag
+def expected_form(expected: str, predicted: str) -> SafeString:
+    """Show the annotated form, with what the prediction lacks marked."""
+    return _form_with_marks(difference(expected, predicted)[0])
+
+
+@register.simple_tag
+def predicted_form(expected: str, predicted: str) -> SafeString:
+    """Show the predicted form, with what it has beyond the annotated one marked."""
+    return _form_with_marks(difference(expected, predicted)[1])
+
+
+# The element that marks a piece of a form; one without a change stands as it is.
+MARKS = {Change.ADDED: "ins", Change.REMOVED: "del", Change.CHANGED: "mark"}
+
+
+@register.simple_tag
+def marked_text(pieces: list[tuple[str, str]]) -> SafeString:
+    """Show a text with what was added and removed marked (``annotations.presentation.compare``)."""
+    marked = format_html_join("", "{}", ((_marked_piece(*piece),) for piece in pieces))
+    return format_html('<figure class="lf"><code>{}</code></figure>', marked)
+
+
+def _form_with_marks(pieces: list[tuple[str, str]]) -> SafeString:
+    marked = format_html_join("", "{}", ((_marked_piece(*piece),) for piece in pieces))
+    return format_html('<figure class="lf" data-form><code>{}</code></figure>', marked)
+
+
+def _marked_piece(change: str, text: str) -> str:
+    element = MARKS.get(Change(change))
+    return format_html("<{0}>{1}</{0}>", element, text) if element else text
+
+
+@register.filter
+def percent(fraction: float | None) -> float | None:
+    """Convert a fraction to percent; None for what is not a number."""
+    return 100 * fraction if isinstance(fraction, float | int) else None
+
+
+@register.filter
+def figure(number: float | None) -> str:
+    """Write a count with commas between thousands."""
+    return "" if number is None else f"{number:,}"
+
+
+@register.filter
+def decimals(number: float | None, digits: int = 2) -> str:
+    """Write a number with ``digits`` decimals; a dash for None."""
+    return "–" if number is None else f"{number:,.{digits}f}"
+
+
+@register.filter
+def duration(seconds: float | None) -> str:
+    """Write seconds as ``48 s``, ``3 min 20 s`` or ``2 h 5 min``; nothing for None."""
+    if seconds is None:
+        return ""
+    if seconds < 10:
+        return f"{seconds:.1f} s"
+    whole = round(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    minutes, rest = divmod(whole, 60)
+    return f"{minutes} min {rest} s" if minutes < 60 else f"{minutes // 60} h {minutes % 60} min"
+
+
+@register.filter
+def ago(moment: Any) -> SafeString:
+    """Write how long ago a moment was, with the moment itself on hover."""
+    if moment is None:
+        return format_html("")
+    absolute = timezone.localtime(moment)
+    return format_html(
+        '<time datetime="{}" title="{}">{}</time>',
+        absolute.isoformat(),
+        f"{absolute:%Y-%m-%d %H:%M:%S %Z}",
+        _age((timezone.now() - moment).total_seconds()),
+    )
+
+
+def _age(seconds: float) -> str:
+    for size, unit in ((86400, "d"), (3600, "h"), (60, "min")):
+        if seconds >= size:
+            return f"{int(seconds // size)} {unit} ago"
+    return "just now"

@@ -1,0 +1,99 @@
+"""Frozen splits, on which parsers are trained and tested, and their examples."""
+
+from __future__ import annotations
+
+from django.http import HttpRequest, HttpResponse
+from django.shortcuts import get_object_or_404, redirect, render
+
+from annotations.forms import SplitForm, posted
+from annotations.language.errors import LanguageError
+from annotations.lists.filters import ExampleFilters, SplitFilters
+from annotations.lists.listing import Listing, Sort, render_list
+from annotations.models import Duty, Example, Split, World
+from annotations.people.access import READ_AND_WRITE, world_view
+from annotations.rows.occurrences import command_of_example, logical_form_of, paraphrase_of_example
+from annotations.splits.freezing import freeze_split, plan_split
+from annotations.splits.split_statistics import (
+    counts_of,
+    counts_of_planned,
+    leakage_of,
+    near_duplicates_of,
+)
+
+SORTS = {
+    "position": Sort("No.", "id", is_number=True),
+    "utterance": Sort("Utterance", "utterance"),
+    "category": Sort("Task category", "task_category"),
+}
+SPLIT_SORTS = {"created": Sort("Frozen", "-created_at"), "name": Sort("Split", "name")}
+MOST_SHOWN = 100
+
+
+@world_view(Duty.VIEW)
+def splits(request: HttpRequest, world: World) -> HttpResponse:
+    """List the splits with the number of their pairs by part and source."""
+    listing = Listing(request, SplitFilters, world.splits.select_related("created_by"), SPLIT_SORTS)
+    counts = counts_of(listing.rows)
+    context = {"listing": listing, "rows": [(row, counts[row.pk]) for row in listing.rows]}
+    return render_list(request, "annotations/splits.html", context)
+
+
+@world_view(Duty.ANNOTATE, READ_AND_WRITE)
+def split_new(request: HttpRequest, world: World) -> HttpResponse:
+    """Show the form that freezes a split; its other button only previews the counts."""
+    initial = {"name": f"{world.name}-{world.splits.count() + 1}"}
+    form = SplitForm(posted(request), initial=initial)
+    context = {"form": form}
+    if form.is_bound and form.is_valid():
+        try:
+            if "freeze" not in request.POST:
+                context["counts"] = counts_of_planned(plan_split(world, **form.choice))
+            else:
+                name = form.cleaned_data["name"]
+                frozen = freeze_split(world, name, by=request.user, **form.choice)
+                return redirect("split", world=world.name, pk=frozen.pk)
+        except LanguageError as error:
+            form.add_error(None, str(error))
+    return render(request, "annotations/split_new.html", context)
+
+
+@world_view(Duty.VIEW)
+def split(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """Show one split: its parts, what they share, its examples."""
+    row = get_object_or_404(Split.objects.select_related("created_by"), world=world, pk=pk)
+    context = {
+        "split": row,
+        "counts": counts_of([row])[row.pk],
+        "leakage": leakage_of(row),
+        "listing": Listing(request, ExampleFilters, row.examples.all(), SORTS),
+    }
+    return render_list(request, "annotations/split.html", context)
+
+
+@world_view(Duty.VIEW)
+def example(request: HttpRequest, world: World, split: int, pk: int) -> HttpResponse:
+    """Show one example of a split, and the command and paraphrase that it was copied from."""
+    rows = Example.objects.filter(split__world=world, split=split).select_related("split__world")
+    row = get_object_or_404(rows, pk=pk)
+    context = {
+        "row": row,
+        "command": command_of_example(row),
+        "paraphrase": paraphrase_of_example(row),
+        "logical_form": logical_form_of(world.pk, row.logical_form),
+    }
+    return render(request, "annotations/example.html", context)
+
+
+@world_view(Duty.VIEW)
+def near_duplicates(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """List utterances that training nearly has: a part of the split's page, loaded when opened."""
+    row = get_object_or_404(Split.objects.select_related("world"), world=world, pk=pk)
+    context: dict[str, object] = {"most": MOST_SHOWN}
+    try:
+        context["parts"] = [
+            (each.leak, each.found[:MOST_SHOWN], len(each.found))
+            for each in near_duplicates_of(row)
+        ]
+    except LanguageError as error:
+        context["refusal"] = error.problem
+    return render(request, "annotations/_near_duplicates.html", context)

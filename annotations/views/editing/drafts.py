@@ -1,0 +1,74 @@
+"""What somebody types, kept while they type: asked for and sent by ``static/src/drafts.js``."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from django.http import Http404, HttpRequest, JsonResponse
+from django.views.decorators.cache import never_cache
+
+from annotations.editing.drafts import MOST_BYTES, discard_draft, read_draft, save_draft
+from annotations.models import Draft, Duty, World
+from annotations.models.drafts import NEW
+from annotations.people.access import READ_AND_WRITE, world_view
+from annotations.views.editing.history import kind_named, number_in
+
+LONGEST_SUBJECT = Draft._meta.get_field("subject").max_length
+
+
+@never_cache
+@world_view(Duty.ANNOTATE, READ_AND_WRITE)
+def draft(request: HttpRequest, world: World, kind: str, subject: str) -> JsonResponse:
+    """Answer the reader's own draft about a row; a POST keeps it, or discards it.
+
+    A POST brings JSON: ``of`` (the account that the page was made for), then either
+    ``{"discard": true}`` or ``fields``, ``version`` and ``device``.
+    """
+    of_kind = kind_named(kind)
+    if len(subject) > LONGEST_SUBJECT:
+        raise Http404("There is no such draft.")
+    if subject.partition("-")[0] != NEW:
+        of_kind.row_or_last_known(world, number_in(subject) or 0)
+    if request.method == "POST":
+        return _post(request, world, kind, subject)
+    key = {"user": request.user, "world": world, "kind": kind, "subject": subject}
+    return JsonResponse({"draft": _as_json(Draft.objects.filter(**key).first())})
+
+
+def _post(request: HttpRequest, world: World, kind: str, subject: str) -> JsonResponse:
+    if len(request.body) > MOST_BYTES:
+        sentence = (
+            f"A draft has at most {MOST_BYTES // 1024} kB. This text is in your browser only."
+        )
+        return JsonResponse({"error": sentence}, status=413)
+    try:
+        sent = json.loads(request.body)
+        values = {} if _is_discarding(sent) else read_draft(sent)
+    except (ValueError, RecursionError) as error:
+        is_sentence = type(error) is ValueError
+        sentence = str(error) if is_sentence else "This is not JSON."
+        return JsonResponse({"error": sentence}, status=400)
+    if sent.get("of") != request.user.pk:
+        sentence = "You have logged in as somebody else since. The draft is in your browser only."
+        return JsonResponse({"error": sentence}, status=409)
+    if not values:
+        discard_draft(request.user, world, kind, subject)
+        return JsonResponse({"draft": None})
+    saved = save_draft(request.user, world, kind, subject, values)
+    return JsonResponse({"saved_at": saved and saved.saved_at.isoformat()})
+
+
+def _is_discarding(sent: Any) -> bool:
+    return isinstance(sent, dict) and sent.get("discard") is True
+
+
+def _as_json(stored: Draft | None) -> dict[str, Any] | None:
+    if stored is None:
+        return None
+    return {
+        "fields": stored.fields,
+        "version": stored.base_version,
+        "device": stored.device,
+        "saved_at": stored.saved_at.isoformat(),
+    }

@@ -1,0 +1,127 @@
+"""The page that the second of two people gets who change the same row, whatever the row is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from django import forms
+from django.db import transaction
+from django.http import HttpRequest, HttpResponse
+from django.shortcuts import render
+
+from annotations.editing.drafts import discard_draft
+from annotations.editing.edits import Overtaken, bring_back, change
+from annotations.editing.kinds import FORM_FIELDS, kind_of
+from annotations.editing.merging import MergedField, merge
+from annotations.models import Editable
+from annotations.presentation import Pieces, compare
+
+# What the fields of a form are called → what they show for a row.
+Shown = Callable[[Editable], Mapping[str, Any]]
+
+
+@dataclass(frozen=True)
+class Side:
+    """A field of a row as one person has it: ``value`` for the form, the label or text of it in pieces."""
+
+    title: str
+    value: str
+    pieces: Pieces
+
+
+def save_edit(
+    request: HttpRequest, row: Editable, form: forms.Form, values: Mapping[str, Any]
+) -> Editable:
+    """Save ``values`` for the version that ``form`` was opened at; it needs a field ``version``.
+
+    Raises Overtaken; ``merge_page`` answers it.
+    """
+    version = form.cleaned_data["version"] or 0
+    verb = bring_back if "bring_back" in request.POST else change
+    with transaction.atomic():
+        saved = verb(row, values, request.user, version)
+        discard_draft(request.user, row.owning_world, kind_of(row).name, row.pk)
+    return saved
+
+
+def merge_page(
+    request: HttpRequest,
+    row: Editable,
+    form: forms.Form,
+    clash: Overtaken,
+    shown: Shown,
+    **context: Any,
+) -> HttpResponse:
+    """Show what ``row`` was, what somebody made of it, and what ``form`` holds, field by field.
+
+    Args:
+        row: as the reader's request found it.
+        shown: what the fields of ``form`` show for a row.
+        context: for the template: ``check_url`` and ``completion_url`` where the fields are checked
+            and completed as one types.
+
+    Where only one of both changed a field its change is taken. The page sends the form to the same
+    address, as an edit of the present version.
+    """
+    merged = _merge(form, clash, shown) if clash.current else {}
+    data = form.data.copy()
+    data["version"] = clash.current.version if clash.current else clash.last.version
+    for name, each in merged.items():
+        data[name] = each.merged
+    form.data = data
+    by = str(clash.last.history_user or "somebody") if clash.last else "somebody"
+    changed = {name: each for name, each in merged.items() if not each.is_same}
+    context |= {
+        "kind": kind_of(row),
+        "row": row,
+        "form": form,
+        "clash": clash,
+        "changed": [(form[name], each, _sides(form, each, by)) for name, each in changed.items()],
+        "others": [field for field in _written(form) if field.name not in changed],
+    }
+    return render(request, "annotations/merge.html", context, status=409)
+
+
+def _written(form: forms.Form) -> list[forms.BoundField]:
+    """The fields that a person fills in."""
+    return [field for field in form.visible_fields() if not field.field.disabled]
+
+
+def _merge(form: forms.Form, clash: Overtaken, shown: Shown) -> dict[str, MergedField]:
+    fields = _written(form)
+    mine = {field.name: _as_posted(field, field.value()) for field in fields}
+    theirs = _posted_values(fields, shown(clash.current))
+    base = _posted_values(fields, shown(clash.base.instance)) if clash.base else None
+    return {each.name: each for each in merge(base, theirs, mine)}
+
+
+def _posted_values(fields: list[forms.BoundField], values: Mapping[str, Any]) -> dict[str, str]:
+    return {field.name: _as_posted(field, values.get(field.name)) for field in fields}
+
+
+def _as_posted(field: forms.BoundField, value: Any) -> str:
+    """Write a value as a browser sends it."""
+    prepared = field.field.prepare_value(value)
+    return "" if prepared is None else str(prepared).replace("\r\n", "\n").strip()
+
+
+def _sides(form: forms.Form, each: MergedField, by: str) -> list[Side]:
+    """Before, theirs and yours; the last two with what is other than before."""
+    is_form = each.name in FORM_FIELDS
+    texts = {value: _label(form[each.name], value) for value in (each.base, each.theirs, each.mine)}
+    if each.base is None:
+        theirs, mine = compare(texts[each.theirs], texts[each.mine], is_form)
+        before = []
+    else:
+        _, theirs = compare(texts[each.base], texts[each.theirs], is_form)
+        pieces, mine = compare(texts[each.base], texts[each.mine], is_form)
+        before = [Side("Before", each.base, [("same", text) for _, text in pieces])]
+    return [*before, Side(f"Saved by {by}", each.theirs, theirs), Side("Yours", each.mine, mine)]
+
+
+def _label(field: forms.BoundField, value: str | None) -> str:
+    """Return the words of a chosen option; of other fields the text itself."""
+    choices = getattr(field.field, "choices", ())
+    return next((str(label) for key, label in choices if str(key) == value), value or "")

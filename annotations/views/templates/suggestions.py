@@ -1,0 +1,51 @@
+"""Suggested templates: forms for the pattern that somebody types, and the beginning of one for a command."""
+
+from __future__ import annotations
+
+from hashlib import sha256
+from typing import Any
+
+from django.http import HttpRequest, HttpResponse
+from django.shortcuts import render
+
+from annotations.editing.suggestions import MOST_COMMAND, suggest_forms, suggest_pattern
+from annotations.forms import TemplateForm
+from annotations.models import Duty, TaskCategory, World
+from annotations.people.access import WRITE, world_view
+
+
+@world_view(Duty.ANNOTATE, WRITE)
+def template_suggestions(request: HttpRequest, world: World) -> HttpResponse:
+    """Suggest forms for the typed pattern."""
+    form = TemplateForm(world, request.POST)
+    pattern = (form["pattern"].value() or "").strip()
+    context = {
+        "suggestions": suggest_forms(world, form.chosen_category, pattern),
+        "chosen": form["form"].value(),
+        "has_pattern": bool(pattern),
+    }
+    return render(request, "annotations/_suggested_forms.html", context)
+
+
+def suggestions_for_command(request: HttpRequest, world: World) -> dict[str, Any]:
+    """Return what the page of a new template shows for the command that its address names; else nothing.
+
+    ``initial`` are the values that its fields begin with; the form is left to the writer where it would be a
+    guess. ``draft`` names the place of the draft, so that one of
+    another command is not filled in.
+    """
+    command = " ".join(request.GET.get("command", "").replace("\0", "").split())[:MOST_COMMAND]
+    if not command:
+        return {}
+    about = {"command": command, "draft": sha256(command.encode()).hexdigest()[:12]}
+    if request.method == "POST":
+        return about
+    categories = TaskCategory.objects.filter(grammar__world=world)
+    named = categories.filter(name=request.GET.get("task_category", "").replace("\0", ""))
+    category = named.first() or categories.last()
+    pattern = suggest_pattern(world, category, command)
+    suggestions = suggest_forms(world, category, pattern)
+    likely = [each.text for each in suggestions if not each.is_guess]
+    first = likely[0] if likely else ""
+    initial = {"task_category": category, "pattern": pattern, "form": first}
+    return {**about, "initial": initial, "suggestions": suggestions, "chosen": first}

@@ -1,0 +1,115 @@
+"""What saving a template would do, shown beside it while it is written and said again after saving."""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import dataclass
+from typing import Any
+
+from django.http import Http404, HttpRequest, HttpResponse
+from django.shortcuts import get_object_or_404, render
+
+from annotations.forms import TemplateForm
+from annotations.generation.consequences import TemplateChange, WorldConsequences, consequences
+from annotations.language.english import say_count
+from annotations.models import Duty, SemanticTemplate, TaskCategory, World
+from annotations.people.access import WRITE, world_view
+
+MOST_SHOWN = 8
+MOST_DIGITS = 18  # of a key
+
+
+@dataclass(frozen=True)
+class Group:
+    """Some of what is different in one way: a sentence, the first rows, and how many more there are."""
+
+    kind: str
+    sentence: str
+    rows: tuple[Any, ...]
+    left_out: int
+
+
+@world_view(Duty.ANNOTATE, WRITE)
+def template_consequences(request: HttpRequest, world: World) -> HttpResponse:
+    """Show what saving the typed template would do, over the stored one that ``template`` names."""
+    row = _stored(world, request.GET.get("template", ""))
+    expected = _consequences(world, TemplateForm(world, request.POST), row)
+    context = {"expected": expected, "groups": groups_of(expected) if expected else []}
+    return render(request, "annotations/_template_consequences.html", context)
+
+
+def _stored(world: World, key: str) -> SemanticTemplate | None:
+    """Return None for no key. Raises Http404 where the world has no template of that key."""
+    if not key:
+        return None
+    if not key.isdecimal() or len(key) > MOST_DIGITS:
+        raise Http404("No such template.")
+    return get_object_or_404(SemanticTemplate, grammar__world=world, pk=int(key))
+
+
+def _consequences(
+    world: World, form: TemplateForm, row: SemanticTemplate | None
+) -> WorldConsequences | None:
+    """Return None while a side is empty or has an error that keeps the template from being saved."""
+    form.fields["task_category"].required = row is None
+    form.is_valid()  # the template may be a draft, and then an error does not stop it
+    values = {name: form[name].value() or "" for name in ("pattern", "form", "status")}
+    category = form.chosen_category
+    if not values["pattern"].strip() or not values["form"].strip() or category is None:
+        return None
+    if form.errors:
+        return WorldConsequences(trouble="correct the errors first")
+    if row:
+        values |= row.moved_to(category)
+    return consequences(world, change_to(row, category, values))
+
+
+def change_to(
+    row: SemanticTemplate | None, category: TaskCategory, values: dict[str, Any]
+) -> TemplateChange:
+    """Return the change that saving ``values`` over ``row`` is; of a new template where that is None."""
+    after = copy.copy(row) if row else SemanticTemplate.for_category(category)
+    for name, value in values.items():
+        setattr(after, name, value)
+    return TemplateChange(row, after)
+
+
+def groups_of(expected: WorldConsequences) -> list[Group]:
+    """Return what is different by kind, with the first of each."""
+    changes, name = expected.changes, expected.templates.get
+    kinds = (
+        ("covered", "newly covered", changes.covered_in_grammar),
+        ("outside", "that the grammar does not make", changes.covered_outside),
+        ("changed", "with another form", changes.changed),
+        ("lost", "without a form from then on", changes.lost),
+        ("conflicts", "in conflict: the later template wins", changes.conflicts),
+        ("resolved", "no longer in conflict", changes.conflicts_gone),
+        (
+            "duplicates",
+            "that say the same as an earlier one",
+            [(name(each.template), name(each.earlier)) for each in changes.duplicates],
+        ),
+        (
+            "shadowed",
+            "whose commands are all taken by another",
+            [(name(each.template), name(each.by)) for each in changes.shadowed],
+        ),
+        ("left_out", "left out", changes.left_out),
+        ("splits", "whose pairs no longer agree with the world", expected.splits.splits),
+    )
+    nouns = {
+        "duplicates": "template",
+        "shadowed": "template",
+        "left_out": "template",
+        "splits": "split",
+    }
+    return [
+        Group(
+            kind,
+            f"{say_count(len(rows), nouns.get(kind, 'command'))} {rest}",
+            tuple(rows[:MOST_SHOWN]),
+            max(0, len(rows) - MOST_SHOWN),
+        )
+        for kind, rest, rows in kinds
+        if rows
+    ]

@@ -1,0 +1,35 @@
+"""The files of a part of a world, as a generator has them."""
+
+from __future__ import annotations
+
+from io import BytesIO
+from zipfile import ZIP_DEFLATED, ZipFile
+
+from django.http import Http404, HttpRequest, HttpResponse
+
+from annotations.exporting.generator_export import Part, files_of_part
+from annotations.models import Duty, World
+from annotations.people.access import world_view
+
+
+@world_view(Duty.VIEW)
+def download_part(request: HttpRequest, world: World, part: str) -> HttpResponse:
+    """One file as it is, several in an archive that the import page takes."""
+    if part not in Part.values:
+        raise Http404("There is no such part of a world.")
+    files = files_of_part(world, part)
+    if not files:
+        raise Http404("This part of the world is empty.")
+    if len(files) == 1:
+        ((name, text),) = files.items()
+        return _attachment(text.encode(), "text/plain; charset=utf-8", name)
+    packed = BytesIO()
+    with ZipFile(packed, "w", ZIP_DEFLATED) as archive:
+        for name, text in files.items():
+            archive.writestr(name, text)
+    return _attachment(packed.getvalue(), "application/zip", f"{world.name}-{part}.zip")
+
+
+def _attachment(data: bytes, kind: str, name: str) -> HttpResponse:
+    headers = {"Content-Disposition": f'attachment; filename="{name}"'}
+    return HttpResponse(data, content_type=kind, headers=headers)

@@ -1,0 +1,172 @@
+"""Streams a world as a zip archive: rows are read and packed as they are sent."""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+from collections.abc import Iterable, Iterator
+from datetime import datetime
+from typing import Any
+
+from django.db.models import Count
+
+from annotations.editing.kinds import KINDS, Kind
+from annotations.editing.versions import what_happened
+from annotations.exporting.generator_export import generator_files
+from annotations.exporting.split_export import Format, export_lines, folder_of
+from annotations.language.corpus import PART_FILES, TRIPLES_FILE
+from annotations.models import Split, World
+from annotations.rows.synchronise import batches
+from annotations.world_archive.tables import FORMAT, MANIFEST, TABLES, VERSION, WORLD_FIELDS, Table
+
+CHUNK = 2000  # rows fetched, and lines packed, at once
+README = """A world of GPSR Workbench.
+
+"Import a world" makes the same world again from this archive; it reads world.json and rows/.
+generator/ and splits/ hold the same for people and other programs. After a change of the files in
+generator/, import that folder as the files of a generator. history/ says who changed what, and when: a
+line of JSON for each version of a row that people changed or deleted. A new world begins its own.
+"""
+
+# Key of a row → its line number, by the name of the table.
+Numbers = dict[str, dict[int, int]]
+
+
+class ChangedMeanwhile(RuntimeError):
+    """A row refers to one that was written before it existed: somebody changed the world meanwhile."""
+
+
+def archive_name(world: World) -> str:
+    """What the archive of ``world`` is called."""
+    return f"{world.name}-world.zip"
+
+
+def world_archive(world: World) -> Iterator[bytes]:
+    """The archive of ``world`` in pieces, none of them large.
+
+    Raises:
+        ChangedMeanwhile: the world was generated or imported anew while it was read.
+    """
+    world = World.objects.get(pk=world.pk)  # as it is now, whatever the caller read
+    target = _Pipe()
+    with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as archive:
+        counts: dict[str, int] = {}
+        numbers: Numbers = {}
+        yield from _member(archive, target, "README.txt", [README])
+        for table in TABLES:
+            numbers[table.name] = {}
+            lines = _lines(table, world, numbers)
+            yield from _member(archive, target, table.path, lines)
+            counts[table.name] = len(numbers[table.name])
+        for name, lines in _readable_files(world):
+            yield from _member(archive, target, name, lines)
+        files = {member.filename: member.CRC for member in archive.infolist()}
+        yield from _member(archive, target, MANIFEST, [_manifest(world, counts, files)])
+    yield target.take()
+
+
+class _Pipe(io.RawIOBase):
+    """A file that gives away what was written to it, so that nothing is kept."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._pieces: list[bytes] = []
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, data: Any) -> int:
+        self._pieces.append(bytes(data))
+        return len(data)
+
+    def take(self) -> bytes:
+        data, self._pieces = b"".join(self._pieces), []
+        return data
+
+
+def _member(
+    archive: zipfile.ZipFile, target: _Pipe, name: str, lines: Iterable[str]
+) -> Iterator[bytes]:
+    with archive.open(name, "w") as file:
+        for some in batches(lines, CHUNK):
+            file.write("".join(some).encode())
+            yield target.take()
+
+
+def _lines(table: Table, world: World, numbers: Numbers) -> Iterator[str]:
+    """The rows in the order of their keys. Fills ``numbers`` for the tables that refer to this one."""
+    rows = table.model._default_manager.filter(**{table.world_path: world}).order_by("pk")
+    known = numbers[table.name]
+    for number, row in enumerate(rows.select_related(*table.people).iterator(chunk_size=CHUNK)):
+        known[row.pk] = number
+        values = {each.name: getattr(row, each.attname) for each in table.columns}
+        for name, other in table.references.items():
+            values[name] = _number(row, name, numbers[other])
+        if table.subjects:
+            values["subject"] = numbers[table.subjects[row.kind]].get(row.subject)
+        for name in table.people:
+            person = getattr(row, name)
+            values[name] = person.username if person else None
+        yield json.dumps(values, ensure_ascii=False, default=datetime.isoformat) + "\n"
+
+
+def _number(row: Any, name: str, numbers: dict[int, int]) -> int | None:
+    key = getattr(row, f"{name}_id")
+    if key is not None and key not in numbers:
+        raise ChangedMeanwhile(f"{row._meta.verbose_name} {row.pk} refers to a new {name}")
+    return None if key is None else numbers[key]
+
+
+def _manifest(world: World, counts: dict[str, int], files: dict[str, int]) -> str:
+    values = {
+        "format": FORMAT,
+        "version": VERSION,
+        "name": world.name,
+        **{name: getattr(world, name) for name in WORLD_FIELDS},
+        "has_grammar": hasattr(world, "grammar"),
+        "has_ontology": hasattr(world, "ontology"),
+        "rows": counts,
+        "files": files,  # with their checksums, so that a changed one is noticed
+    }
+    return json.dumps(values, ensure_ascii=False, indent=2) + "\n"
+
+
+def _readable_files(world: World) -> Iterator[tuple[str, Iterable[str]]]:
+    """Path → lines of the files for people: those of the generator, and a pair file for each part."""
+    for name, text in generator_files(world).items():
+        yield f"generator/{name}", [text]
+    if world.paraphrases.accepted().exists():
+        yield f"generator/{TRIPLES_FILE}", _triples(world)
+    for split in world.splits.order_by("pk"):
+        yield from _pair_files(split)
+    for kind in KINDS.values():
+        entries = kind.entries_of(world).order_by("history_id")
+        if entries.exists():
+            yield f"history/{kind.plural}.jsonl", _history_lines(kind, entries)
+
+
+def _history_lines(kind: Kind, entries: Any) -> Iterator[str]:
+    for entry in entries.iterator(chunk_size=CHUNK):
+        values = {
+            "row": entry.id,
+            "version": entry.version,
+            "what": what_happened(entry),
+            "by": str(entry.history_user or ""),
+            "at": entry.history_date,
+            **{name: getattr(entry, name) for name in kind.model.edited_fields},
+        }
+        yield json.dumps(values, ensure_ascii=False, default=datetime.isoformat) + "\n"
+
+
+def _triples(world: World) -> Iterator[str]:
+    rows = world.paraphrases.accepted().values_list("utterance", "prompt", "grounded_form")
+    for row in rows.iterator(chunk_size=CHUNK):
+        yield "".join(f"{text}\n" for text in row)
+
+
+def _pair_files(split: Split) -> Iterator[tuple[str, Iterable[str]]]:
+    counted = split.examples.order_by().values_list("source", "part").annotate(Count("pk"))
+    for source, part, _ in sorted(counted):
+        path = f"splits/{split.name}/{folder_of(split, source)}/{PART_FILES[part]}"
+        yield path, export_lines(split, Format.TXT, part, source)

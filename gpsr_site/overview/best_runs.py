@@ -1,0 +1,95 @@
+"""The most accurate run of each protocol on one split."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from django.db.models import BooleanField, ExpressionWrapper, Q
+from django.urls import reverse
+from django.utils.http import urlencode
+
+from annotations.language.corpus import Criterion
+from annotations.models import Split, World
+from annotations.models.background import Status
+from parser_service.models import Evaluation
+from parser_service.parsers.conditions import Protocol, only_source
+from parser_service.parsers.registry import PARSERS
+
+PART = "validation"
+# The harder source first: people say things as no grammar does.
+SOURCES = {"para": "paraphrases", "gen": "generated commands", "mixed": "commands and paraphrases"}
+
+
+@dataclass(frozen=True, slots=True)
+class BestRun:
+    """A run's score on the validation part, with the address of what it got wrong."""
+
+    world: World
+    score: Evaluation
+
+    @property
+    def protocol(self) -> str:
+        return self.score.run.protocol
+
+    @property
+    def title(self) -> str:
+        entry = PARSERS.get(self.score.run.parser)
+        return entry.title if entry else self.score.run.parser
+
+    @property
+    def wrong(self) -> int:
+        """How many examples it did not answer exactly."""
+        return self.score.count - self.score.correct
+
+    @property
+    def wrong_url(self) -> str:
+        """The list of exactly these examples."""
+        chosen = {"part": self.score.part, "outcome": "wrong"}
+        if source := only_source(self.score.test_source):
+            chosen["source"] = source
+        return f"{self._address('predictions')}?{urlencode(chosen)}"
+
+    @property
+    def run_url(self) -> str:
+        return self._address("run")
+
+    def _address(self, name: str) -> str:
+        return reverse(name, kwargs={"world": self.world.name, "pk": self.score.run_id})
+
+
+@dataclass(frozen=True, slots=True)
+class BestRuns:
+    """The best of each protocol on ``split``. Protocols are not compared with each other."""
+
+    split: Split
+    source: str
+    runs: tuple[BestRun, ...]
+
+
+def best_runs(world: World) -> BestRuns | None:
+    """Find the best runs on the validation part of a split, on paraphrases where it has any.
+
+    The split is the one that was scored last; one by logical form only where there is no other,
+    because most parsers have no answer for a form that training never showed. Two queries; None
+    where nothing has been scored.
+    """
+    scores = Evaluation.objects.filter(
+        run__world=world, run__status=Status.SUCCEEDED, part=PART, count__gt=0
+    )
+    is_by_form = Q(run__split__criterion=Criterion.LOGICAL_FORM)
+    order = (ExpressionWrapper(is_by_form, BooleanField()), "-run_id")
+    newest = scores.select_related("run__split").order_by(*order).first()
+    if newest is None:
+        return None
+    on_split = list(scores.filter(run__split=newest.run.split_id).select_related("run"))
+    source = next(each for each in SOURCES if any(s.test_source == each for s in on_split))
+    comparable = [score for score in on_split if score.test_source == source]
+    best = (_best(comparable, protocol) for protocol in Protocol)
+    runs = tuple(BestRun(world, score) for score in best if score is not None)
+    return BestRuns(newest.run.split, SOURCES[source], runs)
+
+
+def _best(scores: list[Evaluation], protocol: str) -> Evaluation | None:
+    """The most accurate, the newer one of two that are equal."""
+    of_protocol = (score for score in scores if score.run.protocol == protocol)
+    return max(of_protocol, key=lambda score: (score.accuracy, score.run_id), default=None)

@@ -1,0 +1,93 @@
+"""What a new world needs, in order, until a first parser has been scored in it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from annotations.models import Duty
+from gpsr_site.overview.counts import Counts
+
+WHO = {
+    Duty.VIEW: "",
+    Duty.ANNOTATE: "an annotator or admin does this",
+    Duty.MANAGE: "an admin does this",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class FirstStep:
+    """One step. ``name`` is the URL of its page, or of the action where ``is_action``; ``who`` says
+    who takes it where the reader may not."""
+
+    sentence: str
+    label: str
+    name: str
+    duty: Duty
+    is_done: bool
+    is_action: bool = False
+    is_next: bool = False
+    is_allowed: bool = False
+
+    @property
+    def who(self) -> str:
+        return "" if self.is_allowed else WHO[self.duty]
+
+
+def first_steps(counts: Counts, duties: frozenset[Duty]) -> list[FirstStep]:
+    """List the steps for somebody with ``duties``; nothing once a run has been evaluated."""
+    if counts.evaluated:
+        return []
+    steps = _steps(counts)
+    first_open = next((step for step in steps if not step.is_done), None)
+    return [
+        FirstStep(
+            step.sentence,
+            step.label,
+            step.name,
+            step.duty,
+            step.is_done,
+            step.is_action,
+            is_next=step is first_open,
+            is_allowed=step.duty in duties,
+        )
+        for step in steps
+    ]
+
+
+def _steps(counts: Counts) -> list[FirstStep]:
+    return [
+        FirstStep(
+            "Import the files of a command generator: ontology, grammar and, if there are any, "
+            "templates.",
+            "Import files",
+            "import",
+            Duty.MANAGE,
+            bool(counts.productions),
+        ),
+        FirstStep(
+            "Write templates: each gives the commands of a pattern their logical form.",
+            "Write a template",
+            "template_new",
+            Duty.ANNOTATE,
+            bool(counts.templates),
+        ),
+        FirstStep(
+            "Generate the commands of the templates.",
+            "Generate commands",
+            "generate",
+            Duty.ANNOTATE,
+            bool(counts.commands),
+            is_action=True,
+        ),
+        FirstStep(
+            "Freeze a split into parts to train, validate and test on.",
+            "Freeze a split",
+            "split_new",
+            Duty.ANNOTATE,
+            bool(counts.splits),
+        ),
+        FirstStep(
+            "Train a first parser.", "Start a run", "run_new", Duty.MANAGE, bool(counts.runs)
+        ),
+        FirstStep("Read its wrong answers.", "Watch the runs", "runs", Duty.VIEW, False),
+    ]

@@ -1,0 +1,50 @@
+"""The stages from ontology to results (DESIGN §1), as the overview of a world shows them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from gpsr_site.overview.counts import Counts
+from gpsr_site.words import say_count
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """One noun of the flow. ``name`` is the URL of its page, ``note`` says what waits there, and
+    ``verb`` leads to the next noun."""
+
+    label: str
+    name: str
+    count: int
+    unit: str
+    verb: str = ""
+    note: str = ""
+
+
+def stages(counts: Counts) -> list[Stage]:
+    """List the nouns in the order in which people make them."""
+    ontology_note = say_count(counts.ontology_problems, "remark")
+    grammar_note = say_count(counts.grammar_problems, "remark")
+    forms = say_count(counts.forms, "form") or "0 forms"
+    return [
+        Stage("Ontology", "ontology", counts.entities, "entities", "describe", ontology_note),
+        Stage("Grammar", "grammar", counts.productions, "productions", "annotate", grammar_note),
+        Stage("Templates", "templates", counts.templates, "lines", "generate", _unready(counts)),
+        Stage("Commands", "commands", counts.commands, forms, "collect", _stale(counts)),
+        Stage("Paraphrases", "paraphrases", counts.paraphrases, "utterances", "freeze"),
+        Stage("Splits", "splits", counts.splits, "frozen", "train"),
+        Stage("Runs", "runs", counts.runs, "started", "evaluate", _active(counts)),
+        Stage("Results", "results", counts.evaluated, "evaluated"),
+    ]
+
+
+def _unready(counts: Counts) -> str:
+    return f"{counts.templates_waiting} not ready" if counts.templates_waiting else ""
+
+
+def _stale(counts: Counts) -> str:
+    return "out of date" if counts.stale and counts.commands else ""
+
+
+def _active(counts: Counts) -> str:
+    return f"{counts.runs_active} queued or running" if counts.runs_active else ""

@@ -1,0 +1,225 @@
+"""What waits in a world, sorted by who does it. The overview shows it, the reader's own work first.
+
+Each count is the number of rows on the page that its link opens: tests/gpsr_site/test_work_list.py.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+from django.urls import reverse
+
+from annotations.models import Duty, Job, World
+from annotations.models.worlds import Role
+from gpsr_site.overview.best_runs import BestRuns
+from gpsr_site.overview.counts import Counts
+from gpsr_site.words import say_count
+from gpsr_site.workers import Workers
+
+# The duty that makes somebody one of a role, the role with most to decide first.
+ROLES = {Role.ADMIN: Duty.MANAGE, Role.ANNOTATOR: Duty.ANNOTATE, Role.REVIEWER: Duty.REVIEW}
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """Something to do: how much, and the page (or, where ``is_action``, the button) that does it.
+
+    ``tone`` is ``bad`` for what went wrong, ``warn`` for what should be looked at, or empty.
+    """
+
+    count: int
+    sentence: str
+    label: str
+    url: str
+    tone: str = ""
+    is_action: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class WorkGroup:
+    """The work of one role; ``is_own`` where the reader has that role."""
+
+    role: Role
+    items: tuple[Task, ...]
+    is_own: bool
+
+    @property
+    def title(self) -> str:
+        return "Your work" if self.is_own else f"For {self.role}s"
+
+
+@dataclass(frozen=True, slots=True)
+class Waiting:
+    """Rows that wait. ``field`` is the field of ``Counts``, ``page`` and ``query`` list exactly them.
+
+    Said as ``3 draft templates``, with ``after`` behind it.
+    """
+
+    field: str
+    noun: str
+    label: str
+    page: str
+    query: str = ""
+    tone: str = ""
+    after: str = ""
+
+
+FOR_ADMINS = (
+    Waiting("runs_failed", "failed run", "Read why", "runs", "?status=failed&since=no", "bad"),
+    Waiting("runs_lost", "lost run", "Read why", "runs", "?status=lost&since=no", "bad"),
+    Waiting("ontology_problems", "remark", "Read", "ontology", "", "warn", "on the ontology"),
+    Waiting("grammar_problems", "remark", "Read", "grammar", "", "warn", "on the grammar"),
+    Waiting("runs_running", "running run", "Watch", "runs", "?status=running"),
+)
+FOR_ANNOTATORS = (
+    Waiting(
+        "work_items_free", "item", "Take the next", "queue", "?state=free", "", "in the work queue"
+    ),
+    Waiting("uncovered", "command", "Annotate", "uncovered", "", "warn", "without a form"),
+    Waiting(
+        "template_problems",
+        "template",
+        "Repair",
+        "templates",
+        "?problems=yes",
+        "warn",
+        "with problems",
+    ),
+    Waiting(
+        "utterances_waiting",
+        "utterance",
+        "Label",
+        "utterances",
+        "?status=unlabelled",
+        "",
+        "without a form",
+    ),
+    Waiting("command_problems", "remark", "Read", "commands", "", "warn", "on commands"),
+    Waiting("drafts", "draft template", "Finish", "templates", "?status=draft"),
+    Waiting("disputed", "disputed template", "Settle", "templates", "?status=disputed"),
+)
+FOR_REVIEWERS = (
+    Waiting(
+        "paraphrases_waiting",
+        "paraphrase",
+        "Read",
+        "paraphrases",
+        "?status=pending",
+        "",
+        "to judge",
+    ),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class WorkList:
+    """What waits in ``world`` for somebody with ``duties``."""
+
+    world: World
+    counts: Counts
+    duties: frozenset[Duty]
+    workers: Workers
+    best: BestRuns | None = None
+    jobs: Sequence[Job] = ()
+
+    @property
+    def groups(self) -> list[WorkGroup]:
+        """The items by role, the reader's own first; others' groups without items are left out.
+
+        An item stands once, in the first group that has it.
+        """
+        order = [*self.own_roles, *(role for role in ROLES if role not in self.own_roles)]
+        groups, seen = [], set()
+        for role in order:
+            items = tuple(item for item in self._items_of(role) if item not in seen)
+            seen.update(items)
+            groups.append(WorkGroup(role, items, role in self.own_roles))
+        return [group for group in _merge_own(groups) if group.items or group.is_own]
+
+    @property
+    def items(self) -> list[Task]:
+        """All items in one list, the reader's own first."""
+        return [item for group in self.groups for item in group.items]
+
+    @property
+    def own_roles(self) -> list[Role]:
+        """The reader's roles. An admin may do everything; the others' work stands behind theirs."""
+        roles = [role for role, duty in ROLES.items() if duty in self.duties]
+        return roles[:1] if Role.ADMIN in roles else roles
+
+    def _items_of(self, role: Role) -> Iterator[Task]:
+        yield from self._jobs_of(role)
+        if role == Role.ADMIN:
+            yield from self._stale()
+            yield from self._queued()
+            yield from self._waiting(FOR_ADMINS)
+            yield from self._alone()
+        elif role == Role.ANNOTATOR:
+            yield from self._waiting(FOR_ANNOTATORS)
+            yield from self._stale()
+        else:
+            yield from self._wrong_answers()
+            yield from self._waiting(FOR_REVIEWERS)
+
+    def _waiting(self, declared: Iterable[Waiting]) -> Iterator[Task]:
+        for each in declared:
+            if count := getattr(self.counts, each.field):
+                sentence = f"{say_count(count, each.noun)} {each.after}".strip()
+                url = self._address(each.page) + each.query
+                yield Task(count, sentence, each.label, url, each.tone)
+
+    def _jobs_of(self, role: Role) -> Iterator[Task]:
+        """Each import or generation leads to its own page."""
+        for job in self.jobs:
+            if job.duty == ROLES[role]:
+                url = reverse("job", kwargs={"pk": job.pk})
+                if job.is_waiting_for_answer:
+                    sentence = f"{job.get_kind_display()} waits for an answer"
+                    yield Task(1, sentence, "Answer", url, "warn")
+                else:
+                    yield Task(1, f"{job.get_kind_display()} is {job.status}", "Watch", url)
+
+    def _stale(self) -> Iterator[Task]:
+        """One button brings all commands up to date, so its count is one."""
+        if self.counts.stale and self.counts.commands and Duty.ANNOTATE in self.duties:
+            sentence = "Commands are out of date: grammar or templates have changed"
+            yield Task(1, sentence, "Generate", self._address("generate"), "warn", is_action=True)
+
+    def _queued(self) -> Iterator[Task]:
+        waiting = self.counts.runs_queued
+        if not waiting:
+            return
+        url = self._address("runs") + "?status=queued"
+        if self.workers.is_alive:
+            yield Task(waiting, say_count(waiting, "queued run"), "Watch", url)
+        else:
+            verb = "waits" if waiting == 1 else "wait"
+            sentence = f"{say_count(waiting, 'run')} {verb}. {self.workers.headline}"
+            yield Task(waiting, sentence, "Watch", url, "bad")
+
+    def _alone(self) -> Iterator[Task]:
+        if self.counts.members == 1:
+            sentence = "Only one person belongs to this world"
+            yield Task(1, sentence, "Add people", self._address("people"))
+
+    def _wrong_answers(self) -> Iterator[Task]:
+        """Work of reviewers alone; for the others they stand beside the best parsers."""
+        is_reviewer = Role.REVIEWER in self.own_roles
+        for each in self.best.runs if self.best and is_reviewer else ():
+            if each.wrong:
+                sentence = (
+                    f"{say_count(each.wrong, 'wrong answer')} of {each.title} on {self.best.source}"
+                )
+                yield Task(each.wrong, sentence, "Read", each.wrong_url)
+
+    def _address(self, page: str) -> str:
+        return reverse(page, kwargs={"world": self.world.name})
+
+
+def _merge_own(groups: list[WorkGroup]) -> Iterator[WorkGroup]:
+    """Make one group of the reader's own ones, for somebody with several roles."""
+    own = [group for group in groups if group.is_own]
+    if own:
+        yield WorkGroup(own[0].role, tuple(item for each in own for item in each.items), True)
+    yield from (group for group in groups if not group.is_own)

@@ -1,0 +1,139 @@
+"""No request holds a thread for ever: after a while its work is interrupted and it is answered 503."""
+
+from __future__ import annotations
+
+import ctypes
+import logging
+import re
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from django.conf import settings
+from django.db import connections
+from django.http import HttpRequest, HttpResponse
+
+from gpsr_site.web.refusals import refuse
+
+logger = logging.getLogger(__name__)
+
+# What takes files or makes many rows may take longer, by this factor.
+LONG_ADDRESS = re.compile(r"^/(w/[-\w]+/(import/|generate/|splits/new/|download/)|worlds/import/)")
+LONG_FACTOR = 10
+CHECK_SECONDS = 0.5
+# What cleans up after an interruption may hang as well, as a rollback does with the database.
+AGAIN_SECONDS = 5
+
+
+class TookTooLong(BaseException):
+    """Raised inside the thread of a request that is over its time.
+
+    Not an ``Exception``, so that no handler on the way takes it for an error of its own.
+    """
+
+
+class TakenBack(BaseException):
+    """Raised in the place of an interruption that has not arrived yet."""
+
+
+@dataclass(slots=True)
+class Watched:
+    """A request at work: its thread, when it is interrupted next, and whether it ever was."""
+
+    thread: int
+    interrupted_at: float
+    is_interrupted: bool = False
+
+
+class Watchdog:
+    """Interrupts threads whose request is over its time. One for a process.
+
+    The interruption reaches Python code at its next step, and the wait for an answer of PostgreSQL
+    within a tenth of a second (``PSYCOPG_WAIT_FUNC`` in the settings).
+    """
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._watched: dict[int, Watched] = {}
+        self._is_running = False
+
+    def begin(self, seconds: float) -> Watched:
+        """Start the time of the request that this thread works on."""
+        watched = Watched(threading.get_ident(), time.monotonic() + seconds)
+        with self._lock:
+            self._watched[id(watched)] = watched
+            if not self._is_running:
+                self._is_running = True
+                threading.Thread(target=self._run, name="deadlines", daemon=True).start()
+        return watched
+
+    def end(self, watched: Watched) -> None:
+        """Stop watching; an interruption that has not arrived yet is taken back."""
+        with self._lock:
+            del self._watched[id(watched)]
+            if watched.is_interrupted:
+                _take_back(watched.thread)
+
+    def _run(self) -> None:
+        while True:
+            time.sleep(CHECK_SECONDS)
+            with self._lock:
+                now = time.monotonic()
+                for watched in self._watched.values():
+                    if now >= watched.interrupted_at:
+                        watched.is_interrupted = True
+                        watched.interrupted_at = now + AGAIN_SECONDS
+                        _raise_in(watched.thread, TookTooLong)
+
+
+def _raise_in(thread: int, exception: type[BaseException]) -> None:
+    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), ctypes.py_object(exception))
+
+
+def _take_back(thread: int) -> None:
+    """Undo an interruption of this thread.
+
+    Clearing it would leave Python 3.11 looking for one at every step from then on, and stuck as soon
+    as somebody traces.
+    """
+    try:
+        _raise_in(thread, TakenBack)
+        while True:
+            pass
+    except TakenBack:
+        return
+
+
+WATCHDOG = Watchdog()
+
+
+class Deadline:
+    """Middleware, outermost of all: bound the time that a request may take."""
+
+    def __init__(self, get_response: Callable[[HttpRequest], HttpResponse]) -> None:
+        self.get_response = get_response
+
+    def __call__(self, request: HttpRequest) -> HttpResponse:
+        seconds = settings.REQUEST_SECONDS
+        if LONG_ADDRESS.match(request.path):
+            seconds *= LONG_FACTOR
+        try:
+            return self._answer_within(request, seconds)
+        except TookTooLong:
+            connections.close_all()  # one of them may be in the middle of an answer
+            logger.error("%s %s took over %s s, interrupted", request.method, request.path, seconds)
+            return refuse(
+                request,
+                503,
+                "This took too long",
+                f"The server stopped working on it after {seconds:g} seconds, and nothing of it was "
+                "saved. Ask for less at once, or try again later.",
+            )
+
+    def _answer_within(self, request: HttpRequest, seconds: float) -> HttpResponse:
+        watched = WATCHDOG.begin(seconds)
+        try:
+            return self.get_response(request)
+        finally:
+            WATCHDOG.end(watched)

@@ -1,0 +1,188 @@
+"""The web server: waitress, which reads whole requests before a thread sees them.
+
+A client that sends or reads slowly, or not at all, costs a connection and never a thread. Beyond
+waitress's own limits a request has a total time to arrive, a response must keep being read, and the
+size of a body is judged by its address as soon as the headers are there.
+"""
+
+from __future__ import annotations
+
+import re
+import signal
+import socket
+import time
+from typing import Any
+
+from django.conf import settings
+from waitress import wasyncore
+from waitress.adjustments import Adjustments
+from waitress.channel import HTTPChannel
+from waitress.parser import HTTPRequestParser
+from waitress.server import TcpWSGIServer
+from waitress.task import ThreadedTaskDispatcher
+from waitress.utilities import RequestEntityTooLarge
+
+from gpsr_site.web.body_limits import ORDINARY_BYTES, largest_body
+
+THREADS = 8
+CONNECTIONS = 1000
+IDLE_SECONDS = 30
+ARRIVAL_SECONDS = 120
+DISCARD_SECONDS = 10
+# A stop within the 5 s that the supervisor and DESIGN §6 give.
+STOP_SECONDS = 3
+
+
+class Body:
+    """The limits of one request, in the place of waitress's adjustments for all of them."""
+
+    def __init__(self, adjustments: Adjustments) -> None:
+        self.adjustments = adjustments
+        self.max_request_body_size = 0
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.adjustments, name)
+
+
+class Parser(HTTPRequestParser):
+    """A request whose body may be as large as its address allows."""
+
+    def __init__(self, adjustments: Adjustments) -> None:
+        super().__init__(Body(adjustments))
+        self.begun_at = time.time()
+
+    def parse_header(self, header_plus: bytes) -> None:
+        super().parse_header(header_plus)
+        has_key = "AUTHORIZATION" in self.headers or _has_session(self.headers.get("COOKIE", ""))
+        # waitress refuses what reaches the limit, the middleware what exceeds it.
+        self.adj.max_request_body_size = largest_body(self.path, has_key) + 1
+
+    def received(self, data: bytes) -> int:
+        consumed = super().received(data)
+        if self.is_too_large:
+            limit = self.adj.max_request_body_size // 1024
+            self.error = RequestEntityTooLarge(f"This address takes no more than {limit:,} kB.")
+        return consumed
+
+    @property
+    def is_too_large(self) -> bool:
+        return isinstance(self.error, RequestEntityTooLarge)
+
+
+class Channel(HTTPChannel):
+    """A connection that is closed when its request does not arrive, or its answer is not read.
+
+    A client that is refused in the middle of its body reads the answer only after it has sent
+    the rest, so that is taken and thrown away for a few seconds.
+    """
+
+    parser_class = Parser
+    discards_until = 0.0
+
+    def is_stuck(self, now: float) -> bool:
+        if self.discards_until:
+            return self.discards_until < now
+        if self.total_outbufs_len:
+            return self.last_activity < now - IDLE_SECONDS
+        return self.request is not None and self.request.begun_at < now - ARRIVAL_SECONDS
+
+    def received(self, data: bytes) -> bool:
+        is_open = super().received(data)
+        if any(request.is_too_large for request in self.requests):
+            self.discards_until = time.time() + DISCARD_SECONDS
+        return is_open
+
+    def readable(self) -> bool:
+        return bool(self.discards_until) or super().readable()
+
+    def handle_read(self) -> None:
+        if self.discards_until:
+            self._discard()
+        else:
+            super().handle_read()
+
+    def _discard(self) -> None:
+        try:
+            self.recv(self.adj.recv_bytes)  # closes the channel at the end
+        except OSError:
+            self.handle_close()
+
+    def handle_write(self) -> None:
+        if not self.discards_until or self.will_close:
+            super().handle_write()
+            return
+        self._flush_exception(self._flush_some_if_lockable)
+        if self.close_when_flushed and not self.total_outbufs_len:
+            self.close_when_flushed = False
+            self.socket.shutdown(socket.SHUT_WR)
+
+
+class Server(TcpWSGIServer):
+    """A listening socket; waitress asks for its maintenance every ``cleanup_interval``."""
+
+    channel_class = Channel
+
+    def maintenance(self, now: float) -> None:
+        super().maintenance(now)
+        for channel in list(self.active_channels.values()):
+            if channel.is_stuck(now):
+                channel.will_close = True
+
+
+def _has_session(cookies: str) -> bool:
+    return re.search(rf"(?:^|;\s*){re.escape(settings.SESSION_COOKIE_NAME)}=", cookies) is not None
+
+
+class WebServer:
+    """Listens on all addresses of ``host``; ``port`` 0 takes a free one."""
+
+    def __init__(self, application: Any, host: str, port: int) -> None:
+        adjustments = Adjustments(
+            host=f"[{host}]" if ":" in host else host,
+            port=port,
+            threads=THREADS,
+            connection_limit=CONNECTIONS,
+            channel_timeout=IDLE_SECONDS,
+            cleanup_interval=5,
+            inbuf_overflow=ORDINARY_BYTES + 1,  # only files of people who may import touch the disk
+            max_request_header_size=32 * 1024,
+            clear_untrusted_proxy_headers=False,  # gpsr_site.web.proxies decides about those
+            ident="",
+        )
+        self._dispatcher = ThreadedTaskDispatcher()
+        self._dispatcher.set_thread_count(adjustments.threads)
+        self._sockets: dict[int, Any] = {}
+        listening = [
+            Server(
+                application,
+                self._sockets,
+                dispatcher=self._dispatcher,
+                adj=adjustments,
+                sockinfo=address,
+            )
+            for address in adjustments.listen
+        ]
+        self.port = int(listening[0].effective_port)
+
+    def run(self) -> None:
+        """Serve until SystemExit or KeyboardInterrupt, or until ``stop`` is called elsewhere."""
+        try:
+            wasyncore.loop(timeout=1, map=self._sockets, use_poll=True)
+        except (SystemExit, KeyboardInterrupt):
+            self.stop()
+
+    def stop(self) -> None:
+        """Give requests at work ``STOP_SECONDS``, then close every connection."""
+        self._dispatcher.shutdown(timeout=STOP_SECONDS)
+        wasyncore.close_all(self._sockets)
+
+
+def serve(application: Any, host: str, port: int) -> None:
+    """Serve until SIGTERM or SIGINT."""
+    server = WebServer(application, host, port)
+    signal.signal(signal.SIGTERM, _stop)
+    server.run()
+
+
+def _stop(*_: object) -> None:
+    raise SystemExit

@@ -1,0 +1,89 @@
+"""The forms that a ranker chooses from, and its examples of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, Self
+
+from annotations.language.grounding import Anonymizer
+from annotations.language.ontology import Ontology
+from parser_service.parsers.candidates.generation import generate_candidates
+from parser_service.parsers.candidates.glosses import glosses
+from parser_service.parsers.interface import Knowledge, Pair
+
+MOST_SUPPORT = 4  # kinds of step, above which more of them say no more
+
+
+@dataclass(frozen=True, slots=True)
+class RankedExample:
+    """An utterance and the number of its form; ``pattern`` is the utterance with class tokens for
+    known entities."""
+
+    utterance: str
+    form: int
+    pattern: str
+
+
+@dataclass(frozen=True, slots=True)
+class RankedForms:
+    """Known forms first, then new ones; each with its gloss.
+
+    ``support`` is, for each new form, the number of kinds of step that arrive at it. ``examples`` has
+    for each example the number of its form: known forms have examples, and under *grammar* all have.
+    """
+
+    forms: tuple[str, ...]
+    glosses: tuple[str, ...]
+    known: int
+    support: tuple[int, ...]
+    examples: tuple[int, ...]
+
+    @classmethod
+    def read(cls, values: Mapping[str, Any]) -> Self:
+        """Read what ``to_json`` returned."""
+        return cls(
+            tuple(values["forms"]),
+            tuple(values["glosses"]),
+            values["known"],
+            tuple(values["support"]),
+            tuple(values["examples"]),
+        )
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the same as a JSON-ready mapping."""
+        return asdict(self)
+
+
+def collect(
+    pairs: Sequence[Pair], knowledge: Knowledge, is_open: bool
+) -> tuple[RankedForms, list[RankedExample], str]:
+    """Return the forms to choose from, the examples to learn from, and a line for the log.
+
+    Where the grammar is known, its commands are examples as well; a command that is the utterance of a
+    pair keeps the form of the pair.
+    """
+    generated = generate_candidates(pairs, knowledge, is_open)
+    forms = (*generated.training, *(each.form for each in generated.new))
+    number = {form: at for at, form in enumerate(forms)}
+    meant = [(pair.utterance, pair.form) for pair in pairs]
+    said = {utterance for utterance, _ in meant}
+    meant += [
+        (command, form)
+        for form, commands in generated.commands.items()
+        for command in commands
+        if command not in said
+    ]
+    anonymizer = Anonymizer(knowledge.ontology or Ontology(()))
+    examples = [
+        RankedExample(utterance, number[form], anonymizer.anonymize(utterance).text)
+        for utterance, form in meant
+    ]
+    ranked = RankedForms(
+        forms,
+        tuple(glosses(forms, knowledge.predicates)),
+        len(generated.training),
+        tuple(min(each.support, MOST_SUPPORT) for each in generated.new),
+        tuple(each.form for each in examples),
+    )
+    return ranked, examples, str(generated)

@@ -1,0 +1,119 @@
+"""A pretrained transformer that encodes each text as one vector."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
+
+import torch
+from tokenizers import Tokenizer
+from torch import Tensor, nn
+from torch.nn.functional import normalize
+
+from parser_service.neural.device import denormals_flushed
+from parser_service.neural.pretrained import Pretrained
+from parser_service.neural.sentence_encoder.networks import describe, make_empty, make_trainable
+from parser_service.parsers.interface import Check, keep_going
+
+if TYPE_CHECKING:
+    from parser_service.neural.sentence_encoder.networks import Network
+
+ENCODER = "encoder.json"
+TOKENIZER = "tokenizer.json"
+LONGEST = 64  # subwords; the longest published paraphrase has 45
+LENGTH_STEP = 8  # subwords; torch keeps code for each shape, so fewer shapes need less memory
+BATCH = 64
+
+
+class SentenceEncoder(nn.Module):
+    """The mean of the last layer's vectors, of length 1 (Reimers and Gurevych 2019).
+
+    Word embeddings keep their pretrained values: a few hundred pairs would change only those of the
+    words in them.
+    """
+
+    def __init__(
+        self,
+        model: Network,
+        description: Mapping[str, Any],
+        tokenizer: Tokenizer,
+        dropout: float = 0.0,
+    ):
+        """``description`` is that of ``model``, as ``networks`` makes and reads it."""
+        super().__init__()
+        self.model = model
+        self.description = description
+        self.tokenizer = tokenizer
+        self.dropout = nn.Dropout(dropout)
+        self.in_bf16 = False
+        tokenizer.enable_truncation(LONGEST)
+        tokenizer.enable_padding(
+            pad_id=model.config.pad_token_id or 0, pad_to_multiple_of=LENGTH_STEP
+        )
+        model.get_input_embeddings().weight.requires_grad_(False)
+
+    @classmethod
+    def of(cls, pretrained: Pretrained, dropout: float = 0.0) -> Self:
+        """Make a trainable copy of a published encoder."""
+        text = pretrained.tokenizer.backend_tokenizer.to_str()
+        model = pretrained.model
+        return cls(make_trainable(model), describe(model), Tokenizer.from_str(text), dropout)
+
+    @classmethod
+    def described_in(cls, folder: Path) -> Self:
+        """Return an encoder of the shape that ``describe`` wrote. Its weights are uninitialised memory."""
+        description = json.loads((folder / ENCODER).read_text(encoding="utf-8"))
+        tokenizer = Tokenizer.from_file(str(folder / TOKENIZER))
+        return cls(make_empty(description), description, tokenizer)
+
+    def describe(self, folder: Path) -> None:
+        """Write what ``described_in`` reads: everything but the weights."""
+        text = json.dumps(self.description, indent=2, sort_keys=True)
+        (folder / ENCODER).write_text(f"{text}\n", encoding="utf-8")
+        self.tokenizer.save(str(folder / TOKENIZER))
+
+    @property
+    def width(self) -> int:
+        return int(self.model.config.hidden_size)
+
+    @property
+    def device(self) -> torch.device:
+        return next(self.model.parameters()).device
+
+    def forward(self, texts: Sequence[str]) -> Tensor:
+        """Return vectors of length 1 [texts, width], always in single precision."""
+        device = self.device
+        encodings = self.tokenizer.encode_batch(list(texts))
+        subwords = torch.tensor([each.ids for each in encodings], device=device)  # [texts, length]
+        mask = torch.tensor([each.attention_mask for each in encodings], device=device)
+        bf16 = torch.autocast(device.type, torch.bfloat16) if self.in_bf16 else nullcontext()
+        with bf16:
+            states = self.model(input_ids=subwords, attention_mask=mask).last_hidden_state
+        states = self.dropout(states.float())  # [texts, length, width]
+        shares = mask / mask.sum(1, keepdim=True)  # [texts, length]
+        return normalize(torch.einsum("bl,blw->bw", shares, states), dim=-1)
+
+    @torch.no_grad()
+    @denormals_flushed()
+    def vectors(
+        self, texts: Sequence[str], check: Check = keep_going, at_once: int = BATCH
+    ) -> Tensor:
+        """Return the same without dropout and gradient, for any number of texts. Shape [texts, width].
+
+        Texts of similar length are encoded together, ``at_once`` at a time.
+        """
+        if not texts:
+            return torch.zeros(0, self.width, device=self.device)
+        was_training = self.training
+        self.eval()
+        order = sorted(range(len(texts)), key=lambda index: len(texts[index]))
+        batches = []
+        for begin in range(0, len(order), at_once):
+            check()
+            batches.append(self([texts[index] for index in order[begin : begin + at_once]]))
+        self.train(was_training)
+        vectors = torch.cat(batches)
+        return vectors[torch.tensor(order).argsort()]

@@ -1,0 +1,22 @@
+"""What the trainings of all networks share: the state that a checkpoint keeps, resuming from it, and
+the refusal of a loss that has diverged."""
+
+from parser_service.neural.training.checkpoints import (
+    TENSORS,
+    TRAINING,
+    load_optimizer,
+    optimizer_tensors,
+    resume,
+    tensors_under,
+)
+from parser_service.neural.training.losses import finite_mean
+
+__all__ = [
+    "TENSORS",
+    "TRAINING",
+    "finite_mean",
+    "load_optimizer",
+    "optimizer_tensors",
+    "resume",
+    "tensors_under",
+]

@@ -1,0 +1,274 @@
+"""The accuracy tables of a world: one per protocol, parsers down, settings across.
+
+A row is a parser with one configuration. A cell is over all seeds that have been scored under its
+row and column: with the newest version of the parser among them, and of each seed the newest run.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from itertools import groupby
+from typing import Any, TypeAlias
+
+from django.urls import reverse
+from django.utils.http import urlencode
+
+from annotations.models import Split, World
+from annotations.models.splits import Criterion
+from parser_service.models import Evaluation, TrainingRun
+from parser_service.parsers.conditions import SETTINGS, Protocol, only_source
+from parser_service.parsers.registry import PARSERS
+from parser_service.results.cells import Cell, newest_of_each_seed
+from parser_service.results.published import published_accuracy, published_criteria
+
+# What distinguishes the splits of one corpus, in a word.
+SHORT_CRITERIA = {
+    Criterion.COMMAND: "command",
+    Criterion.SOURCE_COMMAND: "source",
+    Criterion.LOGICAL_FORM: "form",
+}
+APART = {
+    Criterion.COMMAND: "a command",
+    Criterion.SOURCE_COMMAND: "a source command",
+    Criterion.LOGICAL_FORM: "a logical form",
+}
+IN_WORDS = {
+    "gen": "generated commands",
+    "para": "paraphrases",
+    "gen+para": "generated commands and paraphrases",
+    "mixed": "generated commands and paraphrases together",
+}
+WHAT_IT_KNOWS = {
+    Protocol.STRICT: "Training pairs only.",
+    Protocol.DOMAIN: "The declared predicates and the ontology are known too, as on a robot.",
+    Protocol.GRAMMAR: "The annotated grammar and all its forms are known too.",
+}
+
+Changes: TypeAlias = "tuple[tuple[str, Any], ...]"
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One setting on one split; ``starts_group`` at the first split of a setting.
+
+    ``label`` names the split: by its criterion where that tells the splits of the table apart, which
+    ``explanation`` spells out.
+    """
+
+    train_sources: str
+    test_source: str
+    split: Split
+    label: str
+    starts_group: bool = False
+
+    @property
+    def setting(self) -> tuple[str, str]:
+        return self.train_sources, self.test_source
+
+    @property
+    def explanation(self) -> str:
+        apart = APART[Criterion(self.split.criterion)]
+        return f"Split {self.split.name}: no two parts share {apart}"
+
+    def shows(self, run: TrainingRun) -> bool:
+        """Tell whether a score of ``run`` belongs here."""
+        return run.split_id == self.split.pk and run.train_sources == self.train_sources
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A parser with one configuration; ``changes`` are the hyperparameters that are not the default.
+
+    ``cells`` stand in the order of the table's columns, None where nobody has trained.
+    """
+
+    parser: str
+    changes: Changes
+    cells: tuple[Cell | None, ...]
+
+    @property
+    def title(self) -> str:
+        return PARSERS[self.parser].title if self.parser in PARSERS else self.parser
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """All rows of one protocol. The best of a column is the best among them."""
+
+    protocol: str
+    columns: tuple[Column, ...]
+    rows: tuple[Row, ...]
+
+    @property
+    def sentence(self) -> str:
+        return WHAT_IT_KNOWS[Protocol(self.protocol)]
+
+    @property
+    def settings(self) -> list[tuple[str, str, int]]:
+        """Each setting as a head, in words, and its number of columns."""
+        grouped = groupby(self.columns, key=lambda column: column.setting)
+        return [
+            (
+                f"{train} → {test}",
+                f"Trained on {IN_WORDS[train]}, tested on {IN_WORDS[test]}",
+                len(list(columns)),
+            )
+            for (train, test), columns in grouped
+        ]
+
+    @property
+    def is_active(self) -> bool:
+        return any(cell and cell.active for row in self.rows for cell in row.cells)
+
+    @property
+    def is_scored(self) -> bool:
+        return any(cell and cell.score for row in self.rows for cell in row.cells)
+
+    @property
+    def is_by_criterion(self) -> bool:
+        """Whether the columns are named after the criteria of their splits."""
+        return any(column.label in SHORT_CRITERIA.values() for column in self.columns)
+
+    @property
+    def is_published(self) -> bool:
+        """Whether the paper has a figure for one of the cells."""
+        cells = (cell for row in self.rows for cell in row.cells)
+        return any(cell and cell.published is not None for cell in cells)
+
+    @property
+    def filled(self) -> list[tuple[Row, list[tuple[Column, Cell | None]]]]:
+        """Each row with its cells beside their columns."""
+        return [(row, list(zip(self.columns, row.cells, strict=True))) for row in self.rows]
+
+
+def accuracy_tables(world: World, part: str, splits: Iterable[Split]) -> list[Table]:
+    """Return the tables of ``world`` over ``splits`` for one ``part``. Three queries."""
+    splits = sorted(splits, key=lambda split: split.pk)
+    runs = list(world.runs.filter(split__in=splits).scored_or_active().order_by("-id"))
+    scores = Evaluation.objects.filter(run__in=runs, part=part)
+    maker = _Maker(
+        world=world,
+        part=part,
+        columns=tuple(_columns(runs, splits)),
+        scores={(score.run_id, score.test_source): score for score in scores},
+        published=published_criteria(splits),
+    )
+    tables = (maker.table(protocol, runs) for protocol in Protocol)
+    return [table for table in tables if table.rows]
+
+
+def _columns(runs: list[TrainingRun], splits: list[Split]) -> Iterator[Column]:
+    """Yield a column for each setting and split with a run, in the order of the paper."""
+    trained = {(run.train_sources, run.split_id) for run in runs}
+    labels = _labels(splits)
+    for train_sources, test_source in SETTINGS:
+        shown = [split for split in splits if (train_sources, split.pk) in trained]
+        for split in shown:
+            label = labels[split.pk]
+            yield Column(train_sources, test_source, split, label, starts_group=split is shown[0])
+
+
+def _labels(splits: list[Split]) -> dict[int, str]:
+    is_telling = len({split.criterion for split in splits}) == len(splits)
+    return {
+        split.pk: SHORT_CRITERIA[split.criterion] if is_telling else split.name for split in splits
+    }
+
+
+@dataclass(frozen=True, slots=True)
+class _Maker:
+    """Sorts runs, newest first, into tables.
+
+    ``scores`` are by run and test source, ``published`` says which split is which published one.
+    """
+
+    world: World
+    part: str
+    columns: tuple[Column, ...]
+    scores: dict[tuple[int, str], Evaluation]
+    published: dict[int, str]
+
+    def table(self, protocol: str, runs: list[TrainingRun]) -> Table:
+        grouped = defaultdict(list)
+        for run in runs:
+            if run.protocol == protocol:
+                grouped[run.parser, run.changed_hyperparameters()].append(run)
+        ranked = sorted(grouped.items(), key=lambda item: _rank(*item[0]))
+        rows = [self.row(parser, changes, mine) for (parser, changes), mine in ranked]
+        return Table(protocol, self.columns, tuple(_mark_best(rows)))
+
+    def row(self, parser: str, changes: Changes, runs: list[TrainingRun]) -> Row:
+        cells = tuple(self.cell(parser, column, runs) for column in self.columns)
+        return Row(parser, changes, cells)
+
+    def cell(self, parser: str, column: Column, runs: list[TrainingRun]) -> Cell | None:
+        mine = [run for run in runs if column.shows(run)]
+        scored = [run for run in mine if (run.pk, column.test_source) in self.scores]
+        counted = newest_of_each_seed(scored)
+        active = tuple(run for run in mine if not run.is_ended)
+        if not counted and not active:
+            return None
+        return Cell(
+            scores=tuple(self.scores[run.pk, column.test_source] for run in counted),
+            active=active,
+            published=self.published_figure(parser, column),
+            url=self.cell_url(counted, active, column),
+        )
+
+    def cell_url(
+        self, counted: list[TrainingRun], active: tuple[TrainingRun, ...], column: Column
+    ) -> str:
+        """Return the address of a single score's wrong answers, of a run to come, or of the list of seeds."""
+        among = counted or active
+        if len(among) > 1:
+            return seeds_url(self.world, among[0])
+        if not counted:
+            return self.url("run", among[0].pk)
+        score = self.scores[among[0].pk, column.test_source]
+        return self.predictions_url(
+            among[0], column, "wrong" if score.correct < score.count else ""
+        )
+
+    def published_figure(self, parser: str, column: Column) -> float | None:
+        criterion = self.published.get(column.split.pk, "")
+        return published_accuracy(parser, column.setting, criterion)
+
+    def predictions_url(self, run: TrainingRun, column: Column, outcome: str) -> str:
+        """Return the address of the predictions that a score of ``run`` counts, of one outcome or all."""
+        chosen = {"part": self.part}
+        if outcome:
+            chosen["outcome"] = outcome
+        if source := only_source(column.test_source):
+            chosen["source"] = source
+        return f"{self.url('predictions', run.pk)}?{urlencode(chosen)}"
+
+    def url(self, name: str, key: int) -> str:
+        return reverse(name, kwargs={"world": self.world.name, "pk": key})
+
+
+def seeds_url(world: World, run: TrainingRun) -> str:
+    """Return the address of the list of ``run`` and those that differ from it only by their seed."""
+    return f"{reverse('runs', kwargs={'world': world.name})}?seeds_of={run.pk}"
+
+
+def _rank(parser: str, changes: Changes) -> tuple[int, int, str]:
+    """Return a sort key: the order of the registry, defaults before changed hyperparameters."""
+    names = list(PARSERS)
+    place = names.index(parser) if parser in names else len(names)
+    return place, len(changes), str(changes)
+
+
+def _mark_best(rows: list[Row]) -> Iterator[Row]:
+    best = [max(map(_accuracy, cells)) for cells in zip(*(row.cells for row in rows), strict=True)]
+    for row in rows:
+        marked = (
+            replace(cell, is_best=_accuracy(cell) == top > 0) if cell and cell.score else cell
+            for cell, top in zip(row.cells, best, strict=True)
+        )
+        yield replace(row, cells=tuple(marked))
+
+
+def _accuracy(cell: Cell | None) -> float:
+    return cell.over_seeds.mean if cell and cell.over_seeds else -1.0

@@ -1,0 +1,80 @@
+"""A hash of everything that decides a run's result, so that identical runs are reused."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from hashlib import sha256
+from typing import Any
+
+from annotations.models import Split, World
+from annotations.models.templates import Status
+from parser_service.parsers.registry import entry
+
+
+def content_key(
+    split: Split,
+    parser: str,
+    config: Mapping[str, Any],
+    protocol: str,
+    train_sources: str,
+    seed: int,
+) -> str:
+    """Hash the split, the parser and its version, its configuration and protocol, and the seed (SHA-256)."""
+    return _hash(
+        {
+            "split": split.content_hash,
+            "train_sources": train_sources,
+            "parser": parser,
+            "version": entry(parser).version,
+            "config": dict(config),
+            "protocol": protocol,
+            "knowledge": knowledge_hash(split.world, protocol),
+            "seed": seed,
+        }
+    )
+
+
+def knowledge_hash(world: World, protocol: str) -> str:
+    """Hash the part of ``world`` that ``protocol`` lets a parser read (SHA-256)."""
+    rows: dict[str, Any] = {}
+    if protocol in ("domain", "grammar"):
+        rows["predicates"] = list(
+            world.predicates.order_by("name").values("name", "kind", "signatures", "gloss")
+        )
+        rows["entities"] = _entities(world)
+    if protocol == "grammar":
+        rows["grammar"] = _grammar(world)
+    return _hash(rows)
+
+
+def _entities(world: World) -> list[dict[str, Any]]:
+    ontology = getattr(world, "ontology", None)
+    if ontology is None:
+        return []
+    fields = ("entity_class", "text", "aliases", "attributes")
+    return list(ontology.entities.order_by("position").values(*fields))
+
+
+def _grammar(world: World) -> dict[str, Any]:
+    grammar = getattr(world, "grammar", None)
+    if grammar is None:
+        return {}
+    categories = ("name", "rule_sources", "template_sources")
+    return {
+        "task_categories": list(grammar.task_categories.order_by("position").values(*categories)),
+        "productions": list(
+            grammar.productions.order_by("position").values("source", "nonterminal", "expansion")
+        ),
+        "templates": list(
+            grammar.templates.filter(status=Status.READY)
+            .order_by("position")
+            .values("source", "pattern", "form")
+        ),
+    }
+
+
+def _hash(value: Any) -> str:
+    """Return the SHA-256 of ``value`` as JSON with sorted keys."""
+    text = json.dumps(value, sort_keys=True, ensure_ascii=False)
+    return sha256(text.encode()).hexdigest()

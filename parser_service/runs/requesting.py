@@ -1,0 +1,104 @@
+"""Verb: request training runs. Identical runs are reused; what cannot be trained is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from django.db import transaction
+
+from annotations.background import wake
+from annotations.models import Split, User, World
+from annotations.models.background import Status
+from parser_service.models import TrainingRun
+from parser_service.parsers import registry
+from parser_service.parsers.conditions import TrainSources
+from parser_service.parsers.weight_files import refuse_missing_weights
+from parser_service.runs.content_key import content_key
+
+LARGEST_SEED = 2**32 - 1
+MOST_SEEDS = 10  # of one request
+
+
+def request(
+    world: World,
+    split: Split,
+    parser: str,
+    config: Mapping[str, Any] | None = None,
+    protocol: str = "strict",
+    train_sources: str = TrainSources.GENERATED,
+    seed: int = 0,
+    by: User | None = None,
+    send: bool = True,
+    anywhere: bool = False,
+) -> tuple[TrainingRun, bool]:
+    """Return a new queued run and True, or the run that has or will have the same result and False.
+
+    With ``send`` a worker is woken once the transaction is over. Pretrained weights may be named by
+    any path where ``anywhere`` is set, for who has the command line; else as in ``missing_weights``.
+    Raises ValueError, a sentence, where the request cannot be trained.
+    """
+    made = registry.make_config(parser, config)
+    refuse_missing_weights(made, anywhere)
+    values = registry.config_values(made)
+    entry = registry.entry(parser)
+    _refuse_what_cannot_be_trained(world, split, parser, protocol, train_sources, seed)
+    run, created = TrainingRun.objects.get_or_create(
+        world=world,
+        content_key=content_key(split, parser, values, protocol, train_sources, seed),
+        status__in=[Status.QUEUED, Status.RUNNING, Status.SUCCEEDED],
+        defaults={
+            "split": split,
+            "parser": parser,
+            "parser_version": entry.version,
+            "config": values,
+            "protocol": protocol,
+            "train_sources": train_sources,
+            "seed": seed,
+            "queue": entry.queue,
+            "created_by": by,
+        },
+    )
+    if created and send:
+        wake(run)
+    return run, created
+
+
+def request_seeds(
+    world: World, split: Split, parser: str, *, seeds: Sequence[int], **asked: Any
+) -> list[tuple[TrainingRun, bool]]:
+    """Request one run per seed, all or none. Return what ``request`` returns, in the order of ``seeds``.
+
+    Raises ValueError as ``request`` does.
+    """
+    with transaction.atomic():
+        return [request(world, split, parser, seed=seed, **asked) for seed in seeds]
+
+
+def seeds_from(first: int, how_many: int) -> range:
+    """Return ``how_many`` seeds, counting up from ``first``. Raises ValueError where one is out of range."""
+    if not 1 <= how_many <= MOST_SEEDS:
+        raise ValueError(f"{how_many} seeds were asked for; it has to be 1 to {MOST_SEEDS}.")
+    last = first + how_many - 1
+    if last > LARGEST_SEED:
+        raise ValueError(f"The last seed would be {last}; the largest one is {LARGEST_SEED}.")
+    return range(first, last + 1)
+
+
+def _refuse_what_cannot_be_trained(
+    world: World, split: Split, parser: str, protocol: str, train_sources: str, seed: int
+) -> None:
+    entry = registry.entry(parser)
+    if split.world_id != world.pk:
+        raise ValueError(f"The split {split} belongs to another world than {world}.")
+    if protocol not in entry.protocols:
+        allowed = ", ".join(entry.protocols)
+        raise ValueError(f"{parser} has no protocol {protocol!r}; it has: {allowed}.")
+    if train_sources not in list(TrainSources):
+        allowed = ", ".join(TrainSources)
+        raise ValueError(f"No train sources are called {train_sources!r}; there are: {allowed}.")
+    if not 0 <= seed <= LARGEST_SEED:
+        raise ValueError(f"The seed {seed} has to lie between 0 and {LARGEST_SEED}.")
+    for source in TrainSources(train_sources).sources:
+        if not split.examples.filter(part="train", source=source).exists():
+            raise ValueError(f"The split {split} has no {source} examples to train on.")

@@ -1,0 +1,76 @@
+"""Trains a claimed run, in a worker's child or in the foreground."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+from annotations.background import (
+    Lease,
+    Stopped,
+    failure_sentence,
+    is_out_of_memory,
+    while_held,
+)
+from annotations.labelling.proposals import request_proposals
+from annotations.models.splits import Part
+from parser_service.models import TrainingRun
+from parser_service.parsers import registry
+from parser_service.parsers.interface import Cancelled, Parser
+from parser_service.runs import lifecycle
+from parser_service.runs.checkpoints import model_folder, write_folder
+from parser_service.runs.evaluating import evaluate
+from parser_service.runs.examples import pairs_of
+from parser_service.runs.folders import keep_track_of
+from parser_service.runs.knowledge import knowledge_of
+from parser_service.runs.observing import TRAINING_SHARE, RunObserver, tell_nobody
+
+
+def train(
+    run: TrainingRun,
+    give_up: Callable[[], None] | None = None,
+    tell: Callable[[str], None] = tell_nobody,
+) -> None:
+    """Train and evaluate ``run``, which this process has claimed.
+
+    ``give_up`` is called where training does not notice in time that it is to stop; ``tell`` hears
+    what the log says. Whatever happens is in the row; nothing is raised but what ends the process.
+    """
+
+    def do(lease: Lease) -> None:
+        try:
+            _fit_and_evaluate(run, RunObserver(lease, tell))
+        except Cancelled as error:  # what RunObserver.check makes of Stopped
+            raise Stopped(str(error)) from error
+
+    while_held(run, do, give_up, sentence_of)
+
+
+def _fit_and_evaluate(run: TrainingRun, observe: RunObserver) -> None:
+    began = time.monotonic()
+    keep_track_of(run)
+    train_pairs = pairs_of(run.split, Part.TRAIN, run.train_sources)
+    validation = pairs_of(run.split, Part.VALIDATION, run.train_sources)
+    parser = make_parser(run)
+    observe.log(f"{len(train_pairs)} pairs to train on, {len(validation)} to choose by.")
+    parser.fit(train_pairs, validation, observe)
+    lifecycle.record_progress(run, TRAINING_SHARE, "saving the parser")
+    write_folder(model_folder(run.pk), parser.save)
+    evaluate(run, parser, validation, observe)
+    epochs = sum(run.epochs.values_list("seconds", flat=True))
+    lifecycle.finish(run, parser.parameters(), epochs or time.monotonic() - began)
+    request_proposals(run.world)  # it may be the best parser now
+
+
+def make_parser(run: TrainingRun) -> Parser:
+    """Make the run's parser, untrained, with what its protocol allows it to know."""
+    parser_class = registry.load_class(run.parser)
+    config = registry.make_config(run.parser, run.config)
+    return parser_class(config, run.seed, knowledge_of(run.world, run.protocol))
+
+
+def sentence_of(error: Exception) -> str:
+    """Say what stopped a run and what to do about it."""
+    if is_out_of_memory(error):
+        return "The memory ran out. Train with a smaller batch or network, or on another machine."
+    return failure_sentence(error, TrainingRun.noun)

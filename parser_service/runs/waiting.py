@@ -1,0 +1,102 @@
+"""Estimates how long a queued run will wait and then train, from earlier runs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from statistics import median
+
+from django.db.models import Q
+from django.utils import timezone
+
+from annotations.background import kinds
+from parser_service.models import TrainingRun, Worker
+
+COUNTED = 20  # the newest runs of a parser that its usual time is taken from
+LEAST_PROGRESS = 0.05  # below it, the time that is left says nothing yet
+
+
+@dataclass(frozen=True, slots=True)
+class Waiting:
+    """The place of a queued run. Seconds are None where no earlier run tells them.
+
+    ``ahead`` counts runs and jobs of its queue that began or wait for longer; ``starts_in`` is until a
+    worker takes it, ``takes`` how long it then takes.
+    """
+
+    ahead: int
+    workers: int
+    starts_in: float | None
+    takes: float | None
+
+    @property
+    def sentence(self) -> str:
+        parts = [self._place]
+        if self.takes is not None:
+            parts.append(f"It takes {in_words(self.takes)}, by earlier runs of this parser.")
+        return " ".join(parts)
+
+    @property
+    def _place(self) -> str:
+        if not self.workers:
+            return "No worker takes it now; it starts when one does."
+        if not self.ahead:
+            return "Next in line."
+        place = f"{self.ahead} ahead of it"
+        if self.starts_in is None:
+            return f"{place}."
+        return f"{place}; likely to start in {in_words(self.starts_in)}."
+
+
+def waiting_of(run: TrainingRun) -> Waiting:
+    """Return the place of ``run``, which is queued, and the likely times."""
+    before = Q(status="running") | Q(
+        Q(queued_at__lt=run.queued_at) | Q(queued_at=run.queued_at, id__lt=run.pk), status="queued"
+    )
+    ahead = {
+        kind.model: list(kind.model.objects.active().filter(before, queue=run.queue))
+        for kind in kinds()
+    }
+    workers = sum(run.queue in worker.queues for worker in Worker.objects.alive())
+    left = [_seconds_left(each) for each in ahead.pop(TrainingRun)]
+    is_known = not any(ahead.values()) and None not in left
+    return Waiting(
+        ahead=len(left) + sum(map(len, ahead.values())),
+        workers=workers,
+        starts_in=sum(left) / workers if is_known and workers else None,
+        takes=usual_seconds(run),
+    )
+
+
+def usual_seconds(run: TrainingRun) -> float | None:
+    """Return the median time of the newest uninterrupted runs like ``run``, evaluation included.
+
+    These are runs of the same parser, with the same hyperparameters if there are any such.
+    """
+    of_parser = TrainingRun.objects.succeeded().filter(parser=run.parser, attempt=1)
+    for ended in (of_parser.filter(config=run.config), of_parser):
+        times = ended.order_by("-id").values_list("started_at", "finished_at")[:COUNTED]
+        seconds = [(finished - started).total_seconds() for started, finished in times if started]
+        if seconds:
+            return median(seconds)
+    return None
+
+
+def _seconds_left(run: TrainingRun) -> float | None:
+    """Estimate the seconds that a queued or running run still needs."""
+    usual = usual_seconds(run)
+    if run.started_at is None or run.status != "running":
+        return usual
+    passed = (timezone.now() - run.started_at).total_seconds()
+    if run.progress >= LEAST_PROGRESS:
+        return passed * (1 - run.progress) / run.progress
+    return None if usual is None else max(usual - passed, 0.0)
+
+
+def in_words(seconds: float) -> str:
+    """Return a rough time: ``a few seconds``, ``about 12 min``, ``about 3 h``."""
+    if seconds < 15:
+        return "a few seconds"
+    if seconds < 90:
+        return "about a minute"
+    minutes = round(seconds / 60)
+    return f"about {minutes} min" if minutes < 90 else f"about {round(minutes / 60)} h"

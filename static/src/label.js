@@ -1,0 +1,233 @@
+// Labelling by keyboard: an answer is sent behind the scenes while the next utterance, fetched before, is
+// shown at once. Answers are sent one after another and kept in this browser until the server has them.
+import { loadModule } from "./modules.js";
+import { onFormText } from "./notation.js";
+import { AnswerQueue } from "./label-queue.js";
+
+// The page's other modules look at what came in, as they do after a swap of htmx.
+function fill(place, html) {
+  place.innerHTML = html;
+  place.dispatchEvent(new CustomEvent("htmx:load", { bubbles: true, detail: { elt: place } }));
+}
+
+const TYPING = "input, textarea, select, [contenteditable], .cm-editor";
+
+export function enhance(page) {
+  if (page.dataset.ready) return;
+  page.dataset.ready = "";
+  new LabelPage(page);
+}
+
+class LabelPage {
+  constructor(page) {
+    this.page = page;
+    this.place = page.querySelector("[data-label-place]");
+    this.strip = page.querySelector("[data-label-strip]");
+    this.notices = page.querySelector("[data-label-notices]");
+    this.queue = new AnswerQueue(
+      page.dataset.answersOf,
+      (reply, sent) => this.onReply(reply, sent),
+      (sentence) => this.notice(sentence),
+    );
+    page.addEventListener("submit", (event) => this.onSubmit(event));
+    page.addEventListener("click", (event) => this.onClick(event));
+    document.addEventListener("keydown", (event) => this.onKey(event));
+    this.begin();
+    this.fetchNext();
+  }
+
+  get item() {
+    return this.place.querySelector("[data-item]");
+  }
+
+  // The utterance on the page is looked at from now on.
+  begin() {
+    this.since = performance.now();
+    this.place.querySelectorAll(".label-choice code").forEach(onFormText);
+  }
+
+  fetchNext() {
+    const here = this.item ? [this.item.dataset.item] : [];
+    this.next = this.fetchItem({ without: [...here, ...this.queue.utterances].join(",") });
+  }
+
+  async fetchItem(parameters) {
+    const query = new URLSearchParams(location.search);
+    query.delete("utterance");
+    for (const [name, value] of Object.entries(parameters)) query.set(name, value);
+    try {
+      const answer = await fetch(`${this.page.dataset.itemUrl}?${query}`);
+      return answer.ok && !answer.redirected ? await answer.text() : null;
+    } catch {
+      return null;
+    }
+  }
+
+  async show(item) {
+    const text = await item;
+    if (text === null) {
+      this.notice("The next utterance could not be fetched. Your answers are kept here; reload the page.");
+      return;
+    }
+    fill(this.place, text);
+    this.begin();
+  }
+
+  async goOn() {
+    const next = this.next;
+    this.clearNotices();
+    await this.show(next);
+    this.fetchNext();
+  }
+
+  onSubmit(event) {
+    const form = event.target;
+    if (form.matches("[data-label-answer]")) {
+      event.preventDefault();
+      if (form.hasAttribute("data-check-url")) this.answerWritten(form);
+      else this.answer(form.action, new FormData(form, event.submitter), form.closest("[data-item]"));
+    } else if (form.matches("[data-label-mend]")) {
+      event.preventDefault();
+      this.mend(form);
+    } else if (form.matches("[data-take-back]")) {
+      event.preventDefault();
+      this.takeBack(form);
+    }
+  }
+
+  get seconds() {
+    return ((performance.now() - this.since) / 1000).toFixed(1);
+  }
+
+  // What somebody wrote stays on the page until the server has taken it.
+  async answerWritten(form) {
+    if (this.isWriting) return;
+    this.isWriting = true;
+    const reply = await this.post(form, { seconds: this.seconds });
+    this.isWriting = false;
+    if (!reply) return this.notice("The server does not answer. What you wrote is still here; send it again.");
+    this.onReply(reply);
+    if (!reply.refusal) this.goOn();
+  }
+
+  answer(address, sent, item) {
+    sent.set("seconds", this.seconds);
+    this.queue.add({ address, utterance: item.dataset.item, fields: [...sent] });
+    this.goOn();
+  }
+
+  // What the server says to an answer; a refusal leads back to its utterance.
+  onReply(reply, sent = null) {
+    if (reply.strip) fill(this.strip, reply.strip);
+    if (reply.refusal) this.notice(reply.refusal, reply.text, sent?.utterance);
+  }
+
+  notice(sentence, text = "", utterance = "") {
+    const line = document.createElement("li");
+    line.className = "message warning";
+    line.append(text ? `“${text}”: ${sentence} ` : sentence);
+    if (utterance) {
+      const button = document.createElement("button");
+      button.type = "button";
+      button.className = "link-button";
+      button.textContent = "Show it";
+      button.addEventListener("click", () => {
+        line.remove();
+        this.notices.hidden = !this.notices.children.length;
+        this.show(this.fetchItem({ utterance })).then(() => this.fetchNext());
+      });
+      line.append(button);
+    }
+    this.notices.append(line);
+    this.notices.hidden = false;
+  }
+
+  // What is no news after the next answer goes; a refused answer stays until somebody looks at it.
+  clearNotices() {
+    this.notices.querySelectorAll("li:not(:has(button))").forEach((line) => line.remove());
+    this.notices.hidden = !this.notices.children.length;
+  }
+
+  async post(form, values = {}) {
+    const body = new FormData(form);
+    for (const [name, value] of Object.entries(values)) body.set(name, value);
+    try {
+      const answer = await fetch(form.action, {
+        method: "POST",
+        body,
+        headers: { Accept: "application/json" },
+      });
+      return answer.redirected ? null : await answer.json();
+    } catch {
+      return null;
+    }
+  }
+
+  async mend(form) {
+    const reply = await this.post(form);
+    if (!reply) return this.notice("The server does not answer. Try again in a moment.");
+    if (reply.refusal) return this.notice(reply.refusal);
+    await this.show(this.fetchItem({ utterance: reply.utterance }));
+    this.fetchNext();
+  }
+
+  async takeBack(form) {
+    if (this.isTakingBack) return;
+    this.isTakingBack = true;
+    const reply = await this.post(form);
+    this.isTakingBack = false;
+    if (!reply) return this.notice("The server does not answer. Try again in a moment.");
+    this.onReply(reply);
+    if (reply.refusal) return;
+    await this.show(this.fetchItem({ utterance: reply.utterance }));
+    this.fetchNext();
+  }
+
+  onClick(event) {
+    const opener = event.target.closest("[data-label-open]");
+    if (opener) this.openPanel(opener.dataset.labelOpen);
+    if (event.target.closest("[data-label-close]")) this.closePanel();
+  }
+
+  openPanel(name) {
+    const template = this.item?.querySelector(`template[data-label-panel="${name}"]`);
+    if (!template) return;
+    const selected = getSelection().toString().trim();
+    const place = this.item.querySelector("[data-label-panel-place]");
+    place.replaceChildren(template.content.cloneNode(true));
+    const field = place.querySelector("textarea, input:not([type=hidden])");
+    if (name === "mend" && this.item.querySelector(".label-text").textContent.includes(selected)) {
+      field.value = selected;
+    }
+    field.focus();
+    if (name === "edit") this.openEditor(field);
+  }
+
+  async openEditor(field) {
+    (await loadModule("editor")).enhance(field);
+    field.parentElement.querySelector(".cm-content")?.focus();
+  }
+
+  closePanel() {
+    this.item?.querySelector("[data-label-panel-place]").replaceChildren();
+  }
+
+  onKey(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
+    if (event.key === "Escape") return this.closePanel();
+    if (event.repeat || event.defaultPrevented || event.target.closest(TYPING)) return;
+    const opens = { e: "edit", d: "dispute", m: "mend" }[event.key];
+    const button = /^[1-9us]$/.test(event.key) && this.item?.querySelector(`[data-key="${event.key}"]`);
+    if (opens) this.openPanel(opens);
+    else if (button) button.click();
+    else if (event.key === "z") this.takeLastBack();
+    else return;
+    event.preventDefault();
+  }
+
+  // The last answer may still be on its way.
+  async takeLastBack() {
+    await this.queue.isEmpty();
+    this.strip.querySelector("form[data-take-back]")?.requestSubmit();
+  }
+}

@@ -1,0 +1,24 @@
+// Suggested texts for a field: choosing one writes it there. The digits choose while nobody types.
+import { isTyping } from "./keys.js";
+
+function write(radio) {
+  const field = document.getElementById(radio.closest("[data-suggestions]").dataset.suggestions);
+  if (!field) return;
+  field.value = radio.value;
+  field.dispatchEvent(new CustomEvent("draft:restored")); // its editor shows the new text
+  field.dispatchEvent(new Event("input", { bubbles: true })); // checker, preview and draft look again
+}
+
+document.addEventListener("change", (event) => {
+  if (event.target.matches("[data-suggestions] input[type=radio]")) write(event.target);
+});
+
+document.addEventListener("keydown", (event) => {
+  if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || isTyping(event)) return;
+  if (!/^[1-9]$/.test(event.key)) return;
+  const radio = document.querySelectorAll("[data-suggestions] input[type=radio]")[Number(event.key) - 1];
+  if (!radio) return;
+  event.preventDefault();
+  radio.focus();
+  radio.click();
+});

@@ -1,0 +1,46 @@
+"""/api/v1/worlds/<w>/utterances/"""
+
+from __future__ import annotations
+
+import pytest
+
+from annotations.labelling import label
+from annotations.models import ApiToken, Utterance, Verdict
+
+ALL = "/api/v1/worlds/home/utterances/"
+
+
+@pytest.fixture
+def call(client, annotator):
+    _, key = ApiToken.issue(annotator, "notebook")
+
+    def send(method, path="", data=None):
+        headers = {"authorization": f"Bearer {key}"}
+        return getattr(client, method)(
+            ALL + path, data, content_type="application/json", headers=headers
+        )
+
+    return send
+
+
+def test_texts_are_taken_in_and_come_back_with_their_form(call, tiny_world, annotator):
+    sent = {"texts": ["find the tea", "find the tea", "hello"], "origin": "dialogue"}
+    answer = call("post", data=sent)
+    assert (answer.status_code, answer.json()) == (
+        201,
+        {"added": 2, "duplicates": ["find the tea"]},
+    )
+    row = Utterance.objects.get(text="find the tea")
+    label(row, Verdict.FORM, '(go "<room>")', annotator, 1)
+    (listed,) = call("get", "?status=labelled").json()["results"]
+    assert listed["logical_form"] == '( go " <room> " )'
+    assert listed["spans"] == [[9, 12, "object", "tea"]]
+    assert call("get", f"{row.pk}/").json() == listed
+    assert len(call("get").json()["results"]) == 2
+
+
+@pytest.mark.parametrize("sent", [{}, {"texts": ["x" * 501]}, {"texts": "x"}, {"texts": ["a\0"]}])
+def test_what_cannot_be_stored_is_refused(call, tiny_world, sent):
+    assert call("post", data=sent).status_code == 400
+    assert call("get", "?status=late").status_code == 400
+    assert not Utterance.objects.exists()

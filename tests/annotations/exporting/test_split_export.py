@@ -1,0 +1,59 @@
+from __future__ import annotations
+
+import csv
+import io
+import json
+
+import pytest
+
+from annotations.exporting.split_export import FIELDS, export_lines, export_split
+from annotations.generation.generating import generate_pairs
+from annotations.splits.freezing import freeze_split
+
+
+@pytest.fixture
+def split(tiny_world):
+    generate_pairs(tiny_world)
+    return freeze_split(tiny_world, "first")
+
+
+def test_a_pair_file_needs_a_part_and_a_source(split):
+    with pytest.raises(ValueError, match="which part and source"):
+        export_lines(split, "txt", part="train")
+
+
+def test_every_format_gives_every_example_in_one_query(split, django_assert_num_queries):
+    with django_assert_num_queries(1):
+        rows = [json.loads(line) for line in export_lines(split, "jsonl")]
+    with django_assert_num_queries(1):
+        cells = list(csv.DictReader(io.StringIO("".join(export_lines(split, "csv")))))
+    assert len(rows) == len(cells) == 3
+    assert list(rows[0]) == list(cells[0]) == FIELDS
+    assert [row["utterance"] for row in rows] == [row["utterance"] for row in cells]
+
+
+@pytest.mark.parametrize("start", ["=", "+", "-", "@", "\t", "\r"])
+def test_no_cell_is_a_formula(split, start):
+    split.examples.update(utterance=f"{start}cmd|' /C calc'!A0")
+    for row in csv.DictReader(io.StringIO("".join(export_lines(split, "csv")), newline="")):
+        assert row["utterance"].startswith(f"'{start}")
+
+
+@pytest.mark.parametrize(
+    ("criterion", "folder"),
+    [
+        ("command", "gen"),
+        ("logical_form", "gen_logical"),
+        ("source_command", "gen_source_command"),
+    ],
+)
+def test_a_whole_split_is_a_folder_by_criterion(tiny_world, tmp_path, criterion, folder):
+    generate_pairs(tiny_world)
+    split = freeze_split(tiny_world, "whole", criterion, proportions=(1, 0, 0))
+    assert export_split(split, "txt", tmp_path) == {str(tmp_path / folder / "train.txt"): 3}
+
+
+def test_other_formats_are_one_file(split, tmp_path):
+    target = tmp_path / "deep" / "first.jsonl"
+    assert export_split(split, "jsonl", target) == {str(target): 3}
+    assert len(target.read_text().splitlines()) == 3

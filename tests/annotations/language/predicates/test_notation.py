@@ -1,0 +1,61 @@
+"""Signatures are written as people read them, and read back as they were."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from annotations.language.errors import LanguageError
+from annotations.language.predicates import (
+    ArgumentKind,
+    Predicate,
+    PredicateKind,
+    Signature,
+    gloss,
+    print_signatures,
+    read_signatures,
+    sample_forms,
+)
+
+SIGNATURES = st.lists(st.sampled_from(list(ArgumentKind)), max_size=4).map(
+    lambda kinds: Signature(tuple(kinds))
+)
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.sets(SIGNATURES, max_size=6))
+def test_what_is_written_is_read_as_the_same_signatures(signatures):
+    assert set(read_signatures(print_signatures(signatures))) == signatures
+
+
+def test_an_argument_that_may_be_missing_has_a_question_mark():
+    signatures = read_signatures("(object, room?, name?)\nlocation")
+    assert print_signatures(signatures) == "(location)\n(object, room?, name?)"
+    assert len(signatures) == 4
+    assert read_signatures("()") == (Signature(()),)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("(object\n", "line 1 is not a signature"),
+        ("(object)\n(planet)", "no kind of argument planet"),
+        ("(object?, room)", "not at the end"),
+        ("(object,,room)", "without a name"),
+        (", ".join(["object"] * 30), "30 arguments"),
+    ],
+)
+def test_what_is_no_signature_is_refused_with_a_sentence(text, message):
+    with pytest.raises(LanguageError, match=message):
+        read_signatures(text)
+
+
+def test_each_way_to_use_a_predicate_has_a_sentence():
+    signatures = read_signatures("(variable, room?)")
+    near = Predicate("near", PredicateKind.DESCRIPTION, signatures, "_ near {2} | close _")
+    said = [gloss(form, {"near": near}) for form in sample_forms(near)]
+    assert [("near the room" in each, "close" in each) for each in said] == [
+        (False, True),
+        (True, False),
+    ]

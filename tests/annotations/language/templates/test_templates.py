@@ -1,0 +1,188 @@
+"""Semantic templates: reading their lines, and the problems of one and of many together."""
+
+import pytest
+
+from annotations.language.errors import LanguageError, Position
+from annotations.language.forms import read_form
+from annotations.language.grammar import Grammar, read_productions
+from annotations.language.predicates import infer_signatures
+from annotations.language.symbols import Nonterminal, Wildcard
+from annotations.language.templates import (
+    TaskCategory,
+    generate,
+    make_template,
+    print_template,
+    read_template,
+    set_problems,
+)
+from annotations.language.templates.problems import problems
+from annotations.language.templates.templates import read_templates
+from tests.annotations.language.grammar.test_grammar import huge_grammar
+
+GRAMMAR = Grammar(
+    read_productions(
+        "$Main = $fetch the $thing | find {name} | follow {pron} now | $fetch $lost\n"
+        "$fetch = get | bring\n"
+        "$thing = {object} | $colour one\n"
+        "$colour = red | blue"
+    ).productions
+)
+
+
+def found(line, predicates=None):
+    template = read_template(line, Position("t.txt", 4))
+    return [str(problem) for problem in problems(template, GRAMMAR, predicates)]
+
+
+def only(line, predicates=None):
+    (problem,) = found(line, predicates)
+    return problem
+
+
+def test_a_line_is_a_pattern_and_a_form_and_knows_where_both_begin():
+    template = read_template("  find {name} =  (find {name})  # said often", Position("t.txt", 4))
+    assert (template.pattern_text, template.form_text) == ("find {name}", "(find {name})")
+    assert template.form == read_form("(find {name})")
+    assert template.position == Position("t.txt", 4, 3)
+    assert template.form_position == Position("t.txt", 4, 18)
+
+
+def test_an_equals_sign_in_braces_and_an_escaped_one_separate_nothing():
+    template = read_template(r"a \= {object where fruit=true} = (find {object})")
+    assert template.pattern[1].value == "="
+    assert template.pattern[2].where.value is True
+
+
+def test_comments_and_blank_lines_are_skipped_and_positions_counted():
+    templates, troubles = read_templates("# one\n\nfind = (go)\n", "t.txt")
+    assert not troubles
+    assert [template.position.line for template in templates] == [3]
+
+
+def test_a_template_printed_and_read_is_equal():
+    line = "bring (me | to {name 1}), please = (bring (λ$1:e (is_a $1 $thing) ($oprop $1)))"
+    template = read_template(line)
+    assert read_template(print_template(template)).pattern == template.pattern
+    assert read_template(print_template(template)).form == template.form
+
+
+def test_slots_are_nonterminals_and_wildcards_of_the_form_in_order():
+    template = read_template("a = (bring (λ$1:e ($oprop $1) (is_a $1 $thing) (at $1 {room})))")
+    assert list(template.slots()) == [
+        Nonterminal("oprop"),
+        Nonterminal("thing"),
+        Wildcard("room"),
+    ]
+    assert template.tracked == {"oprop", "thing"}
+
+
+@pytest.mark.parametrize(
+    ("line", "column", "words"),
+    [
+        ("find {name}", 1, "no equals sign"),
+        ("a = b = (go)", 7, "2 equals signs"),
+        (" = (go)", 1, "no pattern"),
+        ("go = ", 6, "no form"),
+        ("go ( = (go)", 4, "never closed"),
+        ("go {nam} = (go)", 5, "did you mean {name}?"),
+        ("go = (go", 9, "ends too early"),
+        ("go = (find (λ$1:e (is_a $2 {room})))", 25, "no λ binds the variable $2"),
+        ("go = (go {room 1 2})", 18, "neither a type nor an id"),
+    ],
+)
+def test_a_line_that_is_no_template_is_an_error_with_its_place(line, column, words):
+    _, (problem,) = read_templates(f"go = (go)\n{line}", "t.txt")
+    assert problem.is_error
+    assert words in str(problem)
+    assert problem.position == Position("t.txt", 2, column)
+
+
+def test_five_thousand_parentheses_are_refused_on_either_side():
+    deep = "(" * 2_000 + ")" * 2_000
+    for line in (f"{deep} = (go)", f"go = {deep}"):
+        with pytest.raises(LanguageError, match="deep"):
+            read_template(line)
+
+
+def test_a_file_of_something_else_is_one_error_and_one_of_comments_a_warning():
+    _, (problem,) = read_templates("<rooms>\n<room/>\n<room/>\n</rooms>", "t.txt")
+    assert problem.is_error
+    assert "no semantic template" in problem.message
+    _, (problem,) = read_templates("# nothing yet", "t.txt")
+    assert not problem.is_error
+
+
+def test_two_sides_kept_apart_make_the_same_template():
+    assert make_template("find {name}", "(find {name})") == read_template(
+        "find {name} = (find {name})"
+    )
+
+
+def test_a_template_that_fits_has_no_problems():
+    assert found("find {name} = (find {name})") == []
+    assert found("$fetch the $thing = (bring $thing)") == []
+    assert found("follow {pron} now = (follow (λ$1:e (person $1)))") == []
+
+
+@pytest.mark.parametrize("slot", ["$fetch", "{room}", "{name 1}"])
+def test_a_slot_that_only_the_form_has_is_an_error(slot):
+    problem = only(f"find {{name}} = (find {{name}} {slot})")
+    assert problem.startswith("t.txt:4:28: error: ")
+    assert f"the form mentions {slot}, which the pattern never produces" in problem
+
+
+def test_a_nonterminal_that_the_pattern_produces_further_down_may_be_a_slot():
+    assert found("$fetch the $colour one = (bring $colour)") == []
+    assert found("$fetch the {object} = (bring {object} )") == []
+
+
+def test_a_wildcard_that_the_form_leaves_out_is_a_warning_pronouns_and_unknown_excepted():
+    assert only("find {name} = (find)").startswith(
+        "t.txt:4:6: warning: the command says {name}, but the form leaves it out"
+    )
+    assert "says {object}" in only("$fetch the $thing = (bring)")
+    assert found("find {name} = UNKNOWN") == []
+
+
+def test_commands_outside_the_grammar_are_counted_with_an_example():
+    problem = only("(find | seek) {name} = (find {name})")
+    assert '1 of 2 commands are outside the grammar, such as "seek <name>"' in problem
+    assert "matches nothing in the grammar" in only("seek {name} = (find {name})")
+
+
+def test_a_template_of_a_trillion_commands_is_checked_at_once():
+    template = read_template("$Main $Main = (go)")
+    too_many, problem = problems(template, huge_grammar())
+    assert "more than the limit of 1,000,000" in too_many.message and not too_many.is_error
+    assert "matches nothing in the grammar" in problem.message
+
+
+def test_an_undefined_nonterminal_in_a_pattern_is_a_warning():
+    first, second = found("$fetch $lost = (bring)")
+    assert first.startswith("t.txt:4:8: warning: nothing defines $lost")
+    assert "makes no command" in second
+
+
+def test_a_predicate_that_is_not_declared_or_takes_something_else_is_a_warning():
+    declared = infer_signatures([read_form("(find {name})"), read_form("(go {room})")])
+    assert "there is no predicate fined" in only("find {name} = (fined {name})", declared)
+    assert "find does not take 2 arguments" in only("find {name} = (find {name} 1)", declared)
+
+
+def test_a_predicate_slot_that_becomes_no_name_is_an_error():
+    problem = found("$fetch the $thing = (bring (λ$1:e ($thing $1)))")[-1]
+    assert "error: $thing is used as a predicate but became" in problem
+
+
+def test_duplicates_and_conflicts_inside_a_set_are_reported_with_the_other_place():
+    text = (
+        "find {name} = (find {name})\n"
+        "find {name} = (find {name})\n"
+        "(find | follow) {name} = (look_for {name})"
+    )
+    category = TaskCategory("1", GRAMMAR, read_templates(text, "t.txt")[0])
+    troubles = [str(each) for each in set_problems([category], generate([category]))]
+    assert any("t.txt:2:1: warning: duplicate of t.txt:1:1" in t for t in troubles)
+    conflict = next(trouble for trouble in troubles if "a different form" in trouble)
+    assert conflict.startswith('t.txt:3:1: warning: 1 command such as "find <name>"')
+    assert "at t.txt:2:1" in conflict

@@ -1,0 +1,135 @@
+from __future__ import annotations
+
+from collections import defaultdict
+
+import pytest
+
+from annotations.exporting.split_export import export_split
+from annotations.generation.generating import generate_pairs
+from annotations.importing import import_pairs
+from annotations.language.errors import LanguageError
+from annotations.models import Command, Example, Paraphrase
+from annotations.models.corpus import ParaphraseStatus
+from annotations.splits.freezing import freeze_split
+
+ROOMS = [f"{adjective} {room}" for adjective in ("red", "blue", "old", "new") for room in "abcde"]
+
+
+@pytest.fixture
+def full(tiny_world, tiny):
+    """``tiny_world`` with enough commands and paraphrases to part."""
+    productions = [f"go to the {each} room" for each in ROOMS]
+    for number, text in enumerate(productions):
+        tiny_world.grammar.templates.create(
+            source="tiny_category_1_semantics.txt",
+            pattern=text,
+            form=f'(go "{text[10:]}")',
+            position=100 + number,
+        )
+    generate_pairs(tiny_world)
+    for number, command in enumerate(Command.objects.select_related("logical_form")):
+        for word in ("please", "now"):
+            Paraphrase.objects.create(
+                world=tiny_world,
+                command=command,
+                prompt=command.anonymized_text,
+                utterance=f"{word} {command.anonymized_text}",
+                grounded_form=command.logical_form.text,
+                logical_form=command.logical_form.text,
+                edit_distance=5,
+                jaccard_distance=0.2,
+                position=2 * number + (word == "now"),
+            )
+    return tiny_world
+
+
+def parts_by(split, field):
+    found = defaultdict(set)
+    for part, value in split.examples.values_list("part", field):
+        found[value].add(part)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("criterion", "field"),
+    [
+        ("command", "utterance"),
+        ("source_command", "source_command"),
+        ("logical_form", "logical_form"),
+    ],
+)
+def test_two_parts_share_nothing_of_the_criterion(full, criterion, field):
+    split = freeze_split(full, "first", criterion, seed=3)
+    assert all(len(parts) == 1 for parts in parts_by(split, field).values())
+    assert set(split.examples.values_list("part", flat=True)) == {"train", "validation", "test"}
+
+
+def test_every_command_and_accepted_paraphrase_is_in_it_once(full):
+    Paraphrase.objects.filter(position=0).update(status=ParaphraseStatus.REJECTED)
+    Paraphrase.objects.filter(position=2).update(status=ParaphraseStatus.PENDING)
+    split = freeze_split(full, "first")
+    assert split.examples.filter(source="generated").count() == full.commands.count()
+    assert split.examples.filter(source="paraphrased").count() == full.paraphrases.count() - 2
+
+
+def test_positions_follow_the_length_of_the_utterance(full):
+    split = freeze_split(full, "first")
+    for part in ("train", "validation", "test"):
+        lengths = [len(each.utterance) for each in split.examples.of(part, "paraphrased")]
+        assert lengths == sorted(lengths)
+
+
+def test_an_equal_seed_gives_the_same_split_and_another_seed_another(full):
+    first, again = freeze_split(full, "first", seed=1), freeze_split(full, "again", seed=1)
+    other = freeze_split(full, "other", seed=2)
+    assert first.content_hash == again.content_hash != other.content_hash
+
+
+def test_freezing_the_same_again_gives_the_split_that_is_there(full):
+    first = freeze_split(full, "first", seed=1)
+    assert freeze_split(full, "first", seed=1) == first
+
+
+def test_a_name_that_is_taken_by_another_split_is_refused(full):
+    freeze_split(full, "first", seed=1)
+    before = Example.objects.count()
+    with pytest.raises(LanguageError, match="holds something else"):
+        freeze_split(full, "first", seed=2)
+    assert Example.objects.count() == before
+
+
+def test_a_later_edit_never_changes_a_split(full):
+    split = freeze_split(full, "first")
+    before = list(split.examples.values())
+    full.grammar.templates.all().delete()
+    generate_pairs(full)
+    full.paraphrases.all().delete()
+    assert list(split.examples.values()) == before
+
+
+def test_proportions_are_the_callers(full):
+    split = freeze_split(full, "first", proportions=(0.5, 0.25, 0.25))
+    sizes = [split.examples.of(part, "generated").count() for part in ("train", "validation")]
+    total = full.commands.count()
+    assert abs(sizes[0] - total / 2) <= 1
+    assert abs(sizes[1] - total / 4) <= 1
+
+
+@pytest.mark.parametrize("proportions", [(0.7, 0.1), (0.7, 0.1, 0.1), (1.2, -0.1, -0.1)])
+def test_shares_that_are_no_whole_are_refused(full, proportions):
+    with pytest.raises(LanguageError, match="shares"):
+        freeze_split(full, "first", proportions=proportions)
+
+
+def test_an_empty_world_has_nothing_to_freeze(world):
+    with pytest.raises(LanguageError, match="nothing to split"):
+        freeze_split(world, "first")
+
+
+def test_a_frozen_split_is_read_again_as_it_was_written(full, tmp_path):
+    split = freeze_split(full, "first", "logical_form")
+    export_split(split, "txt", tmp_path)
+    assert not import_pairs("elsewhere", "copy", tmp_path).problems
+    fields = ["source", "part", "position", "utterance", "logical_form"]
+    copied = Example.objects.filter(split__name="copy-logical_form").values_list(*fields)
+    assert list(copied) == list(split.examples.values_list(*fields))

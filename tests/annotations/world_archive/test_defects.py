@@ -1,0 +1,210 @@
+"""Every defect of an archive is a sentence, and nothing of it stays."""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+from secrets import token_hex
+
+import pytest
+
+from annotations.generation.generating import generate_pairs
+from annotations.language.errors import LanguageError
+from annotations.models import World
+from annotations.splits.freezing import freeze_split
+from annotations.world_archive import import_world, reading
+from tests.annotations.rows_of import counts
+from tests.annotations.world_archive.packing import members_of, pack, pack_members
+
+
+@pytest.fixture
+def members(tiny_world) -> dict[str, bytes]:
+    """The files of the archive of a small world with commands."""
+    generate_pairs(tiny_world)
+    return members_of(pack(tiny_world))
+
+
+def refusal_of(archive: io.BytesIO) -> LanguageError:
+    before = counts()
+    with pytest.raises(LanguageError) as refusal:
+        import_world("again", archive)
+    assert counts() == before
+    return refusal.value
+
+
+def change_row(members, table, number=0, **values):
+    """Changes columns of one row; ``None`` for the name of a column removes it."""
+    path = f"rows/{table}.jsonl"
+    lines = members[path].splitlines()
+    lines[number] = json.dumps({**json.loads(lines[number]), **values}).encode()
+    members[path] = b"\n".join(lines) + b"\n"
+
+
+def change_manifest(members, **values):
+    members["world.json"] = json.dumps({**json.loads(members["world.json"]), **values}).encode()
+
+
+@pytest.mark.parametrize(
+    ("table", "values", "sentence"),
+    [
+        ("commands", {"template": 99}, "number 99 of templates, which is not there"),
+        ("commands", {"template": True}, "number True of templates"),
+        ("commands", {"logical_form": None}, "number None of forms"),
+        ("commands", {"position": -1}, "position:"),
+        ("commands", {"position": 10**30}, "position:"),
+        ("commands", {"position": "1"}, "position is not a whole number"),
+        ("commands", {"is_in_grammar": 1}, "is_in_grammar is not true or false"),
+        ("commands", {"task_category": "x" * 61}, "task_category:"),
+        ("commands", {"anonymized_text": "a\0b"}, "NUL"),
+        ("commands", {"anonymized_text": "\ud800"}, "JSON in UTF-8"),
+        ("commands", {"world_id": 1}, "missing or unknown: world_id"),
+        ("entities", {"entity_class": "planet"}, "entity_class cannot be “planet”"),
+        ("entities", {"attributes": ["a"]}, "attributes has the wrong shape"),
+        ("entities", {"aliases": "a"}, "aliases has the wrong shape"),
+        ("productions", {"source": "../evil.txt"}, "is a path"),
+        ("productions", {"expansion": "( a | b"}, "never closed"),
+        ("task_categories", {"rule_sources": []}, "rule_sources has the wrong shape"),
+        ("task_categories", {"template_sources": ["/etc/passwd"]}, "is a path"),
+        ("predicates", {"signatures": [["planet"]]}, "signatures has the wrong shape"),
+        ("templates", {"form": "(go"}, ""),
+        ("templates", {"author": 7}, "author is not the name of an account"),
+        ("forms", {"text": "( go"}, "text is not a logical form"),
+    ],
+)
+def test_a_row_that_cannot_be_stored(members, table, values, sentence):
+    change_row(members, table, **values)
+    assert sentence in str(refusal_of(pack_members(members)))
+
+
+def test_a_row_twice(members):
+    first, *rest = members["rows/commands.jsonl"].splitlines()
+    members["rows/commands.jsonl"] = b"\n".join([first, first, *rest[1:]]) + b"\n"
+    refusal = refusal_of(pack_members(members))
+    assert "are the same" in str(refusal) and refusal.source == "rows/commands.jsonl"
+
+
+@pytest.mark.parametrize(
+    "line", [b"{", b"[1]", b"\xff", b"[" * 5000, b'{"position": 1e999}', b"9" * 5000]
+)
+def test_a_line_that_is_no_object(members, line):
+    members["rows/commands.jsonl"] = line + b"\n"
+    refusal = refusal_of(pack_members(members))
+    assert (refusal.source, refusal.line) == ("rows/commands.jsonl", 1)
+
+
+def test_a_line_too_long(members):
+    members["rows/commands.jsonl"] = json.dumps(token_hex(500_001)).encode()
+    assert "longer than 1,000,000 bytes" in str(refusal_of(pack_members(members)))
+
+
+def test_rows_that_are_missing(members):
+    members["rows/commands.jsonl"] = members["rows/commands.jsonl"].split(b"\n")[0] + b"\n"
+    assert "1 rows, and world.json announces 3" in str(refusal_of(pack_members(members)))
+
+
+def test_a_split_whose_pairs_were_changed(members, tiny_world):
+    freeze_split(tiny_world, "frozen")
+    members = members_of(pack(tiny_world))
+    change_row(members, "examples", utterance="something else")
+    assert "not those that were frozen" in str(refusal_of(pack_members(members)))
+
+
+def test_a_file_that_was_changed_after_the_download(members):
+    members["generator/objects.xml"] += b"<!-- one more -->"
+    refusal = refusal_of(pack_members(members, is_consistent=False))
+    assert refusal.source == "generator/objects.xml"
+    assert "import the files of generator/ as a generator" in str(refusal)
+
+
+def test_a_file_that_is_missing(members):
+    del members["rows/forms.jsonl"]
+    assert "rows/forms.jsonl" in str(refusal_of(pack_members(members, is_consistent=False)))
+
+
+def test_no_manifest(members):
+    del members["world.json"]
+    assert "world.json is missing" in str(refusal_of(pack_members(members, is_consistent=False)))
+
+
+@pytest.mark.parametrize(
+    ("values", "sentence"),
+    [
+        ({"version": 2}, "has version 2 of the format, and this installation reads version 1"),
+        ({"format": "other"}, "does not describe a world"),
+        ({"has_grammar": "yes"}, "has_grammar is neither true nor false"),
+        ({"has_grammar": False}, "there is no grammar"),
+        ({"revision": -1}, "revision:"),
+        ({"description": None}, "description is not a text"),
+        ({"rows": 3}, "do not give a number"),
+        ({"files": {"world.json": "x"}}, "do not give a number"),
+    ],
+)
+def test_a_manifest_that_says_something_else(members, values, sentence):
+    change_manifest(members, **values)
+    is_consistent = "files" not in values
+    assert sentence in str(refusal_of(pack_members(members, is_consistent)))
+
+
+@pytest.mark.parametrize("text", [b"", b"[]", b"{", b"\xff\xfe", b"9" * 5000])
+def test_a_manifest_that_is_none(members, text):
+    members["world.json"] = text
+    assert refusal_of(pack_members(members, is_consistent=False)).source == "world.json"
+
+
+def test_a_folder_that_was_packed_is_read_too(members):
+    inside = {f"home-world/{name}": data for name, data in pack_and_read(members).items()}
+    import_world("again", pack_members(inside, is_consistent=False))
+    assert World.objects.filter(name="again").exists()
+
+
+def pack_and_read(members):
+    return members_of(pack_members(members))
+
+
+def test_what_is_no_archive(members):
+    assert "not a zip archive" in str(refusal_of(io.BytesIO(b"PK\x03\x04 no zip")))
+
+
+@pytest.mark.parametrize("method", [zipfile.ZIP_DEFLATED, zipfile.ZIP_LZMA, zipfile.ZIP_BZIP2])
+def test_a_stream_that_is_damaged(members, method):
+    target = io.BytesIO()
+    with zipfile.ZipFile(target, "w", method) as file:
+        for name, data in members.items():
+            file.writestr(name, data)
+        info = file.getinfo("rows/commands.jsonl")
+    data = bytearray(target.getvalue())
+    start = info.header_offset + 30 + len(info.filename)
+    data[start : start + info.compress_size] = b"\x99" * info.compress_size
+    refusal = refusal_of(io.BytesIO(bytes(data)))
+    assert "not a zip archive that can be read" in str(refusal)
+
+
+def test_more_than_an_archive_may_hold(members, settings):
+    settings.ARCHIVE_MAX_FILES = 3
+    assert "3 is the limit" in str(refusal_of(pack_members(members)))
+    settings.ARCHIVE_MAX_FILES, settings.ARCHIVE_MAX_BYTES = 5000, 100
+    assert "more than 100 bytes" in str(refusal_of(pack_members(members)))
+
+
+def test_a_bomb(members):
+    members["rows/bomb.jsonl"] = b" " * 10_000_000
+    assert "unpacks to far more than it holds" in str(refusal_of(pack_members(members)))
+
+
+@pytest.mark.parametrize("name", ["Upper", "", "x" * 61, "home"])
+def test_a_name_that_no_new_world_can_have(members, name):
+    before = counts()
+    with pytest.raises(LanguageError, match=r"cannot be the name|already"):
+        import_world(name, pack_members(members))
+    assert counts() == before
+
+
+def test_a_name_that_is_taken_in_the_meantime(members, monkeypatch):
+    def check_slowly(world):
+        World.objects.create(name="again")
+
+    monkeypatch.setattr(reading, "_check_world", check_slowly)
+    with pytest.raises(LanguageError, match="there is a world “again” already"):
+        import_world("again", pack_members(members))
+    assert set(World.objects.values_list("name", flat=True)) == {"again", "home"}

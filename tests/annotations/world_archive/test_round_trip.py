@@ -1,0 +1,265 @@
+"""A world that is downloaded and imported is the same world again, row for row."""
+
+from __future__ import annotations
+
+import json
+
+from django.apps import apps
+from django.db import models
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from annotations.commenting import SUBJECTS, add_comment
+from annotations.editing.edits import change, delete
+from annotations.generation.generating import generate_pairs
+from annotations.importing import import_generator, import_pairs
+from annotations.labelling import collect, label, take_back
+from annotations.models import (
+    Grammar,
+    Label,
+    Membership,
+    Ontology,
+    Paraphrase,
+    SemanticTemplate,
+    Verdict,
+    WorkKind,
+    World,
+)
+from annotations.models.worlds import Duty
+from annotations.queueing import finish, next_item, set_share
+from annotations.splits.freezing import freeze_split
+from annotations.world_archive import import_world
+from annotations.world_archive.tables import TABLES
+from annotations.worlds.starter_world import STARTER_WORLD, load_starter_world
+from annotations.worlds.world_deletion import delete_world
+from tests.annotations.conftest import TINY, as_bytes
+from tests.annotations.world_archive.packing import (
+    everything_of,
+    members_of,
+    pack,
+    pack_members,
+)
+
+
+def same_again(world: World) -> World:
+    """The world that an import of the archive of ``world`` makes; asserts that it is the same."""
+    import_world("again", pack(world))
+    again = World.objects.get(name="again")
+    assert everything_of(again) == everything_of(world)
+    return again
+
+
+def test_the_starter_world(db):
+    load_starter_world(lambda sentence: None)
+    again = same_again(World.objects.get(name=STARTER_WORLD))
+    assert len(everything_of(again)["examples"]) > 1000
+
+
+def test_the_generator_of_2018_with_the_published_pairs(db, shared_data):
+    import_generator("gpsr2018", shared_data / "generator-2018")
+    world = World.objects.get(name="gpsr2018")
+    generate_pairs(world)
+    import_pairs("gpsr2018", "walker", shared_data / "walker2019")
+    again = same_again(world)
+    assert again.commands.count() == 1211
+    assert again.splits.count() == 2
+
+
+def test_a_world_without_anything(world):
+    same_again(world)
+
+
+def test_drafts_and_disputed_templates_keep_status_version_and_author(tiny_world, annotator):
+    first, second = tiny_world.grammar.templates.all()
+    SemanticTemplate.objects.filter(pk=first.pk).update(
+        status="draft", version=3, form="(unfinished"
+    )
+    SemanticTemplate.objects.filter(pk=second.pk).update(status="disputed", author=annotator)
+    again = same_again(tiny_world)
+    assert [row.author for row in again.grammar.templates.all()] == [None, annotator]
+
+
+def test_utterances_keep_every_answer_with_its_time(tiny_world, annotator):
+    collect(tiny_world, ["bring me tea", "hello"], by=annotator)
+    first, second = tiny_world.utterances.all()
+    label(first, Verdict.FORM, '(go "<room>")', annotator, 1, seconds=2.5)
+    take_back(label(second, Verdict.UNKNOWN, "", annotator, 1), annotator)
+    again = same_again(tiny_world)
+    times = Label.objects.order_by("created_at").values_list("created_at", flat=True)
+    assert len(times) == 4
+    assert len(set(times)) == 2
+    assert again.utterances.labelled().get().accepted_label.annotator == annotator
+
+
+def test_the_queue_keeps_who_answers_what_and_what_follows(tiny_world, annotator, admin):
+    collect(tiny_world, ["bring me tea", "hello"], by=annotator)
+    set_share(tiny_world, WorkKind.UNLABELLED, 100)
+    for person, form in ((annotator, '(go "<room>")'), (admin, '(go "<name>")')):
+        part = next_item(person, tiny_world)
+        row = label(part.item.utterance, Verdict.FORM, form, person, 1, is_blind=True)
+        decision = finish(part, row)
+    again = same_again(tiny_world)
+    followed = again.work_items.get(kind=WorkKind.ADJUDICATION).follows
+    assert followed.title == decision.item.title
+    assert {each.label.annotator for each in followed.assignments.all()} == {annotator, admin}
+
+
+def test_an_archive_from_before_there_were_utterances(tiny_world):
+    members = members_of(pack(tiny_world))
+    manifest = json.loads(members["world.json"])
+    for name in ("utterances", "labels", "work_items", "assignments", "work_shares"):
+        del members[f"rows/{name}.jsonl"], manifest["rows"][name]
+    members["world.json"] = json.dumps(manifest).encode()
+    import_world("again", pack_members(members))
+    assert everything_of(World.objects.get(name="again")) == everything_of(tiny_world)
+
+
+def test_a_row_of_an_account_that_is_not_here_has_none(tiny_world, annotator):
+    tiny_world.grammar.templates.update(author=annotator)
+    archive = pack(tiny_world)
+    annotator.delete()
+    import_world("again", archive)
+    assert not SemanticTemplate.objects.filter(grammar__world__name="again", author__isnull=False)
+
+
+def test_who_imports_is_the_admin_and_nobody_else_has_a_role(tiny_world, annotator, stranger):
+    import_world("again", pack(tiny_world), by=stranger)
+    again = World.objects.get(name="again")
+    assert again.allows(stranger, Duty.MANAGE)
+    assert again.memberships.count() == 1
+
+
+def test_commands_stay_out_of_date(tiny_world):
+    assert tiny_world.commands.count() == 0
+    assert same_again(tiny_world).commands_are_stale
+
+
+def test_every_model_below_a_world_is_in_the_archive(tiny_world):
+    listed = {table.model for table in TABLES}
+    below = {model for model in models_below() if model._meta.app_label == "annotations"}
+    assert below - listed == {Grammar, Ontology, Membership} | not_of_the_world()
+
+
+def test_comments_stay_with_what_they_are_about(tiny_world, annotator):
+    template = tiny_world.grammar.templates.last()
+    entity = tiny_world.ontology.entities.first()
+    add_comment(tiny_world, SUBJECTS["template"], template, "@anna why?", annotator)
+    add_comment(tiny_world, SUBJECTS["entity"], entity, "gone", annotator)
+    entity.delete()
+    again = same_again(tiny_world)
+    assert [each.subject for each in again.comments.all()] == [
+        again.grammar.templates.last().pk,
+        None,
+    ]
+
+
+def test_the_history_goes_with_the_archive_for_people_to_read(tiny_world, annotator):
+    template = tiny_world.grammar.templates.first()
+    change(template, {"pattern": "go"}, annotator, 1)
+    delete(template, annotator, 2)
+    same_again(tiny_world)
+    lines = members_of(pack(tiny_world))["history/templates.jsonl"].decode().splitlines()
+    said = [(each["what"], each["by"], each["pattern"]) for each in map(json.loads, lines)]
+    assert said == [
+        ("First known version", "", template.pattern),
+        ("Changed", "anna", "go"),
+        ("Deleted", "anna", "go"),
+    ]
+
+
+def models_below():
+    pending, below = [World], set()
+    while pending:
+        for relation in pending.pop()._meta.related_objects:
+            if relation.on_delete is models.CASCADE and relation.related_model not in below:
+                below.add(relation.related_model)
+                pending.append(relation.related_model)
+    return below
+
+
+def not_of_the_world():
+    """What goes with a world and is no part of it: not written by people, or for one person alone."""
+    names = ("Job", "Proposal", "Draft", "Notice")
+    return {model for model in apps.get_models() if model.__name__ in names}
+
+
+WORDS = st.text(st.characters(codec="utf-8", exclude_characters="\0\n\r"), min_size=1, max_size=12)
+
+
+@st.composite
+def edits(draw):
+    """What people may make of the tiny world."""
+    return {
+        "patterns": draw(st.lists(WORDS, max_size=3)),
+        "status": draw(st.sampled_from(["draft", "ready", "disputed"])),
+        "entity": draw(WORDS),
+        "attributes": draw(st.dictionaries(WORDS, WORDS, max_size=2)),
+        "gloss": draw(WORDS),
+        "utterances": draw(st.lists(WORDS, max_size=4)),
+        "description": draw(WORDS),
+        "is_generated": draw(st.booleans()),
+        "is_split": draw(st.booleans()),
+        "has_detached": draw(st.booleans()),
+    }
+
+
+@settings(
+    max_examples=25,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],
+)
+@given(edit=edits())
+def test_any_edited_world(db, edit):
+    world = edited_world(edit)
+    try:
+        same_again(world)
+    finally:
+        for each in World.objects.all():
+            delete_world(each)
+
+
+def edited_world(edit) -> World:
+    import_generator("edited", as_bytes(TINY))
+    world = World.objects.get(name="edited")
+    World.objects.filter(pk=world.pk).update(description=edit["description"])
+    if edit["is_generated"]:
+        generate_pairs(world)
+    for pattern in edit["patterns"]:
+        add_draft(world, pattern)
+    world.grammar.templates.filter(pattern__startswith="go").update(status=edit["status"])
+    world.ontology.entities.filter(text="tea").update(
+        text=edit["entity"], attributes=edit["attributes"], aliases=[edit["gloss"]]
+    )
+    world.predicates.filter(name="go").update(gloss=edit["gloss"], is_edited=True)
+    for position, utterance in enumerate(edit["utterances"]):
+        add_paraphrase(world, utterance, position, edit["has_detached"])
+    if edit["is_split"] and world.commands.exists():
+        freeze_split(world, "frozen", seed=3)
+    return world
+
+
+def add_draft(world: World, pattern: str) -> None:
+    last = world.grammar.templates.count()
+    SemanticTemplate.objects.create(
+        grammar=world.grammar,
+        source="tiny_category_1_semantics.txt",
+        pattern=pattern,
+        form=pattern,
+        status="draft",
+        position=last,
+        version=2,
+    )
+
+
+def add_paraphrase(world: World, utterance: str, position: int, is_detached: bool) -> None:
+    Paraphrase.objects.create(
+        world=world,
+        command=None if is_detached else world.commands.first(),
+        prompt="go to the bath",
+        utterance=utterance,
+        grounded_form='( go " bath " )',
+        logical_form='( go " <room> " )',
+        edit_distance=position,
+        jaccard_distance=1 / 3,
+        status=["pending", "accepted", "rejected"][position % 3],
+        position=position,
+    )

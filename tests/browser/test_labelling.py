@@ -1,0 +1,115 @@
+"""Labelling by keyboard alone: every key, and an answer that comes too late."""
+
+from __future__ import annotations
+
+import pytest
+from django.test import Client
+from playwright.sync_api import Page, expect
+
+from annotations.labelling import collect, label
+from annotations.models import Entity, Label, Utterance, Verdict
+
+pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
+
+SAID = [
+    f"find the tea {said}" for said in ("now", "please", "quickly", "for me", "at once", "soon")
+]
+SAID += [f"go to the kitchen {said}" for said in ("now", "please", "again", "for me", "at once")]
+SAID += ["fetch my cuppa"]
+
+
+@pytest.fixture
+def label_page(page_of, live_server, sample, annotator) -> Page:
+    collect(sample.world, SAID, by=annotator)
+    page = page_of(annotator)
+    page.goto(f"{live_server.url}/w/home/label/")
+    expect(page.locator("[data-label-page][data-ready]")).to_have_count(1)
+    return page
+
+
+def expect_utterance(page: Page, text: str) -> None:
+    expect(page.locator("[data-item]")).to_have_attribute(
+        "data-item", str(Utterance.objects.get(text=text).pk)
+    )
+
+
+def test_twelve_utterances_without_a_mouse(label_page, annotator):
+    page, keys = label_page, label_page.keyboard
+    for said in SAID[:6]:
+        expect_utterance(page, said)
+        keys.press("1")
+    expect_utterance(page, SAID[6])
+    keys.press("u")
+    expect_utterance(page, SAID[7])
+    keys.press("s")
+    expect_utterance(page, SAID[8])
+    keys.press("d")
+    page.get_by_label("Why is it disputed?").fill("again or not")
+    keys.press("Enter")
+    expect_utterance(page, SAID[9])
+    keys.press("z")  # the dispute is taken back, and its utterance is there again
+    expect_utterance(page, SAID[8])
+    keys.press("e")
+    expect(page.locator(".cm-editor")).to_have_count(1)  # until then the plain field is there
+    editor = page.get_by_role("textbox", name="Logical form")
+    expect(editor).to_be_focused()
+    editor.fill("(go")
+    expect(page.locator(".editor-report")).to_contain_text("ends too early")
+    keys.press("Control+Enter")  # refused, and what was written stays
+    expect(page.get_by_role("alert")).to_contain_text("ends too early")
+    expect(editor).to_contain_text("(go")
+    editor.fill('(go "<room>")')
+    keys.press("Control+Enter")
+    for said in SAID[9:11]:
+        expect_utterance(page, said)
+        keys.press("1")
+    expect_utterance(page, SAID[11])
+    keys.press("m")
+    page.get_by_label("The words").fill("cuppa")
+    page.get_by_label("name the entity").fill("tea (object)")
+    keys.press("Enter")
+    expect(page.locator(".label-text .chip")).to_contain_text("cuppa")
+    keys.press("1")
+    expect(page.locator("[data-label-done]")).to_be_visible()
+    expect(page.locator(".label-progress")).to_contain_text("11 of 12 done")
+    assert Label.objects.valid().count() == 12
+    assert Label.objects.exclude(seconds=None).count() == 13
+    assert Utterance.objects.get(text=SAID[8]).logical_form == '( go " <room> " )'
+    assert Entity.objects.get(text="tea").aliases == ["cuppa"]
+
+
+def test_an_answer_to_what_somebody_else_has_answered(label_page, admin):
+    page = label_page
+    expect_utterance(page, SAID[0])
+    label(Utterance.objects.get(text=SAID[0]), Verdict.UNKNOWN, "", admin, 1)
+    page.keyboard.press("1")
+    expect_utterance(page, SAID[1])
+    expect(page.get_by_role("alert")).to_contain_text("adam has changed this utterance")
+    page.get_by_role("button", name="Show it").click()
+    expect_utterance(page, SAID[0])
+    assert Utterance.objects.get(text=SAID[0]).status == "unknown"
+
+
+def test_answers_outlive_the_session(label_page, live_server, annotator):
+    page = label_page
+    page.context.clear_cookies()
+    page.keyboard.press("1")
+    page.wait_for_function(f"localStorage.getItem('answers:{annotator.pk}')?.length > 2")
+    client = Client()
+    client.force_login(annotator)
+    value = client.cookies["sessionid"].value
+    page.context.add_cookies([{"name": "sessionid", "value": value, "url": live_server.url}])
+    page.goto(f"{live_server.url}/w/home/label/")
+    expect(page.locator(".label-last")).to_contain_text(SAID[0])
+    assert Utterance.objects.get(text=SAID[0]).status == "labelled"
+
+
+def test_answers_without_a_connection_arrive_later(label_page, live_server):
+    page = label_page
+    page.route("**/answer/", lambda route: route.abort())
+    page.keyboard.press("1")
+    expect(page.locator("#connection")).to_be_visible()
+    page.unroute("**/answer/")
+    page.goto(f"{live_server.url}/w/home/label/")
+    expect(page.locator(".label-last")).to_contain_text(SAID[0])
+    assert Utterance.objects.get(text=SAID[0]).status == "labelled"

@@ -1,0 +1,270 @@
+"""Writing a template in a browser: the checking editor, and drafts that outlive a reload."""
+
+from __future__ import annotations
+
+import pytest
+from django.test import Client
+from playwright.sync_api import Page, expect
+
+from annotations.models import Draft, SemanticTemplate, TaskCategory
+
+pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
+
+RESTORED = "Restored your unsaved draft."
+
+
+@pytest.fixture
+def other_category(sample) -> TaskCategory:
+    """A task category whose grammar knows none of the usual words."""
+    return TaskCategory.objects.create(
+        grammar=sample.world.grammar,
+        name="empty",
+        position=9,
+        rule_sources=["nothing_grammar.txt"],
+        template_sources=["nothing_semantics.txt"],
+    )
+
+
+def open_editor(page: Page, url: str, path: str = "new") -> None:
+    page.goto(f"{url}/w/home/templates/{path}/")
+    expect(page.locator(".cm-editor")).to_have_count(2)  # until then the plain fields are there
+
+
+def write(page: Page, pattern: str, form: str) -> None:
+    page.get_by_role("textbox", name="Pattern").fill(pattern)
+    page.get_by_role("textbox", name="Logical form").fill(form)
+
+
+def test_the_editor_says_what_the_checker_finds_and_shows_what_comes_out(
+    page_of, live_server, annotator
+):
+    page = page_of(annotator)
+    page.goto(f"{live_server.url}/w/home/templates/new/")
+    expect(page.locator(".cm-editor")).to_have_count(2)  # before, the plain fields stand there
+    page.get_by_role("textbox", name="Pattern").fill("$vbfind the {kobject} now")
+    form = page.get_by_role("textbox", name="Logical form")
+    form.fill("(find {room})")
+    expect(page.locator(".editor-report").nth(1)).to_contain_text("the pattern never produces")
+    form.fill("(find {kobject})")
+    expect(page.locator("#preview")).to_contain_text("2 commands")
+    page.keyboard.press("Control+Enter")
+    expect(page.locator(".message")).to_contain_text("Saved")
+
+
+def test_another_task_category_is_checked_anew(page_of, live_server, annotator, other_category):
+    page = page_of(annotator)
+    open_editor(page, live_server.url)
+    report = page.locator(".editor-report").first
+    page.get_by_label("Task category").select_option("empty")
+    write(page, "go to the {room}", "(go {room})")
+    expect(report).to_contain_text("matches nothing in the grammar")
+    page.get_by_label("Task category").select_option("1")
+    expect(report).not_to_contain_text("matches nothing")
+    page.get_by_label("Task category").select_option("empty")
+    expect(report).to_contain_text("matches nothing in the grammar")
+
+
+def test_enter_in_the_pattern_sends_nothing(page_of, live_server, annotator):
+    page = page_of(annotator)
+    open_editor(page, live_server.url)
+    page.get_by_role("textbox", name="Pattern").fill("go")
+    page.get_by_role("textbox", name="Pattern").press("Enter")
+    expect(page.locator(".errorlist")).to_have_count(0)
+    assert page.url.endswith("/templates/new/")
+
+
+def test_a_draft_comes_back_whole_and_can_be_discarded(
+    page_of, live_server, annotator, other_category
+):
+    page = page_of(annotator)
+    open_editor(page, live_server.url)
+    write(page, "go home", "(go {room}")
+    page.get_by_label("Task category").select_option("empty")
+    page.get_by_label("Status").select_option("draft")
+    page.reload()
+    expect(page.get_by_text(RESTORED)).to_be_visible()
+    expect(page.locator(".cm-content").first).to_have_text("go home")
+    expect(page.get_by_label("Task category")).to_have_value(str(other_category.pk))
+    expect(page.get_by_label("Status")).to_have_value("draft")
+    expect(page.locator(".editor-report").nth(1)).to_contain_text("ends too early")
+    page.get_by_role("button", name="Discard").click()
+    expect(page.get_by_label("Status")).to_have_value("ready")
+    page.reload()
+    expect(page.locator(".cm-editor")).to_have_count(2)
+    expect(page.get_by_text(RESTORED)).to_have_count(0)
+
+
+def log_in_as(page: Page, user, url: str) -> None:
+    """Gives the browser window to somebody else."""
+    client = Client()
+    client.force_login(user)
+    value = client.cookies["sessionid"].value
+    page.context.add_cookies([{"name": "sessionid", "value": value, "url": url}])
+
+
+def test_a_draft_is_shown_to_its_author_alone(page_of, live_server, annotator, admin):
+    page = page_of(annotator)
+    open_editor(page, live_server.url)
+    write(page, "go home", "(go {room})")
+    log_in_as(page, admin, live_server.url)
+    open_editor(page, live_server.url)
+    expect(page.get_by_text(RESTORED)).to_have_count(0)
+    expect(page.locator(".cm-content").first).not_to_contain_text("go home")
+    log_in_as(page, annotator, live_server.url)
+    open_editor(page, live_server.url)
+    expect(page.get_by_text(RESTORED)).to_be_visible()
+
+
+def test_logging_out_removes_the_drafts(page_of, live_server, annotator):
+    page = page_of(annotator)
+    open_editor(page, live_server.url)
+    write(page, "go home", "(go {room})")
+    page.locator(".menu summary").last.click()
+    page.get_by_role("button", name="Log out").click()
+    page.wait_for_url("**/login/**")
+    assert (
+        page.evaluate("Object.keys(localStorage).filter(name => name.startsWith('draft:'))") == []
+    )
+
+
+def test_a_draft_of_an_old_version_overwrites_nobody(page_of, live_server, annotator, sample):
+    page = page_of(annotator)
+    open_editor(page, live_server.url, str(sample.template.pk))
+    page.get_by_role("textbox", name="Pattern").fill("find my $object")
+    SemanticTemplate.objects.filter(pk=sample.template.pk).update(
+        pattern="find a $object", version=2
+    )
+    open_editor(page, live_server.url, str(sample.template.pk))
+    expect(page.get_by_text(RESTORED)).to_be_visible()
+    page.get_by_role("button", name="Save").click()
+    expect(page.get_by_role("alert").first).to_contain_text("saved version 2 in the meantime")
+    sample.template.refresh_from_db()
+    assert sample.template.pattern == "find a $object"
+
+
+def test_a_template_with_mistakes_is_repaired_and_saved_by_keyboard_alone(
+    page_of, live_server, annotator
+):
+    page = page_of(annotator)
+    open_editor(page, live_server.url)
+    reports = page.locator(".editor-report")
+    page.get_by_role("textbox", name="Pattern").press_sequentially("$vbfind me the {kobject}")
+    page.keyboard.press("Tab")
+    # A backslash is a λ; the closing brackets come by themselves, and one is taken away.
+    page.keyboard.type("(fnd (\\$1:e (is_a $1 {kobject}))")
+    page.keyboard.press("End")
+    page.keyboard.press("Backspace")
+    expect(reports.nth(1)).to_contain_text("ends too early")
+    page.keyboard.press("Control+.")
+    expect(reports.nth(1)).to_contain_text("there is no predicate fnd")
+    repair = page.get_by_role("button", name="Write find for fnd")
+    repair.focus()
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("textbox", name="Logical form")).to_have_text(
+        "(find (λ$1:e (is_a $1 {kobject})))"
+    )
+    expect(reports.nth(1)).to_contain_text("find the object")
+    page.keyboard.press("Control+Enter")
+    expect(page.locator(".message")).to_contain_text("Saved")
+
+
+def test_the_cursor_lights_a_slot_on_both_sides_and_the_selection_grows_by_subterm(
+    page_of, live_server, annotator
+):
+    page = page_of(annotator)
+    open_editor(page, live_server.url)
+    write(page, "$vbfind   the {kobject}", "(find  (λ $1 e. (is_a $1 {kobject})))")
+    form = page.get_by_role("textbox", name="Logical form")
+    expect(page.locator(".editor-report").nth(1)).to_contain_text("find the object")
+    form.press("Alt+Shift+F")
+    expect(form).to_have_text("(find (λ$1:e (is_a $1 {kobject})))")
+    expect(page.locator(".cm-content").first).to_have_text("$vbfind the {kobject}")
+    page.keyboard.press("End")
+    for _ in range(4):
+        page.keyboard.press("ArrowLeft")
+    expect(page.locator(".cm-slot-lit")).to_have_text(["{kobject}", "{kobject}"])
+    selected = []
+    for key in ("Alt+ArrowUp", "Control+i", "Alt+ArrowUp", "Alt+ArrowDown"):
+        page.keyboard.press(key)
+        selected.append(page.evaluate("getSelection().toString()"))
+    assert selected == [
+        "{kobject}",
+        "(is_a $1 {kobject})",
+        "(λ$1:e (is_a $1 {kobject}))",
+        "(is_a $1 {kobject})",
+    ]
+
+
+def test_a_draft_is_offered_on_another_device(logged_in, sample, live_server, annotator):
+    first, second = (logged_in(annotator).new_page() for _ in "ab")
+    path = str(sample.template.pk)
+    open_editor(first, live_server.url, path)
+    first.get_by_role("textbox", name="Pattern").fill("find my $object")
+    expect(first.get_by_text("Draft saved")).to_be_visible()
+    open_editor(second, live_server.url, path)
+    expect(second.get_by_text("from another device")).to_be_visible()
+    second.get_by_role("button", name="Restore", exact=True).click()
+    expect(second.locator(".cm-content").first).to_have_text("find my $object")
+    second.get_by_role("button", name="Save").click()
+    expect(second.locator(".message")).to_contain_text("Saved as version 2")
+    assert not Draft.objects.exists()
+
+
+def test_a_lost_connection_loses_nothing(page_of, live_server, annotator):
+    page = page_of(annotator)
+    open_editor(page, live_server.url)
+    page.context.set_offline(True)
+    write(page, "go home", "(go {room})")
+    expect(page.get_by_text("No connection. The draft is kept")).to_be_visible()
+    page.context.set_offline(False)
+    expect(page.get_by_text("Draft saved")).to_be_visible()
+    assert Draft.objects.get().fields["pattern"] == "go home"
+
+
+def test_an_expired_session_is_renewed_in_place(page_of, live_server, annotator):
+    annotator.set_password("a long password")
+    annotator.save()
+    page = page_of(annotator)
+    open_editor(page, live_server.url)
+    page.context.clear_cookies(name="sessionid")
+    write(page, "go to the {room}", "(go {room})")
+    page.get_by_role("button", name="Log in again").click()
+    password = page.get_by_label(f"Password of {annotator}")
+    password.fill("wrong")
+    password.press("Enter")
+    expect(page.get_by_text("correct username and password")).to_be_visible()
+    password.fill("a long password")
+    password.press("Enter")
+    expect(page.get_by_text("Draft saved")).to_be_visible()
+    page.get_by_role("button", name="Save").click()
+    expect(page.locator(".message")).to_contain_text("Saved")
+
+
+def test_what_can_be_written_is_completed(page_of, live_server, annotator):
+    page = page_of(annotator)
+    open_editor(page, live_server.url)
+    offers = page.locator(".cm-tooltip-autocomplete")
+
+    def complete(typed: str, offered: str) -> None:
+        page.keyboard.type(typed)
+        expect(offers.locator("[aria-selected]")).to_contain_text(offered)
+        # CodeMirror's list takes no key in its first 75 ms, so that nobody is surprised by it.
+        page.wait_for_timeout(100)
+        page.keyboard.press("Enter")
+        expect(offers).to_have_count(0)
+
+    page.get_by_role("textbox", name="Pattern").focus()
+    complete("$vb", "find | locate")
+    page.keyboard.type(" the ")
+    complete("{kob", "the name of an object (known)")
+    page.get_by_role("textbox", name="Logical form").focus()
+    complete("(fi", "(lambda)")
+    complete("(lam", "λ$1:e")
+    complete("(is", "(variable, object)")
+    complete("$", "the variable of a λ")
+    page.keyboard.type(" ")
+    complete("{", "{kobject}")
+    expect(page.get_by_role("textbox", name="Pattern")).to_have_text("$vbfind the {kobject}")
+    expect(page.get_by_role("textbox", name="Logical form")).to_have_text(
+        "(find (λ$1:e (is_a $1 {kobject})))"
+    )

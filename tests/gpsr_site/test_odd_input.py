@@ -1,0 +1,236 @@
+"""Whatever somebody writes into an address or a form, the answer is never an error of the server.
+
+The routes, filters, orders and fields are asked of the site itself, so that new ones are tried too.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from urllib.parse import quote
+
+import pytest
+from django.db import connection
+from django.urls import get_resolver
+
+from tests.gpsr_site.test_permissions import ALL_ROUTES, POLICY, address
+from tests.sample_world import SampleWorld
+
+SURROGATE = b"\xed\xa0\x80"
+ODD_VALUES = [
+    "",
+    "[null,1]",
+    "1e400",
+    "-1e400",
+    "NaN",
+    "\0",
+    "a\0b",
+    SURROGATE,
+    b"\xff\xfe",
+    "[" * 1500,
+    "(" * 1500,
+    "{" * 1500,
+    "²",
+    "٣",
+    "9" * 5000,
+    str(2**31),
+    str(2**63),
+    str(-(2**63) - 1),
+    "0",
+    "-1",
+    "1.5",
+    "true",
+    "[]",
+    "{}",
+    "a" * 20_000,
+    "\u202e💩",
+    "%",
+    "' OR 1=1 --",
+    "../../etc/passwd",
+]
+# Tried in each field of a form by itself, while the others hold what they should.
+WORST_VALUES = ["a\0b", SURROGATE, "²", str(2**63), "[" * 1500, "1e400"]
+# What another database than SQLite may take otherwise; the rest never comes as far as a database.
+if connection.vendor != "sqlite":
+    ODD_VALUES = ["a\0b", SURROGATE, "NaN", "9" * 5000, str(2**31), str(2**63), "a" * 20_000]
+    WORST_VALUES = ["a\0b", SURROGATE, str(2**63)]
+FILE_FIELDS = {"import": b"files", "import_pairs": b"archive", "world_import": b"archive"}
+CURSORS = [
+    *("[null,1]", "[1e400,1]", "[1,1e400]", '["\\u0000",1]', '["\\ud800",1]', "[[1],1]", "[{},1]"),
+    *("[true,1]", "[1,null]", "[1,true]", "[1.5,1]", '["²",1]', "[" * 1500 + "]" * 1500, "[-1,-1]"),
+    *(
+        f"[{2**63},1]",
+        f"[1,{2**63}]",
+        f"[1,{2**64}]",
+        f'["{"9" * 5000}",1]',
+        '["nan",1]',
+        "[NaN,1]",
+    ),
+    *('["",1]', '["a",1]', "[1,1]", '[1,"1"]', f"[{'9' * 5000},1]", "[Infinity,1]", '["1e400",1]'),
+]
+# What views read of an address beside their filters.
+OTHER_PARAMETERS = (
+    "sort",
+    "after",
+    "before",
+    "parser",
+    "split",
+    "part",
+    "show",
+    "as",
+    "source",
+    "q",
+    "utterance",
+    "without",
+    "page",
+    "command",
+)
+LARGE_KEYS = [2**31, 2**63 - 1, 2**63, 2**64, int("9" * 400)]
+
+GET_ROUTES = sorted({rule.name for rule in POLICY if rule.method == "get"} - {"admin:index"})
+POST_ROUTES = sorted({rule.name for rule in POLICY if rule.method == "post"} - {"logout"})
+
+
+def in_query(parameters: dict[str, str | bytes]) -> str:
+    return "&".join(f"{quote(name)}={quote(value)}" for name, value in parameters.items())
+
+
+def joined(path: str, query: str) -> str:
+    return f"{path}{'&' if '?' in path else '?'}{query}"
+
+
+@pytest.fixture
+def root(superuser, client):
+    client.force_login(superuser)
+    return client
+
+
+def check(answer, what: object) -> None:
+    assert answer.status_code < 500, f"{answer.status_code} for {str(what)[:300]}"
+    if answer.streaming:
+        b"".join(answer.streaming_content)
+
+
+def filters_and_orders(answer) -> tuple[set[str], list[str]]:
+    """The parameters of the list on a page, and the orders it can be in."""
+    listing = (answer.context or {}).get("listing") if answer.context else None
+    if listing is None:
+        return set(), []
+    return set(listing.form.fields), list(getattr(listing, "sorts", ()))
+
+
+@pytest.mark.parametrize("name", GET_ROUTES)
+def test_odd_values_in_an_address(name, sample: SampleWorld, root):
+    path = address(name, sample)
+    answer = root.get(path)
+    if answer.status_code == 405:
+        return
+    filters, orders = filters_and_orders(answer)
+    parameters = sorted({*filters, *OTHER_PARAMETERS})
+    for value in ODD_VALUES if orders else WORST_VALUES:
+        query = in_query(dict.fromkeys(parameters, value))
+        check(root.get(joined(path, query)), query)
+    check(root.get(joined(path, f"{query}&{query}")), "twice")
+    for number, cursor in enumerate(CURSORS if orders else ()):
+        order = orders[number % len(orders)]
+        query = in_query({"sort": order, ("after", "before")[number % 2]: cursor})
+        check(root.get(joined(path, query)), query)
+
+
+@pytest.mark.parametrize("name", sorted(name for name in GET_ROUTES if "<int:" in ALL_ROUTES[name]))
+def test_keys_that_no_row_can_have(name, sample: SampleWorld, root):
+    for key in LARGE_KEYS:
+        path = re.sub(r"/\d+/", f"/{key}/", address(name, sample))
+        assert root.get(path).status_code in (404, 405), path
+
+
+def test_names_of_worlds_that_cannot_be(sample: SampleWorld, root):
+    for name in ("a" * 5000, "9" * 5000, "-", "_"):
+        assert root.get(f"/w/{name}/").status_code == 404
+
+
+def fields_of(root, path: str) -> dict[str, object]:
+    """The fields of the form at an address with what they hold; none where it shows no form."""
+    answer = root.get(path)
+    form = (answer.context or {}).get("form") if answer.context else None
+    if form is None or not hasattr(form, "fields"):
+        return {}
+    return {
+        form.add_prefix(name): "" if (value := form[name].value()) is None else value
+        for name in form.fields
+    }
+
+
+# What is sent to routes whose form stands on the page of another.
+FIELDS_ELSEWHERE = {
+    "template_check": ("task_category", "pattern", "form", "status"),
+    "template_preview": ("task_category", "pattern", "form", "status", "seed"),
+    "delete_row": ("version",),
+    "template_consequences": ("task_category", "pattern", "form", "status"),
+    "predicate_preview": ("name", "kind", "signatures", "gloss"),
+    "production_check": ("nonterminal", "expansion", "source"),
+    "production_preview": ("nonterminal", "expansion", "source"),
+    "member": ("roles", "remove"),
+    "label_answer": ("verdict", "form", "version", "seconds", "reason"),
+    "label_check": ("form",),
+    "label_send": ("text",),
+    "label_mend": ("words", "entity", "version"),
+    "queue_assign": ("person", "count"),
+    "queue_ask": ("reason",),
+    "queue_act": ("step", "person"),
+    "queue_settle": ("choice", "form"),
+    "login": ("username", "password", "next"),
+}
+
+
+@pytest.mark.parametrize("name", POST_ROUTES)
+def test_odd_values_in_a_form(name, sample: SampleWorld, root, monkeypatch):
+    monkeypatch.setattr("annotations.background.waking.send_wake_up", lambda queue: None)
+    if name == "login":
+        root.logout()
+    path = address(name, sample)
+    usual = fields_of(root, path) or dict.fromkeys(FIELDS_ELSEWHERE.get(name, ()), "")
+    sent = {key: str(each) for key, each in usual.items() if isinstance(each, str | int | float)}
+    everywhere = [dict.fromkeys(usual, value) for value in ODD_VALUES]
+    alone = [{field: value} for field in usual for value in WORST_VALUES]
+    for odd in everywhere + alone:
+        body = in_query({**sent, **odd})
+        answer = root.post(path, body, content_type="application/x-www-form-urlencoded")
+        check(answer, odd)
+
+
+ODD_FILES = [b"", b"\0" * 100, b"PK\x03\x04" + b"\xff" * 50, b"[" * 5000]
+ODD_NAMES = [b"a.xml", b"x.zip", b"common_rules.txt", b"a" * 300, SURROGATE + b".txt", b"..", b"\0"]
+
+
+@pytest.mark.parametrize("name", ODD_NAMES, ids=range(len(ODD_NAMES)))
+def test_odd_files(name, sample: SampleWorld, root):
+    for data in ODD_FILES:
+        for route, field in FILE_FIELDS.items():
+            part = b'Content-Disposition: form-data; name="%s"; filename="%s"' % (field, name)
+            body = b"--x\r\n%s\r\n\r\n%s\r\n--x--\r\n" % (part, data)
+            kind = "multipart/form-data; boundary=x"
+            check(root.post(address(route, sample), body, content_type=kind), (route, name, data))
+
+
+@pytest.mark.parametrize("body", [b"{", b"[" * 2000, b"\xff", json.dumps({"a": "\ud800"}).encode()])
+def test_odd_bodies_of_any_kind(body, sample: SampleWorld, root):
+    for name in POST_ROUTES:
+        for kind in ("application/json", "multipart/form-data; boundary=x", "text/plain", "a\0/b"):
+            check(root.post(address(name, sample), body, content_type=kind), (name, kind, body))
+
+
+@pytest.mark.parametrize(
+    "header", ["", "Bearer", "Bearer \xff", "Bearer " + "a" * 5000, "Basic Og=="]
+)
+def test_odd_headers(header, sample: SampleWorld, client):
+    path = address("api:split-export", sample)
+    check(client.get(path, headers={"authorization": header}), header)
+    check(client.get("/", headers={"cookie": f"sessionid={header}; csrftoken={header}"}), header)
+    check(client.get("/", headers={"x-forwarded-for": header, "referer": header}), header)
+
+
+def test_every_route_that_takes_something_is_tried():
+    names = {name for name, _ in ALL_ROUTES.items()}
+    assert names - {"admin:index", "logout"} <= {*GET_ROUTES, *POST_ROUTES}
+    assert get_resolver().url_patterns

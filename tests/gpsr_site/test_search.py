@@ -1,0 +1,94 @@
+"""The search of a whole world: every kind, the first few rows, and the list with the same words."""
+
+from __future__ import annotations
+
+import pytest
+
+from annotations.labelling import collect
+from annotations.models import Entity, Paraphrase
+
+
+@pytest.fixture
+def paraphrase(sample) -> Paraphrase:
+    return Paraphrase.objects.create(
+        world=sample.world,
+        prompt="find the tea",
+        utterance="where is my tea",
+        grounded_form="( find )",
+        logical_form="( find )",
+        edit_distance=1,
+        jaccard_distance=0.5,
+        position=0,
+    )
+
+
+def found(client, words):
+    """Title → texts of the matches on the search page of ``home``."""
+    groups = client.get("/w/home/search/", {"q": words}).context["groups"]
+    return {group.title: [hit.text for hit in group.hits] for group in groups}
+
+
+@pytest.mark.parametrize(
+    ("words", "kind", "text"),
+    [
+        ("milk", "Entities", "milk"),
+        ("is_a", "Predicates", "is_a"),
+        ("vbfind", "Templates", "$vbfind the $object"),
+        ("LOCATE", "Commands", "locate the <object>"),
+        ("( go", "Logical forms", "go(⟨room⟩)"),
+        ("my tea", "Paraphrases", "where is my tea"),
+        ("say hello", "Utterances", "say hello"),
+        ("home-sp", "Splits", "home-split"),
+        ("knn", "Runs", "run {run}"),
+        ("nearest neighbour", "Runs", "run {run}"),
+        ("run {run}", "Runs", "run {run}"),
+    ],
+)
+def test_every_kind_is_found(words, kind, text, sample, paraphrase, anna):
+    collect(sample.world, ["say hello"])
+    run = sample.run.pk
+    assert text.format(run=run) in found(anna, words.format(run=run))[kind]
+
+
+def test_each_match_and_all_of_a_kind_are_linked(sample, anna):
+    page = anna.get("/w/home/search/", {"q": "the <"})
+    content = page.content.decode()
+    command = sample.world.commands.first()
+    assert f'href="/w/home/commands/{command.pk}/"' in content
+    assert 'href="/w/home/commands/?q=the+%3C"' in content
+    for group in page.context["groups"]:
+        listed = anna.get(group.url).context["listing"]
+        assert listed.total == group.count
+
+
+def test_nothing_and_no_words_are_told(sample, anna):
+    assert "Nothing in home matches “zebra”" in anna.get("/w/home/search/?q=zebra").content.decode()
+    assert "Searches entities" in anna.get("/w/home/search/").content.decode()
+
+
+@pytest.mark.parametrize(
+    "words", ["%", "_", "\\", "\0", "'", "<script>", "(" * 2000, "9" * 30, "²"]
+)
+def test_any_words_are_taken(words, sample, anna):
+    page = anna.get("/w/home/search/", {"q": words})
+    assert page.status_code == 200
+    assert "<script>" not in page.content.decode().split("<main", 1)[1]
+
+
+def test_other_worlds_are_not_searched(sample, other_sample, anna):
+    words = other_sample.split.name
+    assert found(anna, words) == {}
+
+
+@pytest.mark.parametrize("words", ["CAFETI", "cafetière", 'the "pot"'])
+def test_entities_answer_to_their_aliases(words, sample, anna):
+    entity = Entity.objects.filter(ontology__world=sample.world, text="milk").get()
+    entity.aliases = ["cafetière", 'the "pot"']
+    entity.save()
+    assert found(anna, words)["Entities"] == ["milk"]
+
+
+@pytest.mark.parametrize("words", ["[", "]", ", "])
+def test_what_stands_between_aliases_is_not_searched(words, sample, anna):
+    Entity.objects.update(aliases=["tea pot", "kettle"])
+    assert "Entities" not in found(anna, words)

@@ -1,0 +1,46 @@
+"""What the banner and the top bar say of the workers that are there and that are missing."""
+
+from __future__ import annotations
+
+import pytest
+from django.utils import timezone
+
+from gpsr_site.workers import workers_now
+from parser_service.models import TrainingRun, Worker
+from parser_service.runs import requesting
+
+
+def alive(*queues: str) -> None:
+    Worker.objects.create(
+        name="-".join(queues),
+        host="h",
+        process_id=1,
+        queue=",".join(queues),
+        last_seen=timezone.now(),
+    )
+
+
+@pytest.mark.parametrize("served", [["cpu", "gpu", "quick"], ["cpu", "quick"]])
+def test_one_worker_may_serve_all_queues(db, served):
+    alive(*served)
+    workers = workers_now()
+    assert (workers.is_alive, workers.headline, workers.sentence) == (True, "", "")
+    assert workers.summary == "Worker idle"
+
+
+def test_each_queue_needs_a_worker(sample):
+    alive("quick")
+    requesting.request(sample.world, sample.split, "seq2seq", send=False)
+    requesting.request(sample.world, sample.split, "knn", seed=7, send=False)
+    workers = workers_now()
+    assert workers.headline == "No training worker is running."
+    assert workers.sentence == "1 run waits for one."
+    assert workers.summary == "No training worker, 2 waiting"
+
+
+def test_a_gpu_worker_is_missed_only_where_work_waits_for_one(sample):
+    alive("cpu", "quick")
+    requesting.request(sample.world, sample.split, "seq2seq", send=False)
+    assert workers_now().is_alive
+    TrainingRun.objects.filter(status="queued").update(queue="gpu")
+    assert workers_now().headline == "No GPU worker is running."

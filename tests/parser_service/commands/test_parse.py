@@ -1,0 +1,135 @@
+"""``manage.py parse``: an utterance and what a trained parser makes of it."""
+
+from __future__ import annotations
+
+import json
+from io import StringIO
+
+import pytest
+from django.core.management import CommandError, call_command
+
+from annotations.models import Entity, Ontology
+from parser_service.runs import lifecycle, requesting
+from parser_service.runs.checkpoints import model_folder, remove_folder
+from parser_service.runs.training import train
+from parser_service.serving import best_run
+from tests.parser_service.made_up import TINY, make_split
+
+FETCH = '( bring ( lambda $1 e ( is_a $1 " <object> " ) ) )'
+FETCH_CUP = '( bring ( lambda $1 e ( is_a $1 " red cup " ) ) )'
+
+
+@pytest.fixture
+def split(world, transactional_db):
+    ontology = Ontology.objects.create(world=world)
+    for position, (kind, text) in enumerate([("object", "red cup"), ("room", "kitchen")]):
+        Entity.objects.create(ontology=ontology, entity_class=kind, text=text, position=position)
+    return make_split(world)
+
+
+def trained(split, parser="knn", **asked):
+    run, _ = requesting.request(split.world, split, parser, send=False, **asked)
+    train(lifecycle.claim("the test", run.queue, run))
+    run.refresh_from_db()
+    assert run.status == "succeeded"
+    return run
+
+
+def ask(text: str, *options: str) -> dict:
+    out = StringIO()
+    call_command("parse", text, "--world", "home", *options, "--json", stdout=out)
+    return json.loads(out.getvalue())
+
+
+def test_a_parser_of_generated_commands_is_asked_with_class_tokens(split):
+    run = trained(split, train_sources="gen")
+    answer = ask("Bring me the red cup")
+    assert (answer["run"], answer["parser"]) == (run.pk, "knn")
+    assert answer["parsed_text"] == "Bring me the <object>"
+    first = answer["candidates"][0]
+    assert (first["form"], first["grounded"]) == (FETCH, FETCH_CUP)
+    assert first["reading"] == 'bring(λx. is_a(x, "red cup"))'
+    assert first["gloss"] == "bring me the red cup"
+
+
+def test_a_parser_that_knows_paraphrases_is_asked_as_people_speak(split):
+    trained(split, train_sources="gen+para")
+    assert ask("Bring me the red cup")["parsed_text"] == "Bring me the red cup"
+
+
+def test_a_network_is_loaded_from_its_folder(split):
+    run = trained(split, "seq2seq", config={**TINY, "epochs": 1})
+    assert ask("find the red cup", "--run", str(run.pk), "--beam", "2")["parser"] == "seq2seq"
+
+
+def test_the_best_run_is_the_one_that_is_right_on_paraphrases(split):
+    spoken = trained(split, train_sources="gen+para")
+    generated = trained(split, train_sources="gen")
+    for run, source, accuracy in ((spoken, "para", 0.5), (generated, "para", 0.25)):
+        run.evaluations.filter(part="validation", test_source=source).update(accuracy=accuracy)
+    generated.evaluations.filter(test_source="gen").update(accuracy=1.0)
+    assert best_run(split.world) == spoken
+
+
+def remarks(text: str) -> list[str]:
+    answer = ask(text)
+    return [*answer["remarks"], *answer["candidates"][0]["remarks"]]
+
+
+def test_what_the_world_does_not_know_gets_a_remark(split):
+    trained(split, train_sources="gen")
+    assert remarks("bring me the red cup") == []
+    assert remarks("bring me the moon") == [
+        "<object> stays open: the utterance names no object of this world."
+    ]
+    Entity.objects.create(
+        ontology=split.world.ontology, entity_class="object", text="bowl", position=2
+    )
+    assert remarks("bring me the red cup or the bowl") == [
+        "<object> stays open: it may be red cup or bowl."
+    ]
+    assert remarks("bring me the <gadget>")[0].startswith("<gadget> is not a class of entities.")
+    Entity.objects.filter(entity_class="object").delete()
+    assert remarks("bring me the <object>") == [
+        "<object>: this world has no entity of the class object.",
+        "<object> stays open: this world has no entity of the class object.",
+    ]
+
+
+def test_remarks_are_printed_for_a_person(split):
+    trained(split, train_sources="gen")
+    out = StringIO()
+    call_command("parse", "bring me the moon", "--world", "home", stdout=out)
+    assert out.getvalue().endswith("the utterance names no object of this world.\n")
+
+
+def test_an_utterance_without_an_answer_has_no_candidates(split):
+    trained(split, config={"least_overlap": 0.9})
+    assert ask("sing a song")["candidates"] == []
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        ((), "No run of home has succeeded yet"),
+        (("--run", "99"), "There is no run 99 in home"),
+        (("--beam", "0"), "--beam has to be at least 1"),
+    ],
+)
+def test_what_cannot_be_answered_is_a_sentence(split, options, sentence):
+    with pytest.raises(CommandError) as refused:
+        ask("bring me the red cup", *options)
+    assert sentence in str(refused.value)
+
+
+def test_a_run_that_has_not_succeeded_is_not_asked(split):
+    run, _ = requesting.request(split.world, split, "knn", send=False)
+    with pytest.raises(CommandError, match=f"Run {run.pk} is queued"):
+        ask("bring me the red cup", "--run", str(run.pk))
+
+
+def test_a_parser_whose_folder_is_gone_says_where_it_was(split):
+    run = trained(split)
+    remove_folder(model_folder(run.pk))
+    with pytest.raises(CommandError, match="Bring that folder back, or train again"):
+        ask("bring me the red cup")

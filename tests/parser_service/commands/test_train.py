@@ -1,0 +1,160 @@
+"""``manage.py train``: a run in the foreground."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from io import StringIO
+
+import pytest
+from django.conf import settings as site
+from django.core.management import CommandError, call_command
+from django.utils import timezone
+
+from parser_service.models import TrainingRun
+from parser_service.runs import lifecycle, requesting
+from tests.parser_service.made_up import LONG, make_split
+from tests.parser_service.worker_process import ROOT, database_url, wait_for_epochs
+from tests.waiting import PATIENCE_SECONDS, wait_for
+
+
+@pytest.fixture
+def split(world, transactional_db):
+    return make_split(world)
+
+
+def call(*arguments: str) -> dict:
+    out = StringIO()
+    call_command("train", *arguments, "--json", stdout=out, stderr=StringIO())
+    return json.loads(out.getvalue())
+
+
+HERE = ("--world", "home", "--split", "home")
+
+
+def test_it_prints_one_object_with_the_figures(split):
+    report = call("knn", *HERE, "--sources", "gen,para", "--seed", "7")
+    assert report["status"] == "succeeded"
+    assert (report["train_sources"], report["seed"]) == ("gen+para", 7)
+    assert len(report["evaluations"]) == 6
+    for figures in report["evaluations"]:
+        assert 0 <= figures["interval"][0] <= figures["accuracy"] <= figures["interval"][1] <= 1
+
+
+def test_what_was_trained_already_is_reported_again(split):
+    first = call("knn", *HERE)
+    assert call("knn", *HERE) == first
+    assert TrainingRun.objects.count() == 1
+
+
+def test_a_hyperparameter_is_read_as_what_it_is(split):
+    report = call("knn", *HERE, "--config", "least_overlap=0.5")
+    assert report["configuration"] == {"least_overlap": 0.5}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (("knn", "--world", "nowhere", "--split", "home"), "There is no world “nowhere”"),
+        (("knn", "--world", "home", "--split", "away"), "“home” has no split “away”. It has: home"),
+        (("knn", *HERE, "--seeds", "11"), "11 seeds were asked for; it has to be 1 to 10"),
+        (("knn", *HERE, "--sources", "all"), "--sources is 'all'"),
+        (("knn", *HERE, "--config", "least_overlap"), "has to be KEY=VALUE"),
+        (("knn", *HERE, "--config", "least_overlap=much"), "has to be of type float"),
+        (("knn", *HERE, "--config", "k=2"), "No hyperparameter is called k"),
+        (("knn", *HERE, "--protocol", "domain"), "knn has no protocol 'domain'"),
+    ],
+)
+def test_bad_input_is_a_sentence(split, arguments, sentence):
+    with pytest.raises(CommandError) as refused:
+        call(*arguments)
+    assert sentence in str(refused.value)
+    assert not TrainingRun.objects.exists()
+
+
+def test_a_run_that_fails_prints_its_report_and_exits_with_its_reason(split):
+    out = StringIO()
+    with pytest.raises(CommandError, match="The grammar oracle parses with") as refused:
+        call_command("train", "grammar-oracle", *HERE, "--json", stdout=out, stderr=StringIO())
+    assert refused.value.returncode == 1
+    assert json.loads(out.getvalue())["status"] == "failed"
+
+
+def test_the_split_is_found_by_its_name_and_criterion(split):
+    split.name = "home-logical_form"
+    split.criterion = "logical_form"
+    split.save()
+    report = call("knn", *HERE, "--criterion", "logical_form")
+    assert (report["split"], report["criterion"]) == ("home-logical_form", "logical_form")
+
+
+def test_several_seeds_report_each_run_and_mean_and_spread(split):
+    report = call("knn", *HERE, "--sources", "gen,para", "--seed", "7", "--seeds", "2")
+    assert report["seeds"] == [7, 8]
+    assert [run["status"] for run in report["runs"]] == ["succeeded", "succeeded"]
+    assert len(report["means"]) == len(report["runs"][0]["evaluations"])
+    for each, *figures in zip(
+        report["means"], *(run["evaluations"] for run in report["runs"]), strict=True
+    ):
+        # knn draws nothing, so that its seeds agree.
+        assert each["mean"] == pytest.approx(figures[0]["accuracy"])
+        assert (each["spread"], each["n_seeds"]) == (pytest.approx(0), 2)
+        assert each["test_source"] == figures[0]["test_source"]
+    assert call("knn", *HERE, "--sources", "gen,para", "--seed", "8") == report["runs"][1]
+
+
+def test_mean_and_spread_are_printed_for_a_person(split):
+    out = StringIO()
+    call_command("train", "knn", *HERE, "--seeds", "2", stdout=out, stderr=StringIO())
+    assert " ± 0.0 % over 2 seeds" in out.getvalue()
+
+
+def test_seeds_that_fail_are_reported_together(split):
+    out = StringIO()
+    with pytest.raises(CommandError, match="The grammar oracle parses with"):
+        call_command(
+            "train",
+            "grammar-oracle",
+            *HERE,
+            "--seeds",
+            "2",
+            "--json",
+            stdout=out,
+            stderr=StringIO(),
+        )
+    report = json.loads(out.getvalue())
+    assert [run["status"] for run in report["runs"]] == ["failed", "failed"]
+    assert report["means"] == []
+
+
+@pytest.mark.processes
+def test_ctrl_c_cancels_the_run(split):
+    options = [f"{name}={value}" for name, value in LONG.items()]
+    command = ["manage.py", "train", "seq2seq", *HERE, "--sources", "gen", "--config", *options]
+    process = subprocess.Popen(
+        [sys.executable, *command],
+        cwd=ROOT,
+        env={**os.environ, "DATABASE_URL": database_url(), "GPSR_VAR_DIR": str(site.VAR_DIR)},
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    wait_for(TrainingRun.objects.exists, "the run is asked for")
+    run = TrainingRun.objects.get()
+    wait_for_epochs(run, 1)
+    process.send_signal(signal.SIGINT)
+    _, told = process.communicate(timeout=PATIENCE_SECONDS)
+    run.refresh_from_db()
+    assert (process.returncode, run.status) == (1, "cancelled")
+    assert "Epoch 1: loss" in told
+    assert f"Run {run.pk} was cancelled." in told
+    assert "Traceback" not in told
+
+
+def test_a_run_whose_worker_is_gone_is_finished_here(split):
+    run, _ = requesting.request(split.world, split, "knn", train_sources="gen+para", send=False)
+    lifecycle.claim("cpu-1@elsewhere", run.queue, run)
+    TrainingRun.objects.update(lease_until=timezone.now())
+    assert call("knn", *HERE)["attempts"] == 2

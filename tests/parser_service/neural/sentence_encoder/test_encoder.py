@@ -1,0 +1,57 @@
+import pytest
+import torch
+
+from parser_service.neural.pretrained import load_encoder
+from parser_service.neural.sentence_encoder import SentenceEncoder
+from parser_service.neural.sentence_encoder.encoder import LONGEST
+from tests.parser_service.neural.tiny_encoder import write_tiny_encoder
+
+TEXTS = ["bring me the apple", "go", "find the apple"]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return write_tiny_encoder(tmp_path_factory.mktemp("encoder"), set(TEXTS))
+
+
+@pytest.fixture
+def encoder(folder):
+    return SentenceEncoder.of(load_encoder(str(folder)), dropout=0.1).eval()
+
+
+def test_a_text_has_the_mean_of_its_subwords_whatever_stands_beside_it(encoder, folder):
+    pretrained = load_encoder(str(folder))
+    for text, vector in zip(TEXTS, encoder.vectors(TEXTS), strict=True):
+        cut = pretrained.tokenizer(text, return_tensors="pt")
+        inputs = {name: cut[name] for name in ("input_ids", "attention_mask")}
+        mean = pretrained.model.eval()(**inputs).last_hidden_state[0].mean(0)
+        assert torch.allclose(vector, mean / mean.norm(), atol=1e-5)
+
+
+def test_vectors_come_in_the_order_asked_for(encoder):
+    texts = TEXTS * 50
+    vectors = encoder.vectors(texts)
+    assert torch.allclose(vectors[: len(TEXTS)], vectors[-len(TEXTS) :], atol=1e-5)
+
+
+def test_no_text_no_vector(encoder):
+    assert encoder.vectors([]).shape == (0, 32)
+
+
+def test_a_very_long_text_is_cut(encoder):
+    assert encoder.vectors(["apple " * 1000]).shape == (1, 32)
+    assert len(encoder.tokenizer.encode("apple " * 1000).ids) == LONGEST
+
+
+def test_described_and_loaded_it_encodes_alike(encoder, tmp_path):
+    encoder.describe(tmp_path)
+    before = torch.get_rng_state()
+    other = SentenceEncoder.described_in(tmp_path).eval()
+    assert torch.equal(before, torch.get_rng_state())
+    other.load_state_dict(encoder.state_dict())
+    assert torch.equal(other.vectors(TEXTS), encoder.vectors(TEXTS))
+
+
+def test_word_embeddings_are_not_trained(encoder):
+    trained = {name for name, weight in encoder.named_parameters() if weight.requires_grad}
+    assert not any("word_embeddings" in name for name in trained) and trained

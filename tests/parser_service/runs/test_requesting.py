@@ -1,0 +1,125 @@
+"""Which runs may be asked for, and which are there already."""
+
+from __future__ import annotations
+
+import pytest
+
+from annotations.background import send_wake_up
+from annotations.models import Entity, Ontology
+from parser_service.models import TrainingRun
+from parser_service.runs import lifecycle, requesting
+from tests.parser_service.made_up import make_split
+from tests.parser_service.requests import ask, at_once, claim
+
+
+def test_what_decides_the_result_is_trained_once(split):
+    first, is_new = requesting.request(split.world, split, "knn", seed=1)
+    again, is_new_again = requesting.request(split.world, split, "knn", seed=1)
+    assert (is_new, is_new_again) == (True, False)
+    assert again == first
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"seed": 2},
+        {"train_sources": "gen+para"},
+        {"config": {"least_overlap": 0.5}},
+        {"parser": "grammar-oracle", "protocol": "grammar"},
+    ],
+)
+def test_anything_that_decides_the_result_makes_another_run(split, changes):
+    assert ask(split, seed=1) != ask(split, **{"seed": 1, **changes})
+
+
+def test_a_default_that_is_written_out_is_the_same_run(split):
+    assert ask(split) == ask(split, config={"least_overlap": 0.0})
+
+
+def test_other_examples_are_another_run(split):
+    other = make_split(split.world, "away")
+    assert ask(split) != ask(other)
+
+
+def test_an_edit_of_the_world_counts_only_where_the_protocol_reads_it(split):
+    strict = ask(split)
+    oracle = ask(split, parser="grammar-oracle", protocol="grammar")
+    ontology = Ontology.objects.create(world=split.world)
+    Entity.objects.create(ontology=ontology, entity_class="object", text="cup", position=0)
+    assert ask(split) == strict
+    assert ask(split, parser="grammar-oracle", protocol="grammar") != oracle
+
+
+def test_a_failed_run_may_be_asked_for_again(split):
+    first = ask(split)
+    lifecycle.fail(claim(), "It broke. Mend it.")
+    assert ask(split) != first
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"parser": "oracle"}, "No parser is called 'oracle'"),
+        ({"protocol": "grammar"}, "knn has no protocol 'grammar'; it has: strict"),
+        ({"train_sources": "all"}, "No train sources are called 'all'"),
+        ({"config": {"least_overlap": 2.0}}, "least_overlap is 2.0, but it has to be at most 1"),
+        ({"config": {"k": 1}}, "No hyperparameter is called k"),
+        ({"seed": -1}, "The seed -1 has to lie between"),
+    ],
+)
+def test_what_cannot_be_trained_is_refused_with_a_sentence(split, changes, sentence):
+    with pytest.raises(ValueError, match="^" + sentence):
+        ask(split, **changes)
+    assert not TrainingRun.objects.exists()
+
+
+def test_several_seeds_are_one_request(split):
+    first = ask(split, seed=5)
+    answers = requesting.request_seeds(split.world, split, "knn", seeds=(4, 5, 6), send=False)
+    assert [(run.seed, is_new) for run, is_new in answers] == [(4, True), (5, False), (6, True)]
+    assert answers[1][0] == first
+
+
+def test_of_several_seeds_all_are_queued_or_none(split):
+    seeds = (requesting.LARGEST_SEED, requesting.LARGEST_SEED + 1)
+    with pytest.raises(ValueError, match=r"^The seed 4294967296 has to lie between"):
+        requesting.request_seeds(split.world, split, "knn", seeds=seeds, send=False)
+    assert not TrainingRun.objects.exists()
+
+
+@pytest.mark.parametrize(
+    ("first", "count", "sentence"),
+    [(0, 0, "0 seeds were asked for"), (0, 11, "11 seeds"), (2**32 - 1, 2, "The last seed")],
+)
+def test_seeds_that_there_are_not_are_refused(first, count, sentence):
+    with pytest.raises(ValueError, match=f"^{sentence}"):
+        requesting.seeds_from(first, count)
+
+
+def test_a_split_of_another_world_is_refused(split, other_world):
+    with pytest.raises(ValueError, match="belongs to another world"):
+        requesting.request(other_world, split, "knn")
+
+
+def test_train_sources_without_examples_are_refused(split):
+    split.examples.filter(source="paraphrased").delete()
+    with pytest.raises(ValueError, match="has no paraphrased examples to train on"):
+        ask(split, train_sources="gen+para")
+
+
+def test_a_worker_is_woken_when_the_request_is_stored_and_not_before(
+    split, django_capture_on_commit_callbacks
+):
+    with django_capture_on_commit_callbacks() as waiting:
+        ask(split)
+    assert [callback.func for callback in waiting] == [send_wake_up]
+    with django_capture_on_commit_callbacks() as waiting:
+        ask(split)
+    assert waiting == []
+
+
+@pytest.mark.django_db(transaction=True)
+def test_of_many_who_ask_for_the_same_all_get_one_run(split):
+    asked = at_once(lambda _: requesting.request(split.world, split, "knn", send=False))
+    assert len({run.pk for run, _ in asked}) == 1
+    assert sum(is_new for _, is_new in asked) == 1

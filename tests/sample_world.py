@@ -1,0 +1,85 @@
+"""A world with one of everything in it, small enough to read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from annotations.generation.generating import generate_pairs
+from annotations.importing import import_generator
+from annotations.models import Example, LogicalForm, SemanticTemplate, Split, World
+from parser_service.models import EpochMetric, Evaluation, Prediction, TrainingRun
+from parser_service.models.runs import Status
+from parser_service.runs import requesting
+from tests.annotations.conftest import TINY, as_bytes
+from tests.parser_service.made_up import make_split
+
+
+@dataclass(frozen=True)
+class SampleWorld:
+    """``world`` and something of every kind in it; ``run`` has succeeded and has been scored."""
+
+    world: World
+    template: SemanticTemplate
+    form: LogicalForm
+    split: Split
+    run: TrainingRun
+    example: Example
+
+
+def fill_world(world: World) -> SampleWorld:
+    """Put something of every kind into an empty world."""
+    assert not import_generator(world.name, as_bytes(TINY)).is_refused
+    generate_pairs(world)
+    split = make_split(world, f"{world.name}-split")
+    run = scored_run(world, split)
+    return SampleWorld(
+        world=world,
+        template=SemanticTemplate.objects.filter(grammar__world=world).first(),
+        form=world.logical_forms.first(),
+        split=split,
+        run=run,
+        example=run.predictions.first().example,
+    )
+
+
+def scored_run(
+    world: World, split: Split, parser: str = "knn", right: int = 3, seed: int = 0
+) -> TrainingRun:
+    """Store a run that succeeded and predicted the first ``right`` validation examples correctly."""
+    run, _ = requesting.request(world, split, parser, seed=seed, send=False)
+    TrainingRun.objects.filter(pk=run.pk).update(status=Status.SUCCEEDED, progress=1)
+    examples = list(split.examples.filter(part="validation"))
+    for number, example in enumerate(examples):
+        answer(run, example, example.logical_form if number < right else '( go " <room> " )')
+    Evaluation.objects.create(
+        run=run,
+        test_source="gen",
+        part="validation",
+        count=len(examples),
+        correct=right,
+        accuracy=right / len(examples),
+        interval_low=0.1,
+        interval_high=0.6,
+        equivalent=right / len(examples),
+        well_formed=1,
+    )
+    EpochMetric.objects.create(
+        run=run, epoch=1, train_loss=2.5, validation_loss=2.0, validation_accuracy=0.25, seconds=1
+    )
+    run.refresh_from_db()
+    return run
+
+
+def answer(run: TrainingRun, example: Example, form: str) -> Prediction:
+    """Store the run's first-ranked candidate for ``example``."""
+    is_right = form == example.logical_form
+    return Prediction.objects.create(
+        run=run,
+        example=example,
+        rank=1,
+        logical_form=form,
+        score=0.5,
+        is_exact_match=is_right,
+        is_equivalent=is_right,
+        is_well_formed=True,
+    )

@@ -1,0 +1,86 @@
+"""The templates, styles and scripts agree with each other, and templates can be read line by line."""
+
+from __future__ import annotations
+
+import re
+from itertools import chain
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+TEMPLATES = sorted((ROOT / "templates").rglob("*.html"))
+STYLES = sorted((ROOT / "static" / "css").glob("*.css"))
+SCRIPTS = sorted((ROOT / "static" / "src").glob("*.js"))
+LONGEST_LINE = 160
+
+COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
+RULE_HEAD = re.compile(r"([^{};]+)\{")
+CLASS = re.compile(r"\.(-?[A-Za-z_][\w-]*)")
+WORD = re.compile(r"-?[A-Za-z_][\w-]*")
+# Where a class is given: attributes of templates and of HTML in Python, the class of the main element.
+GIVEN = re.compile(r'class="([^"]*)"|main_class %\}([^{]*)')
+TAG = re.compile(r"\{%.*?%\}|\{\{.*?\}\}", re.DOTALL)
+STRING = re.compile(r'"([^"\n]*)"|`([^`]*)`')
+# A class whose end is filled in: "status--{{ status }}", `tok-${name}`.
+BEGINNING = re.compile(r"([\w-]*-)(?:\{\{|\$\{)")
+# Set by CodeMirror, htmx and Django.
+OF_LIBRARIES = ("cm-", "htmx-")
+OF_DJANGO = {"errorlist", "helptext", "debug", "info", "success", "warning", "error"}
+APPS = ("annotations", "parser_service", "gpsr_site")
+
+
+def words_of_classes() -> set[str]:
+    """Everything that may be a class in the templates, the scripts and the tags that render HTML."""
+    python = chain.from_iterable((ROOT / app / "templatetags").glob("*.py") for app in APPS)
+    given = [
+        " ".join(each) for path in chain(TEMPLATES, python) for each in GIVEN.findall(read(path))
+    ]
+    strings = [" ".join(each) for path in SCRIPTS for each in STRING.findall(read(path))]
+    return set(WORD.findall(TAG.sub(" ", " ".join(given)))) | set(WORD.findall(" ".join(strings)))
+
+
+def read(path: Path) -> str:
+    return path.read_text(encoding="utf-8")
+
+
+def classes_of(style: Path) -> set[str]:
+    """The classes in the selectors of a style sheet."""
+    heads = RULE_HEAD.findall(COMMENT.sub("", read(style)))
+    return set(CLASS.findall(" ".join(heads)))
+
+
+@pytest.mark.parametrize("style", STYLES, ids=lambda path: path.name)
+def test_every_class_of_a_style_sheet_is_used(style):
+    used = words_of_classes() | OF_DJANGO
+    beginnings = {each for path in [*TEMPLATES, *SCRIPTS] for each in BEGINNING.findall(read(path))}
+    unused = {
+        name
+        for name in classes_of(style)
+        if name not in used and not name.startswith((*OF_LIBRARIES, *beginnings - {"-", ""}))
+    }
+    assert not unused
+
+
+def test_no_rule_of_one_class_alone_stands_twice():
+    """The second place is overlooked when the first is changed. Rules for media are no second place."""
+    heads = [
+        head.strip()
+        for style in STYLES
+        for head in RULE_HEAD.findall(
+            re.sub(
+                r"@(?:media|container)[^{]*\{(?:[^{}]*\{[^{}]*\})*[^{}]*\}",
+                "",
+                COMMENT.sub("", read(style)),
+            )
+        )
+    ]
+    single = [head for head in heads if re.fullmatch(r"\.[\w-]+", head)]
+    assert sorted({head for head in single if single.count(head) > 1}) == []
+
+
+@pytest.mark.parametrize("template", TEMPLATES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_lines_of_a_template_can_be_read(template):
+    lines = enumerate(read(template).splitlines(), start=1)
+    long = {number: len(line) for number, line in lines if len(line) > LONGEST_LINE}
+    assert not long
