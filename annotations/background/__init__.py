@@ -21,7 +21,7 @@ from annotations.background.fencing import (
     record_progress,
     write,
 )
-from annotations.background.kinds import Kind, carry_out, claim_next, kinds, register
+from annotations.background.kinds import Kind, carry_out, claim_in_turn, kinds, register
 from annotations.background.lease_watch import LeaseWatch
 from annotations.background.leasing import Lease, Stopped
 from annotations.background.outages import DatabaseAway, outlasting
@@ -50,7 +50,7 @@ __all__ = [
     "cancel",
     "carry_out",
     "claim",
-    "claim_next",
+    "claim_in_turn",
     "extend",
     "fail",
     "failure_sentence",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from django.utils.module_loading import import_string
@@ -32,8 +32,27 @@ def kinds() -> tuple[Kind, ...]:
     return tuple(_KINDS.values())
 
 
-def claim_next(worker: str, queue: str) -> BackgroundWork | None:
-    """Claim the work of any kind that has waited longest in ``queue``. Return None if there is none."""
+def claim_in_turn(worker: str, queues: Sequence[str]) -> BackgroundWork | None:
+    """Claim the oldest work of one of ``queues`` for ``worker``. Return None if nothing waits in any.
+
+    The queue that ``worker`` took its last work from comes last, so that a full queue starves no other.
+    """
+    last = _last_queue(worker)
+    at = queues.index(last) + 1 if last in queues else 0
+    claims = (_claim_oldest(worker, queue) for queue in [*queues[at:], *queues[:at]])
+    return next(filter(None, claims), None)
+
+
+def _last_queue(worker: str) -> str | None:
+    begun = [
+        work
+        for kind in kinds()
+        if (work := kind.model.objects.filter(worker=worker).order_by("-started_at").first())
+    ]
+    return max(begun, key=lambda work: work.started_at).queue if begun else None
+
+
+def _claim_oldest(worker: str, queue: str) -> BackgroundWork | None:
     while waiting := [oldest for kind in kinds() if (oldest := _oldest(kind, queue))]:
         oldest = min(waiting, key=lambda work: work.queued_at)
         if claimed := claim(worker, queue, type(oldest), oldest):

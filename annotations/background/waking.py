@@ -49,14 +49,10 @@ def send_wake_up(queue: str) -> None:
 
 
 def wake_for_next(queues: Sequence[str]) -> None:
-    """Send a message to the first of ``queues`` in which anything waits."""
-    waiting = {
-        queue
-        for kind in kinds()
-        for queue in kind.model.objects.queued().values_list("queue", flat=True)
-    }
-    for queue in queues:
-        if queue in waiting:
+    """Send a message if anything waits in one of ``queues``. Which one it names does not matter."""
+    for kind in kinds():
+        waiting = kind.model.objects.queued().filter(queue__in=queues)
+        if queue := waiting.values_list("queue", flat=True).first():
             return send_wake_up(queue)
 
 

@@ -40,27 +40,17 @@ NICENESS = 5  # a page that is asked for while a network trains is served first
 
 @shared_task(bind=True, name=TASK)
 def work_next(task: Any, queue: str) -> None:
-    """Carry out the oldest work of ``queue``, or of another served queue where that one is empty."""
-    others = _in_turn(queue)
-    claims = (background.claim_next(task.request.hostname, each) for each in (queue, *others))
-    if work := next(filter(None, claims), None):
+    """Carry out the oldest work of the next served queue in turn; outside a worker, of ``queue``."""
+    queues = _served_queues() or [queue]
+    if work := background.claim_in_turn(task.request.hostname, queues):
         background.carry_out(work, partial(_leave, work))
-        background.wake_for_next(_in_turn(work.queue))
+        background.wake_for_next(queues)
 
 
 def _served_queues() -> list[str]:
     """Return the queues that this worker serves; none outside a worker."""
     consumed = current_app.amqp.queues.consume_from
     return [queue for queue in Queue.values if message_queue(queue) in consumed]
-
-
-def _in_turn(queue: str) -> list[str]:
-    """Return the served queues, ``queue`` last, so that a full queue does not starve the others."""
-    queues = _served_queues()
-    if queue not in queues:
-        return [queue]
-    at = queues.index(queue) + 1
-    return queues[at:] + queues[:at]
 
 
 def _leave(work: BackgroundWork) -> None:

@@ -7,7 +7,7 @@ from datetime import timedelta
 import pytest
 from django.utils import timezone
 
-from annotations.background import wake_for_forgotten
+from annotations.background import claim_in_turn, finish, wake_for_forgotten
 from parser_service.models import Checkpoint, TrainingRun
 from parser_service.parsers.interface import EpochReport
 from parser_service.runs import lifecycle
@@ -41,6 +41,17 @@ def test_a_claim_raises_the_attempt_and_begins_a_lease(split):
 def test_a_worker_claims_from_its_own_queue_only(split):
     ask(split)
     assert lifecycle.claim("gpu-1@here", "gpu") is None
+
+
+def test_a_worker_of_several_queues_takes_from_them_in_turn(split):
+    """However many wait in one queue: each of the others has its turn after one of them."""
+    long = [ask(split, parser="seq2seq", seed=seed) for seed in range(4)]
+    short = [ask(split, seed=seed) for seed in range(2)]
+    taken = []
+    while work := claim_in_turn("all-1@here", ["cpu", "gpu", "quick"]):
+        finish(work)
+        taken.append(work)
+    assert taken == [long[0], short[0], long[1], short[1], long[2], long[3]]
 
 
 @pytest.mark.django_db(transaction=True)
