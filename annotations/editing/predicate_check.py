@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from annotations.editing.template_problems import as_stored
 from annotations.language.errors import LanguageError, Position, Problem
 from annotations.language.forms import to_reading
 from annotations.language.predicates import Predicate, check_form, gloss, sample_forms
 from annotations.models import SemanticTemplate, World
 from annotations.rows.from_rows import predicates_of, template_of
-from annotations.rows.synchronise import BATCH
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,17 +49,6 @@ def check_predicate(world: World, predicate: Predicate) -> CheckedPredicate:
     verdicts = _verdicts(world, predicate.name, before, after)
     templates = ((each.row, tuple(problem.message for problem in each.new)) for each in verdicts)
     return CheckedPredicate(tuple(samples), tuple(each for each in templates if each[1]))
-
-
-def store_verdicts(world: World, name: str, before: Mapping[str, Predicate]) -> None:
-    """Write into the rows of templates what the predicate ``name`` has changed in their problems."""
-    changed = []
-    for each in _verdicts(world, name, before, predicates_of(world)):
-        gone = {problem.message for problem in each.before} - {p.message for p in each.after}
-        kept = [remark for remark in each.row.problems if remark["message"] not in gone]
-        each.row.problems = [*kept, *map(as_stored, each.new)]
-        changed.append(each.row)
-    SemanticTemplate.objects.bulk_update(changed, ["problems"], batch_size=BATCH)
 
 
 def _verdicts(

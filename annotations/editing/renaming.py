@@ -10,6 +10,7 @@ from django.db import models, transaction
 
 from annotations.editing.edits import Overtaken, change_many
 from annotations.editing.rename_plans import PLANS
+from annotations.generation.template_problems import check_unready_templates
 from annotations.language.english import say_count
 from annotations.models import Editable, Label, TaskCategory, User, Utterance, World
 from annotations.rows.synchronise import BATCH
@@ -59,7 +60,9 @@ def touched_by(row: Editable, old: str, new: str) -> tuple[Touched, ...]:
 
 
 def rename(row: Editable, old: str, new: str, by: User, version: int) -> tuple[Touched, ...]:
-    """Change every row of ``touched_by``, and bring the commands up to date. All of it or nothing.
+    """Change every row of ``touched_by``, and bring up to date the commands and what the checker says.
+
+    All of it or nothing.
 
     Raises:
         Overtaken: ``row`` is not at ``version`` any more.
@@ -79,6 +82,7 @@ def rename(row: Editable, old: str, new: str, by: User, version: int) -> tuple[T
         for model in (TaskCategory, Utterance, Label):
             _store(model, [each for each, _ in changes if type(each) is model])
         change_many(world, edited, by)
+        check_unready_templates(world)
         return touched
 
 

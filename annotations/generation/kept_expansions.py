@@ -88,15 +88,17 @@ def checker_of(
     return replace(_kept(grammar).checker, predicates=predicates, task_category=task_category)
 
 
-def problems_of(checker: TemplateChecker, template: SemanticTemplate) -> tuple[Problem, ...]:
-    """Return what ``checker`` says of ``template``; the same texts are checked once.
+def problems_of(
+    checker: TemplateChecker, template: SemanticTemplate, budget: Budget | None = None
+) -> tuple[Problem, ...]:
+    """Return what ``checker`` says of ``template`` within ``budget``; the same texts are checked once.
 
     Raises:
         LanguageError: the grammar has a cycle.
     """
     predicates = tuple((checker.predicates or {}).values())
     key = (predicates, checker.task_category, _texts(template))
-    return _kept(checker.grammar).problems.get(key, lambda: checker.problems(template))
+    return _kept(checker.grammar).problems.get(key, lambda: checker.problems(template, budget))
 
 
 def _kept(grammar: Grammar) -> _Checks:

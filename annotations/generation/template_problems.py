@@ -1,4 +1,4 @@
-"""The problems that stand in the rows of templates, after others or the grammar have changed."""
+"""The problems that stand in the rows of templates, after others, the grammar or predicates have changed."""
 
 from __future__ import annotations
 
@@ -9,10 +9,18 @@ from annotations import models
 from annotations.editing.template_problems import StoredRemark, as_stored
 from annotations.generation.kept_expansions import checker_of, problems_of
 from annotations.language.errors import LanguageError
-from annotations.language.templates import Generated, read_sides, shared_problems
-from annotations.rows.from_rows import AnnotatedCategory, predicates_of
+from annotations.language.grammar import CHECK_STEPS, Budget
+from annotations.language.templates import (
+    Generated,
+    TemplateChecker,
+    read_sides,
+    shared_problems,
+)
+from annotations.models.templates import Status
+from annotations.rows.from_rows import AnnotatedCategory, grammar_of, predicates_of
 
 BATCH = 500
+MOST_STEPS = 5 * CHECK_STEPS  # for all templates that are not ready: a second of processor time
 
 
 def store_template_problems(
@@ -30,6 +38,42 @@ def store_template_problems(
     models.SemanticTemplate.objects.bulk_update(changed, ["problems"], batch_size=BATCH)
 
 
+def check_unready_templates(world: models.World) -> None:
+    """Write what the checker says now of the templates that make no commands, such as drafts.
+
+    Beyond ``MOST_STEPS`` the rest keep what was said of them before.
+    """
+    unready = models.SemanticTemplate.objects.filter(grammar__world=world)
+    rows = list(unready.exclude(status=Status.READY))
+    changed, steps, declared = [], 0, predicates_of(world)
+    for category in models.TaskCategory.objects.filter(grammar__world=world) if rows else ():
+        try:
+            checker = checker_of(grammar_of(category), declared, category.name)
+        except LanguageError:
+            continue
+        here = [row for row in rows if row.source in category.template_sources]
+        rows = [row for row in rows if row not in here]  # checked against the first grammar only
+        for row in here:
+            budget = Budget(CHECK_STEPS)
+            remarks = _checked(row, checker, budget)
+            steps += budget.spent
+            if steps > MOST_STEPS:
+                break
+            if row.problems != remarks:
+                row.problems = remarks
+                changed.append(row)
+    models.SemanticTemplate.objects.bulk_update(changed, ["problems"], batch_size=BATCH)
+
+
+def _checked(
+    row: models.SemanticTemplate, checker: TemplateChecker, budget: Budget | None = None
+) -> list[StoredRemark]:
+    """Return what ``checker`` says of the row alone."""
+    template, unread = read_sides(row.pattern, row.form)
+    problems = problems_of(checker, template, budget) if template else unread
+    return [as_stored(problem) for problem in problems]
+
+
 def _remarks(
     world: models.World, categories: Sequence[AnnotatedCategory], generated: Generated
 ) -> dict[models.SemanticTemplate, list[StoredRemark]]:
@@ -44,9 +88,7 @@ def _remarks(
         for row in category.template_rows:
             if row in remarks:  # checked against the grammar of the first category
                 continue
-            template, unread = read_sides(row.pattern, row.form)
-            problems = problems_of(checker, template) if template else unread
-            remarks[row] = [as_stored(problem) for problem in problems]
+            remarks[row] = _checked(row, checker)
         for index, problem in shared_problems(value, generated):
             remark = as_stored(problem)
             of_row = remarks[category.template_rows[index]]

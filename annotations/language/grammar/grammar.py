@@ -94,16 +94,13 @@ class Grammar:
         """Return ``name`` and every nonterminal it can reach."""
         return reachable(self.edges, name)
 
-    def problems(self, root: str = ROOT) -> tuple[Problem, ...]:
-        """Return the problems of the grammar.
+    def problems(self) -> tuple[Problem, ...]:
+        """Return the problems of the grammar, looked for once.
 
         Errors are a missing root, a cycle, too deep nesting and too long commands; warnings are
         undefined and unreachable nonterminals and lines that repeat one another.
         """
-        problems = find_problems(self.productions, self.rules, self.edges, self.traversal, root)
-        if any(problem.is_error for problem in problems):
-            return problems
-        return (*problems, *repetitions(self.productions, self.alternatives))
+        return self._problems
 
     def require_finite(self) -> None:
         """Raise LanguageError if expanding would not end, nest too deep or make texts that are too long."""
@@ -120,6 +117,13 @@ class Grammar:
         """Return the largest number of words that a sequence can become, without expanding it."""
         self.require_finite()
         return length(sequence, self._lengths)
+
+    @cached_property
+    def _problems(self) -> tuple[Problem, ...]:
+        problems = find_problems(self.productions, self.rules, self.edges, self.traversal, ROOT)
+        if any(problem.is_error for problem in problems):
+            return problems
+        return (*problems, *repetitions(self.productions, self.alternatives))
 
     @cached_property
     def _too_large(self) -> Problem | None:

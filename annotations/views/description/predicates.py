@@ -6,18 +6,17 @@ from typing import Any
 
 from django.contrib import messages
 from django.core.exceptions import ValidationError
-from django.db import transaction
 from django.http import Http404, HttpRequest, HttpResponse
 from django.shortcuts import redirect, render
 
 from annotations.editing.edits import Overtaken, add
 from annotations.editing.kinds import KINDS
-from annotations.editing.predicate_check import check_predicate, store_verdicts
+from annotations.editing.predicate_check import check_predicate
 from annotations.forms import posted
 from annotations.language.predicates import print_signatures
 from annotations.models import Duty, Editable, Predicate, World
 from annotations.people.access import READ_AND_WRITE, WRITE, world_view
-from annotations.rows.from_rows import predicate_of, predicates_of
+from annotations.rows.from_rows import predicate_of
 from annotations.views.description.predicate_forms import PredicateForm
 from annotations.views.editing.history import number_in
 from annotations.views.editing.merging import merge_page, save_edit
@@ -32,10 +31,7 @@ def predicate(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     form = PredicateForm(world, row, posted(request), initial=shown(row))
     if request.method == "POST" and form.is_valid():
         try:
-            with transaction.atomic():
-                before = predicates_of(world)
-                row = save_edit(request, row, form, form.values)
-                store_verdicts(world, row.name, before)
+            row = save_edit(request, row, form, form.values)
         except Overtaken as clash:
             return merge_page(request, row, form, clash, shown)
         messages.success(request, f"Saved as version {row.version}.")
@@ -56,10 +52,7 @@ def predicate_new(request: HttpRequest, world: World) -> HttpResponse:
     if request.method == "POST" and form.is_valid():
         unsaved = Predicate(world=world, name=form.cleaned_data["name"], **form.values)
         try:
-            with transaction.atomic():
-                before = predicates_of(world)
-                row = add(unsaved, request.user, form.cleaned_data["once"])
-                store_verdicts(world, row.name, before)
+            row = add(unsaved, request.user, form.cleaned_data["once"])
         except ValidationError:
             form.add_error("name", "There is a predicate of this name already. Edit that one.")
         else:

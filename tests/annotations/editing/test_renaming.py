@@ -4,11 +4,21 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.editing.edits import Overtaken, change
+from annotations.editing.edits import Overtaken, add, change, delete, restore
 from annotations.editing.renaming import rename, touched_by
+from annotations.editing.template_check import check_template
 from annotations.generation.generating import generate_pairs
 from annotations.language.errors import LanguageError
-from annotations.models import Entity, Paraphrase, Predicate, Production, SemanticTemplate, World
+from annotations.models import (
+    Entity,
+    Paraphrase,
+    Predicate,
+    Production,
+    SemanticTemplate,
+    TaskCategory,
+    World,
+)
+from annotations.models.templates import Status
 from annotations.rows.history import history_of
 
 GROUNDED = '( find ( lambda $1 e ( is_a $1 " tea " ) ) )'
@@ -117,6 +127,32 @@ def test_a_name_that_clashes_is_refused_with_a_sentence(home, admin, model, name
         with pytest.raises(LanguageError, match=why):
             attempt()
     assert model.objects.get(pk=row.pk).version == 1
+
+
+def test_what_the_checker_says_names_the_new_name_in_drafts_too(home, admin):
+    category = TaskCategory.objects.get()
+    for form, status in (("(find $vbfind)", Status.DRAFT), ("(find $vbfind)", Status.READY)):
+        checked = check_template(home, category, "$vbfind it", form)
+        values = {"form": form, "status": status, "problems": checked.stored_problems}
+        add(SemanticTemplate.for_category(category, pattern="$vbfind it", **values), admin)
+    rename(Predicate.objects.get(name="find"), "find", "seek", admin, 1)
+    rename(Production.objects.filter(nonterminal="vbfind").first(), "vbfind", "verb", admin, 1)
+    for row in SemanticTemplate.objects.filter(pattern="$verb it"):
+        checked = check_template(home, category, row.pattern, row.form)
+        texts = {(each["message"], each["hint"]) for each in row.problems}
+        assert texts == {(each.message, each.hint) for each in checked.problems}
+        assert any("seek" in hint for _, hint in texts)
+
+
+def test_a_deleted_predicate_is_missed_in_drafts_and_restored_there(home, admin):
+    row = SemanticTemplate.objects.get(form="(go {room})")
+    change(row, {"status": Status.DRAFT}, admin, 1)
+    delete(Predicate.objects.get(name="go"), admin, 1)
+    row.refresh_from_db()
+    assert [each["message"] for each in row.problems] == ["there is no predicate go"]
+    restore(history_of(Predicate).filter(name="go").first(), admin)
+    row.refresh_from_db()
+    assert row.problems == []
 
 
 def test_nothing_changes_where_somebody_was_faster(home, admin):

@@ -219,3 +219,8 @@ def test_the_stream_equals_a_naive_expansion_and_the_size_bounds_it(grammar):
     expected = {" ".join(words) for words, _ in naive(grammar, (Nonterminal("Main"),))} - {""}
     assert set(commands) == expected
     assert len(commands) == len(expected) <= grammar.size()
+
+
+def test_problems_are_looked_for_once():
+    grammar = grammar_of("$Main = $a | x", "$a = x", "$b = y")
+    assert grammar.problems() is grammar.problems()
