@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+from collections.abc import Iterator
 from pathlib import Path
 
 import hypothesis
@@ -26,6 +27,9 @@ hypothesis.settings.register_profile("steady", max_examples=60, derandomize=True
 hypothesis.settings.register_profile("search", max_examples=2_000, **STEADY)
 hypothesis.settings.load_profile("steady")
 
+# The markers of tests that mostly wait.
+WAITING = {"processes", "browser"}
+
 
 def pytest_configure() -> None:
     """Processes that tests start obey Ctrl-C also where these were started in the background of a
@@ -34,13 +38,17 @@ def pytest_configure() -> None:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-@pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Marks what touches a database, so that it can be run once more on another one."""
+@pytest.hookimpl(wrapper=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> Iterator[None]:
+    """Marks what touches a database, so that it can be run once more on another one. Then moves files
+    with tests that mostly wait to the front: begun last, they would leave processors idle in the end."""
     for item in items:
         fixtures = set(getattr(item, "fixturenames", ()))
         if fixtures & {"db", "transactional_db"} or item.get_closest_marker("django_db"):
             item.add_marker("services")
+    yield
+    waiting = {item.path for item in items if WAITING & {mark.name for mark in item.iter_markers()}}
+    items.sort(key=lambda item: (item.path not in waiting, item.path))
 
 
 @pytest.fixture(autouse=True)
