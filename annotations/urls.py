@@ -11,7 +11,7 @@ from annotations.views.description import (
     productions,
     renaming,
 )
-from annotations.views.editing import comments, drafts, history
+from annotations.views.editing import comments, deletion, drafts, history
 from annotations.views.queueing import agreement, work_queue
 from annotations.views.templates import (
     coverage,
@@ -30,7 +30,7 @@ urlpatterns = [
     path("import/", importing.import_files, name="import"),
     path("import/pairs/", importing.import_pair_files, name="import_pairs"),
     path("history/<slug:kind>/<int:pk>/", history.history, name="history"),
-    path("history/<slug:kind>/<int:pk>/delete/", history.delete_row, name="delete_row"),
+    path("history/<slug:kind>/<int:pk>/delete/", deletion.delete_row, name="delete_row"),
     path("history/<slug:kind>/deleted/", history.deleted, name="deleted"),
     path("rename/<slug:kind>/<int:pk>/", renaming.rename_row, name="rename"),
     path("comments/<slug:kind>/<int:pk>/", comments.comments, name="comments"),

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from annotations.language.errors import LanguageError, Position, Problem
 from annotations.language.forms import to_reading
 from annotations.language.predicates import Predicate, check_form, gloss, sample_forms
 from annotations.models import SemanticTemplate, World
 from annotations.rows.from_rows import predicates_of, template_of
+
+# Templates with a problem that they have not got now, each with what it says.
+BrokenTemplates: TypeAlias = "tuple[tuple[SemanticTemplate, tuple[str, ...]], ...]"
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,10 +26,10 @@ class Sample:
 
 @dataclass(frozen=True, slots=True)
 class CheckedPredicate:
-    """``templates`` are those with a problem that they have not got now, with what it says."""
+    """The English of a predicate, and the templates that it would break."""
 
     samples: tuple[Sample, ...]
-    templates: tuple[tuple[SemanticTemplate, tuple[str, ...]], ...]
+    templates: BrokenTemplates
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,9 +50,22 @@ def check_predicate(world: World, predicate: Predicate) -> CheckedPredicate:
     before = predicates_of(world)
     after = {**before, predicate.name: predicate}
     samples = (Sample(to_reading(form), gloss(form, after)) for form in sample_forms(predicate))
-    verdicts = _verdicts(world, predicate.name, before, after)
-    templates = ((each.row, tuple(problem.message for problem in each.new)) for each in verdicts)
-    return CheckedPredicate(tuple(samples), tuple(each for each in templates if each[1]))
+    return CheckedPredicate(tuple(samples), _broken(world, predicate.name, before, after))
+
+
+def templates_without(world: World, name: str) -> BrokenTemplates:
+    """Return the templates of ``world`` that have a problem once the predicate ``name`` is deleted."""
+    before = predicates_of(world)
+    after = {each: value for each, value in before.items() if each != name}
+    return _broken(world, name, before, after)
+
+
+def _broken(
+    world: World, name: str, before: Mapping[str, Predicate], after: Mapping[str, Predicate]
+) -> BrokenTemplates:
+    verdicts = _verdicts(world, name, before, after)
+    messages = ((each.row, tuple(problem.message for problem in each.new)) for each in verdicts)
+    return tuple(each for each in messages if each[1])
 
 
 def _verdicts(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import islice
 from typing import Any
@@ -35,14 +35,27 @@ class ProductionEdit:
     def line(self) -> Line:
         return self.source, self.row.line if self.row else 0, self.nonterminal, self.expansion
 
+    @classmethod
+    def of_stored(cls, row: Production) -> ProductionEdit:
+        """Return the edit that leaves ``row`` as it is."""
+        return cls(row.owning_world, row.source, row.nonterminal, row.expansion, row)
+
     def apply(self, lines: Lines) -> Lines:
         """Return the productions of the world after the change."""
-        mine = list(lines.get(self.source, ()))
         if self.row is None:
-            return {**lines, self.source: [*mine, self.line]}
-        stored = (self.row.source, self.row.line, self.row.nonterminal, self.row.expansion)
+            return {**lines, self.source: [*lines.get(self.source, ()), self.line]}
+        return self._replace(lines, [self.line])
+
+    def delete(self, lines: Lines) -> Lines:
+        """Return the productions of the world without the stored one."""
+        return self._replace(lines, [])
+
+    def _replace(self, lines: Lines, instead: list[Line]) -> Lines:
+        row, mine = self.row, list(lines.get(self.source, ()))
+        stored = row and (row.source, row.line, row.nonterminal, row.expansion)
         if stored in mine:
-            mine[mine.index(stored)] = self.line
+            at = mine.index(stored)
+            mine[at : at + 1] = instead
         return {**lines, self.source: mine}
 
     def categories(self) -> Iterator[TaskCategory]:
@@ -81,11 +94,25 @@ def check_production(edit: ProductionEdit) -> CheckedProduction:
         expansion = reader.whole_line()
     except LanguageError as error:
         return CheckedProduction((error.problem,))
+    compared = _compare(edit, edit.apply)
+    sizes = [GrammarSize(name, _size(before), _size(after)) for name, before, after in compared[1]]
+    samples = next(filter(None, (_samples(after, expansion) for *_, after in compared[1])), [])
+    return CheckedProduction(compared[0], tuple(samples), tuple(sizes))
+
+
+def problems_without(edit: ProductionEdit) -> tuple[Problem, ...]:
+    """Return the problems that the grammars have once the stored production is deleted, and not now."""
+    return _compare(edit, edit.delete)[0]
+
+
+def _compare(
+    edit: ProductionEdit, change: Callable[[Lines], Lines]
+) -> tuple[tuple[Problem, ...], list[tuple[str, Grammar, Grammar]]]:
+    """Return the new problems, and the grammar of each task category that has the file now and then."""
     lines = lines_of(edit.world)
-    changed = edit.apply(lines)
+    changed = change(lines)
     problems: set[Problem] = set()
-    sizes: list[GrammarSize] = []
-    samples: list[str] = []
+    grammars: list[tuple[str, Grammar, Grammar]] = []
     for category in edit.categories():
         try:
             before, after = grammar_from(category, lines), grammar_from(category, changed)
@@ -94,9 +121,8 @@ def check_production(edit: ProductionEdit) -> CheckedProduction:
             continue
         known = {each.message for each in before.problems()}
         problems |= {each for each in after.problems() if each.message not in known}
-        sizes.append(GrammarSize(category.name, _size(before), _size(after)))
-        samples = samples or _samples(after, expansion)
-    return CheckedProduction(tuple(sorted(problems)), tuple(samples), tuple(sizes))
+        grammars.append((category.name, before, after))
+    return tuple(sorted(problems)), grammars
 
 
 def consequences_of_production(edit: ProductionEdit) -> WorldConsequences:

@@ -126,6 +126,7 @@ POLICY = [
     Rule("template_new", *ANNOTATORS),
     Rule("template_completion", *ANNOTATORS),
     Rule("template_duplicate", LOG_IN, NOWHERE, GONE_ON, NO, GONE_ON, method="post"),
+    Rule("delete_row", *ANNOTATORS),
     Rule("delete_row", LOG_IN, NOWHERE, GONE_ON, NO, GONE_ON, method="post"),
     Rule("template", *ANNOTATORS, method="post"),
     Rule("template_new", *ANNOTATORS, method="post"),
@@ -326,7 +327,7 @@ ROUTES_OF_THINGS = sorted(name for name in ROUTES_OF_WORLDS if "<int:" in ALL_RO
 
 # Routes of things that are not read, only changed.
 ONLY_POSTED = (
-    *("run_cancel", "member", "template_duplicate", "template_repair", "delete_row"),
+    *("run_cancel", "member", "template_duplicate", "template_repair"),
     *("queue_ask", "queue_act", "queue_settle", "api:work-item-finish", "api:work-item-give-back"),
     *("label_answer", "label_check", "label_mend", "label_take_back"),
 )

@@ -43,12 +43,11 @@ def production(request: HttpRequest, world: World, pk: int) -> HttpResponse:
             return merge_page(request, row, form, clash, shown, check_url=check_url)
         tell_saved(request, f"Saved as version {row.version}.", form.checked.problems)
         return redirect("production", world=world.name, pk=pk)
-    edit = ProductionEdit(world, row.source, row.nonterminal, row.expansion, row)
     lines = Production.objects.filter(grammar__world=world, nonterminal=row.nonterminal)
     context = {
         "row": row,
         "form": form,
-        "checked": form.checked or check_production(edit),
+        "checked": form.checked or check_production(ProductionEdit.of_stored(row)),
         "lines": lines.exclude(pk=row.pk),
         "query": f"?production={row.pk}",
         **_completion(world, row.source),

@@ -8,11 +8,11 @@ from django.http import Http404, HttpRequest, HttpResponse
 from django.shortcuts import redirect, render
 from django.urls import reverse
 
-from annotations.editing.edits import Overtaken, delete, restore
+from annotations.editing.edits import restore
 from annotations.editing.kinds import KINDS, Kind
 from annotations.editing.versions import history_of_row
 from annotations.models import Duty, World
-from annotations.people.access import READ_AND_WRITE, WRITE, world_view
+from annotations.people.access import READ_AND_WRITE, world_view
 
 DELETED_SHOWN = 50
 MOST_DIGITS = 18  # of the key of a history entry
@@ -52,23 +52,6 @@ def deleted(request: HttpRequest, world: World, kind: str) -> HttpResponse:
         "older": shown[-1].history_id if len(some) > DELETED_SHOWN else None,
     }
     return render(request, "annotations/deleted.html", context)
-
-
-@world_view(Duty.ANNOTATE, WRITE)
-def delete_row(request: HttpRequest, world: World, kind: str, pk: int) -> HttpResponse:
-    """Delete a row that the reader saw at ``version``, and go to the list of its kind."""
-    of_kind = kind_named(kind)
-    row, is_there = of_kind.row_or_last_known(world, pk)
-    here = redirect("history", world=world.name, kind=kind, pk=pk)
-    if not is_there:
-        return here
-    try:
-        delete(row, request.user, number_in(request.POST.get("version", "")) or 0)
-    except Overtaken as clash:
-        messages.error(request, f"Not deleted. {clash}")
-        return here
-    messages.success(request, f"Deleted. “Deleted {of_kind.plural}” below the list brings it back.")
-    return redirect(of_kind.list_page, world=world.name)
 
 
 def restore_entry(request: HttpRequest, world: World, kind: Kind, pk: int) -> None:
