@@ -16,6 +16,7 @@ TEMPLATES = {
     JobKind.IMPORT_WORLD: "annotations/_world_result.html",
     JobKind.GENERATE: "annotations/_generation_result.html",
     JobKind.PROPOSE: "annotations/_proposals_result.html",
+    JobKind.AUDIT: "annotations/_audit_result.html",
     JobKind.DELETE_WORLD: "annotations/_deletion_result.html",
 }
 

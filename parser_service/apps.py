@@ -17,6 +17,7 @@ class ParserServiceConfig(AppConfig):
         from parser_service.models import TrainingRun
 
         register(TrainingRun, "parser_service.runs.training.train")
+        register_verb(JobKind.AUDIT, "parser_service.audit.carrying_out.audit")
         register_verb(JobKind.PROPOSE, "parser_service.candidates.proposing.propose")
         register_results("run", lambda keys: TrainingRun.objects.filter(split__in=keys).count())
         keep_encoders_in(

@@ -1,3 +1,4 @@
+from annotations.models.audit import AuditDecision, AuditFinding, AuditReason, FindingStatus
 from annotations.models.comments import Comment, Notice
 from annotations.models.corpus import Command, LogicalForm, Paraphrase
 from annotations.models.drafts import Draft
@@ -24,6 +25,9 @@ from annotations.models.worlds import Duty, Membership, World
 __all__ = [
     "ApiToken",
     "Assignment",
+    "AuditDecision",
+    "AuditFinding",
+    "AuditReason",
     "Command",
     "Comment",
     "Draft",
@@ -31,6 +35,7 @@ __all__ = [
     "Editable",
     "Entity",
     "Example",
+    "FindingStatus",
     "Grammar",
     "Job",
     "JobKind",

@@ -53,9 +53,12 @@ class Command(models.Model):
 
 
 class ParaphraseStatus(models.TextChoices):
+    """What is accepted goes into new splits. An accepted one is excluded where its label is wrong."""
+
     PENDING = "pending"
     ACCEPTED = "accepted"
     REJECTED = "rejected"
+    EXCLUDED = "excluded"
 
 
 def paraphrase_status_choices() -> list[tuple[str, str]]:

@@ -17,10 +17,16 @@ class JobKind(models.TextChoices):
     IMPORT_WORLD = "import_world", "Import of a world"
     GENERATE = "generate", "Generation of commands"
     PROPOSE = "propose", "Forms proposed by a parser"
+    AUDIT = "audit", "Label audit"
     DELETE_WORLD = "delete_world", "Deletion of a world"
 
 
-FOR_ANNOTATORS = (JobKind.GENERATE, JobKind.PROPOSE)
+# What somebody must be allowed to do to ask for a job, or to stop it; everything else is for admins.
+DUTIES = {
+    JobKind.GENERATE: Duty.ANNOTATE,
+    JobKind.PROPOSE: Duty.ANNOTATE,
+    JobKind.AUDIT: Duty.REVIEW,
+}
 
 
 def job_kind_choices() -> list[tuple[str, str]]:
@@ -72,7 +78,7 @@ class Job(BackgroundWork):
     @property
     def duty(self) -> Duty:
         """What somebody must be allowed to do to ask for such a job, or to stop it."""
-        return Duty.ANNOTATE if self.kind in FOR_ANNOTATORS else Duty.MANAGE
+        return DUTIES.get(JobKind(self.kind), Duty.MANAGE)
 
     @property
     def is_waiting_for_answer(self) -> bool:

@@ -7,6 +7,7 @@ from datetime import timedelta
 from django.db import models
 from django.utils import timezone
 
+from annotations.models.audit import AuditFinding
 from annotations.models.corpus import Paraphrase
 from annotations.models.people import User
 from annotations.models.templates import SemanticTemplate
@@ -162,9 +163,18 @@ class WorkItem(models.Model):
 
     @property
     def is_outdated(self) -> bool:
-        """Whether nobody has to say any more what the utterance means."""
+        """Whether nobody has to say any more what the utterance means, or whether the label is right."""
+        if self.kind == WorkKind.AUDIT and not self.template_id:
+            return self.open_finding is None
         is_unlabelled = self.utterance and self.utterance.status == UtteranceStatus.UNLABELLED
         return self.kind == WorkKind.UNLABELLED and not is_unlabelled
+
+    @property
+    def open_finding(self) -> AuditFinding | None:
+        """What an audit says against the label of the pair, while nobody has decided; None for other kinds."""
+        if self.kind != WorkKind.AUDIT or self.subject is None or self.template_id:
+            return None
+        return self.subject.audit_findings.open().first()
 
     @property
     def is_for_two(self) -> bool:

@@ -2,9 +2,9 @@
 
 ``enqueue`` adds items and ``refill`` the ones that rows call for. ``next_item`` gives a person the item
 they hold or the most urgent free one, under a lease; ``finish``, ``skip``, ``give_back`` and ``take_back``
-end and reopen their part of it. A share of the utterances goes to two people, who do not see each
-other's labels; where these differ a third person compares them. ``answer`` labels an utterance and ends the part
-in one transaction.
+end and reopen their part of it; ``settle`` and ``unsettle`` do so for what is decided elsewhere. A share
+of the utterances goes to two people, who do not see each other's labels; where these differ a third person
+compares them. ``answer`` labels an utterance and ends the part in one transaction.
 """
 
 from annotations.queueing.answering import answer, part_in, take_answer_back
@@ -20,6 +20,7 @@ from annotations.queueing.giving import (
     take,
     withdraw,
 )
+from annotations.queueing.settling import settle, unsettle
 from annotations.queueing.shares import DOUBLE_KINDS, set_share, shares_of
 from annotations.queueing.sources import refill
 
@@ -40,10 +41,12 @@ __all__ = [
     "part_in",
     "refill",
     "set_share",
+    "settle",
     "shares_of",
     "skip",
     "take",
     "take_answer_back",
     "take_back",
+    "unsettle",
     "withdraw",
 ]

@@ -8,15 +8,16 @@ from __future__ import annotations
 from django.db import transaction
 
 from annotations import labelling
-from annotations.models import Assignment, Label, User, Utterance, Verdict, WorkItem
+from annotations.models import Assignment, Label, User, Utterance, Verdict, WorkItem, WorkKind
 from annotations.queueing.finishing import finish, skip, take_back
 from annotations.queueing.giving import NotForThem, take
 
 
 def part_in(utterance: Utterance, person: User) -> Assignment | None:
-    """Return what ``person`` holds about ``utterance``, or None."""
+    """Return what ``person`` holds about ``utterance``, or None. Audits are decided, not labelled."""
     held = Assignment.objects.held().filter(person=person, item__utterance=utterance)
-    return held.select_related("item").order_by("-item__priority", "id").first()
+    to_label = held.exclude(item__kind=WorkKind.AUDIT).select_related("item")
+    return to_label.order_by("-item__priority", "id").first()
 
 
 def answer(
@@ -74,7 +75,8 @@ def _part_of(label: Label) -> Assignment | None:
 
 def _take_part(utterance: Utterance, by: User) -> Assignment | None:
     """Take the free item about an utterance that somebody answers without having been asked."""
-    for item in WorkItem.objects.free().filter(utterance=utterance).order_by("-priority", "id"):
+    free = WorkItem.objects.free().filter(utterance=utterance).exclude(kind=WorkKind.AUDIT)
+    for item in free.order_by("-priority", "id"):
         try:
             return take(by, item)
         except NotForThem:

@@ -26,6 +26,9 @@ from annotations.queueing.sources import refill
 
 MOST_EXPIRED = 100  # leases that one request takes back
 
+# What is done on pages of its own, by reviewers too. Everything else about an utterance is to label it.
+DONE_ELSEWHERE = (WorkKind.ADJUDICATION, WorkKind.AUDIT)
+
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
@@ -39,7 +42,7 @@ class Wanted:
         if self.without:
             rows = rows.exclude(utterance__in=self.without)
         if self.labels_only:
-            rows = rows.filter(utterance__isnull=False).exclude(kind=WorkKind.ADJUDICATION)
+            rows = rows.filter(utterance__isnull=False).exclude(kind__in=DONE_ELSEWHERE)
         return rows
 
     def of_assignments(self, rows: AssignmentQuerySet) -> AssignmentQuerySet:
@@ -112,11 +115,11 @@ def return_expired(world: World) -> None:
 
 
 def kinds_for(person: User, world: World) -> list[str]:
-    """Return the kinds of work that ``person`` may do: reviewers compare labels, annotators do all."""
+    """Return the kinds of work that ``person`` may do: reviewers compare and audit labels, annotators do all."""
     duties = world.duties_of(person)
     if Duty.ANNOTATE in duties:
         return list(WorkKind.values)
-    return [WorkKind.ADJUDICATION] if Duty.REVIEW in duties else []
+    return list(DONE_ELSEWHERE) if Duty.REVIEW in duties else []
 
 
 def _held(person: User, world: World) -> AssignmentQuerySet:
@@ -139,7 +142,7 @@ def _hold_on(person: User, world: World, wanted: Wanted) -> Assignment | None:
 
 def _close_held(held: Assignment) -> None:
     with transaction.atomic():
-        _close_outdated(WorkItem.objects.select_for_update().get(pk=held.item_id))
+        close_item(WorkItem.objects.select_for_update().get(pk=held.item_id))
 
 
 def _take_free(person: User, world: World, wanted: Wanted) -> Assignment | None:
@@ -150,12 +153,12 @@ def _take_free(person: User, world: World, wanted: Wanted) -> Assignment | None:
         while item := _first(rows.takeable_by(person)) or _first(rows.returned_by(person)):
             if not item.is_outdated:
                 return _hand_over(item, person, timezone.now() + LEASE, None)
-            _close_outdated(item)
+            close_item(item)
     return None
 
 
-def _close_outdated(item: WorkItem) -> None:
-    """Close an item, which is locked, that nobody has to do any more."""
+def close_item(item: WorkItem) -> None:
+    """Close an item, which is locked: nobody has to do it any more."""
     item.assignments.held().update(outcome=Outcome.EXPIRED, leased_until=None)
     item.places, item.closed_at = 0, timezone.now()
     item.save(update_fields=["places", "closed_at"])

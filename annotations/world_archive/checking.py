@@ -27,6 +27,9 @@ FORMS = {
     "paraphrases": ("logical_form", "grounded_form"),
     "utterances": ("logical_form",),
     "labels": ("form",),
+    "audit_findings": ("form", "suggested_form", "decided_form"),
+    "audit_reasons": ("suggested_form",),
+    "audit_decisions": ("form",),
     "examples": ("logical_form", "grounded_form"),
 }
 TYPES: tuple[tuple[type[models.Field], type | tuple[type, ...], str], ...] = (

@@ -10,6 +10,9 @@ from django.db import models
 
 from annotations.models import (
     Assignment,
+    AuditDecision,
+    AuditFinding,
+    AuditReason,
     Command,
     Comment,
     Entity,
@@ -89,6 +92,19 @@ TABLES = (
     Table("paraphrases", Paraphrase, "world", {"command": "commands"}),
     Table("utterances", Utterance, "world", people=("created_by",)),
     Table("labels", Label, references={"utterance": "utterances"}, people=("annotator",)),
+    Table(
+        "audit_findings",
+        AuditFinding,
+        "world",
+        {"paraphrase": "paraphrases", "utterance": "utterances"},
+    ),
+    Table("audit_reasons", AuditReason, references={"finding": "audit_findings"}),
+    Table(
+        "audit_decisions",
+        AuditDecision,
+        references={"finding": "audit_findings", "label": "labels"},
+        people=("decided_by",),
+    ),
     Table(
         "work_items",
         WorkItem,

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from annotations.background.progress import UNWATCHED, Progress
 from annotations.language.auditing import Answer, LabelledPair, assign_folds, source_key
 from parser_service.parsers.conditions import Protocol
-from parser_service.parsers.interface import Check, Observer, Pair, keep_going
+from parser_service.parsers.interface import Check, Observer, Pair
 from parser_service.parsers.registry import PARSERS, entry, load_class
 
 BEAM_WIDTH = 10
@@ -24,16 +25,15 @@ def answer_out_of_fold(
     folds: int = 5,
     seed: int = 0,
     commands: Sequence[Pair] = (),
-    check: Check = keep_going,
+    progress: Progress = UNWATCHED,
 ) -> dict[str, list[Answer]]:
     """Return the candidates of ``parser`` by the key of the pair, best first.
 
     Each pair is answered by a parser trained on the pairs of the other folds and on those of
     ``commands`` that no pair of its own fold rewrites. Pairs of one source command are in one fold.
 
-    Raises:
-        ValueError: a sentence where the parser cannot do this, or there are too few pairs.
-        Cancelled: by ``check``, which is called between utterances.
+    Raises ValueError, a sentence, where the parser cannot do this, or there are too few pairs, and what
+    ``progress``, which is asked between utterances, raises to stop it.
     """
     if parser not in AUDITORS:
         title = entry(parser).title
@@ -41,6 +41,7 @@ def answer_out_of_fold(
     fold_of = assign_folds(pairs, folds, seed)
     answers: dict[str, list[Answer]] = {}
     for fold in range(folds):
+        progress.report(fold / folds, f"fold {fold + 1} of {folds}")
         held_out = [pair for pair in pairs if fold_of[source_key(pair)] == fold]
         train = [
             Pair(pair.utterance, pair.form, "paraphrased")
@@ -48,7 +49,7 @@ def answer_out_of_fold(
             if fold_of[source_key(pair)] != fold
         ]
         train += [each for each in commands if fold_of.get(_key(each)) != fold]
-        answers.update(_ask(parser, seed, train, held_out, check))
+        answers.update(_ask(parser, seed, train, held_out, progress.check))
     return answers
 
 

@@ -33,6 +33,12 @@ def labelled_pairs(
     return [*_paraphrases(world, forms, check), *_utterances(world)]
 
 
+def subject_of(pair: LabelledPair) -> tuple[str, int]:
+    """Return what a pair of ``labelled_pairs`` is about, ``paraphrase`` or ``utterance``, and its key."""
+    name, _, key = pair.key.rpartition("-")
+    return name, int(key)
+
+
 def _paraphrases(world: World, forms: Mapping[str, str], check: Check) -> Iterator[LabelledPair]:
     anonymizer = anonymizer_of(world)
     rows = world.paraphrases.accepted().values_list(*_COLUMNS)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 from itertools import chain
 
-from django.db.models import Count, Max
+from django.db.models import Count, Max, Sum
 
 from annotations.labelling.spans import anonymizer_of
 from annotations.language.forms import CLASS_TOKEN
@@ -57,7 +57,7 @@ def _mismatches(said: Counter[str], form: str) -> int:
 
 
 def _stamp_of_written(world: World) -> Stamp:
-    counted = world.paraphrases.accepted().aggregate(Count("pk"), Max("pk"))
+    counted = world.paraphrases.accepted().aggregate(Count("pk"), Max("pk"), Sum("version"))
     return (world.revision, world.generations, *counted.values())
 
 

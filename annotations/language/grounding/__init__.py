@@ -5,6 +5,7 @@ from __future__ import annotations
 from annotations.language.grounding.anonymizer import QUESTION_WORD, Anonymized, Anonymizer, Span
 from annotations.language.grounding.deanonymizer import Deanonymized, deanonymize
 from annotations.language.grounding.grounding import ground
+from annotations.language.grounding.regrounding import ground_like
 
 __all__ = [
     "QUESTION_WORD",
@@ -14,4 +15,5 @@ __all__ = [
     "Span",
     "deanonymize",
     "ground",
+    "ground_like",
 ]

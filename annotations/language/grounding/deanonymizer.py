@@ -56,7 +56,7 @@ def deanonymize(form: Form, anonymized: Anonymized, ontology: Ontology) -> Deano
     it have the same value and the form has no more slots of it than there are mentions. If it is
     not certain, its slots stay as they are and offer the mentioned values.
     """
-    slots = tuple(_slots(form))
+    slots = tuple(slots_of(form))
     resolved = tuple(_resolve(slot, slots, anonymized.spans, ontology) for slot in slots)
     for slot in resolved:
         if slot.value is not None:
@@ -78,13 +78,14 @@ def filled(form: Form, path: SlotPath, value: str) -> Form:
     raise IndexError(f"a leaf has no part {place}")
 
 
-def _slots(form: Form, path: SlotPath = ()) -> Iterator[Slot]:
+def slots_of(form: Form, path: SlotPath = ()) -> Iterator[Slot]:
+    """Yield the class tokens and UNKNOWN arguments of a form, in order, without candidates."""
     if isinstance(form, Constant) and form.token_class:
         yield Slot(path, str(form.value), form.token_class)
     elif isinstance(form, Unknown) and path:
         yield Slot(path, "UNKNOWN", "")
     for place, child in enumerate(children(form)):
-        yield from _slots(child, (*path, place))
+        yield from slots_of(child, (*path, place))
 
 
 def _resolve(slot: Slot, slots: Sequence[Slot], spans: Sequence[Span], ontology: Ontology) -> Slot:

@@ -9,12 +9,14 @@ from django.db import models
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from annotations.auditing import decide, store_findings
 from annotations.commenting import SUBJECTS, add_comment
 from annotations.editing.edits import change, delete
 from annotations.generation.generating import generate_pairs
 from annotations.importing import import_generator, import_pairs
 from annotations.labelling import collect, label, take_back
 from annotations.models import (
+    FindingStatus,
     Grammar,
     Label,
     Membership,
@@ -32,6 +34,7 @@ from annotations.world_archive import import_world
 from annotations.world_archive.tables import TABLES
 from annotations.worlds.starter_world import STARTER_WORLD, load_starter_world
 from annotations.worlds.world_deletion import delete_world
+from tests.annotations.auditing.conftest import found, say
 from tests.annotations.conftest import TINY, as_bytes
 from tests.annotations.world_archive.packing import (
     everything_of,
@@ -104,10 +107,22 @@ def test_the_queue_keeps_who_answers_what_and_what_follows(tiny_world, annotator
     assert {each.label.annotator for each in followed.assignments.all()} == {annotator, admin}
 
 
+def test_findings_of_an_audit_keep_their_reasons_and_decisions(tiny_world, annotator):
+    rows = [say(tiny_world, "how many girls"), say(tiny_world, "count the girls")]
+    store_findings(tiny_world, [found(row) for row in rows])
+    decide(rows[0].audit_findings.get(), FindingStatus.CORRECTED, annotator, reason="girls")
+    again = same_again(tiny_world)
+    finding = again.audit_findings.decided().get()
+    assert finding.paraphrase == again.paraphrases.first()
+    assert (finding.decision.decided_by, finding.decision.reason) == (annotator, "girls")
+    assert finding.reasons.count() == again.audit_findings.open().count() == 1
+
+
 def test_an_archive_from_before_there_were_utterances(tiny_world):
     members = members_of(pack(tiny_world))
     manifest = json.loads(members["world.json"])
-    for name in ("utterances", "labels", "work_items", "assignments", "work_shares"):
+    later = ("utterances", "labels", "work_items", "assignments", "work_shares")
+    for name in (*later, "audit_findings", "audit_reasons", "audit_decisions"):
         del members[f"rows/{name}.jsonl"], manifest["rows"][name]
     members["world.json"] = json.dumps(manifest).encode()
     import_world("again", pack_members(members))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from annotations.background.progress import Unwatched
 from annotations.language.auditing import LabelledPair
 from parser_service.audit import AUDITORS, answer_out_of_fold
 from parser_service.parsers.interface import Cancelled, Pair
@@ -50,13 +51,14 @@ def test_commands_that_no_held_out_pair_rewrites_are_seen():
 def test_it_stops_when_it_has_to():
     calls = []
 
-    def check():
-        calls.append(1)
-        if len(calls) > 3:
-            raise Cancelled
+    class Stopping(Unwatched):
+        def check(self):
+            calls.append(1)
+            if len(calls) > 3:
+                raise Cancelled
 
     with pytest.raises(Cancelled):
-        answer_out_of_fold(PAIRS, folds=3, check=check)
+        answer_out_of_fold(PAIRS, folds=3, progress=Stopping())
     assert len(calls) == 4
 
 

@@ -1,0 +1,22 @@
+"""Verbs: store what an audit finds, decide whether a label is right, take a decision back.
+
+Findings come from ``parser_service.audit``. ``store_findings`` keeps what people have decided before;
+``decide`` keeps, corrects or excludes a pair and ends its item in the work queue, and ``end_item`` does
+the same for somebody who ends the item.
+"""
+
+from annotations.auditing.deciding import DecidedMeanwhile, decide, take_back
+from annotations.auditing.items import end_item
+from annotations.auditing.pairs import examples_before
+from annotations.auditing.storing import FoundPair, StoredAudit, store_findings
+
+__all__ = [
+    "DecidedMeanwhile",
+    "FoundPair",
+    "StoredAudit",
+    "decide",
+    "end_item",
+    "examples_before",
+    "store_findings",
+    "take_back",
+]

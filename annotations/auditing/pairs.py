@@ -1,0 +1,67 @@
+"""Change the label of a paraphrase or an utterance as somebody has decided, and undo it."""
+
+from __future__ import annotations
+
+from django.db.models import Exists, OuterRef, QuerySet
+
+from annotations import labelling
+from annotations.editing.edits import change, restore
+from annotations.language.forms import canonical_text, read_form
+from annotations.language.grounding import ground_like
+from annotations.models import (
+    AuditDecision,
+    AuditFinding,
+    Example,
+    FindingStatus,
+    Paraphrase,
+    Split,
+    User,
+    Verdict,
+)
+from annotations.models.corpus import ParaphraseStatus
+from annotations.rows.history import entry_at
+
+VERDICTS = {FindingStatus.CORRECTED: Verdict.FORM, FindingStatus.EXCLUDED: Verdict.EXCLUDE}
+
+
+def change_pair(finding: AuditFinding, made: AuditDecision, by: User) -> None:
+    """Give the pair the label that ``made``, an unsaved decision, says, and note in it what that made."""
+    if finding.paraphrase is not None:
+        row = finding.paraphrase
+        made.version = change(row, _values(row, made), by, row.version).version
+    else:
+        row = finding.utterance
+        verdict = VERDICTS[FindingStatus(made.decision)]
+        made.label = labelling.label(row, verdict, made.form, by, row.version, reason=made.reason)
+
+
+def change_back(finding: AuditFinding, made: AuditDecision, by: User) -> None:
+    """Undo what a decision made of the pair.
+
+    Raises ValueError, a sentence, where the pair has changed since, or what it was is not known here.
+    """
+    if made.label is not None:
+        labelling.take_back(made.label, by)
+        return
+    row = finding.paraphrase
+    if row is None or row.version != made.version:
+        raise ValueError("This pair has changed since. Restore it from its history.")
+    entry = entry_at(row, row.version - 1)
+    if entry is None:
+        raise ValueError("The history of this paraphrase does not say what it was before.")
+    restore(entry, by)
+
+
+def _values(row: Paraphrase, made: AuditDecision) -> dict[str, str]:
+    if made.decision == FindingStatus.EXCLUDED:
+        return {"status": ParaphraseStatus.EXCLUDED}
+    forms = map(read_form, (made.form, row.logical_form, row.grounded_form))
+    return {"logical_form": made.form, "grounded_form": canonical_text(ground_like(*forms))}
+
+
+def examples_before(split: Split) -> QuerySet[Example]:
+    """The examples of ``split`` whose pair an audit has corrected or excluded since it was frozen."""
+    wrong = AuditFinding.objects.confirmed().filter(
+        world=split.world_id, text=OuterRef("utterance"), form=OuterRef("logical_form")
+    )
+    return split.examples.filter(Exists(wrong))
