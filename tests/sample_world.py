@@ -6,7 +6,14 @@ from dataclasses import dataclass
 
 from annotations.generation.generating import generate_pairs
 from annotations.importing import import_generator
-from annotations.models import Example, LogicalForm, SemanticTemplate, Split, World
+from annotations.models import (
+    Example,
+    LogicalForm,
+    Paraphrase,
+    SemanticTemplate,
+    Split,
+    World,
+)
 from parser_service.models import EpochMetric, Evaluation, Prediction, TrainingRun
 from parser_service.models.runs import Status
 from parser_service.runs import requesting
@@ -83,3 +90,12 @@ def answer(run: TrainingRun, example: Example, form: str) -> Prediction:
         is_equivalent=is_right,
         is_well_formed=True,
     )
+
+
+def paraphrase_in(world: World) -> Paraphrase:
+    """Return the first paraphrase of ``world``, made where there is none: a sample world brings none."""
+    texts = dict.fromkeys(("prompt", "utterance", "grounded_form", "logical_form"), "go")
+    distances = {"edit_distance": 0, "jaccard_distance": 0.0}
+    return Paraphrase.objects.get_or_create(
+        world=world, position=0, defaults={**texts, **distances}
+    )[0]

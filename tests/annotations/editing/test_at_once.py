@@ -13,8 +13,7 @@ from annotations.editing.edits import Overtaken, change
 from annotations.editing.kinds import KINDS
 from annotations.models import Draft, SemanticTemplate, World
 from tests.conftest import member
-from tests.gpsr_site.test_permissions import paraphrase_in
-from tests.sample_world import fill_world
+from tests.sample_world import fill_world, paraphrase_in
 from tests.waiting import PATIENCE_SECONDS
 
 NEW = {"pattern": "$vbfind the {kobject}", "form": "(find {kobject})", "status": "ready"}

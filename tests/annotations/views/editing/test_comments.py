@@ -9,7 +9,7 @@ from annotations.commenting.comments import mentioned_in
 from annotations.editing.edits import delete
 from annotations.models import Comment, Membership, Notice, User, Utterance
 from annotations.models.comments import MOST_CHARACTERS
-from tests.gpsr_site.test_permissions import paraphrase_in
+from tests.sample_world import paraphrase_in
 
 
 def address(sample):

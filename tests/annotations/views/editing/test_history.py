@@ -8,7 +8,7 @@ from annotations.editing.edits import change, delete
 from annotations.editing.kinds import KINDS
 from annotations.editing.versions import MOST_SHOWN, history_of_row
 from annotations.models import Entity, Predicate, Production, SemanticTemplate
-from tests.gpsr_site.test_permissions import paraphrase_in
+from tests.sample_world import paraphrase_in
 
 
 def address(row, kind="template"):

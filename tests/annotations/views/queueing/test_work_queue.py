@@ -10,7 +10,7 @@ from annotations.models import Utterance, Verdict, WorkItem, WorkKind
 from annotations.models.worlds import Role
 from annotations.queueing import WantedItem, answer, enqueue, next_item, refill, set_share
 from tests.conftest import member
-from tests.gpsr_site.test_permissions import paraphrase_in
+from tests.sample_world import paraphrase_in
 
 BRING = '( bring ( lambda $1 e ( is_a $1 " <object> " ) ) )'
 GO = '( go " <room> " )'

@@ -1,0 +1,133 @@
+"""Every route of the site, and the address of each below a sample world."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TypeAlias
+
+from django.db.models import Model
+from django.urls import URLPattern, URLResolver, get_resolver, reverse
+
+from annotations.models import Entity, Job, Label, Membership, User, Utterance, WorkItem
+from annotations.models.worlds import Role
+from tests.sample_world import SampleWorld, paraphrase_in
+
+RouteKeys: TypeAlias = Callable[[SampleWorld], dict[str, object]]
+
+
+def list_routes(patterns, namespace: str = "", path: str = "") -> Iterator[tuple[str, str]]:
+    """Yield name and path of every route; what Django's own admin adds counts as ``admin:index``."""
+    for pattern in patterns:
+        here = path + str(pattern.pattern)
+        if isinstance(pattern, URLResolver):
+            inside = f"{pattern.namespace}:" if pattern.namespace else namespace
+            if pattern.namespace == "admin":
+                yield "admin:index", here
+            else:
+                yield from list_routes(pattern.url_patterns, inside, here)
+        elif isinstance(pattern, URLPattern):
+            yield f"{namespace}{pattern.name}", here
+
+
+ALL_ROUTES = dict(list_routes(get_resolver().url_patterns))
+ROUTES_OF_WORLDS = {name for name, path in ALL_ROUTES.items() if "<slug:world>" in path}
+ROUTES_OF_ROWS = sorted(name for name in ROUTES_OF_WORLDS if "<int:" in ALL_ROUTES[name])
+
+
+def address(name: str, world: SampleWorld, rows: SampleWorld | None = None) -> str:
+    """Return the address of a route below ``world``, about a row of ``rows`` (of ``world`` unless given)."""
+    keys = KEYS[name](rows or world) if name in KEYS else {}
+    if name in ROUTES_OF_WORLDS:
+        keys["world"] = world.world.name
+    return reverse(name, kwargs=keys) + ("?as=jsonl" if name == "api:split-export" else "")
+
+
+def pk_of(row: Callable[[SampleWorld], Model], **others: str) -> RouteKeys:
+    """Return a function that gives the keys of a route about ``row``, beside ``others``."""
+    return lambda sample: {"pk": row(sample).pk, **others}
+
+
+def waiting_job(sample: SampleWorld) -> Job:
+    world = sample.world
+    return Job.objects.get_or_create(world=world, world_name=world.name, kind="import_generator")[0]
+
+
+def removable_member(sample: SampleWorld) -> User:
+    """Return somebody with a role in the world, whom no test needs."""
+    user, _ = User.objects.get_or_create(username=f"someone in {sample.world}")
+    Membership.objects.get_or_create(world=sample.world, user=user, role=Role.REVIEWER)
+    return user
+
+
+def utterance(sample: SampleWorld) -> Utterance:
+    texts = {"text": "bring me tea", "anonymized_text": "bring me <object>"}
+    return Utterance.objects.get_or_create(world=sample.world, **texts)[0]
+
+
+def answer_of_nobody(sample: SampleWorld) -> Label:
+    """Return an answer to the utterance, of an account that was deleted."""
+    return Label.objects.get_or_create(utterance=utterance(sample), verdict="skip")[0]
+
+
+def work_item(sample: SampleWorld) -> WorkItem:
+    """Return what the queue asks about the utterance."""
+    return WorkItem.objects.get_or_create(
+        world=sample.world, utterance=utterance(sample), kind="unlabelled", priority=10
+    )[0]
+
+
+def predicate(sample: SampleWorld) -> Model:
+    return sample.world.predicates.first()
+
+
+def template(sample: SampleWorld) -> Model:
+    return sample.template
+
+
+def split(sample: SampleWorld) -> Model:
+    return sample.split
+
+
+def run(sample: SampleWorld) -> Model:
+    return sample.run
+
+
+KEYS: dict[str, RouteKeys] = {
+    "member": pk_of(removable_member),
+    **dict.fromkeys(("template", "template_duplicate", "template_repair"), pk_of(template)),
+    "template_completion": pk_of(lambda sample: sample.world.grammar.task_categories.first()),
+    "delete_row": pk_of(template, kind="template"),
+    "history": pk_of(template, kind="template"),
+    "comments": pk_of(template, kind="template"),
+    "draft": lambda sample: {"kind": "template", "subject": sample.template.pk},
+    "deleted": lambda _: {"kind": "template"},
+    "logical_form": pk_of(lambda sample: sample.form),
+    "command": pk_of(lambda sample: sample.world.commands.first()),
+    "paraphrase": pk_of(lambda sample: paraphrase_in(sample.world)),
+    "entity": pk_of(lambda sample: Entity.objects.filter(ontology__world=sample.world).first()),
+    "predicate": pk_of(predicate),
+    "rename": pk_of(predicate, kind="predicate"),
+    "production": pk_of(lambda sample: sample.world.grammar.productions.first()),
+    "download_part": lambda _: {"part": "grammar"},
+    "notice_open": lambda _: {"pk": 10**6},
+    **dict.fromkeys(("split", "near_duplicates", "api:split-export"), pk_of(split)),
+    "example": lambda sample: {"split": sample.split.pk, "pk": sample.example.pk},
+    **dict.fromkeys(
+        ("run", "run_state", "run_charts", "run_curves", "run_cancel", "predictions"), pk_of(run)
+    ),
+    "prediction": lambda sample: {"pk": sample.run.pk, "example": sample.example.pk},
+    **dict.fromkeys(("job", "job_state", "job_cancel", "job_answer"), pk_of(waiting_job)),
+    **dict.fromkeys(
+        ("utterance", "label_answer", "label_check", "label_mend", "api:utterance"),
+        pk_of(utterance),
+    ),
+    "label_take_back": pk_of(answer_of_nobody),
+    **dict.fromkeys(
+        (
+            *("queue_item", "queue_act", "queue_settle"),
+            *("api:work-item", "api:work-item-finish", "api:work-item-give-back"),
+        ),
+        pk_of(work_item),
+    ),
+    "queue_ask": pk_of(utterance, kind="utterance"),
+}
