@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from django.db.models import Prefetch, prefetch_related_objects
 from django.shortcuts import get_object_or_404
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import OpenApiResponse, extend_schema, extend_schema_field
@@ -22,6 +23,7 @@ from annotations.models.utterances import MOST_CHARACTERS, verdict_choices
 from annotations.models.work_items import WorkItemQuerySet, work_kind_choices
 from annotations.queueing import NoLongerYours, answer, finish, give_back, next_item
 
+PARTS = Prefetch("assignments", Assignment.objects.select_related("person"))
 STATES = ("open", "free", "taken", "done")
 
 
@@ -92,17 +94,15 @@ class WorkItemRoute(APIView):
     world: World
 
     def rows(self) -> WorkItemQuerySet:
-        return self.world.work_items.select_related("utterance").prefetch_related(
-            "assignments__person"
-        )
+        return self.world.work_items.select_related("utterance").prefetch_related(PARTS)
 
     def held(self, request: Request, pk: int) -> Assignment:
         """Return the caller's part of an item. Raises Http404 or Conflict."""
-        item = get_object_or_404(self.rows(), pk=pk)
-        part = item.assignments.held().filter(person=request.user).first()
+        parts = Assignment.objects.held().filter(person=request.user, item__world=self.world)
+        part = parts.filter(item=pk).select_related("item__utterance").first()
         if part is None:
+            get_object_or_404(self.world.work_items, pk=pk)
             raise Conflict("This is not yours now. POST to next/ to get an item.")
-        part.item = item
         return part
 
     def shown(self, pk: int) -> Response:
@@ -163,7 +163,10 @@ class NextWorkItem(WorkItemRoute):
     )
     def post(self, request: Request, world: str) -> Response:
         part = next_item(request.user, self.world)
-        return self.shown(part.item_id) if part else Response(status=204)
+        if part is None:
+            return Response(status=204)
+        prefetch_related_objects([part.item], PARTS)
+        return Response(WorkItemSerializer(part.item).data)
 
 
 class FinishWorkItem(WorkItemRoute):
@@ -196,7 +199,7 @@ class FinishWorkItem(WorkItemRoute):
             finish(part)
             return
         verdict = values.pop("verdict", Verdict.FORM)
-        answer(part.item.utterance, verdict, by=request.user, **values)
+        answer(part.item.utterance, verdict, by=request.user, part=part, **values)
 
 
 class GiveBackWorkItem(WorkItemRoute):

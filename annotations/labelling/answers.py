@@ -83,7 +83,8 @@ def label(
             created_at=now,
             accepted_at=now if decides else None,
         )
-        _settle(stored)
+        if decides:
+            _settle(stored, row)
     return row
 
 
@@ -101,7 +102,7 @@ def take_back(row: Label, by: User) -> Utterance:
             raise ValueError("This answer has been taken back already.")
         stored.taken_back_at = timezone.now()
         stored.save(update_fields=["taken_back_at"])
-        _settle(utterance)
+        _settle(utterance, utterance.accepted_label)
     return utterance
 
 
@@ -119,13 +120,12 @@ def accept(row: Label) -> Utterance:
             raise ValueError("A skip is no answer.")
         stored.accepted_at = timezone.now()
         stored.save(update_fields=["accepted_at"])
-        _settle(utterance)
+        _settle(utterance, stored)
     return utterance
 
 
-def _settle(utterance: Utterance) -> None:
+def _settle(utterance: Utterance, decisive: Label | None) -> None:
     """Give the locked utterance the status and form of its accepted answer; a new version if they change."""
-    decisive = utterance.accepted_label
     status = STATUS_AFTER[Verdict(decisive.verdict)] if decisive else UtteranceStatus.UNLABELLED
     form = decisive.form if decisive else ""
     if (utterance.status, utterance.logical_form) != (status, form):

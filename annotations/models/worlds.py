@@ -41,6 +41,21 @@ class WorldQuerySet(models.QuerySet["World"]):
         worlds = self.present()
         return worlds if user.is_superuser else worlds.filter(memberships__user=user).distinct()
 
+    def seen_by(self, user: User, name: str) -> tuple[World, frozenset[Duty]] | None:
+        """The world called ``name`` with what ``user`` may do in it; None for who does not see it.
+
+        One query: every request into a world begins with it.
+        """
+        if user.is_superuser:
+            world = self.present().filter(name=name).first()
+            return (world, world.duties_of(user)) if world else None
+        as_member = self.present().filter(name=name, memberships__user=user)
+        worlds = list(as_member.annotate(role=models.F("memberships__role")))
+        if not worlds:
+            return None
+        roles = [world.role for world in worlds] if user.is_active else []
+        return worlds[0], frozenset(duty for role in roles for duty in DUTIES[role])
+
     def present(self) -> WorldQuerySet:
         """Without those that are being deleted."""
         return self.filter(deletion_requested_at__isnull=True)

@@ -13,7 +13,6 @@ from typing import Any
 
 from django.core.exceptions import PermissionDenied
 from django.http import Http404, HttpRequest, HttpResponse
-from django.shortcuts import get_object_or_404
 from django.views.decorators.http import require_http_methods
 
 from annotations.models import Duty, World
@@ -43,8 +42,7 @@ def world_view(
     def decorate(view: View) -> View:
         @wraps(view)
         def guarded(request: HttpRequest, world: str, **kwargs: Any) -> HttpResponse:
-            request.world = world_of(request, world)
-            request.duties = request.world.duties_of(request.user)
+            request.world, request.duties = world_of(request, world)
             demand(request, write_duty if write_duty and request.method == "POST" else duty)
             return view(request, request.world, **kwargs)
 
@@ -68,9 +66,15 @@ def site_view(methods: tuple[str, ...] = READ) -> Callable[[View], View]:
     return decorate
 
 
-def world_of(request: HttpRequest, name: str) -> World:
-    """Return the world called ``name``. Raises Http404 for people who are not members of it."""
-    return get_object_or_404(World.objects.visible_to(request.user), name=name)
+def world_of(request: HttpRequest, name: str) -> tuple[World, frozenset[Duty]]:
+    """Return the world called ``name`` and what the person may do in it.
+
+    Raises Http404 for people who are not members of it.
+    """
+    seen = World.objects.seen_by(request.user, name) if request.user.is_authenticated else None
+    if seen is None:
+        raise Http404("There is no such world.")
+    return seen
 
 
 def demand_site_admin(request: HttpRequest) -> None:

@@ -28,15 +28,17 @@ def answer(
     version: int,
     seconds: float | None = None,
     reason: str = "",
+    part: Assignment | None = None,
 ) -> Label:
     """Store a label (see ``labelling.label``) and end the person's part in the queue with it.
 
-    The first of two independent labels decides nothing; the second one where both say the same.
+    ``part`` is the one that they answer; without it, what they hold about the utterance. The first of
+    two independent labels decides nothing; the second one where both say the same.
 
     Raises what ``labelling.label`` raises; nothing is stored then.
     """
     with transaction.atomic():
-        part = part_in(utterance, by) or _take_part(utterance, by)
+        part = part or part_in(utterance, by) or _take_part(utterance, by)
         is_blind = part is not None and part.item.is_for_two
         row = labelling.label(
             utterance, verdict, form, by, version, seconds, reason, is_blind=is_blind

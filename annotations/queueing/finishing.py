@@ -51,12 +51,16 @@ def finish(assignment: Assignment, label: Label | None = None) -> Decision:
         stored.outcome, stored.label = Outcome.DONE, label
         stored.done_at, stored.leased_until = timezone.now(), None
         stored.save(update_fields=["outcome", "label", "done_at", "leased_until"])
-        done = list(item.assignments.done().select_related("label").order_by("done_at", "id"))
+        done = [stored] if item.people == 1 else _parts_done(item)
         is_complete = len(done) >= item.people
         item.closed_at = timezone.now() if is_complete else None
         item.save(update_fields=["places", "closed_at"])
         labels = [part.label for part in done if part.label is not None]
         return _decide(item, labels) if is_complete else Decision(item)
+
+
+def _parts_done(item: WorkItem) -> list[Assignment]:
+    return list(item.assignments.done().select_related("label").order_by("done_at", "id"))
 
 
 def skip(assignment: Assignment) -> None:

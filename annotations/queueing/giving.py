@@ -72,11 +72,13 @@ def held_item(person: User, world: World, wanted: Wanted = ANYTHING) -> Assignme
 def next_item(person: User, world: World, wanted: Wanted = ANYTHING) -> Assignment | None:
     """Give ``person`` the item they hold, with a fresh lease, or the most urgent one that is free.
 
-    Leases that have expired return first. An empty queue is filled from the rows that call for work.
+    Leases that have expired return before. An empty queue is filled from the rows that call for work.
     Returns None where there is nothing that this person may do.
     """
+    if held := _hold_on(person, world, wanted):
+        return held
     return_expired(world)
-    assignment = _hold_on(person, world, wanted) or _take_free(person, world, wanted)
+    assignment = _take_free(person, world, wanted)
     if assignment is None and refill(world):
         assignment = _take_free(person, world, wanted)
     return assignment
@@ -203,7 +205,11 @@ def _hand_over(item: WorkItem, person: User, until: datetime | None, by: User | 
         "assigned_by": by,
         "taken_at": timezone.now(),
     }
-    had_before = Assignment.objects.filter(item=item, person=person)
-    if had_before.update(**values):
-        return had_before.select_related("item").get()
-    return Assignment.objects.create(item=item, person=person, **values)
+    part = Assignment(item=item, person=person, **values)
+    Assignment.objects.bulk_create(  # one statement, whether or not they have had it before
+        [part],
+        update_conflicts=True,
+        unique_fields=["item", "person"],
+        update_fields=list(values),
+    )
+    return part

@@ -107,6 +107,5 @@ def _enter_world(request: HttpRequest) -> None:
     address = WORLD_ADDRESS.match(request.path)
     if address is None or hasattr(request, "world"):
         return
-    world = World.objects.visible_to(request.user).filter(name=address["world"]).first()
-    if world is not None:
-        request.world, request.duties = world, world.duties_of(request.user)
+    if seen := World.objects.seen_by(request.user, address["world"]):
+        request.world, request.duties = seen
