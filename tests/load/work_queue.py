@@ -5,8 +5,9 @@
 
 Starts ``manage.py serve`` on a database of its own (SQLite in a temporary folder unless one is named),
 gives every person an item, then saves ``--rate`` labels a second in total, each followed by a request for
-the next item, all over the REST API. Says how long each took, and whether an item was given twice. Exits
-with 1 where it was, or where an answer was an error.
+the next item, all over the REST API. Says how long each took, how much processor time the server needed
+(which other programs on the machine change little), and whether an item was given twice. Exits with 1
+where it was, or where an answer was an error.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import argparse
 import asyncio
 import json
 import os
+import resource
 import socket
 import subprocess
 import sys
@@ -141,6 +143,12 @@ def wait_for(port: int, process: subprocess.Popen) -> None:
     raise SystemExit("The server did not start.")
 
 
+def children_seconds() -> float:
+    """Processor time of the child processes that have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 def say(name: str, times: list[float]) -> None:
     ordered = sorted(times)
     share = [ordered[min(len(ordered) - 1, int(len(ordered) * part))] for part in (0.5, 0.95, 0.99)]
@@ -166,6 +174,7 @@ def main() -> None:
         subprocess.run([sys.executable, "manage.py", "migrate", "-v0"], cwd=ROOT, check=True)
         keys = fill(arguments.people, arguments.people + int(arguments.rate * arguments.seconds))
         times: dict[str, list[float]] = defaultdict(list)
+        before = children_seconds()
         with server() as port:
             callers = [Caller(port, key, times) for key in keys]
             given = asyncio.run(work(callers, arguments.rate, arguments.seconds))
@@ -173,6 +182,9 @@ def main() -> None:
     say("first items, all at once", first)
     say("saves", times["save"])
     say("next items", later)
+    requests = sum(map(len, times.values()))
+    spent = children_seconds() - before
+    print(f"server: {spent:.1f} s of processor time, start included, for {requests} requests")
     twice = [item for item, count in given.items() if item is not None and count > 1]
     print(
         f"{len(given)} items given, {len(twice)} of them twice, {given[None]} times none was left"
