@@ -147,6 +147,12 @@ class CommentForm(forms.Form):
     )
 
 
+class CommentEditForm(CommentForm):
+    """What a comment is to say instead; ``version`` is the one that was edited."""
+
+    version = forms.IntegerField(min_value=1, widget=forms.HiddenInput)
+
+
 class WorldForm(forms.ModelForm):
     """A new world. Its name is used in URLs and never changes."""
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from annotations.generation.generating import generate_pairs
 from annotations.importing import import_generator
 from annotations.models import (
+    Comment,
     Example,
     LogicalForm,
     Paraphrase,
@@ -99,3 +100,10 @@ def paraphrase_in(world: World) -> Paraphrase:
     return Paraphrase.objects.get_or_create(
         world=world, position=0, defaults={**texts, **distances}
     )[0]
+
+
+def comment_in(world: World) -> Comment:
+    """Return a comment in ``world``, made where there is none, by nobody of its members."""
+    template = world.grammar.templates.first()
+    about = {"kind": "template", "subject": template.pk, "about": str(template)}
+    return Comment.objects.get_or_create(world=world, text="Hm.", **about)[0]

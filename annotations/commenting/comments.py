@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from django.db import models, transaction
 from django.utils import timezone
 
-from annotations.commenting.subjects import Subject
+from annotations.commenting.subjects import SUBJECTS, Subject
 from annotations.models import Comment, Notice, User, World
 
 MOST_SHOWN = 100  # comments about one row, the newest
@@ -17,8 +17,11 @@ MENTION = re.compile(r"@([\w.@+-]+)")  # what Django allows in a name
 
 
 def comments_on(world: World, subject: Subject, row: models.Model) -> list[Comment]:
-    """Return the newest comments about ``row``, the oldest of them first."""
-    newest = _about(world, subject, row).select_related("author").order_by("-id")[:MOST_SHOWN]
+    """Return the newest comments about ``row``, the oldest of them first; deleted ones are marked so."""
+    rows = Comment.objects.filter(world=world, kind=subject.name)
+    same = {"about": str(row)} if subject.is_known_by_text else {"subject": row.pk}
+    rows = rows.filter(**same).select_related("author", "deleted_by")
+    newest = rows.prefetch_related("earlier_texts").order_by("-id")[:MOST_SHOWN]
     return list(newest)[::-1]
 
 
@@ -32,9 +35,8 @@ def add_comment(world: World, subject: Subject, row: models.Model, text: str, by
             world=world, kind=subject.name, subject=row.pk, about=str(row), author=by, text=text
         )
         members = {user.pk: user for user in people_of(world)}
-        earlier = _about(world, subject, row).exclude(author=None).values_list("author", flat=True)
         mentioned = {user.pk for user in mentioned_in(text, members.values())}
-        answered = set(earlier.order_by().distinct()) & members.keys()
+        answered = authors_before(comment) & members.keys()
         notices = [
             Notice(comment=comment, user_id=pk, is_mention=pk in mentioned)
             for pk in sorted((mentioned | answered) - {by.pk})
@@ -61,13 +63,17 @@ def people_of(world: World) -> models.QuerySet[User]:
     return members.distinct().order_by("username")
 
 
+def authors_before(comment: Comment) -> set[int]:
+    """Return the keys of those who have commented before ``comment`` on the same row."""
+    is_known_by_text = SUBJECTS[comment.kind].is_known_by_text
+    same = {"about": comment.about} if is_known_by_text else {"subject": comment.subject}
+    earlier = Comment.objects.present().filter(
+        world=comment.world_id, kind=comment.kind, pk__lt=comment.pk, **same
+    )
+    authors = earlier.exclude(author=None).order_by().values_list("author", flat=True)
+    return set(authors.distinct())
+
+
 def mark_read(notices: models.QuerySet[Notice]) -> int:
     """Take ``notices`` out of what waits; return how many did."""
     return notices.filter(read_at__isnull=True).update(read_at=timezone.now())
-
-
-def _about(world: World, subject: Subject, row: models.Model) -> models.QuerySet[Comment]:
-    comments = Comment.objects.filter(world=world, kind=subject.name)
-    if subject.is_known_by_text:
-        return comments.filter(about=str(row))
-    return comments.filter(subject=row.pk)

@@ -1,5 +1,5 @@
 from annotations.models.audit import AuditDecision, AuditFinding, AuditReason, FindingStatus
-from annotations.models.comments import Comment, Notice
+from annotations.models.comments import Comment, EarlierText, Notice
 from annotations.models.corpus import Command, LogicalForm, Paraphrase
 from annotations.models.drafts import Draft
 from annotations.models.editable import Editable
@@ -32,6 +32,7 @@ __all__ = [
     "Comment",
     "Draft",
     "Duty",
+    "EarlierText",
     "Editable",
     "Entity",
     "Example",

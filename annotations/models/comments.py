@@ -6,9 +6,15 @@ from django.db import models
 from django.utils import timezone
 
 from annotations.models.people import User
-from annotations.models.worlds import World
+from annotations.models.worlds import Duty, World
 
 MOST_CHARACTERS = 4_000  # of a comment
+
+
+class CommentQuerySet(models.QuerySet["Comment"]):
+    def present(self) -> CommentQuerySet:
+        """Without those that are deleted."""
+        return self.filter(deleted_at__isnull=True)
 
 
 class Comment(models.Model):
@@ -16,6 +22,8 @@ class Comment(models.Model):
 
     ``about`` is the text of the subject at that time: logical forms are generated anew under other
     keys and found by it. ``subject`` is None where the row was gone when its world was moved.
+    ``version`` counts from 1; what the comment said before stands in its earlier texts. One that is
+    deleted stays a row, so that it can be restored.
     """
 
     world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="comments")
@@ -24,7 +32,15 @@ class Comment(models.Model):
     about = models.TextField()
     author = models.ForeignKey(User, null=True, on_delete=models.SET_NULL)
     text = models.TextField(max_length=MOST_CHARACTERS)
+    version = models.PositiveIntegerField(default=1)
     created_at = models.DateTimeField(default=timezone.now)
+    edited_at = models.DateTimeField(null=True, default=None)
+    deleted_at = models.DateTimeField(null=True, default=None)
+    deleted_by = models.ForeignKey(
+        User, null=True, default=None, on_delete=models.SET_NULL, related_name="comments_deleted"
+    )
+
+    objects = CommentQuerySet.as_manager()
 
     class Meta:
         ordering = ["id"]
@@ -33,12 +49,42 @@ class Comment(models.Model):
     def __str__(self) -> str:
         return self.text
 
+    @property
+    def is_deleted(self) -> bool:
+        return self.deleted_at is not None
+
+    def may_be_edited_by(self, user: User) -> bool:
+        return self.author_id == user.pk and not self.is_deleted
+
+    def may_be_deleted_by(self, user: User, duties: frozenset[Duty]) -> bool:
+        is_allowed = self.author_id == user.pk or Duty.MANAGE in duties
+        return is_allowed and not self.is_deleted
+
+    def may_be_restored_by(self, user: User, duties: frozenset[Duty]) -> bool:
+        """Whoever deleted it; what an admin removed, every admin."""
+        is_of_admins = self.deleted_by_id != self.author_id and Duty.MANAGE in duties
+        return self.is_deleted and (self.deleted_by_id == user.pk or is_of_admins)
+
+
+class EarlierText(models.Model):
+    """What a comment said before its author edited it; ``written_at`` is when it began to."""
+
+    comment = models.ForeignKey(Comment, on_delete=models.CASCADE, related_name="earlier_texts")
+    text = models.TextField()
+    written_at = models.DateTimeField()
+
+    class Meta:
+        ordering = ["id"]
+
+    def __str__(self) -> str:
+        return self.text
+
 
 class NoticeQuerySet(models.QuerySet["Notice"]):
     def of(self, user: User) -> NoticeQuerySet:
-        """The notices of ``user`` in worlds that they still see."""
-        worlds = World.objects.visible_to(user)
-        return self.filter(user=user, comment__world__in=worlds)
+        """The notices of ``user`` in worlds that they still see, of comments that are there."""
+        comments = Comment.objects.present().filter(world__in=World.objects.visible_to(user))
+        return self.filter(user=user, comment__in=comments)
 
     def unread(self) -> NoticeQuerySet:
         return self.filter(read_at__isnull=True)

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 from django import template
+from django.http import HttpRequest
 from django.utils.html import format_html, format_html_join
 from django.utils.safestring import SafeString
 
 from annotations.commenting import SUBJECTS, comments_on, people_of
 from annotations.commenting.comments import MENTION
 from annotations.forms import CommentForm
+from annotations.models import Comment
 
 register = template.Library()
 
@@ -20,17 +24,37 @@ MOST_NAMES = 20  # members offered beside the field
 @register.inclusion_tag("annotations/_comments.html", takes_context=True)
 def comments_section(context: Any, kind: str, row: Any, form: Any = None) -> dict[str, Any]:
     """Show the comments on ``row``, a subject of that ``kind``, and the field for one more."""
-    world = context["world"]
+    world, request = context["world"], context["request"]
+    comments = comments_on(world, SUBJECTS[kind], row)
     return {
-        "request": context["request"],
+        "request": request,
         "csrf_token": context.get("csrf_token"),
         "world": world,
         "kind": kind,
         "row": row,
-        "comments": comments_on(world, SUBJECTS[kind], row),
-        "people": people_of(world).exclude(pk=context["request"].user.pk)[:MOST_NAMES],
+        "comments": comments,
+        "shown": list(_shown(comments, request)),
+        "people": people_of(world).exclude(pk=request.user.pk)[:MOST_NAMES],
         "form": form or CommentForm(),
     }
+
+
+@dataclass(frozen=True, slots=True)
+class ShownComment:
+    """A comment with what the reader may do about it."""
+
+    comment: Comment
+    may_edit: bool
+    may_delete: bool
+
+
+def _shown(comments: list[Comment], request: HttpRequest) -> Iterator[ShownComment]:
+    """Yield the comments that are there, and the deleted ones that the reader may restore."""
+    for each in comments:
+        if not each.is_deleted or each.may_be_restored_by(request.user, request.duties):
+            may_edit = each.may_be_edited_by(request.user)
+            may_delete = each.may_be_deleted_by(request.user, request.duties)
+            yield ShownComment(each, may_edit, may_delete)
 
 
 @register.filter

@@ -64,7 +64,8 @@ def check_row(table: Table, values: Mapping[str, Any], place: Position) -> None:
     """
     wanted = {each.name for each in table.columns} | {*table.references, *table.people}
     wanted |= {"subject"} if table.subjects else set()
-    optional = {each.name for each in table.columns if each.has_default()}
+    people = [table.model._meta.get_field(name) for name in table.people]
+    optional = {each.name for each in (*table.columns, *people) if each.has_default()}
     if wrong := (values.keys() - wanted) | (wanted - optional - values.keys()):
         names = ", ".join(sorted(wrong))
         raise LanguageError(f"these columns are missing or unknown: {names}", place)
@@ -73,7 +74,7 @@ def check_row(table: Table, values: Mapping[str, Any], place: Position) -> None:
             continue
         check_value(column, values[column.name], place)
     for name in table.people:
-        if not isinstance(values[name], str | None):
+        if not isinstance(values.get(name), str | None):
             raise LanguageError(f"{name} is not the name of an account", place)
     if table.subjects and values["kind"] not in table.subjects:
         raise LanguageError(f"kind cannot be “{values['kind'][:40]}”", place)

@@ -200,7 +200,7 @@ class _Loader:
             is_optional = table.model._meta.get_field(name).null
             setattr(row, f"{name}_id", self._key(values[name], other, is_optional, place))
         for name in table.people:
-            setattr(row, f"{name}_id", self._person(values[name]))
+            setattr(row, f"{name}_id", self._person(values.get(name)))
         if table.subjects:
             other = table.subjects[values["kind"]]
             row.subject = self._key(values["subject"], other, True, place)

@@ -15,6 +15,7 @@ from annotations.models import (
     AuditReason,
     Command,
     Comment,
+    EarlierText,
     Entity,
     Example,
     Label,
@@ -131,7 +132,7 @@ TABLES = (
         "comments",
         Comment,
         "world",
-        people=("author",),
+        people=("author", "deleted_by"),
         subjects={
             "template": "templates",
             "production": "productions",
@@ -142,4 +143,5 @@ TABLES = (
             "utterance": "utterances",
         },
     ),
+    Table("earlier_texts", EarlierText, references={"comment": "comments"}),
 )

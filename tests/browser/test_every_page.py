@@ -10,7 +10,7 @@ from annotations.models import Entity
 from annotations.queueing import refill
 from tests.browser.screenshots import PAGES
 from tests.browser.variants import VARIANTS
-from tests.sample_world import SampleWorld
+from tests.sample_world import SampleWorld, comment_in
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
@@ -55,6 +55,7 @@ def addresses(sample: SampleWorld) -> list[str]:
         f"predicates/{sample.world.predicates.first().pk}/",
         f"rename/production/{sample.world.grammar.productions.first().pk}/?new=verb&old=vbfind",
         f"comments/production/{sample.world.grammar.productions.first().pk}/",
+        f"comments/{comment_in(sample.world).pk}/",
         f"history/template/{sample.template.pk}/",
         f"forms/{sample.form.pk}/",
         f"splits/{sample.split.pk}/",

@@ -101,6 +101,7 @@ def test_every_page_of_a_world_belongs_to_one_entry():
     parts |= {"runs_table", "run_state", "run_charts", "run_curves", "run_cancel", "results_table"}
     parts |= {"label_item", "label_answer", "label_check", "label_mend", "label_take_back"}
     parts |= {"history", "deleted", "comments", "draft", "rename"}  # of rows of any kind
+    parts |= {"comment", "comment_delete", "comment_restore"}
     parts |= {"queue_next", "queue_act", "queue_settle", "queue_ask", "queue_assign"}
     parts |= {name for name in ROUTES_OF_WORLDS if name.startswith("api:")}
     parts |= {"label_send"}

@@ -3,20 +3,31 @@
 from __future__ import annotations
 
 from django.contrib import messages
+from django.core.exceptions import PermissionDenied
 from django.http import Http404, HttpRequest, HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.urls import reverse
 from django.views.decorators.http import require_http_methods
 
-from annotations.commenting import SUBJECTS, add_comment, mark_read
+from annotations.commenting import (
+    SUBJECTS,
+    EditedElsewhere,
+    add_comment,
+    change_comment,
+    delete_comment,
+    mark_read,
+    restore_comment,
+)
+from annotations.commenting.versions import versions_of
 from annotations.editing.kinds import KINDS
-from annotations.forms import CommentForm, posted
+from annotations.forms import CommentEditForm, CommentForm, posted
 from annotations.models import Comment, Duty, Notice, World
 from annotations.people.access import READ_AND_WRITE, WRITE, world_view
 from annotations.people.rate_limits import Rate
 from annotations.views.editing.history import number_in
 
 COMMENTS = Rate("comments", limit=60, seconds=600)
+TOO_MANY = "That were many comments. Wait some minutes, then send again."
 INBOX_SHOWN = 50
 
 
@@ -30,12 +41,69 @@ def comments(request: HttpRequest, world: World, kind: str, pk: int) -> HttpResp
     form = CommentForm(posted(request))
     if request.method == "POST" and form.is_valid():
         if COMMENTS.take(str(request.user.pk)) is None:
-            form.add_error("text", "That were many comments. Wait some minutes, then send again.")
+            form.add_error("text", TOO_MANY)
         else:
             add_comment(world, subject, row, form.cleaned_data["text"], request.user)
             return redirect(subject.address(world, pk))
     context = {"subject": subject, "row": row, "form": form}
     return render(request, "annotations/comments.html", context)
+
+
+@world_view(Duty.VIEW, READ_AND_WRITE)
+def comment(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """Show what a comment says and said; its author edits it with a POST."""
+    row = get_object_or_404(world.comments.present(), pk=pk)
+    may_edit = row.may_be_edited_by(request.user)
+    if request.method == "POST" and not may_edit:
+        raise PermissionDenied("Only the author of a comment edits it.")
+    values = {"text": row.text, "version": row.version}
+    form = CommentEditForm(posted(request), initial=values)
+    if request.method == "POST" and form.is_valid() and _save_edit(request, row, form):
+        return redirect(address_of(row) or "inbox")
+    context = {
+        "comment": row,
+        "form": form if may_edit else None,
+        "versions": versions_of(row),
+        "page": address_of(row),
+    }
+    return render(request, "annotations/comment.html", context)
+
+
+def _save_edit(request: HttpRequest, row: Comment, form: CommentEditForm) -> bool:
+    """Store the edit; where it cannot be, say why in the form."""
+    if COMMENTS.take(str(request.user.pk)) is None:
+        form.add_error("text", TOO_MANY)
+        return False
+    try:
+        change_comment(row, form.cleaned_data["text"], form.cleaned_data["version"])
+    except EditedElsewhere as clash:
+        form.add_error("text", f"{clash} What it says now stands below; save again to replace it.")
+        form.data = form.data.copy()
+        form.data["version"] = clash.current.version
+        return False
+    return True
+
+
+@world_view(Duty.VIEW, WRITE)
+def comment_delete(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """Delete a comment of the reader, or as an admin that of somebody else."""
+    row = get_object_or_404(world.comments.present(), pk=pk)
+    if not row.may_be_deleted_by(request.user, request.duties):
+        raise PermissionDenied("Only its author and the admins of this world delete a comment.")
+    delete_comment(row, request.user)
+    messages.success(request, "Deleted. “Restore” stands in its place.")
+    return redirect(address_of(row) or "inbox")
+
+
+@world_view(Duty.VIEW, WRITE)
+def comment_restore(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """Bring a deleted comment back."""
+    row = get_object_or_404(world.comments, pk=pk)
+    if row.is_deleted:
+        if not row.may_be_restored_by(request.user, request.duties):
+            raise PermissionDenied("Only who deleted a comment restores it.")
+        restore_comment(row)
+    return redirect(address_of(row) or "inbox")
 
 
 @require_http_methods(READ_AND_WRITE)

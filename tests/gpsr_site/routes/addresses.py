@@ -10,7 +10,7 @@ from django.urls import URLPattern, URLResolver, get_resolver, reverse
 
 from annotations.models import Entity, Job, Label, Membership, User, Utterance, WorkItem
 from annotations.models.worlds import Role
-from tests.sample_world import SampleWorld, paraphrase_in
+from tests.sample_world import SampleWorld, comment_in, paraphrase_in
 
 RouteKeys: TypeAlias = Callable[[SampleWorld], dict[str, object]]
 
@@ -99,6 +99,10 @@ KEYS: dict[str, RouteKeys] = {
     "delete_row": pk_of(template, kind="template"),
     "history": pk_of(template, kind="template"),
     "comments": pk_of(template, kind="template"),
+    **dict.fromkeys(
+        ("comment", "comment_delete", "comment_restore"),
+        pk_of(lambda sample: comment_in(sample.world)),
+    ),
     "draft": lambda sample: {"kind": "template", "subject": sample.template.pk},
     "deleted": lambda _: {"kind": "template"},
     "logical_form": pk_of(lambda sample: sample.form),

@@ -134,6 +134,11 @@ POLICY = [
     Rule("rename", *ANNOTATORS, method="post"),
     Rule("comments", *MEMBERS),
     Rule("comments", *MEMBERS, method="post"),
+    # Nobody edits the comment of somebody else; admins may delete it
+    Rule("comment", *MEMBERS),
+    Rule("comment", LOG_IN, NOWHERE, NO, NO, NO, method="post"),
+    Rule("comment_delete", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
+    Rule("comment_restore", LOG_IN, NOWHERE, GONE_ON, GONE_ON, GONE_ON, method="post"),
     Rule("template_suggestions", *ANNOTATORS, method="post"),
     Rule("template_repair", LOG_IN, NOWHERE, GONE_ON, NO, GONE_ON, method="post"),
     Rule("draft", *ANNOTATORS),
@@ -198,6 +203,7 @@ ONLY_POSTED = {
     *("run_cancel", "member", "template_duplicate", "template_repair"),
     *("queue_ask", "queue_act", "queue_settle", "api:work-item-finish", "api:work-item-give-back"),
     *("label_answer", "label_check", "label_mend", "label_take_back"),
+    *("comment_delete", "comment_restore"),
 }
 # Routes of rows that take a POST at the address where they are read.
 READ_AND_POSTED = {
@@ -206,6 +212,7 @@ READ_AND_POSTED = {
     "production",
     "history",
     "comments",
+    "comment",
     "rename",
     "delete_row",
 }
