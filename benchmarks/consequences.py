@@ -105,16 +105,27 @@ def forget() -> None:
 
 
 def measure(world: Any, user: Any, repeat: int, bound: float) -> None:
-    from annotations.editing.edits import add, change, delete
-    from annotations.generation.consequences import TemplateChange, consequences
+    """Measure ``world``, of ``repeat`` templates; ``bound`` in milliseconds is for the consequences."""
+    from annotations.models import SemanticTemplate
+
+    measure_generation(world)
+    rows = list(SemanticTemplate.objects.filter(grammar__world=world))
+    chosen = [rows[number * len(rows) // repeat] for number in range(repeat)]
+    print(f"{world}: {world.commands.count():,} commands, {len(rows)} templates")
+    measure_consequences(world, chosen, bound)
+    measure_edits(world, user, chosen)
+
+
+def measure_generation(world: Any) -> None:
     from annotations.generation.generating import generate_pairs
-    from annotations.models import SemanticTemplate, TaskCategory
 
     report(f"{world}: full generation, first", [milliseconds(lambda: generate_pairs(world))])
     again = [milliseconds(lambda: generate_pairs(world)) for _ in range(3)]
     report(f"{world}: full generation, nothing changed", again)
-    rows = list(SemanticTemplate.objects.filter(grammar__world=world))
-    chosen = [rows[number * len(rows) // repeat] for number in range(repeat)]
+
+
+def measure_consequences(world: Any, chosen: list[Any], bound: float) -> None:
+    from annotations.generation.consequences import TemplateChange, consequences
 
     def look(row: Any, number: int) -> None:
         after = copy.copy(row)
@@ -124,10 +135,16 @@ def measure(world: Any, user: Any, repeat: int, bound: float) -> None:
             sys.exit(trouble)
 
     forget()
-    print(f"{world}: {world.commands.count():,} commands, {len(rows)} templates")
     report(f"{world}: consequences, cold", [milliseconds(lambda: look(chosen[0], -1))])
     times = [milliseconds(lambda: look(row, n)) for n, row in enumerate(chosen)]  # noqa: B023
     report(f"{world}: consequences", times, bound)
+
+
+def measure_edits(world: Any, user: Any, chosen: list[Any]) -> None:
+    """Measure changing the ``chosen`` templates, and adding and deleting a few."""
+    from annotations.editing.edits import add, change, delete
+    from annotations.models import SemanticTemplate, TaskCategory
+
     changed = [
         milliseconds(lambda: change(row, {"form": f"(saved{n})"}, user, row.version))  # noqa: B023
         for n, row in enumerate(chosen)

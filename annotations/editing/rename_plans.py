@@ -66,46 +66,45 @@ class NonterminalRename:
             raise LanguageError(f"there is a ${new} already", hint="choose another name")
 
     def changes(self, new: str) -> Iterator[tuple[str, Changes]]:
-        token, old = f"${self.old}", self.old
-        lines = self.grammar.productions.filter(Q(nonterminal=old) | Q(expansion__contains=token))
-        yield (
-            "production",
-            differing(
-                (
-                    line,
-                    {
-                        "nonterminal": new if line.nonterminal == old else line.nonterminal,
-                        "expansion": rename_nonterminal_in_pattern(line.expansion, old, new),
-                    },
-                )
-                for line in lines
-            ),
+        yield "production", self._productions(new)
+        yield "template", self._templates(new)
+        yield "task category", self._task_categories(new)
+
+    def _productions(self, new: str) -> Changes:
+        old = self.old
+        naming = Q(nonterminal=old) | Q(expansion__contains=f"${old}")
+        return differing(
+            (
+                line,
+                {
+                    "nonterminal": new if line.nonterminal == old else line.nonterminal,
+                    "expansion": rename_nonterminal_in_pattern(line.expansion, old, new),
+                },
+            )
+            for line in self.grammar.productions.filter(naming)
         )
-        templates = self.grammar.templates.filter(
-            Q(pattern__contains=token) | Q(form__contains=token)
+
+    def _templates(self, new: str) -> Changes:
+        token = f"${self.old}"
+        naming = Q(pattern__contains=token) | Q(form__contains=token)
+        return differing(
+            (
+                row,
+                {
+                    "pattern": rename_nonterminal_in_pattern(row.pattern, self.old, new),
+                    "form": rename_nonterminal_in_form(row.form, self.old, new),
+                },
+            )
+            for row in self.grammar.templates.filter(naming)
         )
-        yield (
-            "template",
-            differing(
-                (
-                    row,
-                    {
-                        "pattern": rename_nonterminal_in_pattern(row.pattern, old, new),
-                        "form": rename_nonterminal_in_form(row.form, old, new),
-                    },
-                )
-                for row in templates
-            ),
-        )
-        yield (
-            "task category",
-            differing(
-                (
-                    row,
-                    {"rule_sources": [_renamed_entry(each, old, new) for each in row.rule_sources]},
-                )
-                for row in self.grammar.task_categories.all()
-            ),
+
+    def _task_categories(self, new: str) -> Changes:
+        return differing(
+            (
+                row,
+                {"rule_sources": [_rename_alias(each, self.old, new) for each in row.rule_sources]},
+            )
+            for row in self.grammar.task_categories.all()
         )
 
 
@@ -152,7 +151,7 @@ class PredicateRename:
             )
 
 
-def _renamed_entry(entry: str, old: str, new: str) -> str:
+def _rename_alias(entry: str, old: str, new: str) -> str:
     source, alias = split_entry(entry)
     return f"{source} as ${new}" if alias == old else entry
 

@@ -1,4 +1,4 @@
-"""Imports a command generator (FORMATS §1–§3) into a world."""
+"""Import a command generator (FORMATS §1–§3) into a world."""
 
 from __future__ import annotations
 
@@ -28,19 +28,19 @@ def import_generator(
     progress: Progress = UNWATCHED,
     may_remove: bool = True,
 ) -> ImportReport:
-    """Makes a world's ontology, grammar, templates and predicates those of a generator.
+    """Make a world's ontology, grammar, templates and predicates those of a generator.
 
     Args:
-        world_name: the world to import into; it is made where there is none of that name.
+        world_name: the world to import into; created if it does not exist.
         source: a folder, or the files of an upload as name → bytes.
-        by: who asked. They become the admin of a world that this makes.
-        may_remove: whether what the files do not have any more may go. If not, and something would,
-            nothing is stored and the report says what it is.
+        by: who asked; they become the admin of a world that this creates.
+        may_remove: whether rows that the files no longer have may be deleted. If not, and there are
+            any, nothing is stored and the report lists them.
 
     Returns:
-        What was read and done. With an error among its problems nothing was stored; warnings are stored
-        beside what they are about. Rows that are right already are not touched, and neither are
-        templates, entities and predicates that people wrote or changed.
+        What was read and done. If any problem is an error, nothing was stored; warnings are stored
+        with the rows that they are about. Rows that are already right are not touched, and neither
+        are templates, entities and predicates that people wrote or changed.
     """
     try:
         require_world_name(world_name)
@@ -57,14 +57,25 @@ def import_generator(
     removals = removals_of(world, generator)
     if removals and not may_remove:
         return replace(report, removals=removals, is_waiting=True)
+    return _store(world, generator, replace(report, removals=removals), by, progress)
+
+
+def _store(
+    world: World | None,
+    generator: Generator,
+    report: ImportReport,
+    by: User | None,
+    progress: Progress,
+) -> ImportReport:
+    """Count the grammar's commands, then write everything in one transaction."""
     progress.report(0.6, "counting the commands of the grammar")
     coverage = count_coverage(generator.texts.categories(), _commands_of(world))
     progress.report(0.8, "writing")
     with PreparedProductions(world, generator) as productions, progress.writing():
-        world = locked_world(world_name, by)
+        world = locked_world(report.world, by)
         changes = store(world, generator, productions, by)
         store_coverage(world, coverage)
-        report = replace(report, changes=changes, removals=removals)
+        report = replace(report, changes=changes)
         progress.conclude(report.as_json())
     return report
 

@@ -62,16 +62,10 @@ def label(
         LanguageError: the form cannot be read.
         ValueError: a sentence where the verdict lacks something.
     """
-    text = canonical_label(form) if verdict == Verdict.FORM else ""
-    if verdict not in Verdict.values:
-        raise ValueError(f"There is no answer {verdict[:20]!r}.")
-    if verdict == Verdict.DISPUTE and not reason.strip():
-        raise ValueError("Say why you dispute it.")
+    text = _check_answer(verdict, form, reason)
     decides = not is_blind and verdict != Verdict.SKIP
     with transaction.atomic():
-        stored = Utterance.objects.select_for_update().get(pk=utterance.pk)
-        if decides and stored.version != version:
-            raise AnsweredMeanwhile(stored)
+        stored = _lock(utterance, version if decides else None)
         now = timezone.now()
         row = Label.objects.create(
             utterance=stored,
@@ -86,6 +80,24 @@ def label(
         if decides:
             _settle(stored, row)
     return row
+
+
+def _check_answer(verdict: str, form: str, reason: str) -> str:
+    """Return the canonical form of the answer, "" where it is none. Raises as ``label`` does."""
+    text = canonical_label(form) if verdict == Verdict.FORM else ""
+    if verdict not in Verdict.values:
+        raise ValueError(f"There is no answer {verdict[:20]!r}.")
+    if verdict == Verdict.DISPUTE and not reason.strip():
+        raise ValueError("Say why you dispute it.")
+    return text
+
+
+def _lock(utterance: Utterance, version: int | None) -> Utterance:
+    """Return the locked row. Raises AnsweredMeanwhile where it is not at ``version``, if one is given."""
+    stored = Utterance.objects.select_for_update().get(pk=utterance.pk)
+    if version is not None and stored.version != version:
+        raise AnsweredMeanwhile(stored)
+    return stored
 
 
 def take_back(row: Label, by: User) -> Utterance:

@@ -38,10 +38,7 @@ def request(
     any path where ``anywhere`` is set, for who has the command line; else as in ``missing_weights``.
     Raises ValueError, a sentence, where the request cannot be trained.
     """
-    made = registry.make_config(parser, config)
-    refuse_missing_weights(made, anywhere)
-    values = registry.config_values(made)
-    entry = registry.entry(parser)
+    values = _whole_config(parser, config, anywhere)
     _refuse_what_cannot_be_trained(world, split, parser, protocol, train_sources, seed)
     run, created = TrainingRun.objects.get_or_create(
         world=world,
@@ -50,12 +47,12 @@ def request(
         defaults={
             "split": split,
             "parser": parser,
-            "parser_version": entry.version,
+            "parser_version": registry.entry(parser).version,
             "config": values,
             "protocol": protocol,
             "train_sources": train_sources,
             "seed": seed,
-            "queue": entry.queue,
+            "queue": registry.entry(parser).queue,
             "created_by": by,
         },
     )
@@ -83,6 +80,13 @@ def seeds_from(first: int, how_many: int) -> range:
     if last > LARGEST_SEED:
         raise ValueError(f"The last seed would be {last}; the largest one is {LARGEST_SEED}.")
     return range(first, last + 1)
+
+
+def _whole_config(parser: str, config: Mapping[str, Any] | None, anywhere: bool) -> dict[str, Any]:
+    """Return the configuration with its defaults. Raises ValueError where weights are missing too."""
+    made = registry.make_config(parser, config)
+    refuse_missing_weights(made, anywhere)
+    return registry.config_values(made)
 
 
 def _refuse_what_cannot_be_trained(

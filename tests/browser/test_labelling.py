@@ -33,6 +33,21 @@ def expect_utterance(page: Page, text: str) -> None:
     )
 
 
+def send_a_broken_form_and_correct_it(page: Page) -> None:
+    keys = page.keyboard
+    keys.press("e")
+    expect(page.locator(".cm-editor")).to_have_count(1)  # until then the plain field is there
+    editor = page.get_by_role("textbox", name="Logical form")
+    expect(editor).to_be_focused()
+    editor.fill("(go")
+    expect(page.locator(".editor-report")).to_contain_text("ends too early")
+    keys.press("Control+Enter")  # refused, and what was written stays
+    expect(page.get_by_role("alert")).to_contain_text("ends too early")
+    expect(editor).to_contain_text("(go")
+    editor.fill('(go "<room>")')
+    keys.press("Control+Enter")
+
+
 def test_twelve_utterances_without_a_mouse(label_page, annotator):
     page, keys = label_page, label_page.keyboard
     for said in SAID[:6]:
@@ -49,17 +64,7 @@ def test_twelve_utterances_without_a_mouse(label_page, annotator):
     expect_utterance(page, SAID[9])
     keys.press("z")  # the dispute is taken back, and its utterance is there again
     expect_utterance(page, SAID[8])
-    keys.press("e")
-    expect(page.locator(".cm-editor")).to_have_count(1)  # until then the plain field is there
-    editor = page.get_by_role("textbox", name="Logical form")
-    expect(editor).to_be_focused()
-    editor.fill("(go")
-    expect(page.locator(".editor-report")).to_contain_text("ends too early")
-    keys.press("Control+Enter")  # refused, and what was written stays
-    expect(page.get_by_role("alert")).to_contain_text("ends too early")
-    expect(editor).to_contain_text("(go")
-    editor.fill('(go "<room>")')
-    keys.press("Control+Enter")
+    send_a_broken_form_and_correct_it(page)
     for said in SAID[9:11]:
         expect_utterance(page, said)
         keys.press("1")

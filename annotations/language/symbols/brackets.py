@@ -37,28 +37,40 @@ def match_brackets(text: str, position: Position) -> dict[int, int]:
             parentheses[-1].append(index)
         elif character == "}":
             if not braces:
-                raise LanguageError(
-                    "a } closes a wildcard that was never opened",
-                    position.shifted(index),
-                    "open it with {, or write \\} for the character itself",
-                )
+                raise _never_opened(position.shifted(index))
             parentheses.pop()
             _pair(pairs, braces.pop(), index)
         elif character == ")" and parentheses[-1]:
             _pair(pairs, parentheses[-1].pop(), index)
         if len(braces) + sum(map(len, parentheses)) > MAX_NESTING:
-            raise LanguageError(
-                f"brackets nest deeper than {MAX_NESTING}",
-                position.shifted(index),
-                "move the inner part to a nonterminal of its own",
-            )
+            raise _too_deep(position.shifted(index))
     if braces:
-        raise LanguageError(
-            "the wildcard opened here is never closed",
-            position.shifted(braces[-1]),
-            "close it with } on the same line; a comment sign inside must be written \\; or \\#",
-        )
+        raise _never_closed(position.shifted(braces[-1]))
     return pairs
+
+
+def _never_opened(position: Position) -> LanguageError:
+    return LanguageError(
+        "a } closes a wildcard that was never opened",
+        position,
+        "open it with {, or write \\} for the character itself",
+    )
+
+
+def _never_closed(position: Position) -> LanguageError:
+    return LanguageError(
+        "the wildcard opened here is never closed",
+        position,
+        "close it with } on the same line; a comment sign inside must be written \\; or \\#",
+    )
+
+
+def _too_deep(position: Position) -> LanguageError:
+    return LanguageError(
+        f"brackets nest deeper than {MAX_NESTING}",
+        position,
+        "move the inner part to a nonterminal of its own",
+    )
 
 
 def _bare_characters(text: str) -> Iterator[tuple[int, str]]:

@@ -140,21 +140,11 @@ def generate(
         TooManyCombinations: the budget is spent.
     """
     chosen = _choose(categories, limit, expansions)
-    size = sum(each.size for each in chosen)
-    if limit is not None and size > limit:
-        raise LanguageError(
-            f"the templates make up to {readable(size)} commands, more than the limit of {limit:,}",
-            hint="raise the limit, or use narrower patterns",
-        )
-    winners: dict[str, Expansion] = {}
+    _refuse_above(limit, sum(each.size for each in chosen))
     budget = budget or Budget(None if limit is None else limit * STEPS_PER_COMMAND)
     expanded = [_expand(each, budget) for each in chosen]
-    for each in expanded:
-        for command in each.candidates:
-            if command not in winners:
-                winners[command] = each.expansion(command)
     return Generated(
-        tuple(winners.values()),
+        _distinct(expanded),
         tuple(conflict for each in expanded for conflict in each.conflicts()),
         _unmatched(expanded),
         tuple(left for each in chosen for left in each.left_out),
@@ -164,6 +154,14 @@ def generate(
             for index, commands in each.commands.items()
         },
     )
+
+
+def _refuse_above(limit: int | None, size: int) -> None:
+    if limit is not None and size > limit:
+        raise LanguageError(
+            f"the templates make up to {readable(size)} commands, more than the limit of {limit:,}",
+            hint="raise the limit, or use narrower patterns",
+        )
 
 
 def _choose(
@@ -253,6 +251,16 @@ def _expand(chosen: _Chosen, budget: Budget) -> _Expanded:
         commands[index] = pairs.keys()
     inside = chosen.expansions.derived(candidates, budget)
     return _Expanded(category, candidates, commands, inside)
+
+
+def _distinct(expanded: Sequence[_Expanded]) -> tuple[Expansion, ...]:
+    """Return each command once, as the first category that has it expands it."""
+    expansions: dict[str, Expansion] = {}
+    for each in expanded:
+        for command in each.candidates:
+            if command not in expansions:
+                expansions[command] = each.expansion(command)
+    return tuple(expansions.values())
 
 
 def _unmatched(expanded: Sequence[_Expanded]) -> tuple[tuple[str, int], ...]:

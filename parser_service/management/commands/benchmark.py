@@ -37,30 +37,9 @@ class Command(BaseCommand):
 
     def add_arguments(self, parser: CommandParser) -> None:
         parser.add_argument("folder", type=Path)
+        _add_choice_of_cells(parser)
         parser.add_argument(
             "--world", help="the world whose predicates, ontology and grammar may be known"
-        )
-        for name, known in (
-            ("--parsers", PARSERS),
-            ("--train-test", [str(setting) for setting in SETTINGS]),
-            ("--criteria", list(Criterion)),
-            ("--protocols", list(Protocol)),
-        ):
-            names = ", ".join(known)
-            parser.add_argument(name, metavar="A,B", help=f"some of {names} (default: all)")
-        parser.add_argument(
-            "--columns",
-            metavar="A,B",
-            help="instead of --train-test, --criteria and --protocols: some of their combinations, each "
-            "TRAIN-TEST:CRITERION:PROTOCOL",
-        )
-        parser.add_argument("--seeds", type=int, default=1, help="train with the seeds 0 to N - 1")
-        parser.add_argument(
-            "--new-splits",
-            default="0",
-            metavar="N|A-B",
-            help="use new splits of the train and validation pairs, 70/10/20: N of them, or those with "
-            "the seeds A to B (default: the published split, or by source command the new one of seed 0)",
         )
         parser.add_argument(
             "--config",
@@ -127,6 +106,32 @@ class Command(BaseCommand):
                     cells.append(answer)
                 bar.update()
         return failures
+
+
+def _add_choice_of_cells(parser: CommandParser) -> None:
+    """Add the options that choose what the table has: parsers, columns, seeds and splits."""
+    for name, known in (
+        ("--parsers", PARSERS),
+        ("--train-test", [str(setting) for setting in SETTINGS]),
+        ("--criteria", list(Criterion)),
+        ("--protocols", list(Protocol)),
+    ):
+        names = ", ".join(known)
+        parser.add_argument(name, metavar="A,B", help=f"some of {names} (default: all)")
+    parser.add_argument(
+        "--columns",
+        metavar="A,B",
+        help="instead of --train-test, --criteria and --protocols: some of their combinations, each "
+        "TRAIN-TEST:CRITERION:PROTOCOL",
+    )
+    parser.add_argument("--seeds", type=int, default=1, help="train with the seeds 0 to N - 1")
+    parser.add_argument(
+        "--new-splits",
+        default="0",
+        metavar="N|A-B",
+        help="use new splits of the train and validation pairs, 70/10/20: N of them, or those with "
+        "the seeds A to B (default: the published split, or by source command the new one of seed 0)",
+    )
 
 
 def _announce(groups: Iterable[Group], bar: tqdm) -> Iterator[Group]:
