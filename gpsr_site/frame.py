@@ -130,7 +130,7 @@ PLACES = (
 
 # Kind of row → the route of the list that holds it.
 LISTS = {kind.name: kind.list_page for kind in KINDS.values()}
-LISTS |= {"form": "logical_forms", "utterance": "utterances"}
+LISTS |= {"form": "logical_forms"}
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from django.http import Http404
 from django.urls import reverse
 
 from annotations.editing.kinds import KINDS
-from annotations.models import Comment, LogicalForm, Utterance, World
+from annotations.models import Comment, LogicalForm, World
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +57,5 @@ SUBJECTS = {
             for kind in KINDS.values()
         ),
         Subject("form", LogicalForm, "world", "logical_form", is_known_by_text=True),
-        Subject("utterance", Utterance, "world", "utterance"),
     )
 }

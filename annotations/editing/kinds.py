@@ -15,20 +15,22 @@ from annotations.models import (
     Predicate,
     Production,
     SemanticTemplate,
+    Utterance,
     World,
 )
 from annotations.rows.history import DELETED, history_of
 
 # The fields that hold a logical form; their differences are those of forms, not of words.
 FORM_FIELDS = frozenset({"form", "logical_form", "grounded_form"})
-LABELS = {"form": "Logical form", "gloss": "English"}
+LABELS = {"form": "Logical form", "gloss": "English", "spans": "Entities named, from and to"}
 
 
 @dataclass(frozen=True, slots=True)
 class Kind:
     """``name`` stands in addresses; ``page`` and ``list_page`` are names of routes.
 
-    ``page`` is that of one row, with its key; empty where rows have no page of their own.
+    ``page`` is that of one row, with its key; empty where rows have no page of their own. What other
+    rows hang on is not ``is_deletable``: an utterance is excluded instead, so that its answers stay.
     """
 
     name: str
@@ -36,6 +38,7 @@ class Kind:
     plural: str
     list_page: str
     page: str = ""
+    is_deletable: bool = True
 
     def rows_of(self, world: World) -> models.QuerySet[Editable]:
         return self.model._default_manager.filter(**{self.model.world_path: world})
@@ -73,6 +76,7 @@ KINDS = {
         Kind("entity", Entity, "entities", "ontology", "entity"),
         Kind("predicate", Predicate, "predicates", "predicates", "predicate"),
         Kind("paraphrase", Paraphrase, "paraphrases", "paraphrases", "paraphrase"),
+        Kind("utterance", Utterance, "utterances", "utterances", "utterance", is_deletable=False),
     )
 }
 

@@ -12,7 +12,7 @@ from annotations.editing.edits import Overtaken, change_many
 from annotations.editing.rename_plans import PLANS
 from annotations.generation.template_problems import check_unready_templates
 from annotations.language.english import say_count
-from annotations.models import Editable, Label, TaskCategory, User, Utterance, World
+from annotations.models import Editable, Label, TaskCategory, User, World
 from annotations.rows.synchronise import BATCH
 
 MOST_EXAMPLES = 5
@@ -79,7 +79,7 @@ def rename(row: Editable, old: str, new: str, by: User, version: int) -> tuple[T
         for each, values in changes:
             if not isinstance(each, Editable):
                 _set(each, values)
-        for model in (TaskCategory, Utterance, Label):
+        for model in (TaskCategory, Label):
             _store(model, [each for each, _ in changes if type(each) is model])
         change_many(world, edited, by)
         check_unready_templates(world)
@@ -89,13 +89,10 @@ def rename(row: Editable, old: str, new: str, by: User, version: int) -> tuple[T
 def _set(row: models.Model, values: Mapping[str, Any]) -> None:
     for name, value in values.items():
         setattr(row, name, value)
-    if isinstance(row, Utterance):
-        row.version += 1
 
 
 COLUMNS = {
     TaskCategory: ["rule_sources"],
-    Utterance: ["spans", "logical_form", "version"],
     Label: ["form"],
 }
 

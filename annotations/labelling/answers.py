@@ -6,12 +6,15 @@ answer back brings back exactly what was there before it.
 
 from __future__ import annotations
 
+from copy import copy
+
 from django.db import transaction
 from django.utils import timezone
 
 from annotations.labelling.form_check import canonical_label
 from annotations.models import Label, User, Utterance, UtteranceStatus, Verdict
 from annotations.models.utterances import MOST_CHARACTERS
+from annotations.rows.history import keep_change
 
 # What an accepted answer makes of an utterance.
 STATUS_AFTER = {
@@ -78,7 +81,7 @@ def label(
             accepted_at=now if decides else None,
         )
         if decides:
-            _settle(stored, row)
+            _settle(stored, row, by)
     return row
 
 
@@ -114,12 +117,12 @@ def take_back(row: Label, by: User) -> Utterance:
             raise ValueError("This answer has been taken back already.")
         stored.taken_back_at = timezone.now()
         stored.save(update_fields=["taken_back_at"])
-        _settle(utterance, utterance.accepted_label)
+        _settle(utterance, utterance.accepted_label, by)
     return utterance
 
 
-def accept(row: Label) -> Utterance:
-    """Let a stored answer decide, as two people agree on it or an adjudicator chooses it.
+def accept(row: Label, by: User) -> Utterance:
+    """Let a stored answer decide: with what ``by`` has done two people agree on it.
 
     Raises ValueError, a sentence, where it was taken back or is a skip.
     """
@@ -132,15 +135,17 @@ def accept(row: Label) -> Utterance:
             raise ValueError("A skip is no answer.")
         stored.accepted_at = timezone.now()
         stored.save(update_fields=["accepted_at"])
-        _settle(utterance, stored)
+        _settle(utterance, stored, by)
     return utterance
 
 
-def _settle(utterance: Utterance, decisive: Label | None) -> None:
+def _settle(utterance: Utterance, decisive: Label | None, by: User) -> None:
     """Give the locked utterance the status and form of its accepted answer; a new version if they change."""
     status = STATUS_AFTER[Verdict(decisive.verdict)] if decisive else UtteranceStatus.UNLABELLED
     form = decisive.form if decisive else ""
     if (utterance.status, utterance.logical_form) != (status, form):
+        before = copy(utterance)
         utterance.status, utterance.logical_form = status, form
         utterance.version += 1
         utterance.save(update_fields=["status", "logical_form", "version"])
+        keep_change(before, utterance, by)

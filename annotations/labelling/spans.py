@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from copy import copy
 from typing import Any
 
 from django.db import transaction
-from django.db.models import F
 
-from annotations.editing.edits import change
+from annotations.editing.edits import change, change_many
 from annotations.labelling.answers import AnsweredMeanwhile
 from annotations.language.grounding import Anonymizer
 from annotations.models import Entity, User, Utterance, World
 from annotations.rows.from_rows import ontology_of
+from annotations.rows.history import keep_change
 
 MOST_REREAD = 2_000  # utterances that are read again after an alias was added
 
@@ -50,11 +51,13 @@ def mend_span(
             raise AnsweredMeanwhile(stored)
         _add_alias(entity, words, by)
         anonymizer = anonymizer_of(stored.world)
-        _reread_others(stored, words, anonymizer)
+        _reread_others(stored, words, anonymizer, by)
+        before = copy(stored)
         for name, value in anonymized_by(anonymizer, stored.text).items():
             setattr(stored, name, value)
         stored.version += 1
         stored.save()
+        keep_change(before, stored, by)
     return stored
 
 
@@ -65,14 +68,17 @@ def _add_alias(entity: Entity, words: str, by: User) -> None:
         change(row, {"aliases": [*row.aliases, words]}, by, row.version)
 
 
-def _reread_others(utterance: Utterance, words: str, anonymizer: Anonymizer) -> None:
+def _reread_others(utterance: Utterance, words: str, anonymizer: Anonymizer, by: User) -> None:
     """Find the entities of other unlabelled utterances with these words."""
     rows = utterance.world.utterances.unlabelled().filter(text__icontains=words)
-    changed = []
-    for row in rows.exclude(pk=utterance.pk)[:MOST_REREAD]:
-        for name, value in anonymized_by(anonymizer, row.text).items():
-            setattr(row, name, value)
-        changed.append(row)
-    Utterance.objects.bulk_update(changed, ["anonymized_text", "spans"], batch_size=500)
-    keys = [row.pk for row in changed]
-    Utterance.objects.filter(pk__in=keys[:MOST_REREAD]).update(version=F("version") + 1)
+    others = rows.exclude(pk=utterance.pk).select_for_update()[:MOST_REREAD]
+    changes = [(row, anonymized_by(anonymizer, row.text)) for row in others]
+    change_many(
+        utterance.world,
+        [
+            (row, values)
+            for row, values in changes
+            if values != {name: getattr(row, name) for name in values}
+        ],
+        by,
+    )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from django.db import models
 from django.utils import timezone
 
+from annotations.models.editable import Editable
 from annotations.models.people import User
 from annotations.models.worlds import World
 
@@ -68,14 +69,16 @@ class UtteranceQuerySet(models.QuerySet["Utterance"]):
         return self.exclude(models.Exists(answers))
 
 
-class Utterance(models.Model):
+class Utterance(Editable):
     """A text that gets a logical form from people; its world has it once.
 
     ``anonymized_text`` has class tokens for the entities that the text names. ``spans`` says where:
     rows of [start, end, class, entity], positions counted in characters of ``text``.
     ``logical_form`` is canonical corpus text with class tokens; it is the accepted label's, and empty
-    without one. ``version`` counts from 1.
+    without one.
     """
+
+    edited_fields = ("text", "anonymized_text", "spans", "status", "logical_form")
 
     world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="utterances")
     text = models.CharField(max_length=MOST_CHARACTERS)
@@ -86,7 +89,6 @@ class Utterance(models.Model):
         max_length=20, choices=utterance_status_choices, default=UtteranceStatus.UNLABELLED
     )
     logical_form = models.TextField(blank=True)
-    version = models.PositiveIntegerField(default=1)
     created_by = models.ForeignKey(User, null=True, blank=True, on_delete=models.SET_NULL)
     created_at = models.DateTimeField(default=timezone.now)
 

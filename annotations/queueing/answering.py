@@ -50,7 +50,7 @@ def answer(
             return row
         decisive = finish(part, row).accept
         if is_blind and decisive is not None:
-            labelling.accept(decisive)
+            labelling.accept(decisive, by)
         return row
 
 

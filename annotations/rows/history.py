@@ -26,21 +26,33 @@ def keep(rows: Iterable[Editable], kind: str, by: User | None = None, reason: st
         kind: what happened to them: ``ADDED``, ``CHANGED`` or ``DELETED``.
         by: who did it; None for what no person did.
     """
-    now, entries = timezone.now(), []
-    for row in rows:
-        model = history_of(type(row)).model
-        values = {field.attname: getattr(row, field.attname) for field in model.tracked_fields}
-        entries.append(
-            model(
-                history_date=now,
-                history_type=kind,
-                history_user=by,
-                history_change_reason=reason,
-                **values,
-            )
-        )
+    _store([_entry_of(row, kind, by, reason) for row in rows])
+
+
+def keep_change(before: Editable, now: Editable, by: User | None = None, reason: str = "") -> None:
+    """Write that one row, as it was ``before``, became what it is ``now``; in one statement where it is new."""
+    entries = [_entry_of(now, CHANGED, by, reason)]
+    is_known = before.version > 1 and history_of(type(now)).filter(id=now.pk).exists()
+    if not is_known:
+        entries.insert(0, _entry_of(before, ADDED, None, AS_IMPORTED))
+    _store(entries)
+
+
+def _entry_of(row: Editable, kind: str, by: User | None, reason: str) -> models.Model:
+    model = history_of(type(row)).model
+    values = {field.attname: getattr(row, field.attname) for field in model.tracked_fields}
+    return model(
+        history_date=timezone.now(),
+        history_type=kind,
+        history_user=by,
+        history_change_reason=reason,
+        **values,
+    )
+
+
+def _store(entries: list[models.Model]) -> None:
     if entries:
-        type(entries[0]).objects.bulk_create(entries, batch_size=BATCH)
+        type(entries[0])._default_manager.bulk_create(entries, batch_size=BATCH)
 
 
 def keep_first(model: type[Editable], keys: Sequence[int]) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from django.contrib import messages
-from django.http import HttpRequest, HttpResponse
+from django.http import Http404, HttpRequest, HttpResponse
 from django.shortcuts import redirect, render
 from django.urls import reverse
 
@@ -19,6 +19,8 @@ from annotations.views.templates.template_consequences import groups_of
 def delete_row(request: HttpRequest, world: World, kind: str, pk: int) -> HttpResponse:
     """Show what deleting a row does; a POST deletes what the reader saw at ``version``."""
     of_kind = kind_named(kind)
+    if not of_kind.is_deletable:
+        raise Http404(f"{of_kind.plural.capitalize()} are not deleted.")
     row, is_there = of_kind.row_or_last_known(world, pk)
     here = redirect("history", world=world.name, kind=kind, pk=pk)
     if not is_there:

@@ -11,11 +11,13 @@ from django.urls import reverse
 from annotations.editing.edits import restore
 from annotations.editing.kinds import KINDS, Kind
 from annotations.editing.versions import history_of_row
-from annotations.models import Duty, World
+from annotations.labelling import restore_utterance
+from annotations.models import Duty, Utterance, World
 from annotations.people.access import READ_AND_WRITE, world_view
 
 DELETED_SHOWN = 50
 MOST_DIGITS = 18  # of the key of a history entry
+RESTORING = {Utterance: restore_utterance}  # what more than the row itself is restored with
 
 
 @world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.ANNOTATE)
@@ -62,7 +64,7 @@ def restore_entry(request: HttpRequest, world: World, kind: Kind, pk: int) -> No
         messages.error(request, "That version is not there. Choose one of the list.")
         return
     try:
-        row = restore(entry, request.user)
+        row = RESTORING.get(kind.model, restore)(entry, request.user)
     except ValidationError as error:
         messages.error(request, f"Not restored. {' '.join(error.messages)}")
     else:

@@ -51,7 +51,7 @@ def test_blind_answers_decide_once_one_is_accepted(utterance, annotator, admin):
     first = label(utterance, Verdict.FORM, BRING, annotator, 1, is_blind=True)
     label(utterance, Verdict.FORM, GO, admin, 1, is_blind=True)
     assert state_of(utterance) == ("unlabelled", "")
-    accept(first)
+    accept(first, admin)
     assert state_of(utterance) == ("labelled", CANONICAL)
 
 
