@@ -15,7 +15,6 @@ from annotations.views.editing import comments, deletion, drafts, history
 from annotations.views.queueing import agreement, work_queue
 from annotations.views.templates import (
     coverage,
-    suggestions,
     template_actions,
     template_consequences,
     template_repairs,
@@ -73,7 +72,6 @@ urlpatterns = [
         template_consequences.template_consequences,
         name="template_consequences",
     ),
-    path("templates/suggestions/", suggestions.template_suggestions, name="template_suggestions"),
     path("templates/<int:pk>/", templates.template, name="template"),
     path(
         "templates/<int:pk>/duplicate/",

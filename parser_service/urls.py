@@ -2,7 +2,7 @@
 
 from django.urls import path
 
-from parser_service.views import labelling, predictions, results, run_new, runs
+from parser_service.views import labelling, predictions, results, run_new, runs, suggestions
 
 urlpatterns = [
     path("label/", labelling.label_page, name="label"),
@@ -12,6 +12,7 @@ urlpatterns = [
     path("label/<int:pk>/check/", labelling.label_check, name="label_check"),
     path("label/<int:pk>/mend/", labelling.label_mend, name="label_mend"),
     path("label/answers/<int:pk>/take-back/", labelling.label_take_back, name="label_take_back"),
+    path("templates/suggestions/", suggestions.template_suggestions, name="template_suggestions"),
     path("runs/", runs.runs, name="runs"),
     path("runs/table/", runs.runs_table, name="runs_table"),
     path("runs/new/", run_new.run_new, name="run_new"),

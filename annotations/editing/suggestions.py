@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from annotations.editing.template_check import MOST_CHARACTERS
 from annotations.language.errors import LanguageError
@@ -27,16 +27,31 @@ MOST_COMPARED = 20_000  # derivations of the grammar
 
 
 @dataclass(frozen=True, slots=True)
+class ParserAnswer:
+    """A form in corpus notation that a parser answers to a command; scores compare within one parser."""
+
+    parser: str
+    score: float
+    form: str
+
+
+@dataclass(frozen=True, slots=True)
 class SuggestedForm:
     """A form in the notation of templates, its English sentence, and the pattern that it was made from.
 
-    ``is_guess`` where no template says what one of the words means.
+    ``is_guess`` where no template says what one of the words means. ``answers`` are those of the parsers
+    that give it; a form from a parser alone was made from no pattern.
     """
 
     text: str
     gloss: str
     made_from: str
     is_guess: bool = False
+    answers: tuple[ParserAnswer, ...] = ()
+
+    def answered_by(self, answer: ParserAnswer) -> SuggestedForm:
+        """Return this form, marked as what a parser answers."""
+        return replace(self, answers=(*self.answers, answer))
 
 
 @dataclass(frozen=True, slots=True)

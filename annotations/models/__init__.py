@@ -9,12 +9,12 @@ from annotations.models.ontology import Entity, Ontology
 from annotations.models.people import ApiToken, User
 from annotations.models.predicates import Predicate
 from annotations.models.problems import StoredProblem
+from annotations.models.proposals import CommandProposal, Proposal
 from annotations.models.splits import Example, Split
 from annotations.models.templates import SemanticTemplate
 from annotations.models.utterances import (
     Label,
     Origin,
-    Proposal,
     Utterance,
     UtteranceStatus,
     Verdict,
@@ -29,6 +29,7 @@ __all__ = [
     "AuditFinding",
     "AuditReason",
     "Command",
+    "CommandProposal",
     "Comment",
     "Draft",
     "Duty",

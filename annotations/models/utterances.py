@@ -1,4 +1,4 @@
-"""Utterances that people gave a robot, the answers of those who label them, and what parsers propose."""
+"""Utterances that people gave a robot, and the answers of those who label them."""
 
 from __future__ import annotations
 
@@ -150,27 +150,3 @@ class Label(models.Model):
     def answer(self) -> tuple[str, str]:
         """What two people agree on when they agree."""
         return self.verdict, self.form
-
-
-class Proposal(models.Model):
-    """A form that a trained parser answers to an utterance, computed by a worker.
-
-    ``source`` is the parser's name and ``run`` the number of its run; ``rank`` counts from 1;
-    ``form`` is canonical corpus text; scores compare within one parser only.
-    """
-
-    utterance = models.ForeignKey(Utterance, on_delete=models.CASCADE, related_name="proposals")
-    source = models.CharField(max_length=60)
-    run = models.PositiveBigIntegerField()
-    rank = models.PositiveSmallIntegerField()
-    form = models.TextField()
-    score = models.FloatField()
-
-    class Meta:
-        ordering = ["utterance", "rank"]
-        constraints = [
-            models.UniqueConstraint(fields=["utterance", "source", "rank"], name="proposal_rank")
-        ]
-
-    def __str__(self) -> str:
-        return self.form

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from annotations.language.suggesting.lifting import lift_forms
 from annotations.language.suggesting.nearest import nearest_patterns
 from annotations.language.suggesting.patterns import PatternMaker
 from annotations.language.suggesting.suggester import MOST_SUGGESTIONS, FormSuggester, Suggestion
@@ -12,6 +13,7 @@ __all__ = [
     "FormSuggester",
     "PatternMaker",
     "Suggestion",
+    "lift_forms",
     "nearest_patterns",
     "transfer_form",
 ]

@@ -1,30 +1,14 @@
-"""Suggested templates: forms for the pattern that somebody types, and the beginning of one for a command."""
+"""The beginning of a template for a command that has no form yet."""
 
 from __future__ import annotations
 
 from hashlib import sha256
 from typing import Any
 
-from django.http import HttpRequest, HttpResponse
-from django.shortcuts import render
+from django.http import HttpRequest
 
 from annotations.editing.suggestions import MOST_COMMAND, suggest_forms, suggest_pattern
-from annotations.forms import TemplateForm
-from annotations.models import Duty, TaskCategory, World
-from annotations.people.access import WRITE, world_view
-
-
-@world_view(Duty.ANNOTATE, WRITE)
-def template_suggestions(request: HttpRequest, world: World) -> HttpResponse:
-    """Suggest forms for the typed pattern."""
-    form = TemplateForm(world, request.POST)
-    pattern = (form["pattern"].value() or "").strip()
-    context = {
-        "suggestions": suggest_forms(world, form.chosen_category, pattern),
-        "chosen": form["form"].value(),
-        "has_pattern": bool(pattern),
-    }
-    return render(request, "annotations/_suggested_forms.html", context)
+from annotations.models import TaskCategory, World
 
 
 def suggestions_for_command(request: HttpRequest, world: World) -> dict[str, Any]:
@@ -48,4 +32,5 @@ def suggestions_for_command(request: HttpRequest, world: World) -> dict[str, Any
     likely = [each.text for each in suggestions if not each.is_guess]
     first = likely[0] if likely else ""
     initial = {"task_category": category, "pattern": pattern, "form": first}
-    return {**about, "initial": initial, "suggestions": suggestions, "chosen": first}
+    shown = {"suggestions": suggestions, "chosen": first, "is_first": True}
+    return {**about, **shown, "initial": initial}
