@@ -41,8 +41,20 @@ def page_head(context: Any, content: str, title: str, aside: str = "", actions: 
         "about": mark_safe(content.strip()),
         "actions": actions,
     }
+    return _render_inside(context, "_page_head.html", values)
+
+
+@register.simple_block_tag(takes_context=True, end_name="end_filtered_list")
+def filtered_list(context: Any, content: str, noun: str, notation: bool = False) -> str:
+    """Render the ``listing`` of a page (see ``_list.html``) with ``content`` as its table."""
+    values = {"noun": noun, "notation": notation, "table": mark_safe(content.strip())}
+    return _render_inside(context, "_list.html", values)
+
+
+def _render_inside(context: Any, name: str, values: dict[str, Any]) -> str:
+    """Render a template with the context of the page and ``values``."""
     with context.push(**values):
-        return context.template.engine.get_template("_page_head.html").render(context)
+        return context.template.engine.get_template(name).render(context)
 
 
 @register.simple_block_tag(end_name="end_empty_state")
