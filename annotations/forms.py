@@ -226,6 +226,17 @@ class FilesField(forms.FileField):
         return [super(FilesField, self).clean(file, initial) for file in files]
 
 
+class BringsBackField(forms.BooleanField):
+    """Whether an import restores what people have deleted."""
+
+    def __init__(self) -> None:
+        super().__init__(
+            label="Bring back what was deleted here",
+            required=False,
+            help_text="Without it, what people have deleted stays away, and the report says what that is.",
+        )
+
+
 class PairsForm(forms.Form):
     """The pair files of a published corpus, in one archive."""
 
@@ -236,6 +247,7 @@ class PairsForm(forms.Form):
         help_text="A zip archive with any of the folders gen, para, gen_logical and para_logical "
         "(train.txt, val.txt, test.txt in each) and paraphrasings.txt."
     )
+    brings_back = BringsBackField()
 
 
 class WorldArchiveForm(forms.Form):
@@ -261,6 +273,7 @@ class ImportForm(forms.Form):
         required=False,
         help_text="Only files of the same name are replaced: a grammar, objects.xml, predicates.json.",
     )
+    brings_back = BringsBackField()
 
 
 class UncoveredFilters(forms.Form):

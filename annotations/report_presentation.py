@@ -10,6 +10,13 @@ from annotations.models import JobKind
 MOST_PROBLEMS = 500
 MOST_NAMES = 200
 
+SINGULAR = {
+    "templates": "template",
+    "productions": "production",
+    "entities": "entity",
+    "predicates": "predicate",
+    "paraphrases": "paraphrase",
+}
 TEMPLATES = {
     JobKind.IMPORT_GENERATOR: "annotations/_import_result.html",
     JobKind.IMPORT_PAIRS: "annotations/_pairs_result.html",
@@ -33,20 +40,21 @@ def shown_report(kind: str, report: Mapping[str, Any]) -> dict[str, Any]:
         "n_problems_left_out": max(0, len(problems) - MOST_PROBLEMS),
         "n_errors": n_errors,
         "is_refused": n_errors > 0,
-        "removals": _shown_removals(report.get("removals") or {}),
+        "removals": _shown_texts(report.get("removals") or {}),
+        "left_out": _shown_texts(report.get("left_out") or {}),
     }
 
 
-def _shown_removals(removals: Mapping[str, list[str]]) -> list[dict[str, Any]]:
-    """What would go, by what it is: how many, and the first of them."""
-    singular = {"templates": "template", "productions": "production", "entities": "entity"}
+def _shown_texts(rows: Mapping[str, list[str]]) -> list[dict[str, Any]]:
+    """Rows by what they are: how many, and the first of them. ``kind`` is a name in editing.kinds."""
     return [
         {
             "count": len(texts),
-            "noun": singular[name] if len(texts) == 1 else name,
+            "kind": SINGULAR[name],
+            "noun": SINGULAR[name] if len(texts) == 1 else name,
             "texts": texts[:MOST_NAMES],
             "left_out": max(0, len(texts) - MOST_NAMES),
         }
-        for name, texts in removals.items()
+        for name, texts in rows.items()
         if texts
     ]

@@ -8,17 +8,19 @@ from dataclasses import replace
 from pathlib import Path
 
 from annotations.background.progress import UNWATCHED, Progress
+from annotations.editing.checking import check_again
 from annotations.generation.coverage import count_coverage, store_coverage
 from annotations.importing.files import gather
 from annotations.importing.generator_files import Generator, read_generator
+from annotations.importing.plans import Texts, differences_of
 from annotations.importing.report import ImportReport
-from annotations.importing.storing import PreparedProductions, removals_of, store
+from annotations.importing.storing import PreparedProductions, store
 from annotations.importing.worlds import locked_world, require_world_name
 from annotations.language.errors import LanguageError
 from annotations.language.predicates import Predicate
-from annotations.models import User, World
+from annotations.models import Entity, Production, User, World
 from annotations.rows.composition import own_template_source
-from annotations.rows.from_rows import predicates_of
+from annotations.rows.from_rows import predicates_of, task_categories
 
 
 def import_generator(
@@ -27,6 +29,7 @@ def import_generator(
     by: User | None = None,
     progress: Progress = UNWATCHED,
     may_remove: bool = True,
+    brings_back: bool = False,
 ) -> ImportReport:
     """Make a world's ontology, grammar, templates and predicates those of a generator.
 
@@ -36,11 +39,13 @@ def import_generator(
         by: who asked; they become the admin of a world that this creates.
         may_remove: whether rows that the files no longer have may be deleted. If not, and there are
             any, nothing is stored and the report lists them.
+        brings_back: whether rows that people have deleted here are restored. If not, their lines are
+            left out and the report lists them.
 
     Returns:
         What was read and done. If any problem is an error, nothing was stored; warnings are stored
         with the rows that they are about. Rows that are already right are not touched, and neither
-        are templates, entities and predicates that people wrote or changed.
+        are those that people wrote, changed, moved or renamed.
     """
     try:
         require_world_name(world_name)
@@ -54,10 +59,11 @@ def import_generator(
     if report.is_refused:
         return report
     world = World.objects.filter(name=world_name).first()
-    removals = removals_of(world, generator)
-    if removals and not may_remove:
-        return replace(report, removals=removals, is_waiting=True)
-    return _store(world, generator, replace(report, removals=removals), by, progress)
+    apart = differences_of(world, generator, brings_back)
+    report = replace(report, removals=apart.removals, left_out=apart.left_out)
+    if apart.removals and not may_remove:
+        return replace(report, is_waiting=True)
+    return _store(world, generator, report, by, progress, brings_back)
 
 
 def _store(
@@ -66,18 +72,31 @@ def _store(
     report: ImportReport,
     by: User | None,
     progress: Progress,
+    brings_back: bool,
 ) -> ImportReport:
     """Count the grammar's commands, then write everything in one transaction."""
     progress.report(0.6, "counting the commands of the grammar")
     coverage = count_coverage(generator.texts.categories(), _commands_of(world))
     progress.report(0.8, "writing")
-    with PreparedProductions(world, generator) as productions, progress.writing():
+    prepared = PreparedProductions(world, generator, brings_back)
+    with prepared as productions, progress.writing():
         world = locked_world(report.world, by)
-        changes = store(world, generator, productions, by)
+        changes = store(world, generator, productions, by, brings_back)
+        if report.left_out.productions:  # the grammar is not that of the files
+            coverage = count_coverage(task_categories(world), _commands_of(world))
         store_coverage(world, coverage)
+        _check_what_is_stored(world, report.left_out)
         report = replace(report, changes=changes)
         progress.conclude(report.as_json())
     return report
+
+
+def _check_what_is_stored(world: World, left_out: Texts) -> None:
+    """Store the problems of the rows anew where they are not those of the files."""
+    if left_out.productions or left_out.templates:
+        check_again(world, Production)
+    if left_out.entities:
+        check_again(world, Entity)
 
 
 def _commands_of(world: World | None) -> frozenset[str]:

@@ -9,17 +9,15 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from django.db.models import Max
-
 from annotations.background.progress import UNWATCHED, Progress
 from annotations.importing.pair_files import PairFolder, read_pair_folder
+from annotations.importing.paraphrases import plan_paraphrases
 from annotations.importing.prompts import Source, SourceFinder
 from annotations.importing.worlds import locked_world, require_world_name
-from annotations.language.corpus import GroundedTriple, WrittenPair, distance
+from annotations.language.corpus import GroundedTriple, WrittenPair
 from annotations.language.errors import LanguageError, Problem
-from annotations.models import Example, Paraphrase, User, World
+from annotations.models import Example, User, World
 from annotations.rows.problems import as_json, first_problems
-from annotations.rows.synchronise import BATCH
 from annotations.splits.freezing import PreparedSplit
 
 MOST_ATTEMPTS = 3
@@ -29,7 +27,8 @@ MOST_ATTEMPTS = 3
 class PairsReport:
     """``counts`` are pairs by criterion, source and part; ``splits`` their names by criterion.
 
-    With an error among the ``problems`` nothing was stored.
+    With an error among the ``problems`` nothing was stored. ``left_out`` are paraphrases that people have
+    deleted or changed here, and who did.
     """
 
     world: str
@@ -37,6 +36,7 @@ class PairsReport:
     splits: Mapping[str, str] = field(default_factory=dict)
     paraphrases: int = 0
     added: int = 0
+    left_out: tuple[str, ...] = ()
     problems: tuple[Problem, ...] = ()
 
     @property
@@ -55,6 +55,7 @@ class PairsReport:
             "paraphrases": self.paraphrases,
             "problems": [as_json(problem) for problem in self.problems],
             "changes": {"added": self.added},
+            "left_out": {"paraphrases": list(self.left_out)},
         }
 
 
@@ -64,6 +65,7 @@ def import_pairs(
     folder: Path | str,
     by: User | None = None,
     progress: Progress = UNWATCHED,
+    brings_back: bool = False,
 ) -> PairsReport:
     """Takes the splits and paraphrases of ``folder`` into a world, all of them or nothing.
 
@@ -73,7 +75,8 @@ def import_pairs(
         folder: with any of ``gen para gen_logical para_logical`` and ``paraphrasings.txt``.
 
     A split that is there already with the same pairs is left alone; one with other pairs is an
-    error, since a frozen split never changes. A paraphrase that is there already is not doubled.
+    error, since a frozen split never changes. A paraphrase that is there already is not doubled, and one
+    that people have deleted stays away unless ``brings_back``.
     """
     progress.report(0, "reading the pairs")
     files = read_pair_folder(Path(folder))
@@ -83,7 +86,7 @@ def import_pairs(
         if report.is_refused:
             return report
         for _ in range(MOST_ATTEMPTS):
-            stored = _store(report, name, files, by, progress)
+            stored = _store(report, name, files, by, progress, brings_back)
             if stored is not None:
                 return stored
         raise LanguageError("the commands were generated anew meanwhile", hint="import once more")
@@ -105,7 +108,12 @@ def _report(world_name: str, name: str, files: PairFolder) -> PairsReport:
 
 
 def _store(
-    report: PairsReport, name: str, files: PairFolder, by: User | None, progress: Progress
+    report: PairsReport,
+    name: str,
+    files: PairFolder,
+    by: User | None,
+    progress: Progress,
+    brings_back: bool,
 ) -> PairsReport | None:
     """Prepares everything, then writes it. None where commands were generated in between."""
     world = World.objects.filter(name=report.world).first()
@@ -126,11 +134,13 @@ def _store(
             locked = locked_world(report.world, by)
             if world is not None and locked.generations != world.generations:
                 return None
-            added = _store_paraphrases(locked, files.triples, sources)
+            paraphrases = plan_paraphrases(locked, files.triples, sources, brings_back)
+            added = paraphrases.apply(by).added
             for split in splits:
                 _, is_new = split.store(locked, by)
                 added += is_new * (1 + len(split.examples))
-            stored = replace(report, added=added)
+            left_out = tuple(f"{row} ({why})" for row, why in paraphrases.left_out)
+            stored = replace(report, added=added, left_out=left_out)
             progress.conclude(stored.as_json())
     return stored
 
@@ -187,35 +197,3 @@ def _example(
         example.task_category = origin.task_category
         example.grounded_form = triple.canonical_form
     return example
-
-
-def _store_paraphrases(
-    world: World, triples: Sequence[GroundedTriple], sources: Sequence[Source]
-) -> int:
-    """Adds the records that are not there, behind those that are; says how many."""
-    known = set(world.paraphrases.values_list("prompt", "utterance", "grounded_form"))
-    last = world.paraphrases.aggregate(last=Max("position"))["last"]
-    following = 0 if last is None else last + 1
-    new: list[Paraphrase] = []
-    for triple, source in zip(triples, sources, strict=True):
-        key = (triple.command, triple.paraphrase, triple.canonical_form)
-        if key not in known:
-            known.add(key)
-            new.append(_paraphrase(world, triple, source, following + len(new)))
-    Paraphrase.objects.bulk_create(new, batch_size=BATCH)
-    return len(new)
-
-
-def _paraphrase(world: World, triple: GroundedTriple, source: Source, position: int) -> Paraphrase:
-    apart = distance(triple.paraphrase, triple.command)
-    return Paraphrase(
-        world=world,
-        command=source.command,
-        prompt=triple.command,
-        utterance=triple.paraphrase,
-        grounded_form=triple.canonical_form,
-        logical_form=source.logical_form,
-        edit_distance=apart.edit,
-        jaccard_distance=apart.jaccard,
-        position=position,
-    )

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from annotations.importing.storing import Removals
+from annotations.importing.plans import Texts
 from annotations.language.errors import Problem
 from annotations.rows.problems import as_json
 from annotations.rows.synchronise import Changes
@@ -18,7 +18,7 @@ class ImportReport:
 
     With an error among the ``problems`` the import was refused whole: nothing was stored, and the
     counts say what could be read. Where there are ``removals`` that were not allowed, nothing was
-    stored either.
+    stored either. ``left_out`` are lines that people have deleted, moved or renamed here.
     """
 
     world: str
@@ -28,7 +28,8 @@ class ImportReport:
     predicates: int = 0
     problems: tuple[Problem, ...] = ()
     changes: Changes = field(default_factory=Changes)
-    removals: Removals = field(default_factory=Removals)
+    removals: Texts = field(default_factory=Texts)
+    left_out: Texts = field(default_factory=Texts)
     is_waiting: bool = False
 
     @property
@@ -53,5 +54,6 @@ class ImportReport:
             "problems": [as_json(problem) for problem in self.problems],
             "changes": self.changes.as_json(),
             "removals": self.removals.as_json(),
+            "left_out": self.left_out.as_json(),
             "is_waiting": self.is_waiting,
         }

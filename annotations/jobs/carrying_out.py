@@ -48,15 +48,17 @@ def _do(job: Job, lease: background.Lease) -> None:
 def _import_generator(job: Job, progress: JobProgress) -> Report:
     with kept_uploads(job) as uploads:
         files = files_of(uploads)
-    may_remove = bool(job.arguments.get("may_remove"))
-    report = import_generator(job.world_name, files, job.created_by, progress, may_remove)
-    return report.as_json()
+    choices = {name: bool(job.arguments.get(name)) for name in ("may_remove", "brings_back")}
+    return import_generator(job.world_name, files, job.created_by, progress, **choices).as_json()
 
 
 def _import_pairs(job: Job, progress: JobProgress) -> Report:
-    name = job.arguments["name"]
+    name, brings_back = job.arguments["name"], bool(job.arguments.get("brings_back"))
     with kept_uploads(job) as (archive,), unpacked_pairs(archive) as folder:
-        return import_pairs(job.world_name, name, folder, job.created_by, progress).as_json()
+        report = import_pairs(
+            job.world_name, name, folder, job.created_by, progress, brings_back=brings_back
+        )
+        return report.as_json()
 
 
 def _import_world(job: Job, progress: JobProgress) -> Report:

@@ -30,31 +30,36 @@ from annotations.world_archive import ImportedWorld, import_world
 from annotations.worlds.world_deletion import delete_world, request_deletion
 
 
-def start_generator_import(world: World, uploads: Sequence[Any], by: User) -> Job | ImportReport:
+def start_generator_import(
+    world: World, uploads: Sequence[Any], by: User, brings_back: bool = False
+) -> Job | ImportReport:
     """An import that would remove something becomes a job that asks.
 
     Raises:
         LanguageError: the uploads cannot be read.
     """
-    kind = JobKind.IMPORT_GENERATOR
+    kind, choice = JobKind.IMPORT_GENERATOR, {"brings_back": brings_back}
     if unpacked_size(uploads) > MOST_BYTES:
-        return request_job(kind, world.name, by, uploads=uploads)
+        return request_job(kind, world.name, by, choice, uploads)
     files = files_of(uploads)
     if is_heavy_generator(files):
-        return request_job(kind, world.name, by, uploads=uploads)
-    report = import_generator(world.name, files, by, may_remove=False)
+        return request_job(kind, world.name, by, choice, uploads)
+    report = import_generator(world.name, files, by, may_remove=False, brings_back=brings_back)
     if report.is_waiting:
-        return keep_question(kind, world.name, by, {}, uploads, report.as_json())
+        return keep_question(kind, world.name, by, choice, uploads, report.as_json())
     return report
 
 
-def start_pairs_import(world: World, name: str, archive: Any, by: User) -> Job | PairsReport:
+def start_pairs_import(
+    world: World, name: str, archive: Any, by: User, brings_back: bool = False
+) -> Job | PairsReport:
     """Raises LanguageError where the archive cannot be read."""
     if is_heavy_pairs([archive]):
         kind = JobKind.IMPORT_PAIRS
-        return request_job(kind, world.name, by, {"name": name}, uploads=[archive])
+        arguments = {"name": name, "brings_back": brings_back}
+        return request_job(kind, world.name, by, arguments, uploads=[archive])
     with unpacked_pairs(archive) as folder:
-        return import_pairs(world.name, name, folder, by)
+        return import_pairs(world.name, name, folder, by, brings_back=brings_back)
 
 
 def start_world_import(name: str, archive: Any, by: User) -> Job | ImportedWorld:

@@ -115,6 +115,20 @@ def _in_words(value: Any) -> str:
     return str(len(value)) if isinstance(value, list) else str(value)
 
 
+def add_brings_back(parser: CommandParser) -> None:
+    """Declare what imports have in common."""
+    parser.add_argument(
+        "--bring-back",
+        action="store_true",
+        help="restore what people have deleted in the world; left out without it",
+    )
+
+
+def say_left_out(report: Mapping[str, Any]) -> list[str]:
+    """Return a line for each row that an import left out."""
+    return [f"  left out: {text}" for texts in report["left_out"].values() for text in texts]
+
+
 def find_world(name: str) -> World:
     """The world called ``name``. Raises CommandError with the names that exist."""
     world = World.objects.filter(name=name).first()

@@ -71,8 +71,9 @@ def history_of(model: type[Editable]) -> Any:
 
 def keys_changed_by_people(model: type[Editable], world: World) -> set[int]:
     """Return the keys of the rows that somebody changed here since they were imported."""
-    entries = history_of(model).filter(**{model.world_path: world}, history_user__isnull=False)
-    return set(entries.exclude(history_change_reason=OF_IMPORT).values_list("id", flat=True))
+    entries = history_of(model).filter(**{model.world_path: world})
+    of_people = entries.exclude(history_change_reason__in=(OF_IMPORT, AS_IMPORTED))
+    return set(of_people.values_list("id", flat=True))
 
 
 def entry_at(row: Editable, version: int) -> models.Model | None:

@@ -4,14 +4,22 @@ from __future__ import annotations
 
 from collections import defaultdict, deque
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from itertools import islice
 from typing import Any, Generic, TypeVar
 
 from django.db.models import F, Model, QuerySet
 
 from annotations.models import Editable, User
-from annotations.rows.history import CHANGED, DELETED, OF_IMPORT, keep, keep_first
+from annotations.rows.history import (
+    ADDED,
+    CHANGED,
+    DELETED,
+    OF_IMPORT,
+    RESTORED,
+    keep,
+    keep_first,
+)
 
 Row = TypeVar("Row", bound=Model)
 BATCH = 500  # rows a statement; SQLite takes a limited number of parameters
@@ -46,7 +54,11 @@ class Changes:
 
 @dataclass
 class Plan(Generic[Row]):
-    """What it takes to make stored rows equal to wanted ones. Nothing is written before ``apply``."""
+    """What it takes to make stored rows equal to wanted ones. Nothing is written before ``apply``.
+
+    ``kept`` stay though nobody wants them. ``restored`` are rows with the keys of deleted ones, and
+    ``left_out`` wanted ones that are not stored, each with the reason (``annotations.rows.decisions``).
+    """
 
     model: type[Row]
     fields: Sequence[str]
@@ -54,10 +66,14 @@ class Plan(Generic[Row]):
     changed: list[Row]
     moved: list[Row]
     removed: list[Row]
+    kept: list[Row] = field(default_factory=list)
+    restored: list[Row] = field(default_factory=list)
+    left_out: list[tuple[Row, str]] = field(default_factory=list)
 
     @property
     def changes(self) -> Changes:
-        return Changes(len(self.new), len(self.changed), len(self.removed), len(self.moved))
+        added = len(self.new) + len(self.restored)
+        return Changes(added, len(self.changed), len(self.removed), len(self.moved))
 
     def apply(self, by: User | None = None) -> Changes:
         """Adds, changes and removes the rows. To be called inside a transaction.
@@ -77,6 +93,9 @@ class Plan(Generic[Row]):
         _remove(self.model, self.removed)
         if self.changed or self.moved:
             _rewrite(self.model, self.changed + self.moved, fields)
+        if self.restored:
+            self.model._default_manager.bulk_create(self.restored, batch_size=BATCH)
+            keep(self.restored, ADDED, by, RESTORED)
 
     def _keep_history(self, by: User | None) -> None:
         """A row that only moves is no new version."""
@@ -134,7 +153,7 @@ def plan(
     if "position" in fields:
         moved += _move_behind(kept, len(wanted))
     removed = [row for row in left if not is_kept(row)]
-    return Plan(stored.model, fields, new, changed, moved, removed)
+    return Plan(stored.model, fields, new, changed, moved, removed, kept)
 
 
 def _take_over(row: Row, target: Row, fields: Sequence[str]) -> set[str]:

@@ -9,7 +9,12 @@ from typing import Any
 from django.core.management.base import CommandParser
 
 from annotations.importing import import_generator
-from annotations.management.base import Refused, ReportingCommand
+from annotations.management.base import (
+    Refused,
+    ReportingCommand,
+    add_brings_back,
+    say_left_out,
+)
 
 MOST_LISTED = 40
 
@@ -28,16 +33,20 @@ class Command(ReportingCommand):
             action="store_true",
             help="remove what the world has and the files do not; refused without it",
         )
+        add_brings_back(parser)
 
     def report(
-        self, *, folder: Path, world: str, remove_missing: bool, **options: Any
+        self, *, folder: Path, world: str, remove_missing: bool, bring_back: bool, **options: Any
     ) -> Mapping[str, Any]:
-        report = import_generator(world, folder, may_remove=remove_missing)
+        report = import_generator(world, folder, may_remove=remove_missing, brings_back=bring_back)
         if report.is_waiting:
             raise Refused(report.as_json(), _question(world, report.removals.as_json()))
         if report.is_refused:
             raise Refused.because(report.errors, report.as_json(), folder)
         return report.as_json()
+
+    def describe(self, report: Mapping[str, Any]) -> str:
+        return "\n".join([super().describe(report), *say_left_out(report)])
 
 
 def _question(world: str, removals: Mapping[str, list[str]]) -> list[str]:

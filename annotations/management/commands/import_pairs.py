@@ -9,7 +9,12 @@ from typing import Any
 from django.core.management.base import CommandParser
 
 from annotations.importing import import_pairs
-from annotations.management.base import Refused, ReportingCommand
+from annotations.management.base import (
+    Refused,
+    ReportingCommand,
+    add_brings_back,
+    say_left_out,
+)
 
 
 class Command(ReportingCommand):
@@ -22,9 +27,15 @@ class Command(ReportingCommand):
         parser.add_argument("folder", type=Path)
         parser.add_argument("--world", required=True, help="made where there is none")
         parser.add_argument("--name", required=True, help="what the splits are called")
+        add_brings_back(parser)
 
-    def report(self, *, folder: Path, world: str, name: str, **options: Any) -> Mapping[str, Any]:
-        report = import_pairs(world, name, folder)
+    def report(
+        self, *, folder: Path, world: str, name: str, bring_back: bool, **options: Any
+    ) -> Mapping[str, Any]:
+        report = import_pairs(world, name, folder, brings_back=bring_back)
         if report.is_refused:
             raise Refused.because(report.errors, report.as_json(), folder)
         return report.as_json()
+
+    def describe(self, report: Mapping[str, Any]) -> str:
+        return "\n".join([super().describe(report), *say_left_out(report)])

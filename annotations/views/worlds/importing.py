@@ -27,7 +27,8 @@ def import_files(request: HttpRequest, world: World) -> HttpResponse:
     report = None
     if form.is_bound and form.is_valid():
         try:
-            started = start_generator_import(world, _uploads(world, form), request.user)
+            files, brings_back = _uploads(world, form), form.cleaned_data["brings_back"]
+            started = start_generator_import(world, files, request.user, brings_back)
         except LanguageError as error:
             form.add_error("files", str(error))
         else:
@@ -53,9 +54,10 @@ def import_pair_files(request: HttpRequest, world: World) -> HttpResponse:
     form = PairsForm(posted(request), request.FILES or None)
     report = None
     if form.is_bound and form.is_valid():
-        name, archive = form.cleaned_data["name"], form.cleaned_data["archive"]
+        values = form.cleaned_data
+        name, archive, brings_back = values["name"], values["archive"], values["brings_back"]
         try:
-            started = start_pairs_import(world, name, archive, request.user)
+            started = start_pairs_import(world, name, archive, request.user, brings_back)
         except LanguageError as error:
             form.add_error("archive", str(error))
         else:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from django.core.management import call_command
 
+from annotations.editing.edits import delete
 from annotations.models import World
 from tests.annotations.commands.bad_inputs import FAULTS
 from tests.annotations.commands.run_command import run
@@ -85,3 +86,16 @@ def test_what_would_be_removed_is_named_and_needs_an_option(tiny_world, tiny_fol
     assert rows_of(tiny_world) == before
     report, failure = run(*arguments, "--remove-missing")
     assert failure is None and not tiny_world.grammar.templates.exists()
+
+
+def test_what_people_deleted_is_left_out_unless_asked_for(tiny_world, tiny_folder, admin, capsys):
+    template = tiny_world.grammar.templates.last()
+    delete(template, admin, 1)
+    call_command("import_generator", str(tiny_folder), world="home")
+    assert (
+        f"  left out: {template.source}: {template} (deleted by adam on" in capsys.readouterr().out
+    )
+    assert tiny_world.grammar.templates.count() == 1
+    report, _ = run("import_generator", tiny_folder, "--world", "home", "--bring-back")
+    assert report["left_out"]["templates"] == []
+    assert tiny_world.grammar.templates.count() == 2

@@ -8,6 +8,7 @@ import zipfile
 import pytest
 from django.core.files.uploadedfile import SimpleUploadedFile
 
+from annotations.editing.edits import delete
 from annotations.models import Job, SemanticTemplate
 from tests.annotations.conftest import TINY, as_bytes
 
@@ -189,3 +190,18 @@ def test_a_name_of_300_letters_or_bytes_that_are_no_text(world, adam, page):
     answer = adam.post(f"/w/home/{page}", {"name": "n", field: bad})
     assert answer.status_code == 422
     assert "not a zip archive that can be read" in answer.content.decode()
+
+
+def test_what_people_deleted_is_said_and_brought_back_if_asked_for(world, adam, admin, tiny):
+    send(adam, uploads(tiny))
+    template = SemanticTemplate.objects.get(pattern="go to the {room}")
+    delete(template, admin, 1)
+    page = " ".join(send(adam, uploads(tiny)).content.decode().split())
+    assert "1 template" in page and "(deleted by adam on" in page
+    assert "/w/home/history/template/deleted/" in page
+    assert SemanticTemplate.objects.count() == 1
+    page = adam.post(
+        "/w/home/import/", {"files": uploads(tiny), "brings_back": "on"}
+    ).content.decode()
+    assert "left out" not in page
+    assert SemanticTemplate.objects.get(pk=template.pk).version == 2
