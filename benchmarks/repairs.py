@@ -16,22 +16,28 @@ from pathlib import Path
 from random import Random
 
 from annotations.language.templates import SemanticTemplate, TemplateChecker, read_sides
-from annotations.language.writing import Sides, with_repairs
+from annotations.language.writing import Sides, Usage, usage_of, with_repairs
 from tests.annotations.language.writing.mistakes import mistakes, published_checkers, value_of
 
 COUNTS = ("made", "noticed", "offered", "first", "any")
 
 
 def try_mistake(
-    checker: TemplateChecker, template: SemanticTemplate, sides: Sides
+    checker: TemplateChecker,
+    template: SemanticTemplate,
+    sides: Sides,
+    usage: Usage,
 ) -> tuple[set[str], float] | None:
-    """Return which counts a mistake adds to and the seconds that its repairs took; None if it changes nothing."""
+    """Return which counts a mistake adds to and the seconds that its repairs took; None if it changes nothing.
+
+    ``usage`` is that of the generator without this template.
+    """
     wrong, unread = read_sides(sides.pattern, sides.form)
     if wrong is not None and value_of(wrong) == value_of(template):
         return None
     problems = unread if wrong is None else checker.problems(wrong)
     begun = time.perf_counter()
-    repaired = with_repairs(problems, sides, checker)
+    repaired = with_repairs(problems, sides, checker, lambda: usage)
     seconds = time.perf_counter() - begun
     usual = {problem.message for problem in checker.problems(template)}
     fresh = [problem for problem in repaired if problem.message not in usual]
@@ -61,10 +67,13 @@ def main() -> None:
     random = Random(chosen.seed)
     counts: dict[str, Counter[str]] = {}
     seconds: list[float] = []
-    for checker, template in published_checkers(chosen.folder):
+    published = list(published_checkers(chosen.folder))
+    for checker, template in published:
+        others = [each for _, each in published if each is not template]
+        usage = usage_of(others, checker.grammar)
         made = list(mistakes(template))
         for kind, sides in random.sample(made, min(chosen.most, len(made))):
-            result = try_mistake(checker, template, sides)
+            result = try_mistake(checker, template, sides, usage)
             if result is not None:
                 counts.setdefault(kind, Counter()).update(result[0])
                 seconds.append(result[1])

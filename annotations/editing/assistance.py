@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from dataclasses import asdict
+from functools import partial
 from hashlib import sha256
 from typing import Any
 
@@ -11,21 +13,28 @@ from django.core.cache import cache
 
 from annotations.editing.template_check import Checked, check_template
 from annotations.editing.template_problems import as_stored
-from annotations.language.errors import Offsets, Problem, Repair
+from annotations.language.errors import LanguageError, Offsets, Problem, Repair
 from annotations.language.forms import to_reading
+from annotations.language.grammar import Grammar
 from annotations.language.symbols import SlotPlace
+from annotations.language.templates import Kept, SemanticTemplate
 from annotations.language.writing import (
     Sides,
+    Usage,
     completions,
     correspondences,
     format_form,
     format_pattern,
+    usage_of,
     with_repairs,
 )
+from annotations.models import SemanticTemplate as StoredTemplate
 from annotations.models import TaskCategory, World
-from annotations.rows.from_rows import grammar_of, predicates_of
+from annotations.rows.from_rows import grammar_of, predicates_of, ready_templates, template_of
 
 KEPT_SECONDS = 3600
+# World, its revision and the identity of a grammar → how its templates say slots. The grammar is kept with it.
+_USAGES: Kept[tuple[int, int, int], tuple[Usage, Grammar]] = Kept(12)
 
 
 def assist(world: World, category: TaskCategory | None, pattern: str, form: str) -> dict[str, Any]:
@@ -41,7 +50,8 @@ def assist(world: World, category: TaskCategory | None, pattern: str, form: str)
     slots: list[dict[str, Any]] = []
     problems = checked.problems
     if checked.checker is not None:
-        problems = with_repairs(problems, sides, checked.checker)
+        usage = partial(_usage, world, checked.checker.grammar)
+        problems = with_repairs(problems, sides, checked.checker, usage)
         slots = _slots(checked, sides)
     return {
         "problems": [shown_problem(each, sides) for each in problems],
@@ -50,6 +60,21 @@ def assist(world: World, category: TaskCategory | None, pattern: str, form: str)
         "reading": to_reading(checked.template.form) if checked.template else "",
         "gloss": checked.gloss,
     }
+
+
+def _usage(world: World, grammar: Grammar) -> Usage:
+    """Return how the templates that are ready say slots; counted once while they stay as they are."""
+
+    def count() -> tuple[Usage, Grammar]:
+        return usage_of(list(_readable(ready_templates(world))), grammar), grammar
+
+    return _USAGES.get((world.pk, world.revision, id(grammar)), count)[0]
+
+
+def _readable(rows: Iterable[StoredTemplate]) -> Iterator[SemanticTemplate]:
+    for row in rows:
+        with suppress(LanguageError):
+            yield template_of(row)
 
 
 def completion_tag(category: TaskCategory) -> str:

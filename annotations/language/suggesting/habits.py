@@ -9,6 +9,12 @@ from itertools import combinations
 
 from annotations.language.forms import Application, Form, Lambda, Variable, predicates, walk
 from annotations.language.predicates import signature_of
+from annotations.language.suggesting.conjunctions import (
+    ConjunctOrder,
+    conjunctions,
+    head_of,
+    order_of,
+)
 from annotations.language.suggesting.examples import Example
 from annotations.language.suggesting.slots import key_of, labels_of
 from annotations.language.suggesting.units import Unit
@@ -25,13 +31,13 @@ Shape = tuple[str, ...]
 class Habits:
     """Counts over examples.
 
-    ``shapes`` counts λs by the heads of their bodies and applications by their signature; ``order`` how
-    often one conjunct comes before another; ``constraints`` the predicates of ``(predicate $1 slot)`` by the
+    ``shapes`` counts λs by the heads of their bodies and applications by their signature; ``order`` is that of
+    conjuncts; ``constraints`` the predicates of ``(predicate $1 slot)`` by the
     label of the slot; ``senses`` maps a word to the predicates that it says, with the strength in 0–1.
     """
 
     shapes: Counter[Shape]
-    order: Counter[tuple[str, str]]
+    order: ConjunctOrder
     constraints: Mapping[str, Counter[str | Nonterminal]]
     senses: Mapping[str, Mapping[str, float]]
 
@@ -41,15 +47,7 @@ class Habits:
 
     def place(self, conjuncts: Sequence[Form], added: Form) -> tuple[Form, ...]:
         """Return the conjuncts with one more, at the place that agrees best with the usual order."""
-        heads, new = list(map(_head, conjuncts)), _head(added)
-
-        def agreement(place: int) -> int:
-            before = sum(self.order[head, new] - self.order[new, head] for head in heads[:place])
-            return before + sum(
-                self.order[new, head] - self.order[head, new] for head in heads[place:]
-            )
-
-        best = max(range(len(conjuncts) + 1), key=agreement)
+        best = self.order.place(list(map(head_of, conjuncts)), head_of(added))
         return (*conjuncts[:best], added, *conjuncts[best:])
 
     def said_by(self, words: Sequence[str], names: Iterable[str]) -> frozenset[str]:
@@ -63,16 +61,15 @@ class Habits:
 
 def habits_of(examples: Sequence[Example]) -> Habits:
     """Count what is usual in examples."""
-    order: Counter[tuple[str, str]] = Counter()
     constraints: defaultdict[str, Counter[str | Nonterminal]] = defaultdict(Counter)
     for example in examples:
         labels = labels_of(example.units)
-        for conjuncts in _conjunctions(example.form):
-            order.update(combinations(map(_head, conjuncts), 2))
+        for conjuncts in conjunctions(example.form):
             for slot, predicate in _constraints(conjuncts):
                 if key_of(slot) in labels:
                     constraints[labels[key_of(slot)]][predicate] += 1
     shapes = Counter(shape for each in examples for shape in _shapes(each.typed_form))
+    order = order_of(each.form for each in examples)
     return Habits(shapes, order, constraints, _senses(examples))
 
 
@@ -103,17 +100,9 @@ def _senses(examples: Sequence[Example]) -> dict[str, dict[str, float]]:
 def _shapes(typed_form: Form) -> Iterator[Shape]:
     for node in walk(typed_form):
         if isinstance(node, Lambda):
-            yield ("λ", *map(_head, node.bodies))
+            yield ("λ", *map(head_of, node.bodies))
         elif isinstance(node, Application):
             yield (str(node.predicate), *signature_of(node).arguments)
-
-
-def _conjunctions(form: Form) -> Iterator[tuple[Form, ...]]:
-    for node in walk(form):
-        if isinstance(node, Lambda):
-            yield node.bodies
-        elif isinstance(node, Application) and node.predicate == "and":
-            yield node.arguments
 
 
 def _constraints(
@@ -124,7 +113,3 @@ def _constraints(
         match form:
             case Application(predicate, (Variable(), Wildcard() | Nonterminal() as slot)):
                 yield slot, predicate
-
-
-def _head(form: Form) -> str:
-    return str(form.predicate) if isinstance(form, Application) else type(form).__name__

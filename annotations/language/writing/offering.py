@@ -7,7 +7,7 @@ problems than before, so that taking offers comes to an end.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from itertools import islice
 
@@ -15,6 +15,7 @@ from annotations.language.errors import LanguageError, Offsets, Problem, Repair
 from annotations.language.templates import SemanticTemplate, TemplateChecker
 from annotations.language.writing import brackets, slots, terms, words
 from annotations.language.writing.candidates import FORM, PATTERN, Candidate
+from annotations.language.writing.left_out import Usage, left_out, no_usage
 from annotations.language.writing.trial import Sides, Trial
 
 MOST_PROBLEMS = 6  # of one template that repairs are looked for
@@ -28,15 +29,19 @@ Rank = tuple[bool, int, int, int, float, str]
 
 
 def with_repairs(
-    problems: tuple[Problem, ...], sides: Sides, checker: TemplateChecker
+    problems: tuple[Problem, ...],
+    sides: Sides,
+    checker: TemplateChecker,
+    usage: Callable[[], Usage] = no_usage,
 ) -> tuple[Problem, ...]:
     """Return the problems with what can be done about each.
 
     Args:
         problems: their positions are in texts called "pattern" and "form", which ``sides`` holds.
         checker: of the task category that the template is for.
+        usage: how other templates say slots; asked for only where the form leaves one out.
     """
-    offering = _Offering(sides, Trial(checker))
+    offering = _Offering(sides, Trial(checker), usage)
     return tuple(
         replace(problem, repairs=offering.repairs(problem) if number < MOST_PROBLEMS else ())
         for number, problem in enumerate(problems)
@@ -46,7 +51,7 @@ def with_repairs(
 class _Offering:
     """Works on the texts without the spaces around them; ``leads`` counts those in front."""
 
-    def __init__(self, sides: Sides, trial: Trial) -> None:
+    def __init__(self, sides: Sides, trial: Trial, usage: Callable[[], Usage]) -> None:
         self.typed = sides
         self.leads = {
             source: len(sides.text(source)) - len(sides.text(source).lstrip())
@@ -54,6 +59,7 @@ class _Offering:
         }
         self.sides = Sides(sides.pattern.strip(), sides.form.strip())
         self.trial = trial
+        self.usage = usage
         self.template, self.before = trial.look(self.sides)
         self.counts = Counter(map(_identity, self.before))
 
@@ -109,6 +115,7 @@ class _Offering:
         if source == PATTERN:
             yield from slots.undefined(template, grammar, offset)
             yield from words.unheard(template, grammar)
+            yield from left_out(template, self.usage, grammar, offset)
         else:
             yield from slots.form_only(template, grammar, offset)
             yield from terms.misuse(template, self.trial.predicates, grammar, offset)

@@ -28,6 +28,16 @@ def test_a_problem_comes_with_the_edits_that_repair_it(ask):
     assert apply(problem["repairs"][0]["edits"], "form", form) == SENT["form"]
 
 
+def test_a_slot_that_is_left_out_goes_where_the_templates_of_the_world_have_it(ask):
+    form = "(find (λ$1:e (thing $1)))"
+    problem = next(
+        each for each in ask(form=form)["problems"] if "leaves it out" in each["message"]
+    )
+    assert [each["label"] for each in problem["repairs"]] == [
+        "Add (is_a $1 {kobject}) in front of (thing $1)"
+    ]
+
+
 def test_a_slot_has_its_places_on_both_sides(ask):
     (slot,) = ask()["slots"]
     assert [SENT["pattern"][slice(*each)] for each in slot["pattern"]] == ["{kobject}"]

@@ -61,6 +61,10 @@ def _of_slots(pattern: str, form: str) -> Iterator[tuple[str, Sides]]:
         if letters:
             at = match.start() + letters.end() - 1
             yield "slot misspelled in the pattern", Sides(pattern[:at] + pattern[at + 1 :], form)
+    for match in re.finditer(r" ?\(\w+ \$1 (\$[a-z]\w*|\{[^{}]*\})\)", form):
+        rest = form[: match.start()] + form[match.end() :]
+        if match[1] not in rest and match[1] in pattern and ":e)" not in rest:
+            yield "slot left out of the form", Sides(pattern, rest)
     if len(slots) == 2:
         one, other = slots
         exchanged = _SLOT.sub(lambda m: {one: other, other: one}.get(m[0], m[0]), form)
@@ -86,10 +90,8 @@ def value_of(template: SemanticTemplate) -> tuple[object, str]:
     return template.pattern, canonical_text(template.form)
 
 
-def published_checkers(
-    folder: Path, every: int = 1
-) -> Iterator[tuple[TemplateChecker, SemanticTemplate]]:
-    """Yield every so many of a generator's templates with the checker of its task category.
+def published_checkers(folder: Path) -> Iterator[tuple[TemplateChecker, SemanticTemplate]]:
+    """Yield each of a generator's templates with the checker of its first task category.
 
     The predicates are those of all its forms.
     """
@@ -101,6 +103,4 @@ def published_checkers(
         checker = template_checker(category.grammar, predicates, category.name)
         for template in category.templates:
             seen.setdefault(template, checker)
-    for number, (template, checker) in enumerate(seen.items()):
-        if number % every == 0:
-            yield checker, template
+    yield from ((checker, template) for template, checker in seen.items())
