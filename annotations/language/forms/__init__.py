@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from annotations.language.forms.canonical import canonical_text, canonicalize, equivalent
+from annotations.language.forms.conjunct_order import ConjunctOrder, conjunctions, head_of, order_of
 from annotations.language.forms.difference import Change, diff
 from annotations.language.forms.logic import read_form
 from annotations.language.forms.printing import to_corpus, to_reading, to_template
@@ -30,6 +31,7 @@ __all__ = [
     "UNKNOWN",
     "Application",
     "Change",
+    "ConjunctOrder",
     "Constant",
     "Form",
     "FormDistances",
@@ -40,11 +42,14 @@ __all__ = [
     "canonical_text",
     "canonicalize",
     "children",
+    "conjunctions",
     "depth",
     "diff",
     "equivalent",
     "free_variables",
+    "head_of",
     "head_predicate",
+    "order_of",
     "predicates",
     "read_form",
     "read_spans",

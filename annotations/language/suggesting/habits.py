@@ -7,14 +7,19 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
-from annotations.language.forms import Application, Form, Lambda, Variable, predicates, walk
-from annotations.language.predicates import signature_of
-from annotations.language.suggesting.conjunctions import (
+from annotations.language.forms import (
+    Application,
     ConjunctOrder,
+    Form,
+    Lambda,
+    Variable,
     conjunctions,
     head_of,
     order_of,
+    predicates,
+    walk,
 )
+from annotations.language.predicates import signature_of
 from annotations.language.suggesting.examples import Example
 from annotations.language.suggesting.slots import key_of, labels_of
 from annotations.language.suggesting.units import Unit

@@ -7,9 +7,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from annotations.language.errors import Edit
-from annotations.language.forms import Application, Form, Variable, walk
+from annotations.language.forms import Application, ConjunctOrder, Form, Variable, order_of, walk
 from annotations.language.grammar import Grammar
-from annotations.language.suggesting.conjunctions import ConjunctOrder, order_of
 from annotations.language.symbols import (
     Nonterminal,
     Wildcard,

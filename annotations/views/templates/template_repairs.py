@@ -54,12 +54,15 @@ def conflicts(request: HttpRequest, world: World) -> HttpResponse:
 
 @world_view(Duty.ANNOTATE, WRITE)
 def template_repair(request: HttpRequest, world: World, pk: int) -> HttpResponse:
-    """Delete a template, or give it the form of another one, as a list of repairs asks."""
+    """Delete a template, move it to another task category, or give it the form of another template."""
     row = get_object_or_404(SemanticTemplate, grammar__world=world, pk=pk)
     version = number_in(request.POST.get("version", "")) or 0
     try:
         if request.POST.get("form_of"):
             _take_form(request, world, row, version)
+        elif request.POST.get("move_to"):
+            _move(request, world, row, version)
+            return redirect("template", world=world.name, pk=pk)
         else:
             delete(row, request.user, version)
             messages.success(request, "Deleted. You can restore it from its history.")
@@ -85,6 +88,16 @@ def _take_form(request: HttpRequest, world: World, row: SemanticTemplate, versio
     values = {"form": form, "problems": checked.stored_problems}
     change(row, values, request.user, version)
     messages.success(request, "Both templates have this form now.")
+
+
+def _move(request: HttpRequest, world: World, row: SemanticTemplate, version: int) -> None:
+    """Move ``row`` to the task category that was sent as ``move_to``."""
+    key = number_in(request.POST["move_to"]) or 0
+    category = get_object_or_404(TaskCategory, grammar__world=world, pk=key)
+    checked = check_template(world, category, row.pattern, row.form)
+    values = {**row.moved_to(category), "problems": checked.stored_problems}
+    change(row, values, request.user, version)
+    messages.success(request, f"Moved to task category {category.name}.")
 
 
 def _with_counts(world: World) -> QuerySet[SemanticTemplate]:

@@ -15,6 +15,7 @@ from django.utils.html import format_html, format_html_join
 from django.views.decorators.http import condition
 
 from annotations.editing.assistance import assist, completion_tag, completions_of
+from annotations.editing.duplicates import duplicate_of
 from annotations.editing.edits import Overtaken, add
 from annotations.editing.kinds import KINDS
 from annotations.editing.suggestions import suggest_nearest
@@ -142,6 +143,7 @@ def template(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     form.fields["task_category"].required = False  # it stays where it is
     form.fields["task_category"].help_text = "Choose another one to move the template there."
     context = {"row": row, "form": form, "n_commands": row.commands.count()}
+    context["duplicate"] = None if form.is_bound else duplicate_of(world, row)
     if request.method == "POST" and form.is_valid():
         values = values_of(form) | row.moved_to(form.cleaned_data["task_category"])
         expected = consequences(world, change_to(row, form.cleaned_data["task_category"], values))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from annotations.editing.edits import add
-from annotations.models import SemanticTemplate, World
+from annotations.models import Production, SemanticTemplate, TaskCategory, World
 
 UNMATCHED, CONFLICTS, OUTSIDE = (
     f"/w/home/coverage/{name}/" for name in ("unmatched", "conflicts", "outside")
@@ -15,7 +15,7 @@ UNMATCHED, CONFLICTS, OUTSIDE = (
 @pytest.fixture
 def write(sample, annotator):
     """Add a ready template to the sample world."""
-    category = sample.world.grammar.task_categories.get()
+    category = sample.world.grammar.task_categories.get(name="1")
 
     def written(pattern: str, form: str) -> SemanticTemplate:
         unsaved = SemanticTemplate.for_category(
@@ -110,3 +110,34 @@ def test_odd_values_change_nothing(values, write, anna, sample):
 
 def form_of(world: World, command: str) -> str:
     return world.commands.get(anonymized_text=command).logical_form.text
+
+
+def test_a_duplicate_is_opened_deleted_or_moved_where_the_grammar_has_its_commands(
+    write, sample, anna
+):
+    patterns = {"2": "go to the {room}", "3": "sing"}
+    for name, expansion in patterns.items():
+        Production.objects.create(
+            grammar=sample.world.grammar,
+            source=f"{name}.txt",
+            nonterminal="Main",
+            expansion=expansion,
+            position=100 + int(name),
+        )
+        TaskCategory.objects.create(
+            grammar=sample.world.grammar,
+            name=name,
+            position=int(name),
+            rule_sources=[f"{name}.txt"],
+            template_sources=[f"{name}_semantics.txt"],
+        )
+    assert anna.get(f"/w/home/templates/{sample.template.pk}/").context["duplicate"] is None
+    row = write("go to the {room}", "(go {room})")
+    page = anna.get(f"/w/home/templates/{row.pk}/")
+    duplicate = page.context["duplicate"]
+    assert (duplicate.other.form, [each.name for each in duplicate.moves]) == ("(go {room})", ["2"])
+    assert "Open the other one" in page.content.decode()
+    repair(anna, row, move_to=duplicate.moves[0].pk)
+    row.refresh_from_db()
+    assert (row.task_category, row.source, row.version) == ("2", "2_semantics.txt", 2)
+    assert anna.get(f"/w/home/templates/{row.pk}/").context["duplicate"] is None

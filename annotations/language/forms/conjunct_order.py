@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
-from annotations.language.forms import Application, Form, Lambda, walk
+from annotations.language.forms.terms import Application, Form, Lambda, walk
 
 
 @dataclass(frozen=True)
