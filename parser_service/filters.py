@@ -66,10 +66,6 @@ class RunFilters(PageFilters):
     )
     world_choices = {"split": split_choices}
 
-    class Meta:
-        model = TrainingRun
-        fields: list[str] = []
-
     def by_success_since(
         self, rows: TrainingRunQuerySet, name: str, value: str
     ) -> TrainingRunQuerySet:
@@ -91,10 +87,6 @@ class PredictionFilters(PageFilters):
     task_category = django_filters.ChoiceFilter("example__task_category", label="Task category")
     head = Head("example__logical_form", label="Head predicate")
     world_choices = {"task_category": task_category_choices, "head": predicate_choices}
-
-    class Meta:
-        model = Prediction
-        fields: list[str] = []
 
     def by_outcome(self, rows: QuerySet[Prediction], name: str, value: str) -> QuerySet[Prediction]:
         return rows.with_outcome(value)

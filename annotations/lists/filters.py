@@ -17,18 +17,9 @@ from annotations.lists.choices import (
 )
 from annotations.lists.filtering import EntitySearch, Head, Mentions, PageFilters, Search
 from annotations.models import (
-    Command,
-    Entity,
-    Example,
-    LogicalForm,
-    Paraphrase,
-    Predicate,
     Production,
     SemanticTemplate,
-    Split,
     TaskCategory,
-    Utterance,
-    WorkItem,
 )
 from annotations.models.corpus import paraphrase_status_choices
 from annotations.models.predicates import predicate_kind_choices
@@ -38,6 +29,12 @@ from annotations.models.utterances import origin_choices, utterance_status_choic
 from annotations.models.work_items import WorkItemQuerySet, work_kind_choices
 from annotations.rows.composition import split_entry
 
+CHOICES_OF_FORMS = {
+    "task_category": task_category_choices,
+    "head": predicate_choices,
+    "mentions": predicate_choices,
+}
+
 
 class EntityFilters(PageFilters):
     q = EntitySearch()
@@ -45,18 +42,10 @@ class EntityFilters(PageFilters):
         label="Class", choices=[(name, name) for name in ENTITY_CLASSES]
     )
 
-    class Meta:
-        model = Entity
-        fields: list[str] = []
-
 
 class PredicateFilters(PageFilters):
     q = Search("name", "gloss")
     kind = django_filters.ChoiceFilter(label="Kind", choices=predicate_kind_choices)
-
-    class Meta:
-        model = Predicate
-        fields: list[str] = []
 
 
 class TemplateFilters(PageFilters):
@@ -76,19 +65,11 @@ class TemplateFilters(PageFilters):
     ) -> QuerySet[SemanticTemplate]:
         return rows.with_problems() if value == "yes" else rows.filter(problems=[])
 
-    class Meta:
-        model = SemanticTemplate
-        fields: list[str] = []
-
 
 class CommandsOfLogicalFormFilters(PageFilters):
     q = Search("anonymized_text")
     task_category = django_filters.ChoiceFilter(label="Task category")
     world_choices = {"task_category": task_category_choices}
-
-    class Meta:
-        model = Command
-        fields: list[str] = []
 
 
 class CommandFilters(CommandsOfLogicalFormFilters):
@@ -102,15 +83,7 @@ class CommandFilters(CommandsOfLogicalFormFilters):
     template = django_filters.NumberFilter(
         "template_id", label="Template", widget=forms.HiddenInput
     )
-    world_choices = {
-        "task_category": task_category_choices,
-        "head": predicate_choices,
-        "mentions": predicate_choices,
-    }
-
-    class Meta:
-        model = Command
-        fields: list[str] = []
+    world_choices = CHOICES_OF_FORMS
 
 
 class LogicalFormFilters(PageFilters):
@@ -118,15 +91,7 @@ class LogicalFormFilters(PageFilters):
     task_category = django_filters.ChoiceFilter(label="Task category")
     head = django_filters.ChoiceFilter("head_predicate", label="Head predicate")
     mentions = Mentions("text", label="Predicate")
-    world_choices = {
-        "task_category": task_category_choices,
-        "head": predicate_choices,
-        "mentions": predicate_choices,
-    }
-
-    class Meta:
-        model = LogicalForm
-        fields: list[str] = []
+    world_choices = CHOICES_OF_FORMS
 
 
 class ParaphraseFilters(PageFilters):
@@ -134,10 +99,6 @@ class ParaphraseFilters(PageFilters):
     status = django_filters.ChoiceFilter(label="Status", choices=paraphrase_status_choices)
     head = Head("logical_form", label="Head predicate")
     world_choices = {"head": predicate_choices}
-
-    class Meta:
-        model = Paraphrase
-        fields: list[str] = []
 
 
 class UtteranceFilters(PageFilters):
@@ -147,10 +108,6 @@ class UtteranceFilters(PageFilters):
     head = Head("logical_form", label="Head predicate")
     world_choices = {"head": predicate_choices}
 
-    class Meta:
-        model = Utterance
-        fields: list[str] = []
-
 
 class ExampleFilters(PageFilters):
     q = Search("utterance", "source_command")
@@ -159,10 +116,6 @@ class ExampleFilters(PageFilters):
     task_category = django_filters.ChoiceFilter(label="Task category")
     head = Head("logical_form", label="Head predicate")
     world_choices = {"task_category": task_category_choices, "head": predicate_choices}
-
-    class Meta:
-        model = Example
-        fields: list[str] = []
 
 
 class WorkItemFilters(PageFilters):
@@ -177,10 +130,6 @@ class WorkItemFilters(PageFilters):
     )
     person = django_filters.ChoiceFilter(label="Person", method="by_person")
     world_choices = {"person": member_choices}
-
-    class Meta:
-        model = WorkItem
-        fields: list[str] = []
 
     @property
     def qs(self) -> WorkItemQuerySet:
@@ -200,10 +149,6 @@ class WorkItemFilters(PageFilters):
 class SplitFilters(PageFilters):
     q = Search("name")
 
-    class Meta:
-        model = Split
-        fields: list[str] = []
-
 
 class ProductionFilters(PageFilters):
     q = Search("nonterminal", "expansion")
@@ -211,10 +156,6 @@ class ProductionFilters(PageFilters):
     source = django_filters.ChoiceFilter(label="File")
     nonterminal = django_filters.CharFilter(label="Nonterminal", widget=forms.HiddenInput)
     world_choices = {"task_category": grammar_category_choices, "source": grammar_file_choices}
-
-    class Meta:
-        model = Production
-        fields: list[str] = []
 
     def by_task_category(
         self, rows: QuerySet[Production], name: str, value: str
