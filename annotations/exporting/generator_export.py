@@ -1,10 +1,9 @@
-"""Verb: give out what an import took in, as the files of a generator."""
+"""Verb: export a world as the files of a generator."""
 
 from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping
-from pathlib import Path
 
 from django.db import models
 
@@ -25,21 +24,11 @@ class Part(models.TextChoices):
     PREDICATES = "predicates"
 
 
-def export_generator(world: World, folder: Path) -> list[str]:
-    """Writes the files of a generator that import as the same rows; returns their names.
-
-    Drafts stay behind: they are nobody's but their author's yet. Raises OSError where ``folder``
-    cannot be written.
-    """
-    files = generator_files(world)
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, text in files.items():
-        (folder / name).write_text(text, encoding="utf-8", newline="")
-    return list(files)
-
-
 def generator_files(world: World) -> dict[str, str]:
-    """File name → text of the world's ontology, grammar, ready templates and predicates."""
+    """Return the files of a generator that imports as the same rows: file name → text.
+
+    Drafts are left out.
+    """
     files: dict[str, str] = {}
     for part in (Part.GRAMMAR, Part.TEMPLATES, Part.ONTOLOGY, Part.PREDICATES):
         files |= files_of_part(world, part)
@@ -47,7 +36,7 @@ def generator_files(world: World) -> dict[str, str]:
 
 
 def files_of_part(world: World, part: str) -> dict[str, str]:
-    """File name → text of one ``Part`` of the world."""
+    """Return the files of one ``Part`` of the world: file name → text."""
     match part:
         case Part.GRAMMAR:
             return _grammar_files(world)

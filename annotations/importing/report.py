@@ -37,10 +37,6 @@ class ImportReport:
         return tuple(problem for problem in self.problems if problem.is_error)
 
     @property
-    def warnings(self) -> tuple[Problem, ...]:
-        return tuple(problem for problem in self.problems if not problem.is_error)
-
-    @property
     def is_refused(self) -> bool:
         return bool(self.errors)
 

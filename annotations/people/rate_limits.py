@@ -24,10 +24,6 @@ class Rate:
         """Return how many events ``key`` has left for now."""
         return self.limit - len(cache.get_many(self._places(key)))
 
-    def is_spent(self, key: str) -> bool:
-        """Return whether ``key`` has no event left for now."""
-        return self.left(key) <= 0
-
     def take(self, key: str) -> str | None:
         """Count one event of ``key`` and return its place; None where none is left."""
         places = self._places(key)

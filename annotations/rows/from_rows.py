@@ -89,11 +89,6 @@ def grammar_of(category: models.TaskCategory) -> Grammar:
     return _grammar(category, _by_source(rows))
 
 
-def production_of(row: models.Production) -> Production:
-    """Raises LanguageError where the stored text is no expansion."""
-    return _production(row.source, row.line, row.nonterminal, row.expansion)
-
-
 def template_of(row: models.SemanticTemplate) -> SemanticTemplate:
     """Raises LanguageError where the stored pattern or form cannot be read."""
     place = Position(row.source, max(row.line, 1))

@@ -33,7 +33,7 @@ function branch(children) {
 }
 
 /** The form as nested nodes; a text with unbalanced brackets gives what could be read of it. */
-export function readTree(text) {
+function readTree(text) {
   const stack = [[]];
   for (const token of tokensOf(text)) {
     if (token === "(") stack.push([]);

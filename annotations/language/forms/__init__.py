@@ -24,7 +24,7 @@ from annotations.language.forms.terms import (
     predicates,
     walk,
 )
-from annotations.language.forms.tree_distance import FormDistances, tree_distance
+from annotations.language.forms.tree_distance import FormDistances
 
 __all__ = [
     "CLASS_TOKEN",
@@ -56,6 +56,5 @@ __all__ = [
     "to_corpus",
     "to_reading",
     "to_template",
-    "tree_distance",
     "walk",
 ]

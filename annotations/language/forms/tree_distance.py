@@ -127,11 +127,6 @@ class FormDistances:
         return sum(shared[row][column] for row, column in zip(rows, columns, strict=True))
 
 
-def tree_distance(first: Form, second: Form) -> float:
-    """Return the distance of two forms; see ``FormDistances`` for many."""
-    return FormDistances().distance(first, second)
-
-
 def _label(form: Form, binders: tuple[int, ...]) -> Hashable:
     if isinstance(form, Lambda):
         return ("λ", form.type)

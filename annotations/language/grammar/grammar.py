@@ -21,7 +21,6 @@ from annotations.language.grammar.productions import (
     GrammarFile,
     Production,
     print_production,
-    print_productions,
     read_production,
     read_productions,
 )
@@ -33,7 +32,6 @@ __all__ = [
     "GrammarFile",
     "Production",
     "print_production",
-    "print_productions",
     "read_production",
     "read_productions",
 ]

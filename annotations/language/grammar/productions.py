@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from annotations.language.errors import LanguageError, Position, Problem, error_at
@@ -99,11 +98,6 @@ def read_production(line: str, position: Position | None = None) -> Production:
 def print_production(production: Production) -> str:
     """Return the line that reads back as an equal production."""
     return f"${production.nonterminal} = {print_sequence(production.expansion)}"
-
-
-def print_productions(productions: Iterable[Production]) -> str:
-    """Return a grammar file that consists of these productions, one per line."""
-    return "".join(f"{print_production(production)}\n" for production in productions)
 
 
 def _not_a_grammar(problems: list[Problem], source: str) -> Problem:

@@ -14,7 +14,7 @@ THREE = Rate("three", limit=3, seconds=60)
 
 def test_there_are_as_many_places_as_the_limit_says(db):
     assert [bool(THREE.take("a")) for _ in range(5)] == [True, True, True, False, False]
-    assert THREE.is_spent("a") and THREE.left("b") == 3
+    assert (THREE.left("a"), THREE.left("b")) == (0, 3)
 
 
 def test_a_place_is_given_back(db):

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from annotations.language.corpus import distance, read_triples
-from annotations.language.corpus.distances import Closeness, jaccard, levenshtein, words
+from annotations.language.corpus.distances import jaccard, levenshtein, words
 from tests.annotations.language.published import SHARED, needs_corpus
 
 TEXTS = st.text("abC ,", max_size=12)
@@ -29,8 +29,7 @@ def test_distances_of_known_texts() -> None:
     assert levenshtein("kitten", "sitting") == 3
     assert jaccard("Bring me tea", "bring him tea now") == pytest.approx(3 / 5)
     assert jaccard("", " , ") == 0
-    found = distance("get tea", "bring tea")
-    assert (found.edit, found.relative_edit) == (5, pytest.approx(5 / 9))
+    assert distance("get tea", "bring tea").edit == 5
 
 
 @given(TEXTS, TEXTS, TEXTS)
@@ -41,28 +40,10 @@ def test_both_distances_are_metrics(a: str, b: str, c: str) -> None:
         assert measure(a, c) <= measure(a, b) + measure(b, c) + 1e-9
 
 
-@pytest.mark.parametrize(
-    ("paraphrase", "closeness"),
-    [
-        ("bring me the tea from the shelf.", Closeness.TOO_CLOSE),
-        ("the shelf from bring me the tea", Closeness.TOO_CLOSE),
-        ("get the tea that is on the shelf", Closeness.FINE),
-        (
-            "i need something hot to drink, it stands on that old board over there",
-            Closeness.TOO_FAR,
-        ),
-        ("tea", Closeness.FINE),
-        ("fetch it", Closeness.TOO_FAR),
-    ],
-)
-def test_the_thresholds_of_the_published_task_warn(paraphrase: str, closeness: Closeness) -> None:
-    assert distance(paraphrase, "bring me the tea from the shelf").closeness == closeness
-
-
 @needs_corpus
 def test_the_published_paraphrases_are_as_far_as_published() -> None:
     # 28.02 and 0.59 over all 1,923 records; a copy that holds some of them comes close.
     data = (SHARED / "walker2019" / "paraphrasings.txt").read_bytes()
-    found = [distance(each.paraphrase, each.command) for each in read_triples(data, "").records]
-    assert mean(each.edit for each in found) == pytest.approx(28.02, abs=1)
-    assert mean(each.jaccard for each in found) == pytest.approx(0.59, abs=0.05)
+    distances = [distance(each.paraphrase, each.command) for each in read_triples(data, "").records]
+    assert mean(each.edit for each in distances) == pytest.approx(28.02, abs=1)
+    assert mean(each.jaccard for each in distances) == pytest.approx(0.59, abs=0.05)

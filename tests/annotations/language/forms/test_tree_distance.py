@@ -14,7 +14,6 @@ from annotations.language.forms import (
     children,
     equivalent,
     read_form,
-    tree_distance,
     walk,
 )
 from tests.annotations.language.random_forms import forms, renamed
@@ -32,16 +31,16 @@ def shuffled(form: Form, seed: int) -> Form:
 
 @given(forms(), forms())
 def test_it_is_symmetric_between_0_and_1_and_0_exactly_for_equivalent_forms(left, right):
-    distance = tree_distance(left, right)
+    distance = FormDistances().distance(left, right)
     assert 0 <= distance <= 1
-    assert distance == tree_distance(right, left)
+    assert distance == FormDistances().distance(right, left)
     assert (distance == 0) == equivalent(left, right)
 
 
 @given(forms(), st.integers(1, 5), st.integers())
 def test_names_of_variables_and_the_order_of_conjuncts_do_not_count(form, shift, seed):
     other = shuffled(renamed(form, shift), seed)
-    assert tree_distance(form, other) == 0
+    assert FormDistances().distance(form, other) == 0
 
 
 @given(forms(), forms(), forms())
@@ -55,7 +54,9 @@ def test_no_detour_is_shorter(first, second, third):
 @given(forms())
 def test_a_predicate_around_a_form_leaves_the_form_as_it_is(form):
     nodes = sum(1 for _ in walk(form))
-    assert tree_distance(form, Application("say", (form,))) == pytest.approx(1 / (nodes + 1))
+    assert FormDistances().distance(form, Application("say", (form,))) == pytest.approx(
+        1 / (nodes + 1)
+    )
 
 
 @pytest.mark.parametrize(
@@ -78,4 +79,4 @@ def test_a_predicate_around_a_form_leaves_the_form_as_it_is(form):
     ],
 )
 def test_distances_worked_out_by_hand(left, right, distance):
-    assert tree_distance(read_form(left), read_form(right)) == pytest.approx(distance)
+    assert FormDistances().distance(read_form(left), read_form(right)) == pytest.approx(distance)
