@@ -70,8 +70,6 @@ class Chart {
 }
 
 export function enhance(figure) {
-  if (figure.dataset.drawn) return;
-  figure.dataset.drawn = "";
   const chart = new Chart(figure);
   const embedded = readEmbedded(figure);
   if (embedded) chart.show(embedded);

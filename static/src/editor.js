@@ -93,8 +93,6 @@ function replaceText(view, text) {
 }
 
 export function enhance(field) {
-  if (field.dataset.ready) return;
-  field.dataset.ready = "";
   const checker = checkerOf(field.form ?? field);
   const view = new EditorView({
     state: EditorState.create({ doc: field.value, extensions: extensionsFor(field, checker) }),

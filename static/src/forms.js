@@ -1,5 +1,5 @@
 // Logical forms on the page: hues and brackets, the notation, copying, the tree.
-import { loadModule } from "./modules.js";
+import { enhanceBy } from "./modules.js";
 import { onFormText } from "./notation.js";
 
 const NOTATIONS = ["reading", "corpus", "template"];
@@ -91,7 +91,7 @@ async function toggleTree(form, toggle) {
   figure.className = "tree";
   figure.dataset.tree = form.querySelector('code[data-notation="corpus"]').textContent;
   form.append(figure);
-  (await loadModule("tree")).enhance(figure);
+  await enhanceBy("tree", figure);
 }
 
 function lightPair(bracket, isLit) {

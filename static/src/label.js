@@ -1,6 +1,6 @@
 // Labelling by keyboard: an answer is sent behind the scenes while the next utterance, fetched before, is
 // shown at once. Answers are sent one after another and kept in this browser until the server has them.
-import { loadModule } from "./modules.js";
+import { enhanceBy } from "./modules.js";
 import { onFormText } from "./notation.js";
 import { AnswerQueue } from "./label-queue.js";
 
@@ -13,8 +13,6 @@ function fill(place, html) {
 const TYPING = "input, textarea, select, [contenteditable], .cm-editor";
 
 export function enhance(page) {
-  if (page.dataset.ready) return;
-  page.dataset.ready = "";
   new LabelPage(page);
 }
 
@@ -204,7 +202,7 @@ class LabelPage {
   }
 
   async openEditor(field) {
-    (await loadModule("editor")).enhance(field);
+    await enhanceBy("editor", field);
     field.parentElement.querySelector(".cm-content")?.focus();
   }
 

@@ -9,7 +9,7 @@ import "./mentions.js";
 import "./suggestions.js";
 import { onContent } from "./content.js";
 import { enhanceForms } from "./forms.js";
-import { loadModule } from "./modules.js";
+import { enhanceBy } from "./modules.js";
 import { watchScrolling } from "./scrolling.js";
 
 onContent((root) => {
@@ -23,7 +23,6 @@ onContent((root) => {
     ["[data-editor]", "editor"],
     ["[data-label-page]", "label"],
   ]) {
-    const elements = within(selector);
-    if (elements.length) loadModule(name).then((module) => elements.forEach(module.enhance));
+    within(selector).forEach((element) => enhanceBy(name, element));
   }
 });

@@ -97,6 +97,5 @@ function draw(root) {
 }
 
 export function enhance(figure) {
-  if (figure.querySelector("svg")) return;
   figure.append(draw(hierarchy(readTree(figure.dataset.tree))));
 }

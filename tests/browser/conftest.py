@@ -12,6 +12,7 @@ from playwright.sync_api import Browser, BrowserContext, Page, expect
 
 from annotations.models import User
 from parser_service.runs import requesting
+from tests.browser.faults import AXE
 from tests.browser.screenshots import CHROMIUM
 from tests.browser.variants import Variant
 from tests.parser_service.worker_process import RunningWorker
@@ -43,17 +44,25 @@ def sample(transactional_db, world) -> SampleWorld:
     return fill_world(world)
 
 
+def give_window(context: BrowserContext, user: User, url: str) -> None:
+    """Log ``user`` in, in place of whoever was."""
+    client = Client()
+    client.force_login(user)
+    value = client.cookies["sessionid"].value
+    context.add_cookies([{"name": "sessionid", "value": value, "url": url}])
+
+
 @pytest.fixture
 def logged_in(browser: Browser, live_server) -> Iterator[Callable[..., BrowserContext]]:
-    """Makes browser windows in which somebody is logged in already."""
+    """Makes browser windows in which somebody, or nobody, is logged in already."""
     made: list[BrowserContext] = []
 
-    def log_in(user: User, variant: Variant | None = None, **options: object) -> BrowserContext:
-        client = Client()
-        client.force_login(user)
+    def log_in(
+        user: User | None, variant: Variant | None = None, **options: object
+    ) -> BrowserContext:
         context = browser.new_context(**(variant.options if variant else {}), **options)
-        cookie = {"name": "sessionid", "value": client.cookies["sessionid"].value}
-        context.add_cookies([{**cookie, "url": live_server.url}])
+        if user:
+            give_window(context, user, live_server.url)
         context.set_default_timeout(PATIENCE_SECONDS * 1000)
         made.append(context)
         return context
@@ -61,6 +70,14 @@ def logged_in(browser: Browser, live_server) -> Iterator[Callable[..., BrowserCo
     yield log_in
     for context in made:
         context.close()
+
+
+@pytest.fixture(scope="session")
+def axe() -> str:
+    """The source of axe-core; the tests are skipped without it."""
+    if not AXE.exists():
+        pytest.skip(f"needs axe-core, and there is none at {AXE.parent}: make install")
+    return AXE.read_text(encoding="utf-8")
 
 
 @pytest.fixture

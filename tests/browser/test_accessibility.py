@@ -1,112 +1,130 @@
-"""Every page by axe-core's rules and by keyboard, in both themes, signed in and out."""
+"""What opens on a page, and what a save answers, by axe-core's rules; and those rules themselves."""
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
-from playwright.sync_api import Page
+from playwright.sync_api import Page, expect
 
-from tests.browser.test_every_page import SETTLE, addresses
+from annotations.labelling import collect
+from annotations.models import SemanticTemplate
+from tests.browser.faults import (
+    COLOUR_AND_SIZE,
+    OF_STRUCTURE,
+    SETTLED,
+    Faults,
+    broken_rules,
+    look_for,
+    only_faults,
+    wide_and_light,
+)
+from tests.browser.variants import NARROW_DARK, WIDE_LIGHT
+from tests.browser.writing import open_editor, write
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
-AXE = Path(__file__).resolve().parents[2] / "node_modules" / "axe-core" / "axe.min.js"
-# Two frames later, also what waits for the sizes of things is done.
-GRAVE = """async (rules) => {
-  for (const _ of [1, 2]) await new Promise(requestAnimationFrame);
-  const only = rules && {runOnly: {type: "rule", values: rules}};
-  const {violations} = await axe.run(document, {resultTypes: ["violations"], ...only});
-  return violations
-    .filter(({impact}) => ["serious", "critical"].includes(impact))
-    .map(({id, nodes}) => `${id}: ` + nodes.map(
-      (node) => `${node.html.slice(0, 160)} [${node.any[0]?.message ?? ""}]`).join("; "));
-}"""
-COLOUR_AND_SIZE = [
-    "color-contrast",
-    "link-in-text-block",
-    "scrollable-region-focusable",
-    "target-size",
-]
-WIDE, NARROW = ({"width": width, "height": 800} for width in (1280, 390))
 
-# Controls that Tab passes over, and those that look the same with the focus and without it: they,
-# what they stand in and what stands in that.
-CONTROLS = """() => [...document.querySelectorAll("a[href], button, input, select, textarea, summary")]
-  .filter((element) => element.type !== "hidden" && !element.disabled)
-  .filter((element) => element.checkVisibility({visibilityProperty: true}))"""
-PASSED_OVER = f"""() => ({CONTROLS})()
-  .filter((element) => element.tabIndex !== 0)
-  .map((element) => element.outerHTML.slice(0, 160))"""
-UNMARKED = f"""() => {{
-  const look = (element) => [element, element.parentElement, element.parentElement.parentElement]
-    .map((each) => getComputedStyle(each))
-    .map((style) => [style.outline, style.boxShadow, style.backgroundColor, style.borderColor].join())
-    .join();
-  const looks_alike = (element) => {{
-    document.activeElement.blur();
-    const before = look(element);
-    element.focus();
-    return look(element) === before;
-  }};
-  return ({CONTROLS})().filter(looks_alike).map((element) => element.outerHTML.slice(0, 160));
-}}"""
+def open_keys(page: Page, url: str) -> None:
+    page.goto(f"{url}/w/home/")
+    page.keyboard.press("?")
+    expect(page.locator("#keys")).to_be_visible()
 
 
-@pytest.fixture(scope="session")
-def axe() -> str:
-    """The source of axe-core; the tests are skipped without it."""
-    if not AXE.exists():
-        pytest.skip(f"needs axe-core, and there is none at {AXE.parent}: make install")
-    return AXE.read_text(encoding="utf-8")
+def open_log_in(page: Page, url: str) -> None:
+    open_editor(page, url)
+    page.context.clear_cookies(name="sessionid")
+    write(page, "go home", "(go {room})")
+    page.get_by_role("button", name="Log in again").click()
 
 
-def faults(page: Page, axe: str, address: str) -> dict[str, list[str]]:
-    """What keeps somebody from using the page at ``address``; empty where nothing does.
-
-    In the dark theme and a narrow window, only the rules of colours and sizes are asked again. The
-    debugger evaluates axe-core, which the page's content policy does not stop.
-    """
-    page.set_viewport_size(WIDE)
-    page.emulate_media(color_scheme="light", reduced_motion="reduce")
-    page.goto(address)
-    page.wait_for_timeout(SETTLE)
-    return {what: each for what, each in listed(page, axe).items() if each}
+def open_menus(page: Page, url: str) -> None:
+    page.goto(f"{url}/w/home/")
+    for menu in page.locator("[data-menu]").all():
+        menu.evaluate("menu => { menu.open = true; }")
 
 
-def listed(page: Page, axe: str) -> dict[str, list[str]]:
-    page.evaluate(axe)
-    light = page.evaluate(GRAVE, None)
-    page.keyboard.press("Tab")  # from here on the browser shows where the focus is
-    passed_over, unmarked = page.evaluate(PASSED_OVER), page.evaluate(UNMARKED)
-    page.emulate_media(color_scheme="dark", reduced_motion="reduce")
-    page.set_viewport_size(NARROW)
-    page.wait_for_timeout(SETTLE)
-    return {
-        "light and wide": light,
-        "dark and narrow": page.evaluate(GRAVE, COLOUR_AND_SIZE),
-        "passed over by Tab": passed_over,
-        "focus not to be seen": unmarked,
-    }
+def open_completion(page: Page, url: str) -> None:
+    open_editor(page, url)
+    page.get_by_role("textbox", name="Pattern").press_sequentially("$vb")
+    expect(page.locator(".cm-tooltip-autocomplete")).to_contain_text("find | locate")
 
 
-def test_every_page_can_be_used_by_everybody(axe, sample, waiting_run, admin, page_of, live_server):
-    page = page_of(admin)
-    paths = [*addresses(sample), f"/w/home/runs/{waiting_run.pk}/", "/w/home/no-such-page/"]
-    reports = {path: faults(page, axe, f"{live_server.url}{path}") for path in paths}
-    assert {path: report for path, report in reports.items() if report} == {}
+def open_problems(page: Page, url: str) -> None:
+    open_editor(page, url)
+    write(page, "$vbfind the {kobject}", "(fnd (λ$1:e (is_a $1 {kobject})))")
+    expect(page.get_by_role("button", name="Write find for fnd")).to_be_visible()
 
 
-def test_so_can_the_pages_of_somebody_signed_out(axe, page, live_server, db):
-    for path in ("/login/", "/no-such-page/"):
-        assert faults(page, axe, f"{live_server.url}{path}") == {}, path
+def open_merge(page: Page, url: str) -> None:
+    row = SemanticTemplate.objects.first()
+    open_editor(page, url, str(row.pk))
+    page.get_by_role("textbox", name="Pattern").fill("find my $object")
+    SemanticTemplate.objects.filter(pk=row.pk).update(pattern="find a $object", version=2)
+    page.get_by_role("button", name="Save").click()
+    expect(page.get_by_role("heading", name="Merge two changes")).to_be_visible()
+
+
+def open_label_panel(key: str, field: str):
+    def open_panel(page: Page, url: str) -> None:
+        page.goto(f"{url}/w/home/label/")
+        expect(page.locator("[data-label-page][data-ready]")).to_have_count(1)
+        page.keyboard.press(key)
+        expect(page.get_by_label(field)).to_be_visible()
+
+    return open_panel
+
+
+OPENED = {
+    "the list of keys": open_keys,
+    "menus": open_menus,
+    "completions": open_completion,
+    "problems and repairs": open_problems,
+    "two changes to merge": open_merge,
+    "a form to write": open_label_panel("e", "Logical form"),
+    "a dispute": open_label_panel("d", "Why is it disputed?"),
+    "a name to mend": open_label_panel("m", "The words"),
+    "the log-in over a page": open_log_in,
+}
+
+
+def faults_in_place(page: Page) -> Faults:
+    """What is wrong in a wide light window, and with the colours and sizes of the same in a narrow dark one."""
+    page.evaluate(SETTLED)
+    wide = {**look_for(page, OF_STRUCTURE), **broken_rules(page)}
+    page.set_viewport_size(NARROW_DARK.size)
+    page.emulate_media(color_scheme="dark")
+    page.evaluate(SETTLED)
+    return {**wide, "narrow and dark": broken_rules(page, COLOUR_AND_SIZE)["axe"]}
+
+
+def test_what_opens_on_a_page_can_be_used_by_everybody(axe, sample, admin, page_of, live_server):
+    collect(sample.world, ["bring me the tea"])
+    page = page_of(admin, variant=WIDE_LIGHT)
+    page.add_init_script(axe)
+    reports = {}
+    for what, open_it in OPENED.items():
+        page.set_viewport_size(WIDE_LIGHT.size)
+        page.emulate_media(color_scheme="light")
+        open_it(page, live_server.url)
+        reports[what] = faults_in_place(page)
+    assert only_faults(reports) == {}
+
+
+def test_so_can_the_sheet_of_pages_in_a_narrow_window(axe, sample, admin, page_of, live_server):
+    page = page_of(admin, variant=NARROW_DARK)
+    page.add_init_script(axe)
+    page.goto(f"{live_server.url}/w/home/")
+    page.get_by_role("button", name="Pages").click()
+    expect(page.locator("#rail a").first).to_be_visible()
+    assert only_faults({"the sheet": broken_rules(page)}) == {}
 
 
 def test_what_is_looked_for_is_met_where_it_is(axe, page):
-    page.set_content(
-        """<html lang="en"><style>a {color: #ccc} button:focus {outline: none}</style>
-        <main><h1>Bad</h1><a href="/" tabindex="-1">grey</a><button>no focus</button></main></html>"""
+    page.add_init_script(axe)
+    page.goto(
+        """data:text/html,<html lang="en"><style>a {color: %23ccc} button:focus {outline: none}</style>
+        <main><h1>Bad</h1><a href="/" tabindex="-1">grey</a><button>no focus</button><input></main></html>"""
     )
-    report = listed(page, axe)
-    assert "color-contrast" in report["light and wide"][0]
-    assert [len(each) for each in list(report.values())[2:]] == [1, 1]
+    report = wide_and_light(page)
+    assert "color-contrast" in "".join(report["axe"])
+    faults = ("without a name", "passed over by Tab", "focus not to be seen")
+    assert [len(report[each]) for each in faults] == [1, 1, 1]

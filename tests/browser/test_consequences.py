@@ -6,7 +6,7 @@ import pytest
 from playwright.sync_api import expect
 
 from annotations.models import SemanticTemplate
-from tests.browser.test_writing_templates import open_editor, write
+from tests.browser.writing import open_editor, write
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 

@@ -1,136 +1,126 @@
-"""Every page in both widths and themes: no error, nothing unnamed, nothing beside the screen."""
+"""Every page in a narrow dark window, a wide light one and between: whole, and to be used by everybody."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
 import pytest
+from django.test import Client
+from django.urls import resolve
 from playwright.sync_api import Page
 
-from annotations.labelling import collect
-from annotations.models import Entity
-from annotations.queueing import refill
+from annotations.models import User
+from tests.browser.faults import (
+    BESIDE,
+    Faults,
+    listen,
+    narrow_and_dark,
+    only_faults,
+    wide_and_light,
+)
 from tests.browser.screenshots import PAGES
-from tests.browser.variants import VARIANTS
-from tests.sample_world import SampleWorld, comment_in
+from tests.browser.variants import NARROW_DARK, WIDE_LIGHT
+from tests.filled_world import leave_traces
+from tests.gpsr_site.routes.addresses import address
+from tests.gpsr_site.routes.policy import POLICY, YES
+from tests.sample_world import SampleWorld
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
-SETTLE = 150  # milliseconds for modules, charts and the first fragments
-
-# Visible elements that one can use, and that have no name to call them by.
-NAMELESS = """() => {
-  const named = (element) => [
-    element.getAttribute("aria-label"),
-    element.title,
-    element.innerText,
-    ...[...(element.labels ?? [])].map((label) => label.textContent),
-    document.getElementById(element.getAttribute("aria-labelledby") ?? "")?.textContent,
-    element.querySelector?.("svg[aria-label], img[alt]") ? "drawn" : "",
-  ].some((text) => text?.trim());
-  return [...document.querySelectorAll("a[href], button, input, select, textarea, summary")]
-    .filter((element) => element.type !== "hidden" && !named(element))
-    .filter((element) => element.checkVisibility({visibilityProperty: true}))
-    .map((element) => element.outerHTML.slice(0, 160));
-}"""
-TWICE = """() => {
-  const ids = [...document.querySelectorAll("[id]")].map((element) => element.id);
-  return ids.filter((id, place) => ids.indexOf(id) !== place);
-}"""
-BESIDE = """() => {
-  const width = document.documentElement.clientWidth;
-  if (document.documentElement.scrollWidth <= width) return [];
-  return [...document.querySelectorAll("main *")]
-    .filter((element) => element.getBoundingClientRect().right > width + 1)
-    .map((element) => element.outerHTML.slice(0, 120)).slice(0, 3);
-}"""
+WIDTHS = (1200, 1000, 820, 640, 320)  # 640 is a window of 1280 at a zoom of 200 %
 
 
-def addresses(sample: SampleWorld) -> list[str]:
-    """Every page there is about the sample world."""
-    run = f"runs/{sample.run.pk}"
-    collect(sample.world, ["bring me the tea"])
-    refill(sample.world)
+@pytest.fixture
+def filled(sample, annotator, admin) -> SampleWorld:
+    """The sample world after people have worked in it; ``admin`` looks after the whole site."""
+    leave_traces(sample.world, annotator, admin)
+    User.objects.filter(pk=admin.pk).update(is_superuser=True)
+    return replace(sample, form=sample.world.logical_forms.first())
+
+
+def addresses(sample: SampleWorld, client: Client) -> list[str]:
+    """Every page that ``client``, an admin, can read about the filled world: some chosen rows, then all
+    other routes that answer with a page."""
+    world = sample.world
+    production, items = world.grammar.productions.first().pk, world.work_items
     about = [
-        f"templates/{sample.template.pk}/",
-        f"grammar/{sample.world.grammar.productions.first().pk}/",
-        f"predicates/{sample.world.predicates.first().pk}/",
-        f"rename/production/{sample.world.grammar.productions.first().pk}/?new=verb&old=vbfind",
-        f"comments/production/{sample.world.grammar.productions.first().pk}/",
-        f"comments/{comment_in(sample.world).pk}/",
+        f"rename/production/{production}/?new=verb&old=vbfind",
+        f"comments/production/{production}/",
         f"history/template/{sample.template.pk}/",
-        f"forms/{sample.form.pk}/",
-        f"splits/{sample.split.pk}/",
-        f"splits/{sample.split.pk}/examples/{sample.example.pk}/",
-        f"commands/{sample.world.commands.first().pk}/",
-        f"ontology/{Entity.objects.filter(ontology__world=sample.world).first().pk}/",
-        f"utterances/{sample.world.utterances.get().pk}/",
-        f"queue/{sample.world.work_items.get().pk}/",
-        f"{run}/",
-        f"{run}/predictions/",
-        f"{run}/predictions/{sample.example.pk}/",
+        *(f"queue/{items.filter(kind=kind).first().pk}/" for kind in ("adjudication", "disputed")),
+        *("people/", "delete/"),
     ]
-    return [
-        "/",
-        "/inbox/",
-        "/password/",
-        *(f"/w/home/{path}" for path in [*PAGES.values(), *about]),
+    chosen = [
+        *("/worlds/new/", "/worlds/import/"),
+        f"/jobs/{world.jobs.first().pk}/",
+        *(f"/w/{world.name}/{path}" for path in [*PAGES.values(), *about]),
     ]
+    names = {resolve(path.partition("?")[0]).url_name for path in chosen}
+    readable = {rule.name for rule in POLICY if (rule.method, rule.admin) == ("get", YES)}
+    others = [address(name, sample) for name in sorted(readable - names)]
+    return chosen + [path for path in others if b"<h1" in b"".join(client.get(path))]
 
 
-def listen(page: Page) -> list[str]:
-    """What the page complains of, scripts refused by its policy included."""
-    complaints: list[str] = []
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.on(
-        "console",
-        lambda message: message.type in ("error", "warning") and complaints.append(message.text),
-    )
-    page.on(
-        "response",
-        lambda answer: answer.status >= 400 and complaints.append(f"{answer.status} {answer.url}"),
-    )
-    return complaints
+@dataclass(frozen=True)
+class Window:
+    """Somebody's window, and what the pages in it complain of."""
 
+    url: str
+    page: Page
+    complaints: list[str]
 
-@pytest.mark.parametrize("variant", VARIANTS, ids=str)
-def test_every_page_is_whole(variant, sample, waiting_run, admin, page_of, live_server):
-    page = page_of(admin, variant=variant)
-    complaints = listen(page)
-    for path in [*addresses(sample), f"/w/home/runs/{waiting_run.pk}/"]:
-        page.goto(f"{live_server.url}{path}")
-        page.wait_for_load_state("load")
-        page.wait_for_timeout(SETTLE)
-        faults = {
-            "complaints": list(complaints),
-            "without a name": page.evaluate(NAMELESS),
-            "ids given twice": page.evaluate(TWICE),
-            "beside the screen": page.evaluate(BESIDE),
-        }
-        assert not any(faults.values()), f"{path}: {faults}"
-        assert page.locator("h1").count() == 1, path
-        assert page.locator("html").get_attribute("lang") == "en"
-
-
-def test_no_page_is_wider_than_its_window(sample, admin, page_of, live_server):
-    """Also between the usual widths: 640 is a window of 1280 at a zoom of 200 %."""
-    page = page_of(admin)
-    for path in addresses(sample):
-        page.goto(f"{live_server.url}{path}")
-        for width in (320, 640, 820, 1000, 1200):
+    def faults(self, path: str) -> Faults:
+        """What is wrong with a page that is opened narrow and dark, and then made wide and light."""
+        page = self.page
+        page.set_viewport_size(NARROW_DARK.size)
+        page.emulate_media(color_scheme="dark")
+        page.goto(f"{self.url}{path}", wait_until="domcontentloaded")
+        report = narrow_and_dark(page)
+        for width in WIDTHS:
             page.set_viewport_size({"width": width, "height": 600})
-            assert settled(page, BESIDE) == [], f"{path} at {width}"
+            report[f"beside {width} pixels"] = page.evaluate(BESIDE)
+        page.set_viewport_size(WIDE_LIGHT.size)
+        page.emulate_media(color_scheme="light")
+        report |= wide_and_light(page)
+        report["complaints"] = list(self.complaints)
+        self.complaints.clear()
+        return report
 
 
-def settled(page, faults):
-    """What ``faults`` lists once nothing is left, or after 10 s: a chart takes its new width late."""
-    for _ in range(100):
-        if not page.evaluate(faults):
-            break
-        page.wait_for_timeout(100)
-    return page.evaluate(faults)
+@pytest.fixture
+def window_of(logged_in, axe, live_server) -> Callable[[User | None], Window]:
+    """Opens a window of somebody, or of nobody."""
+
+    def open_window(user: User | None) -> Window:
+        page = logged_in(user, variant=NARROW_DARK).new_page()
+        page.add_init_script(axe)
+        window = Window(live_server.url, page, [])
+        listen(page, window.complaints)
+        return window
+
+    return open_window
 
 
-def test_the_log_in_page_is_whole(page, live_server, db):
-    complaints = listen(page)
-    page.goto(f"{live_server.url}/login/")
-    assert page.evaluate(NAMELESS) == []
-    assert complaints == []
+def test_every_page_is_whole_and_can_be_used_by_everybody(
+    filled, waiting_run, admin, adam, window_of
+):
+    window = window_of(admin)
+    paths = [*addresses(filled, adam), f"/w/home/runs/{waiting_run.pk}/"]
+    assert "/w/home/templates/new/" in paths and len(paths) > 60
+    assert only_faults({path: window.faults(path) for path in paths}) == {}
+
+
+def test_so_are_the_pages_that_say_no(sample, annotator, window_of):
+    nobody, anna = window_of(None), window_of(annotator)
+    for window, path, status in (
+        (nobody, "/login/", None),
+        (nobody, "/no-such-page/", "404"),
+        (anna, "/w/home/no-such-page/", "404"),
+        (anna, "/w/home/runs/new/", "403"),
+    ):
+        report = window.faults(path)
+        refusals = [each for each in report["complaints"] if status and status in each]
+        assert bool(refusals) == bool(status)
+        report["complaints"] = [each for each in report["complaints"] if each not in refusals]
+        assert only_faults({path: report}) == {}

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import pytest
-from django.test import Client
 from playwright.sync_api import Page, expect
 
 from annotations.labelling import collect, label
 from annotations.models import Entity, Label, Utterance, Verdict
+from tests.browser.conftest import give_window
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
@@ -100,10 +100,7 @@ def test_answers_outlive_the_session(label_page, live_server, annotator):
     page.context.clear_cookies()
     page.keyboard.press("1")
     page.wait_for_function(f"localStorage.getItem('answers:{annotator.pk}')?.length > 2")
-    client = Client()
-    client.force_login(annotator)
-    value = client.cookies["sessionid"].value
-    page.context.add_cookies([{"name": "sessionid", "value": value, "url": live_server.url}])
+    give_window(page.context, annotator, live_server.url)
     page.goto(f"{live_server.url}/w/home/label/")
     expect(page.locator(".label-last")).to_contain_text(SAID[0])
     assert Utterance.objects.get(text=SAID[0]).status == "labelled"

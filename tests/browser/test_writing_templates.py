@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import pytest
-from django.test import Client
-from playwright.sync_api import Page, expect
+from playwright.sync_api import expect
 
 from annotations.models import Draft, SemanticTemplate, TaskCategory
+from tests.browser.conftest import give_window
+from tests.browser.writing import open_editor, write
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
@@ -23,16 +24,6 @@ def other_category(sample) -> TaskCategory:
         rule_sources=["nothing_grammar.txt"],
         template_sources=["nothing_semantics.txt"],
     )
-
-
-def open_editor(page: Page, url: str, path: str = "new") -> None:
-    page.goto(f"{url}/w/home/templates/{path}/")
-    expect(page.locator(".cm-editor")).to_have_count(2)  # until then the plain fields are there
-
-
-def write(page: Page, pattern: str, form: str) -> None:
-    page.get_by_role("textbox", name="Pattern").fill(pattern)
-    page.get_by_role("textbox", name="Logical form").fill(form)
 
 
 def test_the_editor_says_what_the_checker_finds_and_shows_what_comes_out(
@@ -94,23 +85,15 @@ def test_a_draft_comes_back_whole_and_can_be_discarded(
     expect(page.get_by_text(RESTORED)).to_have_count(0)
 
 
-def log_in_as(page: Page, user, url: str) -> None:
-    """Gives the browser window to somebody else."""
-    client = Client()
-    client.force_login(user)
-    value = client.cookies["sessionid"].value
-    page.context.add_cookies([{"name": "sessionid", "value": value, "url": url}])
-
-
 def test_a_draft_is_shown_to_its_author_alone(page_of, live_server, annotator, admin):
     page = page_of(annotator)
     open_editor(page, live_server.url)
     write(page, "go home", "(go {room})")
-    log_in_as(page, admin, live_server.url)
+    give_window(page.context, admin, live_server.url)
     open_editor(page, live_server.url)
     expect(page.get_by_text(RESTORED)).to_have_count(0)
     expect(page.locator(".cm-content").first).not_to_contain_text("go home")
-    log_in_as(page, annotator, live_server.url)
+    give_window(page.context, annotator, live_server.url)
     open_editor(page, live_server.url)
     expect(page.get_by_text(RESTORED)).to_be_visible()
 

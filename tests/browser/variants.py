@@ -18,10 +18,14 @@ class Variant:
         return f"{self.width}-{self.theme}"
 
     @property
+    def size(self) -> dict[str, int]:
+        return {"width": self.width, "height": self.height}
+
+    @property
     def options(self) -> dict[str, object]:
         """What makes a Playwright context such a window."""
         return {
-            "viewport": {"width": self.width, "height": self.height},
+            "viewport": self.size,
             "color_scheme": self.theme,
             "reduced_motion": "reduce",
         }
@@ -29,3 +33,4 @@ class Variant:
 
 SIZES = ((1280, 800), (390, 844))
 VARIANTS = [Variant(*size, theme) for size, theme in product(SIZES, ("light", "dark"))]
+WIDE_LIGHT, _, _, NARROW_DARK = VARIANTS

@@ -71,8 +71,9 @@ def answer_of_nobody(sample: SampleWorld) -> Label:
 
 def work_item(sample: SampleWorld) -> WorkItem:
     """Return what the queue asks about the utterance."""
+    row = utterance(sample)
     return WorkItem.objects.get_or_create(
-        world=sample.world, utterance=utterance(sample), kind="unlabelled", priority=10
+        world=sample.world, utterance=row, title=row.text, kind="unlabelled", priority=10
     )[0]
 
 

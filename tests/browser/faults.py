@@ -1,0 +1,158 @@
+"""What keeps somebody from using a page: looked for in the browser, by our own rules and axe-core's."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from playwright.sync_api import Page
+
+AXE = Path(__file__).resolve().parents[2] / "node_modules" / "axe-core" / "axe.min.js"
+
+# The modules have taken over what they are for, no fragment is on its way, and two frames have passed,
+# so that also what waits for the sizes of things is done.
+SETTLED = """async () => {
+  const frame = () => new Promise(requestAnimationFrame);
+  const enhanced = "[data-chart], [data-tree], [data-editor], [data-label-page]";
+  const isBusy = () =>
+    [...document.querySelectorAll(enhanced)].some((element) => !("ready" in element.dataset)) ||
+    document.querySelector(".htmx-request") ||
+    [...document.querySelectorAll("[aria-busy=true]")].some((each) => each.checkVisibility());
+  do await frame(); while (isBusy());
+  await frame();
+}"""
+
+CONTROLS = """() => [...document.querySelectorAll("a[href], button, input, select, textarea, summary")]
+  .filter((element) => element.type !== "hidden" && element.checkVisibility({visibilityProperty: true}))"""
+ENABLED = f"() => ({CONTROLS})().filter((element) => !element.disabled)"
+# Controls without a name to call them by.
+NAMELESS = f"""() => {{
+  const named = (element) => [
+    element.getAttribute("aria-label"),
+    element.title,
+    element.innerText,
+    ...[...(element.labels ?? [])].map((label) => label.textContent),
+    document.getElementById(element.getAttribute("aria-labelledby") ?? "")?.textContent,
+    element.querySelector?.("svg[aria-label], img[alt]") ? "drawn" : "",
+  ].some((text) => text?.trim());
+  return ({CONTROLS})().filter((element) => !named(element))
+    .map((element) => element.outerHTML.slice(0, 160));
+}}"""
+TWICE = """() => {
+  const ids = [...document.querySelectorAll("[id]")].map((element) => element.id);
+  return ids.filter((id, place) => ids.indexOf(id) !== place);
+}"""
+HEADINGS = """() => {
+  const titles = document.querySelectorAll("h1");
+  return titles.length === 1 ? [] : [`${titles.length} h1`];
+}"""
+LANGUAGE = """() => document.documentElement.lang === "en" ? [] : [document.documentElement.lang]"""
+# Controls that Tab passes over, and those that look the same with the focus and without it: they,
+# what they stand in and what stands in that.
+PASSED_OVER = f"""() => ({ENABLED})()
+  .filter((element) => element.tabIndex !== 0)
+  .map((element) => element.outerHTML.slice(0, 160))"""
+UNMARKED = f"""() => {{
+  const look = (element) => [element, element.parentElement, element.parentElement.parentElement]
+    .map((each) => getComputedStyle(each))
+    .map((style) => [style.outline, style.boxShadow, style.backgroundColor, style.borderColor].join())
+    .join();
+  const looks_alike = (element) => {{
+    document.activeElement.blur();
+    const before = look(element);
+    element.focus();
+    return look(element) === before;
+  }};
+  return ({ENABLED})().filter(looks_alike).map((element) => element.outerHTML.slice(0, 160));
+}}"""
+# What is wider than the window. A chart takes its new width some frames late.
+BESIDE = """async () => {
+  const root = document.documentElement;
+  for (let frames = 0; frames < 600 && root.scrollWidth > root.clientWidth; frames += 1)
+    await new Promise(requestAnimationFrame);
+  if (root.scrollWidth <= root.clientWidth) return [];
+  return [...document.querySelectorAll("body *")]
+    .filter((element) => element.getBoundingClientRect().right > root.clientWidth + 1)
+    .map((element) => element.outerHTML.slice(0, 120)).slice(0, 3);
+}"""
+
+OF_STRUCTURE = {
+    "without a name": NAMELESS,
+    "ids given twice": TWICE,
+    "headings": HEADINGS,
+    "language": LANGUAGE,
+    "beside the screen": BESIDE,
+}
+OF_FOCUS = {"passed over by Tab": PASSED_OVER, "focus not to be seen": UNMARKED}
+
+BROKEN_RULES = """async (rules) => {
+  const only = rules && {runOnly: {type: "rule", values: rules}};
+  const {violations} = await axe.run(document, {resultTypes: ["violations"], selectors: false, ...only});
+  return violations
+    .filter(({impact}) => ["serious", "critical"].includes(impact))
+    .map(({id, nodes}) => `${id}: ` + nodes.map(
+      (node) => `${node.html.slice(0, 160)} [${node.any[0]?.message ?? ""}]`).join("; "));
+}"""
+# The rules whose answers depend on the theme and the width.
+COLOUR_AND_SIZE = [
+    "color-contrast",
+    "link-in-text-block",
+    "scrollable-region-focusable",
+    "target-size",
+]
+
+Faults = dict[str, list[str]]
+
+
+def listen(page: Page, complaints: list[str]) -> None:
+    """Add to ``complaints`` whatever the page complains of, scripts refused by its policy included."""
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on(
+        "console",
+        lambda message: message.type in ("error", "warning") and complaints.append(message.text),
+    )
+    page.on(
+        "response",
+        lambda answer: answer.status >= 400 and complaints.append(f"{answer.status} {answer.url}"),
+    )
+
+
+def look_for(page: Page, scripts: dict[str, str]) -> Faults:
+    """Return what each of ``scripts`` lists in ``page``, asked in one go."""
+    asked = ", ".join(f"{key!r}: await ({script})()" for key, script in scripts.items())
+    return page.evaluate(f"async () => ({{{asked}}})")
+
+
+def focus_faults(page: Page) -> Faults:
+    """Return the controls that a keyboard does not reach, or where nobody sees that it has."""
+    page.keyboard.press("Tab")  # from here on the browser shows where the focus is
+    return look_for(page, OF_FOCUS)
+
+
+def broken_rules(page: Page, rules: list[str] | None = None) -> Faults:
+    """Return the serious violations that axe-core finds; of ``rules``, where they are given.
+
+    The page needs axe-core as its init script, which its content policy does not stop.
+    """
+    return {"axe": page.evaluate(BROKEN_RULES, rules)}
+
+
+def narrow_and_dark(page: Page) -> Faults:
+    """Return the faults of a page that was opened in a narrow and dark window."""
+    page.evaluate(SETTLED)
+    faults = {**look_for(page, OF_STRUCTURE), **broken_rules(page, COLOUR_AND_SIZE)}
+    return {f"{what}, narrow and dark": each for what, each in faults.items()}
+
+
+def wide_and_light(page: Page) -> Faults:
+    """Return the faults of a page in a wide and light window: by all rules of axe-core, and by keyboard."""
+    page.evaluate(SETTLED)
+    return {**look_for(page, OF_STRUCTURE), **broken_rules(page), **focus_faults(page)}
+
+
+def only_faults(reports: dict[str, Faults]) -> dict[str, Faults]:
+    """Return the part of ``reports`` in which something is listed."""
+    listed = {
+        where: {what: each for what, each in report.items() if each}
+        for where, report in reports.items()
+    }
+    return {where: report for where, report in listed.items() if report}

@@ -1,0 +1,69 @@
+"""What people leave in a world that they work in together, so that every page has something to show."""
+
+from __future__ import annotations
+
+from annotations.commenting import SUBJECTS, add_comment
+from annotations.editing.edits import add, change, delete
+from annotations.labelling import collect
+from annotations.models import (
+    Entity,
+    Job,
+    JobKind,
+    Paraphrase,
+    SemanticTemplate,
+    User,
+    Utterance,
+    Verdict,
+    WorkKind,
+    World,
+)
+from annotations.models.background import Status
+from annotations.queueing import answer, refill, set_share
+
+SAID = ["bring me the tea", "go to the kitchen now", "where is my milk"]
+
+
+def leave_traces(world: World, annotator: User, admin: User) -> None:
+    """Let ``annotator`` and ``admin`` edit, delete, comment and label in ``world``, and differ once.
+
+    Afterwards some templates are disputed, in conflict or match nothing, and an utterance has two labels.
+    """
+    _edit(world, annotator, admin)
+    template = SemanticTemplate.objects.filter(grammar__world=world).first()
+    text = f"Is this what people say? @{admin.get_username()} please look."
+    add_comment(world, SUBJECTS["template"], template, text, annotator)
+    add_comment(world, SUBJECTS["template"], template, "Yes, they do.", admin)
+    collect(world, SAID, by=annotator)
+    set_share(world, WorkKind.UNLABELLED, 100)
+    refill(world)
+    spoken, disputed = Utterance.objects.filter(world=world)[:2]
+    answer(spoken, Verdict.FORM, '( go " <room> " )', annotator, spoken.version, 4.2)
+    answer(spoken, Verdict.UNKNOWN, "", admin, spoken.version, 6.0)
+    reason = "Whose milk is meant?"
+    answer(disputed, Verdict.DISPUTE, "", admin, disputed.version, 8.0, reason)
+    refill(world)
+    texts = dict.fromkeys(("prompt", "utterance"), "Fetch me the tea.")
+    forms = dict.fromkeys(("grounded_form", "logical_form"), "UNKNOWN")
+    Paraphrase.objects.create(
+        world=world, position=0, edit_distance=3, jaccard_distance=0.5, **texts, **forms
+    )
+    Job.objects.create(
+        world=world,
+        world_name=world.name,
+        kind=JobKind.GENERATE,
+        created_by=annotator,
+        status=Status.FAILED,
+        failure="The worker was stopped.",
+    )
+
+
+def _edit(world: World, annotator: User, admin: User) -> None:
+    category = world.grammar.task_categories.first()
+    first = SemanticTemplate.objects.filter(grammar__world=world).first()
+    change(first, {"status": "disputed"}, annotator, first.version)
+    for pattern, form in ((first.pattern, "UNKNOWN"), ("nobody says this", "UNKNOWN")):
+        add(SemanticTemplate.for_category(category, pattern=pattern, form=form), annotator)
+    entity = Entity.objects.filter(ontology__world=world).first()
+    change(entity, {"aliases": ["cuppa"]}, admin, entity.version)
+    last = Entity.objects.filter(ontology__world=world).last()
+    delete(last, admin, last.version)
