@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import sqrt
 
 from annotations.language.errors import LanguageError
 from annotations.language.forms import canonical_text, equivalent, read_form
-
-Z_95 = 1.959963984540054
+from parser_service.analysis.proportions import wilson_interval
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,14 +60,3 @@ def score(judgements: Sequence[Judgement]) -> Score:
         equivalent=sum(judgement.is_equivalent for judgement in judgements) / count,
         well_formed=sum(judgement.is_well_formed for judgement in judgements) / count,
     )
-
-
-def wilson_interval(correct: int, count: int) -> tuple[float, float]:
-    """Return the 95 % score interval of a proportion (Wilson 1927). Unlike the usual ± it is also right
-    near 0 and 1 and for few examples. Both ends are in 0–1."""
-    share = correct / count
-    spread = Z_95**2 / count
-    centre = share + spread / 2
-    reach = sqrt(spread * (share * (1 - share) + spread / 4))
-    low, high = (centre - reach) / (1 + spread), (centre + reach) / (1 + spread)
-    return max(0.0, low), min(1.0, high)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from annotations.language.forms.canonical import canonical_text, canonicalize, equivalent
 from annotations.language.forms.conjunct_order import ConjunctOrder, conjunctions, head_of, order_of
-from annotations.language.forms.difference import Change, diff
+from annotations.language.forms.difference import Change, Difference, diff
 from annotations.language.forms.logic import read_form
 from annotations.language.forms.printing import to_corpus, to_reading, to_template
 from annotations.language.forms.spans import Span, read_spans
@@ -33,6 +33,7 @@ __all__ = [
     "Change",
     "ConjunctOrder",
     "Constant",
+    "Difference",
     "Form",
     "FormDistances",
     "Lambda",
@@ -45,10 +46,12 @@ __all__ = [
     "conjunctions",
     "depth",
     "diff",
+    "diff_unordered",
     "equivalent",
     "free_variables",
     "head_of",
     "head_predicate",
+    "order_like",
     "order_of",
     "predicates",
     "read_form",

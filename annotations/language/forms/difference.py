@@ -15,7 +15,7 @@ from operator import attrgetter
 
 from annotations.language.forms.canonical import canonicalize
 from annotations.language.forms.printing import to_reading
-from annotations.language.forms.terms import Application, Form, Lambda, children, walk
+from annotations.language.forms.terms import Application, Form, Lambda, children, size
 
 
 class Change(StrEnum):
@@ -70,7 +70,7 @@ def _pair(left: Form, right: Form) -> Difference:
     if left == right and not children(left):
         return Difference(Change.SAME, left, right, 0)
     if type(left) is not type(right) or not isinstance(left, Lambda | Application):
-        return Difference(Change.CHANGED, left, right, max(_size(left), _size(right)))
+        return Difference(Change.CHANGED, left, right, max(size(left), size(right)))
     aligned = _align(children(left), children(right))
     is_same = _head(left) == _head(right)
     cost = sum(child.cost for child in aligned) + (not is_same)
@@ -79,10 +79,10 @@ def _pair(left: Form, right: Form) -> Difference:
 
 def _align(left: tuple[Form, ...], right: tuple[Form, ...]) -> tuple[Difference, ...]:
     """Return the cheapest script; ``best[j]`` aligns the left nodes seen so far with the first j of right."""
-    added = [Difference(Change.ADDED, None, form, _size(form)) for form in right]
+    added = [Difference(Change.ADDED, None, form, size(form)) for form in right]
     best = [(sum(each.cost for each in added[:j]), tuple(added[:j])) for j in range(len(added) + 1)]
     for form in left:
-        removed = Difference(Change.REMOVED, form, None, _size(form))
+        removed = Difference(Change.REMOVED, form, None, size(form))
         row = [_after(best[0], removed)]
         for j, other in enumerate(right):
             scripts = (
@@ -99,10 +99,6 @@ def _after(
     script: tuple[int, tuple[Difference, ...]], step: Difference
 ) -> tuple[int, tuple[Difference, ...]]:
     return script[0] + step.cost, (*script[1], step)
-
-
-def _size(form: Form) -> int:
-    return sum(1 for _ in walk(form))
 
 
 def _head(form: Form) -> str:

@@ -95,6 +95,11 @@ def depth(form: Form) -> int:
     return 0
 
 
+def size(form: Form) -> int:
+    """Return how many λs, applications and leaves a form consists of."""
+    return sum(1 for _ in walk(form))
+
+
 def predicates(form: Form) -> tuple[str, ...]:
     """Return the names of the predicates in order of appearance, including repetitions."""
     return tuple(str(node.predicate) for node in walk(form) if isinstance(node, Application))

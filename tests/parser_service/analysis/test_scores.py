@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from parser_service.analysis.scores import NO_ANSWER, Judgement, judge, score, wilson_interval
+from parser_service.analysis.scores import NO_ANSWER, Judgement, judge, score
 
 GOLD = '( find ( lambda $1 e ( is_a $1 " <object> " ) ( at $1 " <room> " ) ) )'
 
@@ -39,16 +39,3 @@ def test_a_score_counts_exact_matches():
 def test_nothing_cannot_be_scored():
     with pytest.raises(ValueError, match="no example"):
         score([])
-
-
-@pytest.mark.parametrize(
-    ("correct", "count", "low", "high"),
-    [
-        (0, 10, 0.0, 0.2775),
-        (5, 10, 0.2366, 0.7634),
-        (10, 10, 0.7225, 1.0),
-        (81, 263, 0.2553, 0.3662),
-    ],
-)
-def test_the_interval_is_wilsons(correct, count, low, high):
-    assert wilson_interval(correct, count) == pytest.approx((low, high), abs=5e-5)

@@ -1,0 +1,136 @@
+"""Wins, losses and ties of every pair of runs, and what they mean."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from annotations.language.english import say_count
+from parser_service.analysis.arrays import Bools, Ints
+from parser_service.analysis.comparing.significance import (
+    SAMPLES,
+    holm,
+    mcnemar,
+    paired_bootstrap,
+)
+from parser_service.analysis.resampling import SEED
+
+LEVEL = 0.05  # a corrected p-value up to this is called significant
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Run ``first`` against run ``second``, by their places in the matrix, on ``count`` examples.
+
+    ``wins`` counts the examples on which the first alone is right, ``losses`` the second alone, and ``ties``
+    the rest. ``difference`` is first minus second accuracy, a fraction of 1, with the 95 % interval
+    and the p-value of a paired bootstrap. ``corrected_p`` is McNemar's p after Holm's correction.
+    """
+
+    first: int
+    second: int
+    count: int
+    wins: int
+    losses: int
+    difference: float
+    interval: tuple[float, float]
+    bootstrap_p: float
+    mcnemar_p: float
+    corrected_p: float
+
+    @property
+    def ties(self) -> int:
+        return self.count - self.wins - self.losses
+
+    @property
+    def is_significant(self) -> bool:
+        return self.corrected_p <= LEVEL
+
+    def meaning(self, names: Sequence[str]) -> str:
+        """Return the result as a sentence; ``names`` are those of all runs, in order."""
+        first, second = names[self.first], names[self.second]
+        if not self.wins + self.losses:
+            return f"{first} and {second} are right on the same examples."
+        if self.wins == self.losses:
+            return (
+                f"{first} and {second} are equally accurate, each right on "
+                f"{say_count(self.wins, 'example')} where the other is not."
+            )
+        sign = 1 if self.difference >= 0 else -1
+        better, worse = (first, second)[::sign]
+        low, high = sorted(100 * sign * end for end in self.interval)
+        evidence = (
+            f"95 % interval {_number(low)} to {_number(high)} points, "
+            f"{_p_value(self.corrected_p)} by McNemar's test with Holm's correction"
+        )
+        points = _number(abs(100 * self.difference))
+        if self.is_significant:
+            return f"{better} is more accurate than {worse} by {points} points ({evidence})."
+        return (
+            f"{better} is ahead of {worse} by {points} points here, but that may be chance "
+            f"({evidence})."
+        )
+
+
+def count_wins(correct: Bools) -> Ints:
+    """Return on how many examples one run is right and another is wrong.
+
+    Args:
+        correct: whether each run is right on each example, [runs, examples].
+
+    Returns:
+        Counts, [runs, runs]: row the run that is right, column the run that is wrong.
+    """
+    packed = np.packbits(correct, axis=1)  # [runs, bytes]
+    # Bits that fill up the last byte are 0, so they are wins of nobody.
+    rows = [np.bitwise_count(right & ~packed).sum(axis=1, dtype=np.int64) for right in packed]
+    return np.array(rows, dtype=np.int64).reshape(len(packed), len(packed))
+
+
+def compare_runs(
+    correct: Bools, seed: int = SEED, samples: int = SAMPLES
+) -> tuple[Comparison, ...]:
+    """Compare every pair of runs on the same examples.
+
+    Args:
+        correct: whether each run is right on each example, [runs, examples].
+        seed: of the bootstrap; equal seeds give equal results.
+        samples: of the bootstrap.
+
+    Raises:
+        ValueError: there is no example.
+    """
+    count = correct.shape[1]
+    wins = count_wins(correct)
+    pairs = list(combinations(range(len(correct)), 2))
+    p_values = mcnemar([wins[pair] for pair in pairs], [wins[pair[::-1]] for pair in pairs])
+    comparisons = []
+    for (first, second), p, corrected in zip(pairs, p_values, holm(p_values), strict=True):
+        won, lost = int(wins[first, second]), int(wins[second, first])
+        interval, bootstrap_p = paired_bootstrap(won, lost, count, seed, samples)
+        comparisons.append(
+            Comparison(
+                first=first,
+                second=second,
+                count=count,
+                wins=won,
+                losses=lost,
+                difference=(won - lost) / count,
+                interval=interval,
+                bootstrap_p=bootstrap_p,
+                mcnemar_p=float(p),
+                corrected_p=float(corrected),
+            )
+        )
+    return tuple(comparisons)
+
+
+def _number(points: float) -> str:
+    return f"{round(points, 1) + 0.0:.1f}".replace("-", "−")  # + 0.0 makes −0.0 a 0
+
+
+def _p_value(p: float) -> str:
+    return "p < 0.001" if p < 0.001 else f"p = {p:.3f}"

@@ -1,0 +1,14 @@
+"""Read what a parser wrote, which may be no form."""
+
+from __future__ import annotations
+
+from annotations.language.errors import LanguageError
+from annotations.language.forms import Form, read_form
+
+
+def read_or_none(text: str) -> Form | None:
+    """Return the form that a text writes in any notation; None where it is not a form."""
+    try:
+        return read_form(text)
+    except LanguageError:
+        return None
