@@ -25,6 +25,7 @@ from annotations.language.forms.terms import (
     walk,
 )
 from annotations.language.forms.tree_distance import FormDistances
+from annotations.language.forms.unordered_difference import diff_unordered, order_like
 
 __all__ = [
     "CLASS_TOKEN",
