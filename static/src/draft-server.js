@@ -2,7 +2,7 @@
 // with longer pauses while the server does not answer.
 import { csrfToken } from "./csrf.js";
 import { deviceName } from "./draft-storage.js";
-import { askToLogIn, isLogin } from "./log-in.js";
+import { askToLogIn, isLogin, session } from "./log-in.js";
 
 const PAUSE = 800; // milliseconds without a key before it is sent
 const FIRST_RETRY = 2000;
@@ -71,8 +71,9 @@ export class DraftServer {
     const sent = this.waiting;
     this.waiting = null;
     this.isSending = true;
+    const { logIns } = session;
     try {
-      await this.take(await this.post(sent), sent);
+      await this.take(await this.post(sent), sent, logIns);
     } catch {
       this.fail(sent);
     }
@@ -80,8 +81,12 @@ export class DraftServer {
     if (this.waiting && !this.isFailing) this.after(PAUSE);
   }
 
-  async take(answer, sent) {
+  async take(answer, sent, logIns) {
     this.isFailing = false;
+    if (answer.redirected && logIns !== session.logIns) {
+      this.waiting ??= sent; // it was sent before the person was back
+      return;
+    }
     this.isLoggedOut = isLogin(answer);
     if (this.isLoggedOut) {
       this.waiting ??= sent;

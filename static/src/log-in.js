@@ -1,8 +1,10 @@
 // Logging in again on the page where the session has ended, so that nothing typed there is lost.
-import { csrfToken } from "./csrf.js";
+import { csrfToken, useToken } from "./csrf.js";
 
 const dialog = () => document.getElementById("log-in-again");
 const loginPath = () => document.querySelector('meta[name="login-url"]')?.content;
+// How often the person has logged in on this page: what was asked before says nothing of the session since.
+export const session = { logIns: 0 };
 let whenBack = [];
 
 /** Whether an answer is the page for logging in, to which people without a session are sent. */
@@ -35,6 +37,8 @@ async function logIn(form) {
   }
   if (note.textContent) return;
   form.elements.password.value = "";
+  session.logIns += 1;
+  useToken(); // logging in has changed it
   dialog().close();
   const waiting = whenBack;
   whenBack = [];

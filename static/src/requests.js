@@ -2,8 +2,10 @@
 // session goes to the log-in page, and a server that does not answer is said so.
 import htmx from "htmx.org";
 import { csrfToken } from "./csrf.js";
+import { session } from "./log-in.js";
 
 const answers = new WeakMap();
+const askedAfter = new WeakMap(); // request → how often the person had logged in before it
 const isPoll = (element) => /\bevery\b/.test(element.getAttribute("hx-trigger") || "");
 
 function sameContent(target, fragment) {
@@ -26,7 +28,7 @@ function toLogin(xhr) {
   if (new URL(xhr.responseURL).pathname !== login) return false;
   // Somebody writes here: they are told beside the form, and log in without leaving it.
   if (document.querySelector("form[data-draft-url]")) {
-    document.dispatchEvent(new CustomEvent("session:ended"));
+    if (askedAfter.get(xhr) === session.logIns) document.dispatchEvent(new CustomEvent("session:ended"));
     return true;
   }
   location.assign(`${login}?next=${encodeURIComponent(location.pathname + location.search)}`);
@@ -40,6 +42,7 @@ document.addEventListener("htmx:configRequest", (event) => {
 
 document.addEventListener("htmx:beforeRequest", (event) => {
   if (document.hidden && isPoll(event.detail.elt)) event.preventDefault();
+  askedAfter.set(event.detail.xhr, session.logIns);
 });
 
 document.addEventListener("htmx:oobBeforeSwap", (event) => {

@@ -204,6 +204,20 @@ def test_a_lost_connection_loses_nothing(page_of, live_server, annotator):
     assert Draft.objects.get().fields["pattern"] == "go home"
 
 
+# Lets the answer to a draft that is sent from now on arrive only once `release` is called.
+HOLD_ANSWERS = """() => {
+  const released = new Promise((resolve) => { window.release = resolve; });
+  const send = window.fetch;
+  window.fetch = async (address, options) => {
+    const answer = await send(address, options);
+    if (!String(address).includes("/drafts/")) return answer;
+    document.documentElement.dataset.held = "";
+    await released;
+    return answer;
+  };
+}"""
+
+
 def test_an_expired_session_is_renewed_in_place(page_of, live_server, annotator):
     annotator.set_password("a long password")
     annotator.save()
@@ -211,14 +225,23 @@ def test_an_expired_session_is_renewed_in_place(page_of, live_server, annotator)
     open_editor(page, live_server.url)
     page.context.clear_cookies(name="sessionid")
     write(page, "go to the {room}", "(go {room})")
-    page.get_by_role("button", name="Log in again").click()
+    log_in_again = page.get_by_role("button", name="Log in again")
+    expect(log_in_again).to_be_visible()
+    page.evaluate(HOLD_ANSWERS)
+    write(page, "go to the {room}", "(go {beacon})")
+    page.locator("html[data-held]").wait_for()  # sent without a session, answered after the log-in
+    log_in_again.click()
     password = page.get_by_label(f"Password of {annotator}")
     password.fill("wrong")
     password.press("Enter")
     expect(page.get_by_text("correct username and password")).to_be_visible()
     password.fill("a long password")
     password.press("Enter")
+    expect(page.get_by_text("You are logged in again")).to_be_visible()
+    page.evaluate("window.release()")
     expect(page.get_by_text("Draft saved")).to_be_visible()
+    write(page, "go to the {room}", "(go {room})")
+    expect(page.locator("#preview")).to_contain_text("1 command")
     page.get_by_role("button", name="Save").click()
     expect(page.locator(".message")).to_contain_text("Saved")
 
