@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from parser_service.analysis.reading import NO_FORM
 from parser_service.analysis.slicing.accuracies import (
     SliceAccuracies,
     accuracy_by,
     accuracy_where,
 )
 from parser_service.analysis.slicing.example_values import (
-    NO_FORM,
     are_seen,
     bin_names,
     count_words,

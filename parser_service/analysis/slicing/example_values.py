@@ -15,9 +15,8 @@ import numpy as np
 from annotations.language.forms import Form, depth, head_predicate
 from parser_service.analysis.arrays import Bools
 from parser_service.analysis.labels import encode
-from parser_service.analysis.reading import read_or_none
+from parser_service.analysis.reading import NO_FORM, read_or_none
 
-NO_FORM = "not a form"
 # Lengths at which a bin begins, in words; the published paraphrases have 2 to 34, the median is 9.
 BIN_STARTS = (1, 5, 9, 13, 17)
 

@@ -1,0 +1,25 @@
+"""Propose why an answer is wrong: one error category, its reason, and the runners-up."""
+
+from __future__ import annotations
+
+from parser_service.analysis.categories.error_categories import DESCRIPTIONS, ErrorCategory
+from parser_service.analysis.categories.evidence import (
+    Audit,
+    ErrorEvidence,
+    Neighbour,
+    RunEvidence,
+)
+from parser_service.analysis.categories.proposing import Proposals, propose_category
+from parser_service.analysis.categories.structure import Proposal
+
+__all__ = [
+    "DESCRIPTIONS",
+    "Audit",
+    "ErrorCategory",
+    "ErrorEvidence",
+    "Neighbour",
+    "Proposal",
+    "Proposals",
+    "RunEvidence",
+    "propose_category",
+]

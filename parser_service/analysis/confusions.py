@@ -1,0 +1,165 @@
+"""Which predicates are taken for which, and which argument is filled with what instead.
+
+Both count pairs of label and answer; each distinct pair is read once, so that a million pairs cost
+little more than their distinct ones.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from annotations.language.forms import (
+    Application,
+    Difference,
+    Form,
+    diff_unordered,
+    head_predicate,
+)
+from annotations.language.predicates import ArgumentKind, argument_kind
+from parser_service.analysis.arrays import Ints
+from parser_service.analysis.labels import distinct_pairs, encode
+from parser_service.analysis.reading import NO_FORM, read_or_none
+
+NOTHING = "nothing"
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class HeadConfusion:
+    """``counts[i, j]`` of the pairs have a label with head predicate ``heads[i]`` and an answer with
+    ``heads[j]``. Heads of labels come first, the most frequent ones at the front."""
+
+    heads: tuple[str, ...]
+    counts: Ints  # [heads, heads]
+
+    def errors(self) -> list[tuple[str, str, int]]:
+        """Return (label's head, answer's head, count) for each confusion, the most frequent first."""
+        rows, columns = np.nonzero(self.counts)
+        cells = [
+            (self.heads[i], self.heads[j], int(self.counts[i, j]))
+            for i, j in zip(rows.tolist(), columns.tolist(), strict=True)
+            if i != j
+        ]
+        return sorted(cells, key=lambda cell: (-cell[2], cell[0], cell[1]))
+
+
+@dataclass(frozen=True, slots=True)
+class SlotConfusion:
+    """In ``count`` pairs, argument ``place`` (from 1) of ``predicate`` is filled with the kind ``gold`` in the
+    label and ``predicted`` in the answer. Kinds are those of signatures, or ``NOTHING``."""
+
+    predicate: str
+    place: int
+    gold: str
+    predicted: str
+    count: int
+
+    @property
+    def is_error(self) -> bool:
+        return self.gold != self.predicted
+
+
+def confuse_heads(gold: Sequence[str], predicted: Sequence[str]) -> HeadConfusion:
+    """Count head predicates of labels against those of answers.
+
+    Args:
+        gold: forms as text, [pairs].
+        predicted: the answers in the same order; what is not a form counts as ``NO_FORM``.
+
+    Raises:
+        ValueError: there are not as many answers as labels.
+    """
+    totals: Counter[tuple[str, str]] = Counter()
+    for left, right, count in _distinct(gold, predicted):
+        totals[_head(left), _head(right)] += count
+    labels: Counter[str] = Counter()
+    answers: Counter[str] = Counter()
+    for (said, answered), count in totals.items():
+        labels[said] += count
+        answers[answered] += count
+    heads = tuple(dict.fromkeys((*_by_frequency(labels), *_by_frequency(answers))))
+    places = {head: place for place, head in enumerate(heads)}
+    counts = np.zeros((len(heads), len(heads)), dtype=np.int64)
+    for (said, answered), count in totals.items():
+        counts[places[said], places[answered]] = count
+    return HeadConfusion(heads, counts)
+
+
+def confuse_slots(gold: Sequence[str], predicted: Sequence[str]) -> tuple[SlotConfusion, ...]:
+    """Count what fills the arguments of predicates that label and answer share.
+
+    Predicates correspond as in the difference of the two forms, whatever the order of conjuncts. Slots
+    that a variable fills in both are left out. Confusions come first, the most frequent at the front.
+
+    Args:
+        gold: forms as text, [pairs].
+        predicted: the answers in the same order; what is not a form has no slots.
+
+    Raises:
+        ValueError: there are not as many answers as labels.
+    """
+    totals: Counter[tuple[str, int, str, str]] = Counter()
+    for left, right, count in _distinct(gold, predicted):
+        if left is not None and right is not None:
+            for slot in _slots(diff_unordered(left, right)):
+                totals[slot] += count
+    rows = [SlotConfusion(*slot, count) for slot, count in totals.items()]
+    return tuple(
+        sorted(
+            rows,
+            key=lambda row: (
+                not row.is_error,
+                -row.count,
+                row.predicate,
+                row.place,
+                row.gold,
+                row.predicted,
+            ),
+        )
+    )
+
+
+def _distinct(
+    gold: Sequence[str], predicted: Sequence[str]
+) -> Iterator[tuple[Form | None, Form | None, int]]:
+    """Yield each distinct pair, read, and how often it occurs."""
+    if len(gold) != len(predicted):
+        raise ValueError(f"{len(predicted)} answers do not fit {len(gold)} labels.")
+    labels, answers = encode(gold), encode(predicted)
+    left = [read_or_none(text) for text in labels.values]
+    right = [read_or_none(text) for text in answers.values]
+    pairs = distinct_pairs(labels.codes, answers.codes)
+    for first, second, count in zip(*(column.tolist() for column in pairs), strict=True):
+        yield left[first], right[second], count
+
+
+def _head(form: Form | None) -> str:
+    return NO_FORM if form is None else head_predicate(form)
+
+
+def _by_frequency(counts: Counter[str]) -> list[str]:
+    return sorted(counts, key=lambda name: (-counts[name], name))
+
+
+def _slots(node: Difference) -> Iterator[tuple[str, int, str, str]]:
+    """Yield predicate, place and both fillers for each slot of the predicates that correspond."""
+    left, right = node.left, node.right
+    if (
+        isinstance(left, Application)
+        and isinstance(right, Application)
+        and left.predicate == right.predicate != "and"
+    ):
+        for place in range(max(len(left.arguments), len(right.arguments))):
+            gold, predicted = _filler(left, place), _filler(right, place)
+            if not gold == predicted == ArgumentKind.VARIABLE:
+                yield str(left.predicate), place + 1, gold, predicted
+    for child in node.children:
+        yield from _slots(child)
+
+
+def _filler(form: Application, place: int) -> str:
+    has_place = place < len(form.arguments)
+    return str(argument_kind(form.arguments[place])) if has_place else NOTHING
