@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from annotations.generation.generating import generate_pairs
 from annotations.importing import import_generator
 from annotations.models import (
-    Comment,
     Example,
     LogicalForm,
     Paraphrase,
@@ -95,15 +95,16 @@ def answer(run: TrainingRun, example: Example, form: str) -> Prediction:
 
 def paraphrase_in(world: World) -> Paraphrase:
     """Return the first paraphrase of ``world``, made where there is none: a sample world brings none."""
-    texts = dict.fromkeys(("prompt", "utterance", "grounded_form", "logical_form"), "go")
-    distances = {"edit_distance": 0, "jaccard_distance": 0.0}
-    return Paraphrase.objects.get_or_create(
-        world=world, position=0, defaults={**texts, **distances}
-    )[0]
+    return world.paraphrases.first() or make_paraphrase(
+        world, grounded_form="go", logical_form="go"
+    )
 
 
-def comment_in(world: World) -> Comment:
-    """Return a comment in ``world``, made where there is none, by nobody of its members."""
-    template = world.grammar.templates.first()
-    about = {"kind": "template", "subject": template.pk, "about": str(template)}
-    return Comment.objects.get_or_create(world=world, text="Hm.", **about)[0]
+def make_paraphrase(
+    world: World, prompt: str = "go", utterance: str = "go", **columns: Any
+) -> Paraphrase:
+    """Store an accepted paraphrase of ``prompt``, after those of the world; ``columns`` says what else it has."""
+    defaults = {"edit_distance": 1, "jaccard_distance": 0.5, "position": world.paraphrases.count()}
+    return Paraphrase.objects.create(
+        world=world, prompt=prompt, utterance=utterance, **{**defaults, **columns}
+    )

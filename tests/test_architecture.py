@@ -49,16 +49,16 @@ MOST_MODULES, MOST_FILES = 3, 15
 
 def imports_of(path: Path) -> set[str]:
     """The dotted names that a module imports, anywhere in it."""
-    found = set()
+    names = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            found.update(alias.name for alias in node.names)
+            names.update(alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            found.add(node.module)
-            found.update(
+            names.add(node.module)
+            names.update(
                 f"{node.module}.{alias.name}" for alias in node.names if _is_ours(node, alias)
             )
-    return found
+    return names
 
 
 def _is_ours(node: ast.ImportFrom, alias: ast.alias) -> bool:

@@ -32,10 +32,10 @@ GROUNDS = {
 
 def themes() -> dict[str, dict[str, str]]:
     """Colour by token, for each theme."""
-    found = PAIR.findall(TOKENS.read_text(encoding="utf-8"))
+    pairs = PAIR.findall(TOKENS.read_text(encoding="utf-8"))
     return {
-        "light": {name: light for name, light, _ in found},
-        "dark": {name: dark for name, _, dark in found},
+        "light": {name: light for name, light, _ in pairs},
+        "dark": {name: dark for name, _, dark in pairs},
     }
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
-from types import TracebackType
 from typing import Any, Self
 
 from django.db.models import OuterRef, QuerySet, Subquery
@@ -65,13 +64,8 @@ class CommandRows:
         self._staging.add(self._differing(stored), self._progress)
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self._stack.__exit__(kind, error, traceback)
+    def __exit__(self, *raised: Any) -> None:
+        self._stack.__exit__(*raised)
 
     def _differing(self, stored: Mapping[str, tuple[int, Values]]) -> Iterator[tuple[Any, ...]]:
         for text, wanted in self._wanted.items():

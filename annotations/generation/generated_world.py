@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from types import TracebackType
-from typing import Self, TypeAlias
+from typing import Any, Self, TypeAlias
 
 from annotations import models
 from annotations.background.progress import UNWATCHED, Progress
@@ -58,13 +57,8 @@ class GeneratedWorld:
         self._coverage = count_coverage(values, commands)
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self.commands.__exit__(kind, error, traceback)
+    def __exit__(self, *raised: Any) -> None:
+        self.commands.__exit__(*raised)
 
     def write(self, counters: Counters) -> Changes:
         """Write the differences; ``counters`` are the world's as it was generated from, and locked since."""

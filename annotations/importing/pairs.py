@@ -5,58 +5,22 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from annotations.background.progress import UNWATCHED, Progress
 from annotations.importing.pair_files import PairFolder, read_pair_folder
 from annotations.importing.paraphrases import plan_paraphrases
 from annotations.importing.prompts import Source, SourceFinder
+from annotations.importing.report import PairsReport
 from annotations.importing.worlds import locked_world, require_world_name
 from annotations.language.corpus import GroundedTriple, WrittenPair
-from annotations.language.errors import LanguageError, Problem
+from annotations.language.errors import LanguageError
 from annotations.models import Example, User, World
-from annotations.rows.problems import as_json, first_problems
+from annotations.rows.problems import first_problems
 from annotations.splits.freezing import PreparedSplit
 
 MOST_ATTEMPTS = 3
-
-
-@dataclass(frozen=True, slots=True)
-class PairsReport:
-    """``counts`` are pairs by criterion, source and part; ``splits`` their names by criterion.
-
-    With an error among the ``problems`` nothing was stored. ``left_out`` are paraphrases that people have
-    deleted or changed here, and who did.
-    """
-
-    world: str
-    counts: Mapping[str, Mapping[str, Mapping[str, int]]] = field(default_factory=dict)
-    splits: Mapping[str, str] = field(default_factory=dict)
-    paraphrases: int = 0
-    added: int = 0
-    left_out: tuple[str, ...] = ()
-    problems: tuple[Problem, ...] = ()
-
-    @property
-    def errors(self) -> tuple[Problem, ...]:
-        return tuple(problem for problem in self.problems if problem.is_error)
-
-    @property
-    def is_refused(self) -> bool:
-        return bool(self.errors)
-
-    def as_json(self) -> dict[str, Any]:
-        return {
-            "world": self.world,
-            "counts": self.counts,
-            "splits": self.splits,
-            "paraphrases": self.paraphrases,
-            "problems": [as_json(problem) for problem in self.problems],
-            "changes": {"added": self.added},
-            "left_out": {"paraphrases": list(self.left_out)},
-        }
 
 
 def import_pairs(

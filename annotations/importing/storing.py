@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from types import TracebackType
-from typing import Self
+from typing import Any, Self
 
 from annotations import models
 from annotations.editing.template_problems import store_problems_of_import
@@ -40,13 +39,8 @@ class PreparedProductions:
         self._staging.__enter__().add_new(self._plan.new)
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self._staging.__exit__(kind, error, traceback)
+    def __exit__(self, *raised: Any) -> None:
+        self._staging.__exit__(*raised)
 
     def apply(
         self, world: models.World, grammar: models.Grammar, by: models.User | None

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from types import TracebackType
-from typing import Self
+from typing import Any, Self
 
 from django.core.exceptions import ValidationError
 from django.db import transaction
@@ -99,13 +98,8 @@ class PreparedSplit:
         self._staging.__enter__().add_new(self.examples)
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self._staging.__exit__(kind, error, traceback)
+    def __exit__(self, *raised: Any) -> None:
+        self._staging.__exit__(*raised)
 
     def store(self, world: World, by: User | None = None) -> tuple[Split, bool]:
         """Stores the split; inside a transaction.

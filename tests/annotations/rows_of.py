@@ -34,9 +34,9 @@ def contents_of(world: World) -> dict[str, list[dict]]:
     return {
         name: [
             {key: value for key, value in row.items() if key not in without}
-            for row in sorted(found, key=lambda row: (row.get("position", 0), row.get("name", "")))
+            for row in sorted(values, key=lambda row: (row.get("position", 0), row.get("name", "")))
         ]
-        for name, found in rows.items()
+        for name, values in rows.items()
     }
 
 

@@ -54,7 +54,7 @@ def productions() -> list[Production]:
 
 def wildcards() -> list[Wildcard]:
     """Every wildcard of the grammar, those inside notes too."""
-    return [found for each in productions() for found in _wildcards(each.expansion)]
+    return [wildcard for each in productions() for wildcard in _wildcards(each.expansion)]
 
 
 def _wildcards(symbols: tuple[Symbol, ...]) -> Iterator[Wildcard]:

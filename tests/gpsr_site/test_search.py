@@ -6,23 +6,21 @@ import pytest
 
 from annotations.labelling import collect
 from annotations.models import Entity, Paraphrase
+from tests.sample_world import make_paraphrase
 
 
 @pytest.fixture
 def paraphrase(sample) -> Paraphrase:
-    return Paraphrase.objects.create(
-        world=sample.world,
+    return make_paraphrase(
+        sample.world,
         prompt="find the tea",
         utterance="where is my tea",
         grounded_form="( find )",
         logical_form="( find )",
-        edit_distance=1,
-        jaccard_distance=0.5,
-        position=0,
     )
 
 
-def found(client, words):
+def matches_of(client, words):
     """Title → texts of the matches on the search page of ``home``."""
     groups = client.get("/w/home/search/", {"q": words}).context["groups"]
     return {group.title: [hit.text for hit in group.hits] for group in groups}
@@ -47,7 +45,7 @@ def found(client, words):
 def test_every_kind_is_found(words, kind, text, sample, paraphrase, anna):
     collect(sample.world, ["say hello"])
     run = sample.run.pk
-    assert text.format(run=run) in found(anna, words.format(run=run))[kind]
+    assert text.format(run=run) in matches_of(anna, words.format(run=run))[kind]
 
 
 def test_each_match_and_all_of_a_kind_are_linked(sample, anna):
@@ -77,7 +75,7 @@ def test_any_words_are_taken(words, sample, anna):
 
 def test_other_worlds_are_not_searched(sample, other_sample, anna):
     words = other_sample.split.name
-    assert found(anna, words) == {}
+    assert matches_of(anna, words) == {}
 
 
 @pytest.mark.parametrize("words", ["CAFETI", "cafetière", 'the "pot"'])
@@ -85,10 +83,10 @@ def test_entities_answer_to_their_aliases(words, sample, anna):
     entity = Entity.objects.filter(ontology__world=sample.world, text="milk").get()
     entity.aliases = ["cafetière", 'the "pot"']
     entity.save()
-    assert found(anna, words)["Entities"] == ["milk"]
+    assert matches_of(anna, words)["Entities"] == ["milk"]
 
 
 @pytest.mark.parametrize("words", ["[", "]", ", "])
 def test_what_stands_between_aliases_is_not_searched(words, sample, anna):
     Entity.objects.update(aliases=["tea pot", "kettle"])
-    assert "Entities" not in found(anna, words)
+    assert "Entities" not in matches_of(anna, words)

@@ -56,10 +56,10 @@ class NearDuplicate:
 
 @dataclass(frozen=True, slots=True)
 class NearDuplicates:
-    """``leak`` counts pairs; ``found`` lists each distinct utterance once, most similar first."""
+    """``leak`` counts pairs; ``duplicates`` lists each distinct utterance once, most similar first."""
 
     leak: Leak
-    found: tuple[NearDuplicate, ...]
+    duplicates: tuple[NearDuplicate, ...]
 
 
 def shared(part: str, items: Sequence[SplitItem], train: Sequence[SplitItem]) -> Iterator[Leak]:

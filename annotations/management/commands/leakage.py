@@ -34,7 +34,7 @@ class Command(ReportingCommand):
             "criterion": split.criterion,
             "shared": [_row(leak) for leak in [*leakage_of(split), *(each.leak for each in near)]],
             "near_duplicates": {
-                each.leak.part: [asdict(pair) for pair in each.found[: max(examples, 0)]]
+                each.leak.part: [asdict(pair) for pair in each.duplicates[: max(examples, 0)]]
                 for each in near
             },
         }

@@ -91,7 +91,7 @@ def near_duplicates(request: HttpRequest, world: World, pk: int) -> HttpResponse
     context: dict[str, object] = {"most": MOST_SHOWN}
     try:
         context["parts"] = [
-            (each.leak, each.found[:MOST_SHOWN], len(each.found))
+            (each.leak, each.duplicates[:MOST_SHOWN], len(each.duplicates))
             for each in near_duplicates_of(row)
         ]
     except LanguageError as error:

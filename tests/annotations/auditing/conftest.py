@@ -10,6 +10,7 @@ from annotations.language.auditing import Finding, LabelledPair, Reason, Suspect
 from annotations.models import AuditFinding, Paraphrase, Utterance, Verdict
 from annotations.models.worlds import Role
 from tests.conftest import member
+from tests.sample_world import make_paraphrase
 
 MALE = '( say ( count ( lambda $1 e ( person $1 ) ( male $1 ) ( at $1 " <room> " ) ) ) )'
 FEMALE = MALE.replace("male", "female")
@@ -18,15 +19,12 @@ GO = '( go " <room> " )'
 
 def say(world, utterance: str, form: str = MALE, **columns) -> Paraphrase:
     """Store a paraphrase that names the kitchen."""
-    return Paraphrase.objects.create(
-        world=world,
+    return make_paraphrase(
+        world,
         prompt="tell me how many people in the kitchen are girls",
         utterance=utterance,
         logical_form=form,
         grounded_form=form.replace("<room>", "kitchen"),
-        edit_distance=1,
-        jaccard_distance=0.5,
-        position=world.paraphrases.count(),
         **columns,
     )
 

@@ -11,6 +11,7 @@ from annotations.importing import import_generator
 from annotations.models import Entity, Paraphrase, Predicate, Production, SemanticTemplate
 from annotations.models.templates import Status
 from annotations.worlds.world_deletion import delete_world
+from tests.sample_world import make_paraphrase
 
 KINDS = [SemanticTemplate, Entity, Predicate, Production, Paraphrase]
 TEXT = {
@@ -25,15 +26,10 @@ TEXT = {
 @pytest.fixture(params=KINDS, ids=lambda model: model.__name__)
 def row(request, tiny_world):
     """A stored row of each kind."""
-    Paraphrase.objects.create(
-        world=tiny_world,
+    make_paraphrase(
+        tiny_world,
         prompt="find the tea",
         utterance="where is the tea",
-        grounded_form="",
-        logical_form="",
-        edit_distance=6,
-        jaccard_distance=0.5,
-        position=0,
     )
     return request.param.objects.first()
 

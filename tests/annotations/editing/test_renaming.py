@@ -20,6 +20,7 @@ from annotations.models import (
 )
 from annotations.models.templates import Status
 from annotations.rows.history import history_of
+from tests.sample_world import make_paraphrase
 
 GROUNDED = '( find ( lambda $1 e ( is_a $1 " tea " ) ) )'
 CLASSES = '( find ( lambda $1 e ( is_a $1 " <object> " ) ) )'
@@ -28,15 +29,12 @@ CLASSES = '( find ( lambda $1 e ( is_a $1 " <object> " ) ) )'
 @pytest.fixture
 def home(tiny_world):
     generate_pairs(tiny_world)
-    Paraphrase.objects.create(
-        world=tiny_world,
+    make_paraphrase(
+        tiny_world,
         prompt="find the tea",
         utterance="where is the tea",
         grounded_form=GROUNDED,
         logical_form=CLASSES,
-        edit_distance=8,
-        jaccard_distance=0.6,
-        position=0,
     )
     return World.objects.get(pk=tiny_world.pk)
 

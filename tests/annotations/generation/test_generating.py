@@ -6,9 +6,10 @@ from annotations.generation.complexity import complexity
 from annotations.generation.generating import generate_pairs
 from annotations.importing import import_generator
 from annotations.language.errors import LanguageError
-from annotations.models import Command, LogicalForm, Paraphrase, World
+from annotations.models import Command, LogicalForm, World
 from annotations.models.problems import Subject
 from tests.annotations.rows_of import rows_of
+from tests.sample_world import make_paraphrase
 
 
 @pytest.fixture
@@ -79,16 +80,13 @@ def test_a_changed_template_changes_only_its_commands(tiny_world, tiny):
 
 def test_a_command_that_no_template_makes_goes_and_its_paraphrases_stay(tiny_world):
     generate_pairs(tiny_world)
-    said = Paraphrase.objects.create(
-        world=tiny_world,
+    said = make_paraphrase(
+        tiny_world,
         command=tiny_world.commands.get(anonymized_text="go to the <room>"),
         prompt="go to the bath",
         utterance="drive to the bath",
         grounded_form='( go " bath " )',
         logical_form='( go " <room> " )',
-        edit_distance=5,
-        jaccard_distance=0.4,
-        position=0,
     )
     tiny_world.grammar.templates.filter(pattern__startswith="go").delete()
     generate_pairs(tiny_world)

@@ -15,7 +15,6 @@ from annotations.language.templates import Kept
 from annotations.models import (
     Job,
     JobKind,
-    Paraphrase,
     Production,
     SemanticTemplate,
     TaskCategory,
@@ -25,6 +24,7 @@ from annotations.models.problems import Subject
 from annotations.models.templates import Status
 from tests.annotations.conftest import as_bytes
 from tests.annotations.rows_of import rows_of
+from tests.sample_world import make_paraphrase
 
 # Category 2 uses the templates of category 1 as well, and makes some of the same commands.
 TWO_CATEGORIES = {
@@ -150,16 +150,13 @@ def test_a_draft_changes_nothing(two_categories, annotator):
 
 
 def test_paraphrases_keep_their_commands_and_find_them_again(two_categories, annotator):
-    said = Paraphrase.objects.create(
-        world=two_categories,
+    said = make_paraphrase(
+        two_categories,
         command=two_categories.commands.get(anonymized_text="go to the <room>"),
         prompt="go to the bath",
         utterance="drive to the bath",
         grounded_form='( go " bath " )',
         logical_form='( go " <room> " )',
-        edit_distance=5,
-        jaccard_distance=0.4,
-        position=0,
     )
     row = SemanticTemplate.objects.get(form="(leave)")
     delete(row, annotator, row.version)

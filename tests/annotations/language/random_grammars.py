@@ -56,7 +56,7 @@ def _longer(sequences):
     """Sequences that may hold a choice between, or a note made of, the given ones."""
     choices = st.lists(sequences, min_size=2, max_size=3).map(as_sequence)
     pieces = st.one_of(sequences, choices, wildcards(sequences).map(lambda each: (each,)))
-    return st.lists(pieces, min_size=1, max_size=3).map(lambda found: sum(found, ()))
+    return st.lists(pieces, min_size=1, max_size=3).map(lambda drawn: sum(drawn, ()))
 
 
 SEQUENCES = st.recursive(
@@ -88,7 +88,7 @@ def sequences_over(draw, names, depth=1):
     symbol = st.sampled_from([*LEAVES, *map(Nonterminal, names)])
     if depth:
         inner = st.lists(sequences_over(names, depth - 1), min_size=2, max_size=2)
-        symbol = st.one_of(symbol, inner.map(lambda found: Choice(tuple(found))))
+        symbol = st.one_of(symbol, inner.map(lambda drawn: Choice(tuple(drawn))))
     return tuple(draw(st.lists(symbol, min_size=1, max_size=3)))
 
 

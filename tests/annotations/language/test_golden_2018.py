@@ -41,10 +41,10 @@ def published(shared_data):
 
 def first_categories(generated):
     """Form → the first task category that has it."""
-    found = {}
+    category_of = {}
     for each in generated.expansions:
-        found.setdefault(each.form_text, each.task_category)
-    return found
+        category_of.setdefault(each.form_text, each.task_category)
+    return category_of
 
 
 def rounded_mean(lengths):
@@ -64,11 +64,11 @@ def test_production_lines(folder):
 
 def test_names_and_tiers(folder):
     files = folder.grammars.files
-    found = [
+    tiers = [
         (files[each.grammar_file].name, files[each.grammar_file].tier)
         for each in folder.compositions
     ]
-    assert found == [("Category I", "Easy"), ("Category II", "Moderate"), ("Category III", "High")]
+    assert tiers == [("Category I", "Easy"), ("Category II", "Moderate"), ("Category III", "High")]
 
 
 def test_only_warnings_come_up(folder, categories, generated):
@@ -127,7 +127,7 @@ def test_mean_lengths_of_commands(generated):
     lengths = {name: [] for name in "123"}
     for each in generated.expansions:
         lengths[each.task_category].append(len(each.command.split()))
-    assert [rounded_mean(found) for found in lengths.values()] == [11.92, 11.96, 10.40]
+    assert [rounded_mean(counts) for counts in lengths.values()] == [11.92, 11.96, 10.40]
     assert rounded_mean(chain.from_iterable(lengths.values())) == 11.09
 
 
@@ -135,7 +135,7 @@ def test_mean_lengths_of_distinct_forms(generated):
     lengths = {name: [] for name in "123"}
     for form, name in first_categories(generated).items():
         lengths[name].append(len(form.split()))
-    assert [rounded_mean(found) for found in lengths.values()] == [28.35, 26.97, 22.58]
+    assert [rounded_mean(counts) for counts in lengths.values()] == [28.35, 26.97, 22.58]
     assert rounded_mean(chain.from_iterable(lengths.values())) == 25.25
 
 

@@ -11,6 +11,7 @@ from annotations.language.errors import LanguageError
 from annotations.models import Command, Example, Paraphrase
 from annotations.models.corpus import ParaphraseStatus
 from annotations.splits.freezing import freeze_split
+from tests.sample_world import make_paraphrase
 
 ROOMS = [f"{adjective} {room}" for adjective in ("red", "blue", "old", "new") for room in "abcde"]
 
@@ -29,25 +30,23 @@ def full(tiny_world, tiny):
     generate_pairs(tiny_world)
     for number, command in enumerate(Command.objects.select_related("logical_form")):
         for word in ("please", "now"):
-            Paraphrase.objects.create(
-                world=tiny_world,
+            make_paraphrase(
+                tiny_world,
                 command=command,
                 prompt=command.anonymized_text,
                 utterance=f"{word} {command.anonymized_text}",
                 grounded_form=command.logical_form.text,
                 logical_form=command.logical_form.text,
-                edit_distance=5,
-                jaccard_distance=0.2,
                 position=2 * number + (word == "now"),
             )
     return tiny_world
 
 
 def parts_by(split, field):
-    found = defaultdict(set)
+    parts = defaultdict(set)
     for part, value in split.examples.values_list("part", field):
-        found[value].add(part)
-    return found
+        parts[value].add(part)
+    return parts
 
 
 @pytest.mark.parametrize(

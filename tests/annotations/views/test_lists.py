@@ -10,12 +10,12 @@ from annotations.models import (
     Entity,
     Grammar,
     LogicalForm,
-    Paraphrase,
     Production,
     SemanticTemplate,
     StoredProblem,
 )
 from tests.annotations.conftest import TINY, as_bytes
+from tests.sample_world import make_paraphrase
 
 LISTS = ["ontology", "grammar", "templates", "commands", "forms", "paraphrases", "predicates"]
 # A page of a list never costs more: session, user, world, roles, worlds, rail, worker and runs (3),
@@ -120,15 +120,12 @@ def test_text_of_any_origin_is_escaped(sample, anna):
     evil.anonymized_text = "<script>alert(1)</script> the <object>"
     evil.save()
     Entity.objects.filter(text="tea").update(text='<img src=x onerror="alert(1)">')
-    Paraphrase.objects.create(
-        world=sample.world,
+    make_paraphrase(
+        sample.world,
         prompt="go",
         utterance="<b>go</b>",
         grounded_form="<i>( go )</i>",
         logical_form="( go )",
-        edit_distance=1,
-        jaccard_distance=0.5,
-        position=0,
     )
     for path in ("commands", "ontology", "paraphrases"):
         page = anna.get(f"/w/home/{path}/").content.decode()
@@ -233,15 +230,12 @@ def test_coverage_compares_the_grammar_with_what_templates_make(sample, anna):
 
 
 def test_a_form_shows_its_commands_and_how_people_say_them(sample, anna):
-    Paraphrase.objects.create(
-        world=sample.world,
+    make_paraphrase(
+        sample.world,
         prompt="go to the kitchen",
         utterance="off you go",
         grounded_form=sample.form.text,
         logical_form=sample.form.text,
-        edit_distance=1,
-        jaccard_distance=0.5,
-        position=0,
     )
     page = anna.get(f"/w/home/forms/{sample.form.pk}/")
     assert len(texts(page)) == 2

@@ -40,7 +40,7 @@ def records() -> tuple[Record, ...]:
 @cache
 def derivations() -> tuple[tuple[re.Pattern[str], Derivation], ...]:
     """Every command with its wildcards, notes left out, behind the shape of its words."""
-    found = []
+    shapes = []
     for category in categories():
         expander = TemplateExpander(category.grammar)
         for template in category.templates:
@@ -50,8 +50,8 @@ def derivations() -> tuple[tuple[re.Pattern[str], Derivation], ...]:
                     for symbol in each.symbols
                     if isinstance(symbol, Text) or symbol.kind != "void"
                 )
-                found.append((shape(spoken), replace(each, symbols=spoken)))
-    return tuple(found)
+                shapes.append((shape(spoken), replace(each, symbols=spoken)))
+    return tuple(shapes)
 
 
 def shape(symbols) -> re.Pattern[str]:
@@ -80,11 +80,11 @@ def groundings(prompt: str) -> Iterator[tuple[Derivation, Grounded]]:
             continue
         for seed in SEEDS:
             try:
-                found = ground(derivation.symbols, derivation.form, part, Random(seed))
+                made = ground(derivation.symbols, derivation.form, part, Random(seed))
             except LanguageError:
                 break  # these entities do not satisfy its wildcards
-            if found.text == prompt:
-                yield derivation, found
+            if made.text == prompt:
+                yield derivation, made
                 break
 
 
@@ -96,14 +96,14 @@ def produced() -> dict[str, list[tuple[Derivation, Grounded]]]:
 
 def test_grounding_can_produce_each_prompt_with_the_form_of_its_paraphrases():
     for record in records():
-        forms = {canonical_text(found.form) for _, found in produced()[record.prompt]}
+        forms = {canonical_text(made.form) for _, made in produced()[record.prompt]}
         assert forms == {record.form}, record
 
 
 def test_the_anonymized_form_of_a_prompt_is_that_of_its_anonymized_command():
     annotated = {each.command: each.form_text for each in generated().expansions}
-    for prompt, found in produced().items():
-        for derivation, _ in found:
+    for prompt, derived in produced().items():
+        for derivation, _ in derived:
             assert annotated[derivation.anonymized_text] == anonymized_form(derivation), prompt
 
 
@@ -133,8 +133,8 @@ def test_no_utterance_is_written_twice_or_repeats_its_prompt():
 
 def test_an_anonymized_prompt_is_its_command():
     anonymizer = Anonymizer(ontology())
-    for prompt, found in produced().items():
-        commands = {derivation.anonymized_text for derivation, _ in found}
+    for prompt, derived in produced().items():
+        commands = {derivation.anonymized_text for derivation, _ in derived}
         assert commands == {anonymizer.anonymize(prompt).command}
 
 

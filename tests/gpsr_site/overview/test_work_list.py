@@ -8,7 +8,6 @@ from annotations.language.corpus import Criterion
 from annotations.language.grammar import Grammar
 from annotations.models import (
     Job,
-    Paraphrase,
     SemanticTemplate,
     Split,
     StoredProblem,
@@ -25,7 +24,7 @@ from parser_service.models import Evaluation, TrainingRun
 from parser_service.models.runs import Status
 from parser_service.runs import requesting
 from tests.parser_service.made_up import make_split
-from tests.sample_world import scored_run
+from tests.sample_world import make_paraphrase, scored_run
 
 NO_WORKER = Workers(served=set(), running=0, waiting={"cpu": 1}, noun="run")
 
@@ -43,16 +42,11 @@ def busy(sample):
         template.pk, template.position, template.status = None, position, status
         template.problems = [{"severity": "warning", "message": "m"}]
         template.save()
-    Paraphrase.objects.create(
-        world=sample.world,
+    make_paraphrase(
+        sample.world,
         prompt="go to the kitchen",
         utterance="kitchen please",
-        grounded_form="",
-        logical_form="",
-        edit_distance=1,
-        jaccard_distance=0.5,
         status="pending",
-        position=0,
     )
     for seed, status in enumerate(
         (Status.FAILED, Status.FAILED, Status.LOST, Status.QUEUED, Status.RUNNING), start=1

@@ -8,10 +8,10 @@ from parser_service.analysis.seeds import over_seeds
 
 
 def test_the_spread_is_the_sample_standard_deviation():
-    found = over_seeds([0.80, 0.82, 0.87])
-    assert (round(found.mean, 4), found.n_seeds) == (0.83, 3)
+    summary = over_seeds([0.80, 0.82, 0.87])
+    assert (round(summary.mean, 4), summary.n_seeds) == (0.83, 3)
     # Squares of -0.03, -0.01 and 0.04 over n - 1 = 2.
-    assert found.spread == pytest.approx((0.0026 / 2) ** 0.5)
+    assert summary.spread == pytest.approx((0.0026 / 2) ** 0.5)
 
 
 def test_one_seed_has_no_spread():

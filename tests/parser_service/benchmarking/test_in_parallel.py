@@ -41,9 +41,9 @@ def file(tmp_path) -> Path:
 def read(file: Path) -> dict[str, dict]:
     """The cells by their keys, none twice."""
     cells = json.loads(file.read_text(encoding="utf-8"))
-    found = {cell["key"]: cell for cell in cells}
-    assert len(found) == len(cells)
-    return found
+    cell_of = {cell["key"]: cell for cell in cells}
+    assert len(cell_of) == len(cells)
+    return cell_of
 
 
 def without_durations(cells: dict[str, dict]) -> dict[str, dict]:

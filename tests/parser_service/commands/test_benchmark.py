@@ -90,8 +90,11 @@ def test_settings_that_train_alike_share_one_training(folder, tmp_path, monkeypa
 def test_columns_are_measured_and_no_other_combination(folder, tmp_path):
     columns = "gen+para-mixed:command:strict, gen-gen:command:strict,para-para:command:domain"
     cells = run(folder, tmp_path / "cells.json", columns=columns)
-    found = [(cell["setting"], cell["criterion"], cell["protocol"]) for cell in cells]
-    assert found == [("gen-gen", "command", "strict"), ("gen+para-mixed", "command", "strict")]
+    columns_of_cells = [(cell["setting"], cell["criterion"], cell["protocol"]) for cell in cells]
+    assert columns_of_cells == [
+        ("gen-gen", "command", "strict"),
+        ("gen+para-mixed", "command", "strict"),
+    ]
 
 
 def test_columns_that_train_alike_stand_together():
@@ -143,7 +146,7 @@ def test_no_source_command_is_in_two_parts(folder):
         for pair in pairs:
             parts.setdefault(source.get(pair.utterance, pair.utterance), set()).add(part)
     assert len(parts) == 36
-    assert all(len(found) == 1 for found in parts.values())
+    assert all(len(some) == 1 for some in parts.values())
     assert {part for part, _ in corpus.parts} == {"train", "validation", "test"}
 
 
@@ -187,7 +190,7 @@ def test_no_form_is_in_two_parts_of_a_new_split(folder):
         for (part, _), pairs in corpus.parts.items():
             for pair in pairs:
                 parts.setdefault(pair.form, set()).add(part)
-        assert all(len(found) == 1 for found in parts.values())
+        assert all(len(some) == 1 for some in parts.values())
 
 
 @pytest.mark.parametrize(

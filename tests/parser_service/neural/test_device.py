@@ -77,12 +77,12 @@ def test_a_run_goes_on_on_another_processor(first, then, device, pairs, tmp_path
 @pytest.mark.parametrize("device", [FAKE, GPU], ids=str)
 @pytest.mark.parametrize("name", ["seq2seq-minilm", "seq2seq-glove-gpt", "seq2seq-glove-elmo"])
 def test_frozen_encoders_read_alike_everywhere_into_the_main_memory(name, device, pairs):
-    sentence, found = words(pairs[-1].utterance), {}
+    sentence, vectors = words(pairs[-1].utterance), {}
     for place in (CPU, device):
         with computing_on(place):
-            found[place] = parser_of(name)._context(sentence)
-    assert found[device].device == CPU and found[device].dtype == torch.float32
-    torch.testing.assert_close(found[device], found[CPU])
+            vectors[place] = parser_of(name)._context(sentence)
+    assert vectors[device].device == CPU and vectors[device].dtype == torch.float32
+    torch.testing.assert_close(vectors[device], vectors[CPU])
 
 
 @pytest.mark.parametrize("device", [FAKE, GPU], ids=str)

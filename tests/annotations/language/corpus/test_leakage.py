@@ -28,9 +28,9 @@ def test_case_and_spacing_do_not_hide_a_shared_utterance():
 
 
 def test_a_source_command_is_shared_though_the_words_differ():
-    found = leaks(item("give it to me", "Fetch the <object>"), item("leave", "go away"))
-    assert found["source commands"] == (1, 2)
-    assert found["utterances"] == (0, 2)
+    counts = leaks(item("give it to me", "Fetch the <object>"), item("leave", "go away"))
+    assert counts["source commands"] == (1, 2)
+    assert counts["utterances"] == (0, 2)
 
 
 def test_pairs_without_a_source_command_are_not_counted_among_them():
@@ -38,8 +38,8 @@ def test_pairs_without_a_source_command_are_not_counted_among_them():
 
 
 def test_forms_are_shared_by_pair():
-    found = leaks(item("a", form="( take )"), item("b", form="( take )"), item("c"))
-    assert found["logical forms"] == (2, 3)
+    counts = leaks(item("a", form="( take )"), item("b", form="( take )"), item("c"))
+    assert counts["logical forms"] == (2, 3)
 
 
 def test_nothing_is_shared_by_a_part_without_pairs():
@@ -48,27 +48,30 @@ def test_nothing_is_shared_by_a_part_without_pairs():
 
 
 def test_a_typing_error_is_a_near_duplicate_with_its_neighbour():
-    (found,) = near_duplicates("test", [item("Bring me teh <object>")], TRAIN).found
-    assert (found.utterance, found.training) == ("bring me teh <object>", "bring me the <object>")
-    assert found.similarity == pytest.approx(1 - 2 / 21)
+    (duplicate,) = near_duplicates("test", [item("Bring me teh <object>")], TRAIN).duplicates
+    assert (duplicate.utterance, duplicate.training) == (
+        "bring me teh <object>",
+        "bring me the <object>",
+    )
+    assert duplicate.similarity == pytest.approx(1 - 2 / 21)
 
 
 def test_what_training_has_is_no_near_duplicate():
-    assert not near_duplicates("test", [item("BRING me the <object>")], TRAIN).found
+    assert not near_duplicates("test", [item("BRING me the <object>")], TRAIN).duplicates
 
 
 def test_the_nearest_of_several_is_named():
     train = [item("go to the big red room"), item("go to the big bad room")]
-    (found,) = near_duplicates("test", [item("go to the big bed room")], train).found
-    assert found.training == "go to the big bad room"
-    assert found.similarity >= NEAR
+    (duplicate,) = near_duplicates("test", [item("go to the big bed room")], train).duplicates
+    assert duplicate.training == "go to the big bad room"
+    assert duplicate.similarity >= NEAR
 
 
 def test_pairs_are_counted_and_texts_listed_once_the_nearest_first():
     far, near = item("take teh <object> too the <room>"), item("bring me the <object>s")
-    found = near_duplicates("test", [far, near, near, item("leave")], TRAIN)
-    assert (found.leak.shared, found.leak.pairs) == (3, 4)
-    assert [each.utterance for each in found.found] == [near.utterance, far.utterance]
+    nearest = near_duplicates("test", [far, near, near, item("leave")], TRAIN)
+    assert (nearest.leak.shared, nearest.leak.pairs) == (3, 4)
+    assert [each.utterance for each in nearest.duplicates] == [near.utterance, far.utterance]
 
 
 def test_no_line_of_python_runs_for_each_comparison():

@@ -71,9 +71,9 @@ def test_any_pairs_survive_being_written(pairs: list[tuple[str, Form]]) -> None:
     ],
 )
 def test_a_broken_pair_file_says_where_and_what(text: str, expected: str) -> None:
-    found = read_pairs(text.encode(), "train.txt")
-    assert str(found.problems[0]).startswith(expected)
-    assert found.problems[0].hint
+    file = read_pairs(text.encode(), "train.txt")
+    assert str(file.problems[0]).startswith(expected)
+    assert file.problems[0].hint
 
 
 def test_what_is_not_utf8_text_is_refused() -> None:
@@ -85,9 +85,9 @@ def test_what_is_not_utf8_text_is_refused() -> None:
 
 
 def test_every_problem_of_a_file_is_reported_beside_what_is_right() -> None:
-    found = read_pairs(b"a\n(\nb\n(go 1)\nc\n)\n", "train.txt")
-    assert [problem.position.line for problem in found.problems] == [2, 6]
-    assert [each.utterance for each in found.records] == ["b"]
+    file = read_pairs(b"a\n(\nb\n(go 1)\nc\n)\n", "train.txt")
+    assert [problem.position.line for problem in file.problems] == [2, 6]
+    assert [each.utterance for each in file.records] == ["b"]
 
 
 def test_spaces_inside_the_quotation_marks_of_a_triple_become_one() -> None:
@@ -98,8 +98,8 @@ def test_spaces_inside_the_quotation_marks_of_a_triple_become_one() -> None:
 
 
 def test_a_triple_with_a_line_missing_is_an_error() -> None:
-    found = read_triples(b"a\n\n(go 1)\nb\nc\n", "paraphrasings.txt")
-    assert [str(each.position) for each in found.problems] == [
+    file = read_triples(b"a\n\n(go 1)\nb\nc\n", "paraphrasings.txt")
+    assert [str(each.position) for each in file.problems] == [
         "paraphrasings.txt:2:1",
         "paraphrasings.txt:5:1",
     ]
@@ -121,13 +121,13 @@ def test_the_published_pairs_come_back_byte_for_byte(folder: str, part: str) -> 
     if not path.is_file():
         pytest.skip(f"{folder}/{path.name} is kept apart")
     data = path.read_bytes()
-    found = read_pairs(data, path.name)
-    count, distinct = PUBLISHED.get((folder, part), (len(found.records), None))
-    assert not found.problems
-    assert len(found.records) == count
-    canonical = [each.canonical_form for each in found.records]
+    file = read_pairs(data, path.name)
+    count, distinct = PUBLISHED.get((folder, part), (len(file.records), None))
+    assert not file.problems
+    assert len(file.records) == count
+    canonical = [each.canonical_form for each in file.records]
     assert distinct is None or len(set(canonical)) == distinct
-    utterances = [each.utterance for each in found.records]
+    utterances = [each.utterance for each in file.records]
     assert "".join(write_pairs(zip(utterances, canonical, strict=True))).encode() == data
     assert [len(text) for text in utterances] == sorted(map(len, utterances))
 
@@ -135,7 +135,7 @@ def test_the_published_pairs_come_back_byte_for_byte(folder: str, part: str) -> 
 @needs_corpus
 def test_the_published_triples_are_read_whole() -> None:
     data = (SHARED / "walker2019" / "paraphrasings.txt").read_bytes()
-    found = read_triples(data, "paraphrasings.txt")
-    assert not found.problems
-    assert len(found.records) == data.count(b"\n") // 3
-    assert not any("  " in canonical_text(each.form) for each in found.records)
+    file = read_triples(data, "paraphrasings.txt")
+    assert not file.problems
+    assert len(file.records) == data.count(b"\n") // 3
+    assert not any("  " in canonical_text(each.form) for each in file.records)

@@ -36,10 +36,10 @@ CRITERIA = st.sampled_from(Criterion)
 def parts_by_key(
     items: list[SplitItem], parts: tuple[Part, ...], criterion: Criterion
 ) -> dict[str, set[Part]]:
-    found: defaultdict[str, set[Part]] = defaultdict(set)
+    parts_of_key: defaultdict[str, set[Part]] = defaultdict(set)
     for item, part in zip(items, parts, strict=True):
-        found[getattr(item, {"command": "utterance"}.get(criterion, criterion))].add(part)
-    return found
+        parts_of_key[getattr(item, {"command": "utterance"}.get(criterion, criterion))].add(part)
+    return parts_of_key
 
 
 @given(ITEMS, CRITERIA, st.integers())
@@ -48,7 +48,9 @@ def test_no_command_source_command_or_form_is_in_two_parts(
 ) -> None:
     parts = split(items, criterion, seed=seed)
     assert len(parts) == len(items)
-    assert all(len(found) == 1 for found in parts_by_key(items, parts, criterion).values())
+    assert all(
+        len(parts_of_key) == 1 for parts_of_key in parts_by_key(items, parts, criterion).values()
+    )
 
 
 @given(ITEMS, CRITERIA, st.integers())

@@ -145,8 +145,8 @@ def test_category_two_uses_the_templates_of_one_and_its_own_and_three_only_its_o
 
 
 def test_other_files_with_a_main_are_named_by_their_stem_and_files_without_are_none():
-    found = compositions("gpsr", "egpsr_grammar", "gpsr_semantics", "category_2")
-    assert [(each.name, each.template_files) for each in found] == [
+    composed = compositions("gpsr", "egpsr_grammar", "gpsr_semantics", "category_2")
+    assert [(each.name, each.template_files) for each in composed] == [
         ("2", ()),
         ("egpsr", ()),
         ("gpsr", ("gpsr_semantics.txt",)),
@@ -154,5 +154,5 @@ def test_other_files_with_a_main_are_named_by_their_stem_and_files_without_are_n
 
 
 def test_two_families_that_claim_one_number_keep_their_stems():
-    found = compositions("gpsr_category_1_grammar", "eegpsr_category_1_grammar")
-    assert [each.name for each in found] == ["eegpsr_category_1", "gpsr_category_1"]
+    composed = compositions("gpsr_category_1_grammar", "eegpsr_category_1_grammar")
+    assert [each.name for each in composed] == ["eegpsr_category_1", "gpsr_category_1"]

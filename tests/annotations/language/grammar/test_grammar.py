@@ -65,8 +65,8 @@ def test_directives_are_read_inside_comments_only_and_prose_is_none():
         "# standalone. Import using: common.txt\n$Main = a"
     )
     assert (file.name, file.tier) == ("Category I", "Easy")
-    found = [(each.path, each.alias) for each in file.imports]
-    assert found == [("common.txt", ""), ("my rules.txt", ""), ("tasks.txt", "task")]
+    imports = [(each.path, each.alias) for each in file.imports]
+    assert imports == [("common.txt", ""), ("my rules.txt", ""), ("tasks.txt", "task")]
     assert [each.position.line for each in file.imports] == [3, 4, 5]
 
 

@@ -41,8 +41,10 @@ def test_entities_become_tokens_by_the_longest_match(text: str, expected: str) -
 
 
 def test_numbers_keep_tokens_of_a_class_apart_and_repetitions_together() -> None:
-    found = NUMBERED.anonymize("put the tea on the shelf, the knife on the stool, the cuppa away")
-    assert found.text == (
+    anonymized = NUMBERED.anonymize(
+        "put the tea on the shelf, the knife on the stool, the cuppa away"
+    )
+    assert anonymized.text == (
         "put the <object0> on the <location0>, the <object1> on the <location1>, the <object0> away"
     )
 
@@ -76,9 +78,9 @@ def test_an_exact_text_wins_over_an_alias_and_an_alias_over_a_plural() -> None:
 
 
 def test_the_command_is_written_as_generated_commands_are() -> None:
-    found = PLAIN.anonymize("Go to the attic,  find Bo")
-    assert found.text == "Go to the <room>,  find <name>"
-    assert found.command == "Go to the <room> , find <name>"
+    anonymized = PLAIN.anonymize("Go to the attic,  find Bo")
+    assert anonymized.text == "Go to the <room>,  find <name>"
+    assert anonymized.command == "Go to the <room> , find <name>"
 
 
 def restore(anonymized: Anonymized) -> str:

@@ -21,43 +21,43 @@ def put_back(text: str, form: str, numbered: bool = False) -> Deanonymized:
 
 
 def test_entities_return_to_their_slots() -> None:
-    found = put_back(
+    result = put_back(
         "bring the Cuppa from the shelf",
         '(bring (λ$1:e (is_a $1 "<object>") (at $1 "<location>")))',
     )
-    assert to_template(found.form) == '(bring (λ$1:e (is_a $1 "tea") (at $1 "shelf")))'
-    assert found.open_slots == ()
-    assert [(slot.entity_class, slot.value) for slot in found.slots] == [
+    assert to_template(result.form) == '(bring (λ$1:e (is_a $1 "tea") (at $1 "shelf")))'
+    assert result.open_slots == ()
+    assert [(slot.entity_class, slot.value) for slot in result.slots] == [
         ("object", "tea"),
         ("location", "shelf"),
     ]
 
 
 def test_two_values_of_one_class_are_ambiguous_without_numbers() -> None:
-    found = put_back("take it from the shelf to the stool", '(put (at "<location>") "<location>")')
-    assert to_template(found.form) == '(put (at "<location>") "<location>")'
-    assert [slot.candidates for slot in found.open_slots] == [("shelf", "stool")] * 2
-    assert all(slot.is_ambiguous for slot in found.slots)
+    result = put_back("take it from the shelf to the stool", '(put (at "<location>") "<location>")')
+    assert to_template(result.form) == '(put (at "<location>") "<location>")'
+    assert [slot.candidates for slot in result.open_slots] == [("shelf", "stool")] * 2
+    assert all(slot.is_ambiguous for slot in result.slots)
 
 
 def test_numbers_make_two_values_of_one_class_certain() -> None:
     form = '(put (at "<location1>") "location0")'
-    found = put_back("to the stool from the shelf", form, numbered=True)
-    assert to_template(found.form) == '(put (at "shelf") "stool")'
+    result = put_back("to the stool from the shelf", form, numbered=True)
+    assert to_template(result.form) == '(put (at "shelf") "stool")'
     unnumbered = put_back("to the stool from the shelf", form)
-    assert unnumbered.form == found.form
+    assert unnumbered.form == result.form
 
 
 def test_one_mention_does_not_fill_two_slots() -> None:
-    found = put_back("take it to the stool", '(put (at "<location>") "<location>")')
-    assert [slot.value for slot in found.slots] == [None, None]
+    result = put_back("take it to the stool", '(put (at "<location>") "<location>")')
+    assert [slot.value for slot in result.slots] == [None, None]
     twice = put_back("from the stool to the stool", '(put (at "<location>") "<location>")')
     assert [slot.value for slot in twice.slots] == ["stool", "stool"]
 
 
 def test_what_nobody_named_is_open_and_offers_the_ontology() -> None:
-    found = put_back("follow somebody", '(follow "<name>" UNKNOWN 3 "tea")')
-    name, place = found.open_slots
+    result = put_back("follow somebody", '(follow "<name>" UNKNOWN 3 "tea")')
+    name, place = result.open_slots
     assert (name.candidates, name.is_ambiguous) == (("Bo", "Ada"), False)
     assert (place.token, place.entity_class, place.candidates) == ("UNKNOWN", "", ())
 
@@ -96,11 +96,11 @@ def test_every_certain_form_of_the_2018_generator_is_right() -> None:
                 made = ground(derivation.symbols, derivation.form, ontology, random)
                 anonymized = anonymizer.anonymize(made.text)
                 form = fill_anonymized(derivation.form, {})
-                found = deanonymize(form, anonymized, ontology)
+                result = deanonymize(form, anonymized, ontology)
                 commands += 1
                 same_text += anonymized.command == derivation.anonymized_text
-                if not found.open_slots:
+                if not result.open_slots:
                     certain += 1
-                    assert canonical_text(found.form) == canonical_text(made.form), made.text
+                    assert canonical_text(result.form) == canonical_text(made.form), made.text
     assert same_text > 0.97 * commands
     assert certain > 0.8 * commands

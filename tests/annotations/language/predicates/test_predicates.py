@@ -42,10 +42,10 @@ def test_signatures_are_inferred_with_their_overloads() -> None:
 
 
 def test_wildcards_of_templates_have_the_kind_of_their_class() -> None:
-    found = infer_signatures(
+    inferred = infer_signatures(
         read_all("(go {room 1})", "(go {beacon})", "(go $place)", "(go {pron})")
     )
-    kinds = {each.arguments[0] for each in found["go"].signatures}
+    kinds = {each.arguments[0] for each in inferred["go"].signatures}
     assert kinds == {ArgumentKind.ROOM, ArgumentKind.LOCATION, ArgumentKind.ANY}
 
 

@@ -27,8 +27,8 @@ def test_slots_of_the_form_are_filled_from_the_command():
     chart = TemplateChart(
         [category("1", "$fetch the $thing $where = (put $thing (λ$1:e ($where $1)))")]
     )
-    (found,) = chart.parse("bring the blue one left of")
-    assert found.form_text == '( put " blue one " ( lambda $1 e ( left_of $1 ) ) )'
+    (derivation,) = chart.parse("bring the blue one left of")
+    assert derivation.form_text == '( put " blue one " ( lambda $1 e ( left_of $1 ) ) )'
 
 
 def test_a_command_that_no_template_derives_has_no_derivation():

@@ -147,8 +147,10 @@ def test_a_later_template_wins_and_the_conflict_names_both_forms():
 
 def test_a_command_belongs_to_the_first_category_that_has_it_and_keeps_its_form():
     generated = generate([category("1", "go = (go)"), category("2", "go = (run)", "run = (run)")])
-    found = [(each.command, each.task_category, each.form_text) for each in generated.expansions]
-    assert found == [("go", "1", "( go )"), ("run", "2", "( run )")]
+    expansions = [
+        (each.command, each.task_category, each.form_text) for each in generated.expansions
+    ]
+    assert expansions == [("go", "1", "( go )"), ("run", "2", "( run )")]
     assert generated.conflicts == ()
 
 

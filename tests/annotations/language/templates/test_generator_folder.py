@@ -20,8 +20,10 @@ def test_each_category_has_its_grammar_with_imports_and_the_templates_of_its_set
         category_2_semantics="$go now = (go)\n$go soon = (go)",
     )
     assert folder.problems == ()
-    found = [(each.name, len(each.templates), each.grammar.size()) for each in folder.categories()]
-    assert found == [("1", 1, 1), ("2", 3, 1)]
+    categories = [
+        (each.name, len(each.templates), each.grammar.size()) for each in folder.categories()
+    ]
+    assert categories == [("1", 1, 1), ("2", 3, 1)]
 
 
 def test_a_shared_rule_is_unreachable_only_where_no_category_reaches_it():

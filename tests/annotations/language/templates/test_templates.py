@@ -29,13 +29,13 @@ GRAMMAR = Grammar(
 )
 
 
-def found(line, predicates=None):
+def problems_of(line, predicates=None):
     template = read_template(line, Position("t.txt", 4))
     return [str(problem) for problem in problems(template, GRAMMAR, predicates)]
 
 
 def only(line, predicates=None):
-    (problem,) = found(line, predicates)
+    (problem,) = problems_of(line, predicates)
     return problem
 
 
@@ -119,9 +119,9 @@ def test_two_sides_kept_apart_make_the_same_template():
 
 
 def test_a_template_that_fits_has_no_problems():
-    assert found("find {name} = (find {name})") == []
-    assert found("$fetch the $thing = (bring $thing)") == []
-    assert found("follow {pron} now = (follow (λ$1:e (person $1)))") == []
+    assert problems_of("find {name} = (find {name})") == []
+    assert problems_of("$fetch the $thing = (bring $thing)") == []
+    assert problems_of("follow {pron} now = (follow (λ$1:e (person $1)))") == []
 
 
 @pytest.mark.parametrize("slot", ["$fetch", "{room}", "{name 1}"])
@@ -132,8 +132,8 @@ def test_a_slot_that_only_the_form_has_is_an_error(slot):
 
 
 def test_a_nonterminal_that_the_pattern_produces_further_down_may_be_a_slot():
-    assert found("$fetch the $colour one = (bring $colour)") == []
-    assert found("$fetch the {object} = (bring {object} )") == []
+    assert problems_of("$fetch the $colour one = (bring $colour)") == []
+    assert problems_of("$fetch the {object} = (bring {object} )") == []
 
 
 def test_a_wildcard_that_the_form_leaves_out_is_a_warning_pronouns_and_unknown_excepted():
@@ -141,7 +141,7 @@ def test_a_wildcard_that_the_form_leaves_out_is_a_warning_pronouns_and_unknown_e
         "t.txt:4:6: warning: the command says {name}, but the form leaves it out"
     )
     assert "says {object}" in only("$fetch the $thing = (bring)")
-    assert found("find {name} = UNKNOWN") == []
+    assert problems_of("find {name} = UNKNOWN") == []
 
 
 def test_commands_outside_the_grammar_are_counted_with_an_example():
@@ -158,7 +158,7 @@ def test_a_template_of_a_trillion_commands_is_checked_at_once():
 
 
 def test_an_undefined_nonterminal_in_a_pattern_is_a_warning():
-    first, second = found("$fetch $lost = (bring)")
+    first, second = problems_of("$fetch $lost = (bring)")
     assert first.startswith("t.txt:4:8: warning: nothing defines $lost")
     assert "makes no command" in second
 
@@ -170,7 +170,7 @@ def test_a_predicate_that_is_not_declared_or_takes_something_else_is_a_warning()
 
 
 def test_a_predicate_slot_that_becomes_no_name_is_an_error():
-    problem = found("$fetch the $thing = (bring (λ$1:e ($thing $1)))")[-1]
+    problem = problems_of("$fetch the $thing = (bring (λ$1:e ($thing $1)))")[-1]
     assert "error: $thing is used as a predicate but became" in problem
 
 

@@ -90,10 +90,10 @@ def test_what_parts_share_is_shown_as_it_is(sample):
             logical_form="( go )",
             position=100,
         )
-    found = {(leak.part, leak.what): (leak.shared, leak.pairs) for leak in leakage_of(sample.split)}
-    assert found["test", "source commands"] == (1, 1)
-    assert found["test", "utterances"][0] >= 1
-    assert found["validation", "utterances"] == (0, 12)
+    leaks = {(leak.part, leak.what): (leak.shared, leak.pairs) for leak in leakage_of(sample.split)}
+    assert leaks["test", "source commands"] == (1, 1)
+    assert leaks["test", "utterances"][0] >= 1
+    assert leaks["validation", "utterances"] == (0, 12)
 
 
 def test_examples_are_filtered_by_part_and_source(sample, anna):
@@ -120,9 +120,9 @@ def test_near_duplicates_stand_beside_what_training_has(sample, anna):
     address = f"/w/home/splits/{sample.split.pk}/"
     assert f'hx-get="{address}near/"' in anna.get(address).content.decode()
     answer = anna.get(f"{address}near/")
-    found = {leak.part: rows for leak, rows, _ in answer.context["parts"]}
+    duplicates = {leak.part: rows for leak, rows, _ in answer.context["parts"]}
     assert ("bring me teh big <object>", "bring me the big <object>") in [
-        (each.utterance, each.training) for each in found["test"]
+        (each.utterance, each.training) for each in duplicates["test"]
     ]
     assert "Similarity" in answer.content.decode()
 

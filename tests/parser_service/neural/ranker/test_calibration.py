@@ -75,8 +75,8 @@ def test_some_new_forms_leave_it_as_it_is(new):
 
 @pytest.mark.parametrize("pairs", [1, 200])
 def test_where_all_forms_are_new_the_set_is_open(pairs):
-    found = novelty_of(torch.full((pairs,), 2.0), 12, 12)
-    assert found == pytest.approx(log(pairs / 0.5 + 1))
+    novelty = novelty_of(torch.full((pairs,), 2.0), 12, 12)
+    assert novelty == pytest.approx(log(pairs / 0.5 + 1))
 
 
 def test_where_most_forms_are_new_they_need_not_fit_better():
@@ -97,9 +97,9 @@ def test_many_pairs_of_one_form_say_no_more_than_one_of_it():
 
 def test_the_only_known_form_has_a_probability_when_nothing_is_new():
     scores = Scores(said([[1.0]] * 3), torch.zeros(len(EXPERTS), 3, 0))
-    found = calibrate(scores, torch.zeros(3, dtype=torch.long))
-    assert found.novelty <= USUAL_NOVELTY
-    assert found.log_probabilities(scores).tolist() == [[0]] * 3
+    decision = calibrate(scores, torch.zeros(3, dtype=torch.long))
+    assert decision.novelty <= USUAL_NOVELTY
+    assert decision.log_probabilities(scores).tolist() == [[0]] * 3
 
 
 def test_an_expert_counts_as_much_as_it_is_right():
@@ -124,9 +124,9 @@ def test_the_weights_follow_how_often_the_scores_are_right():
 
 
 def test_a_form_that_is_in_no_list_counts_as_new_and_for_no_weight():
-    found = calibrate(SCORES, torch.tensor([-1, -1]))
-    assert found.known == found.new == EQUAL
-    assert found.novelty > 0
+    decision = calibrate(SCORES, torch.tensor([-1, -1]))
+    assert decision.known == decision.new == EQUAL
+    assert decision.novelty > 0
     assert calibrate(SCORES, torch.tensor([0, 2])).known != EQUAL
 
 

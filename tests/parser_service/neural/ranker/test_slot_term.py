@@ -33,5 +33,5 @@ FORMS = (
     ],
 )
 def test_each_slot_too_many_or_too_few_costs_one(utterance, scores):
-    [found] = SlotTerm(FORMS, HOME).scores([utterance]).tolist()
-    assert found == scores
+    [measured] = SlotTerm(FORMS, HOME).scores([utterance]).tolist()
+    assert measured == scores

@@ -43,15 +43,15 @@ def test_a_wide_beam_finds_the_most_probable_forms(model):
     encoded = encode(model, [4, 5, 6])
     finished = [f for n in range(LONGEST) for f in product(WORDS, repeat=n)]
     probable = sorted(finished, key=lambda f: -log_probability(model, encoded, f))[:3]
-    [found] = search(model.decoder, encoded, width=200, longest=LONGEST)
-    ended = [tuple(h.tokens) for h in found if len(h.tokens) < LONGEST]
+    [hypotheses] = search(model.decoder, encoded, width=200, longest=LONGEST)
+    ended = [tuple(h.tokens) for h in hypotheses if len(h.tokens) < LONGEST]
     assert ended[:3] == probable
 
 
 def test_a_score_is_the_log_probability_of_the_form(model):
     encoded = encode(model, [4, 5, 6])
-    [found] = search(model.decoder, encoded, width=5, longest=LONGEST)
-    ended = [h for h in found if len(h.tokens) < LONGEST]
+    [hypotheses] = search(model.decoder, encoded, width=5, longest=LONGEST)
+    ended = [h for h in hypotheses if len(h.tokens) < LONGEST]
     assert ended
     for hypothesis in ended:
         expected = log_probability(model, encoded, hypothesis.tokens)
@@ -61,22 +61,22 @@ def test_a_score_is_the_log_probability_of_the_form(model):
 def test_utterances_searched_together_and_alone_give_the_same(model):
     utterances = [[4, 5, 6], [7], [], [8, 9, 4, 4, 4, 4]]
     together = search(model.decoder, encode(model, *utterances), width=4, longest=9)
-    for utterance, found in zip(utterances, together, strict=True):
+    for utterance, hypotheses in zip(utterances, together, strict=True):
         [alone] = search(model.decoder, encode(model, utterance), width=4, longest=9)
-        assert [h.tokens for h in alone] == [h.tokens for h in found]
+        assert [h.tokens for h in alone] == [h.tokens for h in hypotheses]
 
 
 def test_hypotheses_are_distinct_ranked_and_of_known_words(model):
-    [found] = search(model.decoder, encode(model, [4]), width=30, longest=3)
-    texts = [tuple(h.tokens) for h in found]
+    [hypotheses] = search(model.decoder, encode(model, [4]), width=30, longest=3)
+    texts = [tuple(h.tokens) for h in hypotheses]
     assert len(set(texts)) == len(texts)
-    assert [h.score for h in found] == sorted((h.score for h in found), reverse=True)
+    assert [h.score for h in hypotheses] == sorted((h.score for h in hypotheses), reverse=True)
     assert {token for text in texts for token in text} <= set(WORDS)
 
 
 def test_a_beam_wider_than_the_vocabulary_gives_no_impossible_form(model):
-    [found] = search(model.decoder, encode(model, [4]), width=50, longest=1)
-    assert len(found) == len(WORDS) + 1
+    [hypotheses] = search(model.decoder, encode(model, [4]), width=50, longest=1)
+    assert len(hypotheses) == len(WORDS) + 1
 
 
 def test_a_wider_beam_is_never_worse_than_greedy_search_here(model):

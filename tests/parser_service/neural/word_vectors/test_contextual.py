@@ -28,10 +28,10 @@ def directly(folder, sentence):
 @pytest.mark.parametrize("write", WRITERS)
 def test_vectors_agree_with_transformers_called_directly(tmp_path, write):
     folder = write(tmp_path / "encoder")
-    found = TransformerWords.named(str(folder)).vectors(SENTENCE)
-    assert found.shape == (len(SENTENCE), 1, 8)
-    assert torch.allclose(found[:, 0], directly(folder, SENTENCE), atol=1e-6)
-    assert found[4].norm() > 0
+    vectors = TransformerWords.named(str(folder)).vectors(SENTENCE)
+    assert vectors.shape == (len(SENTENCE), 1, 8)
+    assert torch.allclose(vectors[:, 0], directly(folder, SENTENCE), atol=1e-6)
+    assert vectors[4].norm() > 0
 
 
 @pytest.mark.parametrize("write", WRITERS)
@@ -50,9 +50,9 @@ def test_a_word_is_read_in_its_context(tmp_path, write):
 @pytest.mark.parametrize("write", WRITERS)
 def test_an_utterance_longer_than_the_encoder_is_read_as_far_as_it_goes(tmp_path, write):
     encoder = TransformerWords.named(str(write(tmp_path / "encoder")))
-    found = encoder.vectors(("the",) * 60)
-    assert found.shape == (60, 1, 8)
-    assert found[20].norm() > 0 and found[59].norm() == 0
+    vectors = encoder.vectors(("the",) * 60)
+    assert vectors.shape == (60, 1, 8)
+    assert vectors[20].norm() > 0 and vectors[59].norm() == 0
 
 
 def test_an_utterance_without_words_has_no_vectors(tmp_path):

@@ -86,9 +86,9 @@ def by_hand(folder, sentence):
 
 @pytest.mark.parametrize("sentence", [SENTENCE, ("go",)])
 def test_every_layer_agrees_with_a_calculation_by_hand(folder, sentence):
-    found, expected = load(folder).vectors(sentence).numpy(), by_hand(folder, sentence)
-    assert found.shape == (len(sentence), 3, 12)
-    assert numpy.abs(found - expected).max() < 1e-5
+    vectors, expected = load(folder).vectors(sentence).numpy(), by_hand(folder, sentence)
+    assert vectors.shape == (len(sentence), 3, 12)
+    assert numpy.abs(vectors - expected).max() < 1e-5
     assert numpy.abs(expected).max() > 0.1
 
 

@@ -17,9 +17,9 @@ def path(tmp_path):
 @pytest.mark.parametrize("packed", [False, True])
 def test_wanted_words_are_read_and_no_others(path, packed):
     path.write_bytes(gzip.compress(LINES.encode()) if packed else LINES.encode())
-    found = read_glove(path, {"ápple", "the", "absent"}, 3)
-    assert found.keys() == {"ápple", "the"}
-    assert torch.equal(found["the"], torch.tensor([0.5, -1.0, 0.2]))
+    vectors = read_glove(path, {"ápple", "the", "absent"}, 3)
+    assert vectors.keys() == {"ápple", "the"}
+    assert torch.equal(vectors["the"], torch.tensor([0.5, -1.0, 0.2]))
 
 
 def test_lines_may_end_as_on_any_system(path):

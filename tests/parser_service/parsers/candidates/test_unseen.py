@@ -52,8 +52,8 @@ def test_an_action_of_a_sequence_is_another_one():
 
 def test_a_description_stands_where_another_stands_alone():
     leftmost = declared("leftmost", (VARIABLE, LOCATION), kind=PredicateKind.DESCRIPTION)
-    found = made(leftmost, bring(OBJECT), find(OBJECT, ROOM))
-    assert found == {bring('leftmost $1 " <location> "')}
+    new_forms = made(leftmost, bring(OBJECT), find(OBJECT, ROOM))
+    assert new_forms == {bring('leftmost $1 " <location> "')}
 
 
 def test_a_relation_stands_between_the_same_two():
