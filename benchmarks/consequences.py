@@ -1,4 +1,4 @@
-"""How long an annotator waits for the consequences of a template, and for saving it.
+"""How long an annotator waits for the consequences of an edit, and for saving it.
 
     GPSR_SHARED_DATA=… .venv/bin/python benchmarks/consequences.py [--repeat 30] [--large N]
 
@@ -6,7 +6,8 @@ Makes a fresh SQLite installation with two worlds: the published 2018 generator 
 commands), and the 2019 grammar (14,520 commands) with templates made from its own productions, since none
 were published. Prints the median and the 95th percentile of wall time and the median of processor time in
 milliseconds, over changes of templates spread over the world, and what a full generation takes. ``cold`` is
-the first answer of a process.
+the first answer of a process. Then the same of productions changed, and of entities, nonterminals and predicates
+renamed.
 
 ``--large N`` also generates a world of N commands and says how long a second connection had to wait to write.
 """
@@ -110,7 +111,7 @@ def measure(world: Any, user: Any, repeat: int, bound: float) -> None:
 
     measure_generation(world)
     rows = list(SemanticTemplate.objects.filter(grammar__world=world))
-    chosen = [rows[number * len(rows) // repeat] for number in range(repeat)]
+    chosen = spread(rows, repeat)
     print(f"{world}: {world.commands.count():,} commands, {len(rows)} templates")
     measure_consequences(world, chosen, bound)
     measure_edits(world, user, chosen)
@@ -167,6 +168,72 @@ def measure_edits(world: Any, user: Any, chosen: list[Any]) -> None:
     )
 
 
+def spread(rows: Any, count: int) -> list[Any]:
+    """Return ``count`` of the rows, evenly from the first on; all where there are no more."""
+    rows = list(rows)
+    return [rows[number * len(rows) // count] for number in range(count)] if rows[count:] else rows
+
+
+def measure_productions(world: Any, user: Any, repeat: int, bound: float) -> None:
+    """What a production would become and change, asked about with another word each time, and saved."""
+    from annotations.editing.deletion_check import check_deletion
+    from annotations.editing.edits import change
+    from annotations.editing.production_check import (
+        ProductionEdit,
+        check_production,
+        consequences_of_production,
+    )
+    from annotations.models import Production
+
+    rows = spread(Production.objects.filter(grammar__world=world), repeat)
+
+    def edit(row: Any) -> Any:
+        expansion = f"{row.expansion} please"
+        return ProductionEdit(world, row.source, row.nonterminal, expansion, row)
+
+    for name, look, limit in (
+        ("check a production", lambda row: check_production(edit(row)), None),
+        ("consequences of a production", lambda row: consequences_of_production(edit(row)), bound),
+        ("consequences of deleting one", check_deletion, bound),
+        (
+            "save a production",
+            lambda row: change(row, {"expansion": f"{row.expansion} please"}, user, row.version),
+            None,
+        ),
+    ):
+        times = [milliseconds(lambda: look(row)) for row in rows]  # noqa: B023
+        report(f"{world}: {name}", times, limit)
+
+
+def measure_renames(world: Any, user: Any, repeat: int, bound: float) -> None:
+    """What another name changes, and changing it."""
+    from annotations.editing.renaming import rename, touched_by
+    from annotations.models import Entity, Predicate, Production
+
+    productions = Production.objects.filter(grammar__world=world).exclude(nonterminal="Main")
+    first = {row.nonterminal: row for row in reversed(productions)}
+    for noun, field, rows in (
+        ("an entity", "text", Entity.objects.filter(ontology__world=world)),
+        ("a nonterminal", "nonterminal", first.values()),
+        ("a predicate", "name", Predicate.objects.filter(world=world)),
+    ):
+        chosen = [(row, getattr(row, field)) for row in spread(rows, repeat)]
+        new = [f"renamed{number}" for number in range(len(chosen))]
+        pairs = list(zip(chosen, new, strict=True))
+        looked = [milliseconds(lambda: touched_by(row, old, name)) for (row, old), name in pairs]  # noqa: B023
+        report(f"{world}: what renaming {noun} changes", looked, bound)
+        saved = [
+            milliseconds(lambda: rename(row, old, name, user, current_version(row)))  # noqa: B023
+            for (row, old), name in pairs
+        ]
+        report(f"{world}: rename {noun}", saved, bound)
+
+
+def current_version(row: Any) -> int:
+    """Return the version of a row, which another rename may have changed."""
+    return type(row).objects.values_list("version", flat=True).get(pk=row.pk)
+
+
 def measure_large(commands: int) -> None:
     """Generate ``commands`` while another connection asks for the write lock again and again."""
     from django.db import connection, transaction
@@ -220,8 +287,11 @@ def main() -> None:
             measure_large(options.large)
             return
         print("   median       p95 processor")
-        measure(make_world("gpsr2018", files_of("generator-2018")), user, options.repeat, 300)
-        measure(make_world("gpsr2019", files_2019()), user, options.repeat, 1000)
+        worlds = (("gpsr2018", files_of("generator-2018"), 300), ("gpsr2019", files_2019(), 1000))
+        for name, files, bound in worlds:
+            world = make_world(name, files)
+            for each in (measure, measure_productions, measure_renames):
+                each(world, user, options.repeat, bound)
 
 
 if __name__ == "__main__":
