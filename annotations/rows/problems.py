@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any
@@ -14,6 +15,9 @@ from annotations.rows.synchronise import Changes, synchronise
 
 # Of one part of an upload. A file of another kind can have a problem in each of 200,000 lines.
 MOST_PROBLEMS = 1_000
+
+
+TEXTS = ("source", "line", "column", "severity", "message", "hint")
 
 
 def first_problems(problems: Iterable[Problem]) -> tuple[Problem, ...]:
@@ -44,21 +48,22 @@ def as_json(problem: Problem) -> dict[str, Any]:
 
 def store_problems(world: models.World, subject: Subject, problems: Sequence[Problem]) -> Changes:
     """Makes the stored problems about one part of a world these."""
+    stored = world.problems.filter(subject=subject)
+    texts = [_text_of_problem(problem) for problem in problems]
+    if Counter(texts) == Counter(stored.order_by().values_list(*TEXTS)):
+        return Changes()
     wanted = [
-        models.StoredProblem(
-            world=world,
-            subject=subject,
-            source=problem.position.source,
-            line=problem.position.line,
-            column=problem.position.column,
-            severity=problem.severity,
-            message=problem.message,
-            hint=problem.hint,
-        )
-        for problem in problems
+        models.StoredProblem(world=world, subject=subject, **dict(zip(TEXTS, text, strict=True)))
+        for text in texts
     ]
-    return synchronise(world.problems.filter(subject=subject), wanted, _text_of, [])
+    return synchronise(stored, wanted, _text_of_row, [])
 
 
-def _text_of(row: models.StoredProblem) -> tuple[object, ...]:
-    return (row.source, row.line, row.column, row.severity, row.message, row.hint)
+def _text_of_problem(problem: Problem) -> tuple[object, ...]:
+    place = problem.position
+    texts = (problem.severity.value, problem.message, problem.hint)
+    return (place.source, place.line, place.column, *texts)
+
+
+def _text_of_row(row: models.StoredProblem) -> tuple[object, ...]:
+    return tuple(getattr(row, name) for name in TEXTS)

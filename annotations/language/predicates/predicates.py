@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from difflib import get_close_matches
 from enum import StrEnum
+
+from rapidfuzz.distance import Indel
+from rapidfuzz.process import extractOne
 
 from annotations.language.english import say_count
 from annotations.language.errors import Position, Problem, warning_at
@@ -34,6 +36,9 @@ __all__ = [
     "infer_signatures",
     "signature_of",
 ]
+
+
+ALIKE = 0.6  # the share of common letters from which on one name is offered for another
 
 
 class PredicateKind(StrEnum):
@@ -159,7 +164,9 @@ def _takes_variable(form: Form) -> bool:
 def _misuse(node: int, form: Application, predicates: Mapping[str, Predicate]) -> Misuse | None:
     name = str(form.predicate)
     if name not in predicates:
-        close = get_close_matches(name, predicates, n=1)
+        close = extractOne(
+            name, predicates.keys(), scorer=Indel.normalized_similarity, score_cutoff=ALIKE
+        )
         hint = f"did you mean {close[0]}?" if close else "declare it, or use one that is declared"
         return Misuse(node, f"there is no predicate {name}", hint)
     declared = predicates[name].signatures

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
 
 from annotations.language.errors import LanguageError, Problem, warning_at
+from annotations.language.forms import Form
 from annotations.language.grammar import Budget, Grammar, Recognizer, readable
 from annotations.language.templates.keeping import Kept
 from annotations.language.templates.synchronous import TemplateExpander
@@ -14,6 +16,20 @@ from annotations.language.templates.templates import SemanticTemplate
 
 # Command → its forms in the order of their texts; more than one where a template is ambiguous.
 Pairs: TypeAlias = Mapping[str, tuple[str, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """What a template makes: ``forms`` are its distinct ones; ``n_pairs`` counts repetitions, ``steps`` the work."""
+
+    pairs: Pairs
+    forms: tuple[Form, ...]
+    n_pairs: int
+    steps: int
+
+    def __len__(self) -> int:
+        return len(self.pairs)
+
 
 # A template that makes more commands than this by itself is left out.
 DEFAULT_LIMIT = 1_000_000
@@ -41,7 +57,7 @@ class GrammarExpansions:
         self.grammar = grammar
         self._expander = TemplateExpander(grammar)
         self._most_kept = most_kept
-        self._kept: Kept[tuple[str, str], Pairs] = Kept(most_kept, len)
+        self._kept: Kept[tuple[str, str], Made] = Kept(most_kept, len)
         self._sizes: Kept[tuple[str, str], int] = Kept(most_kept)
         self._judged: dict[str, bool] = {}
 
@@ -60,6 +76,10 @@ class GrammarExpansions:
             TooManyCombinations: the budget is spent.
             LanguageError: as ``TemplateExpander.pairs``.
         """
+        return self.made(template, budget).pairs
+
+    def made(self, template: SemanticTemplate, budget: Budget) -> Made:
+        """Return everything that the template makes. Raises as ``pairs``."""
         return self._kept.get(_key(template), lambda: _collect(self._expander, template, budget))
 
     def derived(self, commands: Collection[str], budget: Budget) -> frozenset[str]:
@@ -110,11 +130,16 @@ def _key(template: SemanticTemplate) -> tuple[str, str]:
     return template.pattern_text, template.form_text
 
 
-def _collect(expander: TemplateExpander, template: SemanticTemplate, budget: Budget) -> Pairs:
-    forms: dict[str, set[str]] = {}
-    for command, form in expander.pairs(template, budget):
-        forms.setdefault(command, set()).add(form)
-    return {command: tuple(sorted(alternatives)) for command, alternatives in forms.items()}
+def _collect(expander: TemplateExpander, template: SemanticTemplate, budget: Budget) -> Made:
+    before, count = budget.spent, 0
+    commands: dict[str, set[str]] = {}
+    forms: dict[str, Form] = {}
+    for words, filled in expander.filled_pairs(template, budget):
+        commands.setdefault(" ".join(words), set()).add(filled.text)
+        forms.setdefault(filled.text, filled.form)
+        count += 1
+    pairs = {command: tuple(sorted(texts)) for command, texts in commands.items()}
+    return Made(pairs, tuple(forms.values()), count, budget.spent - before)
 
 
 def too_many_commands(template: SemanticTemplate, size: int, limit: int | None) -> Problem | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import islice
 
@@ -75,16 +75,27 @@ class TemplateChecker:
             too_many = too_many_commands(template, self.expander.size(template), DEFAULT_LIMIT)
             if too_many is not None:
                 problems.append(too_many)
-            pairs = list(islice(self.expander.filled_pairs(template, budget), CHECKED_PAIRS))
-            commands = [" ".join(words) for words, _ in pairs]
-            forms = {filled.text: filled.form for _, filled in pairs}
+            commands, forms = self._expand(template, budget)
             problems.extend(self._membership(template, commands, budget))
-            problems.extend(self.predicate_problems(template, forms.values()))
+            problems.extend(self.predicate_problems(template, forms))
         except TooManyCombinations as error:
             return (*problems, replace(error.problem, position=template.position))
         except LanguageError as error:
             return (*problems, error.problem)
         return tuple(problems)
+
+    def _expand(
+        self, template: SemanticTemplate, budget: Budget
+    ) -> tuple[list[str], Collection[Form]]:
+        """Return the first commands of the template and its distinct forms, looked up where they are kept."""
+        known = self.recognizer
+        if isinstance(known, GrammarExpansions) and known.has(template):
+            made = known.made(template, budget)
+            if made.n_pairs < CHECKED_PAIRS and made.steps <= CHECK_STEPS:
+                return list(made.pairs), made.forms
+        pairs = list(islice(self.expander.filled_pairs(template, budget), CHECKED_PAIRS))
+        forms = {filled.text: filled.form for _, filled in pairs}
+        return [" ".join(words) for words, _ in pairs], forms.values()
 
     def slot_problems(self, template: SemanticTemplate) -> Iterator[Problem]:
         """Yield what is wrong with the slots of both sides, without expanding anything."""
