@@ -97,9 +97,16 @@ def _kill_group(process_group: int) -> None:
         os.killpg(process_group, signal.SIGKILL)
 
 
-def web_server_command() -> list[str]:
-    """One process with threads (gpsr_site.web.server): pages are short, SQLite has one writer."""
-    return [sys.executable, "manage.py", "serve"]
+def web_server_commands(count: int) -> dict[str, list[str]]:
+    """Return the commands of ``count`` web servers, by name.
+
+    One process with threads (gpsr_site.web.server) is enough for a team: pages are short, and SQLite has
+    one writer. Several share the port.
+    """
+    command = [sys.executable, "manage.py", "serve"]
+    if count == 1:
+        return {"web server": command}
+    return {f"web server {each}": [*command, "--share-port"] for each in range(1, count + 1)}
 
 
 def worker_command(*queues: str) -> list[str]:

@@ -59,6 +59,9 @@ TRUSTED_PROXIES = [
 # How long a request may take; what reads files or makes many rows may take ten times as long.
 REQUEST_SECONDS = env.float("REQUEST_SECONDS", default=60)
 
+# Web servers that share the port. One keeps one processor busy.
+WEB_PROCESSES = env.int("WEB_PROCESSES", default=1)
+
 # --- applications -------------------------------------------------------------------------------
 
 INSTALLED_APPS = [

@@ -122,6 +122,11 @@ class Server(TcpWSGIServer):
 
     channel_class = Channel
 
+    def set_reuse_addr(self) -> None:
+        super().set_reuse_addr()
+        if self.adj.shares_port:
+            self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
+
     def maintenance(self, now: float) -> None:
         super().maintenance(now)
         for channel in list(self.active_channels.values()):
@@ -134,9 +139,12 @@ def _has_session(cookies: str) -> bool:
 
 
 class WebServer:
-    """Listens on all addresses of ``host``; ``port`` 0 takes a free one."""
+    """Listens on all addresses of ``host``; ``port`` 0 takes a free one.
 
-    def __init__(self, application: Any, host: str, port: int) -> None:
+    Servers that all ``shares_port`` may have the same one: the system gives each connection to one of them.
+    """
+
+    def __init__(self, application: Any, host: str, port: int, shares_port: bool = False) -> None:
         adjustments = Adjustments(
             host=f"[{host}]" if ":" in host else host,
             port=port,
@@ -149,6 +157,7 @@ class WebServer:
             clear_untrusted_proxy_headers=False,  # gpsr_site.web.proxies decides about those
             ident="",
         )
+        adjustments.shares_port = shares_port
         self._dispatcher = ThreadedTaskDispatcher()
         self._dispatcher.set_thread_count(adjustments.threads)
         self._sockets: dict[int, Any] = {}
@@ -177,9 +186,17 @@ class WebServer:
         wasyncore.close_all(self._sockets)
 
 
-def serve(application: Any, host: str, port: int) -> None:
+def require_free_port(host: str, port: int) -> None:
+    """Raise OSError where something else listens there, a server that shares its port included."""
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    with socket.socket(family, socket.SOCK_STREAM) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        probe.bind((host, port))
+
+
+def serve(application: Any, host: str, port: int, shares_port: bool = False) -> None:
     """Serve until SIGTERM or SIGINT."""
-    server = WebServer(application, host, port)
+    server = WebServer(application, host, port, shares_port)
     signal.signal(signal.SIGTERM, _stop)
     server.run()
 

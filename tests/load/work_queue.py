@@ -2,6 +2,7 @@
 
     python -m tests.load.work_queue --people 30 --rate 1 --seconds 60
     python -m tests.load.work_queue --people 200 --database postgres://postgres@127.0.0.1:5432/gpsr_load
+    WEB_PROCESSES=2 python -m tests.load.work_queue --people 200 --rate 200 --database postgres://…
 
 Starts ``manage.py serve`` on a database of its own (SQLite in a temporary folder unless one is named),
 gives every person an item, then saves ``--rate`` labels a second in total, each followed by a request for

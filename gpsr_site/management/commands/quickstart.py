@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import secrets
-import socket
 import threading
 import time
 import urllib.error
@@ -16,7 +15,8 @@ from django.core.management.base import BaseCommand, CommandError
 
 from annotations.models import User
 from annotations.worlds.starter_world import load_starter_world
-from gpsr_site.processes import Supervisor, web_server_command, worker_command
+from gpsr_site.processes import Supervisor, web_server_commands, worker_command
+from gpsr_site.web.server import require_free_port
 from parser_service.runs.first_runs import request_first_runs
 
 HEALTH_PATIENCE_SECONDS = 60
@@ -35,7 +35,7 @@ class Command(BaseCommand):
         self.create_admin()
         request_first_runs(load_starter_world(self.say))
         commands = {
-            "web server": web_server_command(),
+            **web_server_commands(settings.WEB_PROCESSES),
             "training worker": worker_command("cpu", "gpu"),
             "quick worker": worker_command("quick"),
         }
@@ -54,16 +54,13 @@ class Command(BaseCommand):
         return f"http://{settings.HOST}:{settings.PORT}/"
 
     def refuse_a_taken_port(self) -> None:
-        family = socket.AF_INET6 if ":" in settings.HOST else socket.AF_INET
-        with socket.socket(family, socket.SOCK_STREAM) as probe:
-            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            try:
-                probe.bind((settings.HOST, settings.PORT))
-            except OSError as error:
-                raise CommandError(
-                    f"Cannot serve on {settings.HOST}:{settings.PORT}: {error.strerror}. "
-                    f"Stop what uses it, or choose another port: PORT={settings.PORT + 1} make run"
-                ) from error
+        try:
+            require_free_port(settings.HOST, settings.PORT)
+        except OSError as error:
+            raise CommandError(
+                f"Cannot serve on {settings.HOST}:{settings.PORT}: {error.strerror}. "
+                f"Stop what uses it, or choose another port: PORT={settings.PORT + 1} make run"
+            ) from error
 
     def create_admin(self) -> None:
         """The first administrator, with a password that is printed now and never again."""

@@ -8,8 +8,11 @@ from urllib.parse import urlencode
 import pytest
 from django.test import Client
 
+from gpsr_site.processes import web_server_commands
 from gpsr_site.web import server
 from gpsr_site.web.body_limits import ANONYMOUS_BYTES, ORDINARY_BYTES, largest_body
+from gpsr_site.web.server import WebServer, require_free_port
+from gpsr_site.wsgi import application
 from tests.waiting import wait_for
 
 GIGABYTE = 1 << 30
@@ -119,3 +122,26 @@ def test_eight_templates_that_explode_do_not_stop_the_site(site, sample, annotat
     for connection in asked:
         assert connection.recv(1000).startswith(b"HTTP/1.1 200 ")
         connection.close()
+
+
+def test_servers_share_a_port_if_both_do_and_nothing_else_takes_it(transactional_db):
+    servers = [WebServer(application, "127.0.0.1", 0, shares_port=True)]
+    port = servers[0].port
+    try:
+        servers.append(WebServer(application, "127.0.0.1", port, shares_port=True))
+        assert servers[1].port == port
+        with pytest.raises(OSError):
+            WebServer(application, "127.0.0.1", port)
+        with pytest.raises(OSError):
+            require_free_port("127.0.0.1", port)
+    finally:
+        for each in servers:
+            each.stop()
+    require_free_port("127.0.0.1", port)
+
+
+def test_several_web_servers_are_as_many_commands():
+    (alone,) = web_server_commands(1).values()
+    both = web_server_commands(2)
+    assert list(both) == ["web server 1", "web server 2"]
+    assert all(command == [*alone, "--share-port"] for command in both.values())
