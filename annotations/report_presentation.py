@@ -29,7 +29,7 @@ TEMPLATES = {
 
 
 def shown_report(kind: str, report: Mapping[str, Any]) -> dict[str, Any]:
-    """The context of ``_report.html``: the report, its template, and its problems, the errors first."""
+    """Return the context of ``_report.html``: the report, its template, and its problems, the errors first."""
     problems = [{**each, "source": each["file"]} for each in report.get("problems", ())]
     problems.sort(key=lambda each: each["severity"] != "error")
     n_errors = sum(each["severity"] == "error" for each in problems)
@@ -46,7 +46,7 @@ def shown_report(kind: str, report: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _shown_texts(rows: Mapping[str, list[str]]) -> list[dict[str, Any]]:
-    """Rows by what they are: how many, and the first of them. ``kind`` is a name in editing.kinds."""
+    """Return rows by what they are: how many, and the first of them. ``kind`` is a name in editing.kinds."""
     return [
         {
             "count": len(texts),

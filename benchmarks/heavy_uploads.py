@@ -55,7 +55,7 @@ class Visitor:
     def post(
         self, path: str, fields: dict[str, str], files: dict[str, tuple[str, bytes]] | None = None
     ) -> str:
-        """Sends a form with the token of its page; where the answer led to."""
+        """Send a form with the token of its page; return where the answer led to."""
         token = re.search(r'name="csrfmiddlewaretoken" value="([^"]+)"', self.get(path))[1]
         boundary = uuid.uuid4().hex
         body = io.BytesIO()

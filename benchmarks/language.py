@@ -33,7 +33,7 @@ T = TypeVar("T")
 
 
 def timed(name: str, work: Callable[[], T], bound: float | None = None) -> T:
-    """Does ``work`` once, prints what it took and whether that is within ``bound``."""
+    """Do ``work`` once, print what it took and whether that is within ``bound``."""
     start = time.process_time()
     result = work()
     took = time.process_time() - start

@@ -145,7 +145,7 @@ class Entry:
 
 
 def frame(request: HttpRequest) -> dict[str, Any]:
-    """The context of every page. What costs a query is looked up where a template reads it, once."""
+    """Return the context of every page. What costs a query is looked up where a template reads it, once."""
     world: World | None = getattr(request, "world", None)
     duties = getattr(request, "duties", frozenset())
     return {
@@ -165,7 +165,7 @@ def _rail(request: HttpRequest, world: World) -> Iterator[Entry]:
 
 
 def _current(match: ResolverMatch | None) -> str:
-    """The route that the rail marks; a page about any kind of row belongs to the list of that kind."""
+    """Return the route that the rail marks; a page about any kind of row belongs to the list of that kind."""
     if match is None:
         return ""
     return LISTS.get(match.kwargs.get("kind", ""), match.url_name or "")

@@ -24,7 +24,7 @@ MOST_JOBS = 5  # in the work list; the page of jobs has them all
 
 @require_safe
 def home(request: HttpRequest) -> HttpResponse:
-    """The worlds that the reader may see, with what waits in each."""
+    """Show the worlds that the reader may see, with what waits in each."""
     worlds = World.objects.visible_to(request.user)
     counts = counts_of_all(worlds)
     duties = worlds.duties_by_world(request.user)
@@ -38,7 +38,7 @@ def home(request: HttpRequest) -> HttpResponse:
 
 @world_view(Duty.VIEW)
 def world(request: HttpRequest, world: World) -> HttpResponse:
-    """What there is in a world, what waits, and how well its parsers do."""
+    """Show what there is in a world, what waits, and how well its parsers do."""
     counts = request.counts = counts_of(world)  # the rail takes them from there
     best = best_runs(world)
     jobs = world.jobs.needing_attention()[:MOST_JOBS]
@@ -57,7 +57,7 @@ def world(request: HttpRequest, world: World) -> HttpResponse:
 @never_cache
 @require_safe
 def banner(request: HttpRequest) -> HttpResponse:
-    """The worker's state, which every page asks for every two seconds."""
+    """Show the worker's state, which every page asks for every two seconds."""
     return render(request, "gpsr_site/_banner.html")
 
 
@@ -65,7 +65,7 @@ def banner(request: HttpRequest) -> HttpResponse:
 @login_not_required
 @require_safe
 def healthz(request: HttpRequest) -> HttpResponse:
-    """200 where the database answers: for whoever supervises the process."""
+    """Answer 200 where the database answers: for whoever supervises the process."""
     with connection.cursor() as cursor:
         cursor.execute("SELECT 1")
     return JsonResponse({"status": "ok"})

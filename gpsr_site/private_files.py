@@ -17,7 +17,7 @@ def make_private(path: Path) -> None:
 
 
 def make_database_private(path: Path) -> None:
-    """SQLite gives its ``-wal`` and ``-shm`` files the mode of the database; older ones are mended."""
+    """Let only the owner read the database; SQLite gives its ``-wal`` and ``-shm`` files the same mode."""
     make_private(path)
     for suffix in ("-wal", "-shm"):
         beside = path.with_name(path.name + suffix)

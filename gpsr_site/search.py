@@ -190,7 +190,7 @@ def _group(kind: Kind, world: World, words: str, matches: QuerySet[Any], count: 
 
 
 def _page_url(kind: Kind, world: World, row: Model) -> str:
-    """Where the row has a page of its own; empty where it has none."""
+    """Return where the row has a page of its own; empty where it has none."""
     if not kind.page_name:
         return ""
     return reverse(kind.page_name, kwargs={"world": world.name, "pk": row.pk})

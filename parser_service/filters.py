@@ -31,7 +31,7 @@ def parser_choices() -> Choices:
 
 
 def split_choices(request: HttpRequest) -> Choices:
-    """The splits of the world that the page is about."""
+    """Return the splits of the world that the page is about."""
     names = Split.objects.filter(world=request.world).values_list("name", flat=True)
     return [(name, name) for name in names]
 
@@ -74,7 +74,7 @@ class RunFilters(PageFilters):
     def by_seeds_of(
         self, rows: TrainingRunQuerySet, name: str, value: Decimal
     ) -> TrainingRunQuerySet:
-        """A run of the same world and what differs from it by nothing but the seed."""
+        """Return a run of this world and those that differ from it only by the seed."""
         run = self.request.world.runs.filter(pk=value).first()
         return rows.seeds_of(run) if run else rows.none()
 

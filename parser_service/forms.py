@@ -118,7 +118,7 @@ class RunForm(forms.Form):
 
 
 def say_default(declared: ConfigField) -> str:
-    """The default of a hyperparameter as a sentence, such as ``Default 0.1.``"""
+    """Return the default of a hyperparameter as a sentence, such as ``Default 0.1.``"""
     if declared.type is bool:
         return f"Default {'on' if declared.default else 'off'}."
     if declared.type is float:
@@ -127,7 +127,7 @@ def say_default(declared: ConfigField) -> str:
 
 
 def field_for(declared: ConfigField) -> forms.Field:
-    """A form field for one hyperparameter, with its default and its bounds."""
+    """Return a form field for one hyperparameter, with its default and its bounds."""
     common = {
         "label": LABELS.get(declared.name, declared.name.replace("_", " ").capitalize()),
         "initial": declared.default,

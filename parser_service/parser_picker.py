@@ -47,7 +47,7 @@ class ParserGroup:
 
 
 def parser_groups(world: World, split: Split | None) -> list[ParserGroup]:
-    """All parsers by what they need; accuracies are those on ``split``. Two queries."""
+    """Return all parsers by what they need; accuracies are those on ``split``. Two queries."""
     seconds, scores = _seconds(world), _scores(world, split)
     options = [
         ParserOption(
@@ -70,7 +70,7 @@ def _group(options: list[ParserOption]) -> Iterator[ParserGroup]:
 
 
 def _seconds(world: World) -> dict[str, float]:
-    """The median seconds of training of the newest finished runs, by parser."""
+    """Return the median seconds of training of the newest finished runs, by parser."""
     times: dict[str, list[float]] = defaultdict(list)
     runs = world.runs.succeeded().order_by("-id").values_list("parser", "seconds_trained")
     for parser, seconds in runs[:MOST_RUNS]:
@@ -79,7 +79,7 @@ def _seconds(world: World) -> dict[str, float]:
 
 
 def _scores(world: World, split: Split | None) -> dict[str, dict[str, float]]:
-    """The best accuracy by parser and source."""
+    """Return the best accuracy by parser and source."""
     best: dict[str, dict[str, float]] = defaultdict(dict)
     rows = Evaluation.objects.filter(
         run__world=world,

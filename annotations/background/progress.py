@@ -19,7 +19,7 @@ class Progress(Protocol):
         """Raise an exception when the verb is to stop; do nothing otherwise. Costs next to nothing."""
 
     def writing(self) -> AbstractContextManager[Any]:
-        """A transaction. Raises an exception before anything is written when the verb is to stop."""
+        """Return a transaction; entering it raises an exception where the verb is to stop."""
 
     def conclude(self, report: Mapping[str, Any]) -> None:
         """Take note of what came of it, in the transaction that writes it."""

@@ -58,7 +58,7 @@ def mentioned_in(text: str, people: Iterable[User]) -> list[User]:
 
 
 def people_of(world: World) -> models.QuerySet[User]:
-    """The members of ``world`` who can log in, by name: whom a comment can mention."""
+    """Return the members of ``world`` who can log in, by name: whom a comment can mention."""
     members = User.objects.filter(memberships__world=world, is_active=True)
     return members.distinct().order_by("username")
 

@@ -35,13 +35,13 @@ class Subject:
         raise Http404(f"There is no such {self.name}.")
 
     def address(self, world: World, pk: int) -> str:
-        """The page that shows a row with its comments."""
+        """Return the page that shows a row with its comments."""
         if self.page:
             return reverse(self.page, kwargs={"world": world.name, "pk": pk}) + "#comments"
         return reverse("comments", kwargs={"world": world.name, "kind": self.name, "pk": pk})
 
     def current_key(self, comment: Comment) -> int | None:
-        """The key of what ``comment`` is about; None where it is gone."""
+        """Return the key of what ``comment`` is about; None where it is gone."""
         rows = self.model._default_manager.filter(**{self.world_path: comment.world_id})
         named: dict[str, Any] = {"pk": comment.subject}
         if self.is_known_by_text:

@@ -104,12 +104,12 @@ class EntityRename:
         return {"pattern": pattern, "form": form}
 
     def _is_only_one(self) -> bool:
-        """Whether no entity of another class has the same text, so that a text in a form means this one."""
+        """Return whether no entity of another class has the same text, so that a text in a form means this one."""
         rows = self.row.ontology.entities.filter(text=self.row.text)
         return not rows.exclude(entity_class=self.row.entity_class).exists()
 
     def _of_utterances(self, new: str) -> Changes:
-        """What people said stays; what it means has the new name."""
+        """Return the utterances whose form names the entity; what people said stays as it is."""
         rows = Utterance.objects.filter(world=self.world, text__icontains=self.name.text)
         return differing((row, {"spans": self._spans(row, new)}) for row in rows)
 

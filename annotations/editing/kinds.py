@@ -44,12 +44,12 @@ class Kind:
         return self.model._default_manager.filter(**{self.model.world_path: world})
 
     def entries_of(self, world: World) -> models.QuerySet[Any]:
-        """The history of all rows of this kind, newest entry first."""
+        """Return the history of all rows of this kind, newest entry first."""
         entries = history_of(self.model).filter(**{self.model.world_path: world})
         return entries.select_related("history_user").order_by("-history_id")
 
     def deletions_in(self, world: World) -> models.QuerySet[Any]:
-        """The last history entries of the rows that are deleted, the latest deletion first."""
+        """Return the last history entries of the rows that are deleted, the latest deletion first."""
         entries = self.entries_of(world)
         later = history_of(self.model).filter(
             id=models.OuterRef("id"), history_id__gt=models.OuterRef("history_id")
@@ -87,7 +87,7 @@ def kind_of(row: Editable) -> Kind:
 
 
 def label_of(field: str) -> str:
-    """What pages call a field."""
+    """Return what pages call a field."""
     return LABELS.get(field) or field.replace("_", " ").capitalize()
 
 

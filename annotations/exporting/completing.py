@@ -34,7 +34,7 @@ def _imported_templates(rows: list[SemanticTemplate]) -> dict[str, str]:
 
 
 def _imported_lines(rows: list[SemanticTemplate], source: str) -> dict[bytes, bytes]:
-    """What a template of the file is now → the line that it was imported as; empty for one written here."""
+    """Return what a template of the file is now → the line that it was imported as; empty for one written here."""
     return {str(row).encode(): row.imported_text.encode() for row in rows if row.source == source}
 
 

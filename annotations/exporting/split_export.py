@@ -41,7 +41,7 @@ class Format(models.TextChoices):
 def export_lines(
     split: Split, as_: str, part: str | None = None, source: str | None = None
 ) -> Iterator[str]:
-    """The chosen examples of ``split`` as lines of text, each with its line end.
+    """Return the chosen examples of ``split`` as lines of text, each with its line end.
 
     ``as_`` is a ``Format``. ``txt`` is one pair file, so it needs ``part`` and ``source``; of an
     imported split it is the file that came in, byte for byte. Raises ValueError without them.
@@ -55,7 +55,7 @@ def export_lines(
 
 
 def export_split(split: Split, as_: str, target: Path) -> dict[str, int]:
-    """Writes a whole split; returns the number of examples by path.
+    """Write a whole split; return the number of examples by path.
 
     ``txt`` makes a folder of pair files, laid out as ``import_pairs`` reads it (``gen_logical/val.txt``);
     the other formats make the file ``target``. Raises OSError where that cannot be written.
@@ -73,7 +73,7 @@ def export_split(split: Split, as_: str, target: Path) -> dict[str, int]:
 
 
 def folder_of(split: Split, source: str) -> str:
-    """``gen``, ``para_logical``, …: the folder of a source, by the criterion of the split."""
+    """Return ``gen``, ``para_logical``, …: the folder of a source, by the criterion of the split."""
     kinds = {kind: folder for folder, kind in CORPUS_FOLDERS.items()}
     plain = kinds[source, Criterion.COMMAND]
     return kinds.get((source, split.criterion), f"{plain}_{split.criterion}")
@@ -114,7 +114,7 @@ def _csv_lines(rows: Iterator[dict[str, Any]]) -> Iterator[str]:
 
 
 def formula_safe(cell: Any) -> Any:
-    """``cell`` with an apostrophe before anything that a spreadsheet would execute."""
+    """Return ``cell`` with an apostrophe before anything that a spreadsheet would execute."""
     return f"'{cell}" if isinstance(cell, str) and cell.startswith(FORMULA_STARTS) else cell
 
 

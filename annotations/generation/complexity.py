@@ -40,7 +40,7 @@ class Complexity:
 
 
 def complexity(world: World) -> list[Complexity]:
-    """A column for each task category, in its order, and one for all. Three grouped queries."""
+    """Return a column for each task category, in its order, and one for all. Three grouped queries."""
     commands = _sums(Command.objects.filter(world=world))
     forms = _sums(LogicalForm.objects.filter(world=world))
     templates = _template_counts(world)
@@ -59,7 +59,7 @@ def complexity(world: World) -> list[Complexity]:
 
 
 def _sums(rows: Any) -> dict[str, tuple[int, int]]:
-    """Task category → number of rows and of their tokens."""
+    """Return task category → number of rows and of their tokens."""
     grouped = rows.order_by().values("task_category").annotate(n=Count("id"), tokens=Sum("length"))
     return {group["task_category"]: (group["n"], group["tokens"]) for group in grouped}
 

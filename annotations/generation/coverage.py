@@ -41,7 +41,7 @@ class Coverage:
 
 
 def coverage_of(world: models.World) -> list[Coverage]:
-    """One entry for each task category, in order. Raises LanguageError where a row cannot be read."""
+    """Return one entry for each task category, in order. Raises LanguageError where a row cannot be read."""
     known = frozenset(world.commands.values_list("anonymized_text", flat=True))
     return [_coverage(category, known) for category in task_categories(world)]
 
@@ -49,7 +49,7 @@ def coverage_of(world: models.World) -> list[Coverage]:
 def count_coverage(
     categories: Sequence[TaskCategory], commands: frozenset[str]
 ) -> dict[str, Coverage]:
-    """By task category, how many commands of its grammar are among ``commands``, which have a form.
+    """Count by task category how many commands of its grammar are among ``commands``, which have a form.
 
     Enumerates the grammar, so this belongs to imports and generation, never to a page.
     """
@@ -86,7 +86,7 @@ def _coverage(category: TaskCategory, known: frozenset[str]) -> Coverage:
 
 
 def spread(items: Sequence[str], count: int) -> tuple[str, ...]:
-    """``count`` of the items, evenly from the first on; all of them where there are no more."""
+    """Return ``count`` of the items, evenly from the first on; all of them where there are no more."""
     if len(items) <= count:
         return tuple(items)
     return tuple(items[index * len(items) // count] for index in range(count))

@@ -81,7 +81,7 @@ class CommandRows:
             yield pk, text, template, *others, form
 
     def apply(self) -> Changes:
-        """Writes the differences; the forms must be there by now."""
+        """Write the differences; the forms must be there by now."""
         for keys in batches(self._removed):
             gone = models.Command.objects.filter(pk__in=keys)
             _keep_texts(gone)

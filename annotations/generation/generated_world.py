@@ -87,7 +87,7 @@ class GeneratedWorld:
                 )
 
     def _left_out(self) -> Iterator[Problem]:
-        """A template that several categories use is mentioned once."""
+        """Yield what is left out; a template that several categories use is mentioned once."""
         templates = self._templates()
         problems: dict[Problem, None] = {}
         for each in self._generated.left_out:
@@ -100,7 +100,7 @@ class GeneratedWorld:
 
 
 def _form_rows(world: models.World, generated: Generated) -> list[models.LogicalForm]:
-    """Distinct forms, in order of their first command."""
+    """Return the distinct forms, in order of their first command."""
     first: dict[str, Expansion] = {}
     for expansion in generated.expansions:
         first.setdefault(expansion.form_text, expansion)
@@ -125,7 +125,7 @@ def _measure(text: str) -> tuple[str, int]:
 
 
 def _store_forms(world: models.World, forms: list[models.LogicalForm]) -> Changes:
-    """Old forms stay while commands have them."""
+    """Store the distinct forms; those from before stay while commands have them."""
     fields = ["head_predicate", "depth", "length", "task_category"]
     return synchronise(
         world.logical_forms.all(), forms, lambda row: row.text, fields, is_kept=lambda row: True

@@ -28,7 +28,7 @@ class GenerationReport:
     changes: Changes
 
     def as_json(self) -> dict[str, Any]:
-        """Figures by task category; under ``all`` those of all together."""
+        """Return figures by task category; under ``all`` those of all together."""
         names = [column.task_category or "all" for column in self.columns]
 
         def by_category(figure: str) -> dict[str, Any]:
@@ -72,7 +72,7 @@ class GenerationReport:
 def generate_pairs(
     world: models.World, limit: int = DEFAULT_LIMIT, progress: Progress = UNWATCHED
 ) -> GenerationReport:
-    """Stores the commands and logical forms of ``world`` and says what they are.
+    """Store the commands and logical forms of ``world`` and say what they are.
 
     Rows that are right already are not touched; a command that no template makes any more goes,
     and its paraphrases stay. Conflicts are stored as warnings. All is computed before anything is
@@ -92,7 +92,7 @@ def generate_pairs(
 
 
 def _generate_once(world: models.World, limit: int, progress: Progress) -> GenerationReport | None:
-    """None where templates or commands have been changed by others before anything was written."""
+    """Generate once. Return None where others have changed templates or commands meanwhile."""
     progress.report(0, "expanding the templates")
     counters = counters_of(models.World.objects.get(pk=world.pk))
     categories = annotated_categories(world)

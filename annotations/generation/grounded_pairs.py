@@ -23,7 +23,7 @@ from annotations.rows.from_rows import ontology_of, task_categories
 
 
 def grounded_pairs(world: World, count: int, seed: int = 0) -> list[tuple[str, str]]:
-    """``count`` pairs of a grounded command and its canonical form.
+    """Return ``count`` pairs of a grounded command and its canonical form.
 
     Every anonymized command has its turn before one comes again. A command for which the ontology
     has no value is left out. The same world, count and seed give the same pairs.
@@ -45,7 +45,7 @@ def _draw(
     ontology: Ontology,
     random: Random,
 ) -> Iterator[tuple[str, str]]:
-    """Endless, as long as a round over all commands gives anything."""
+    """Yield pairs without end, as long as a round over all commands gives any."""
     sources = {category.name: _Derivations(category) for category in categories}
     while True:
         failure: LanguageError | None = None

@@ -32,7 +32,7 @@ _UNREADABLE = (
 def open_archive(
     file: IO[bytes] | Any, name: str, most_files: int, most_bytes: int
 ) -> Iterator[zipfile.ZipFile]:
-    """The archive ``file``, whose list of members is within the bounds.
+    """Open the archive ``file``, whose list of members is within the bounds.
 
     Raises:
         LanguageError: it is no archive that can be read; it announces too many files, too many bytes
@@ -47,7 +47,7 @@ def open_archive(
 
 @contextmanager
 def sentences_for(name: str) -> Iterator[None]:
-    """Turns what Python says of a broken archive into a LanguageError about the file ``name``."""
+    """Turn what Python says of a broken archive into a LanguageError about the file ``name``."""
     try:
         yield
     except LanguageError:
@@ -61,7 +61,7 @@ def sentences_for(name: str) -> Iterator[None]:
 
 
 def read_member(archive: zipfile.ZipFile, member: zipfile.ZipInfo, most_bytes: int) -> bytes:
-    """The bytes of one member, whatever size it announces. Raises LanguageError above ``most_bytes``."""
+    """Return the bytes of one member, whatever size it announces. Raises LanguageError above ``most_bytes``."""
     with sentences_for(member.filename), archive.open(member) as file:
         data = file.read(most_bytes + 1)
     if len(data) > most_bytes:
@@ -70,7 +70,7 @@ def read_member(archive: zipfile.ZipFile, member: zipfile.ZipInfo, most_bytes: i
 
 
 def read_lines(archive: zipfile.ZipFile, name: str, longest: int) -> Iterator[bytes]:
-    """The lines of one member, one after another. Raises LanguageError above ``longest`` bytes a line."""
+    """Yield the lines of one member, one after another. Raises LanguageError above ``longest`` bytes a line."""
     with ExitStack() as stack:
         with sentences_for(name):
             file = stack.enter_context(archive.open(name))

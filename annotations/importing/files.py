@@ -12,7 +12,7 @@ from annotations.language.errors import LanguageError, Position
 
 
 def gather(source: Path | str | Mapping[str, bytes]) -> dict[str, bytes]:
-    """The files to read: name → bytes. Hidden files are left out.
+    """Return the files to read: name → bytes. Hidden files are left out.
 
     Raises:
         LanguageError: there is no such folder, there are too many files or bytes, or a name of an

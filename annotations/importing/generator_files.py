@@ -47,7 +47,7 @@ class Generator:
 def read_generator(
     files: Mapping[str, bytes], edited: Mapping[str, Predicate] | None = None
 ) -> Generator:
-    """Reads files given as name → bytes. Nothing is raised: what is wrong is among the problems.
+    """Read files given as name → bytes. Nothing is raised: what is wrong is among the problems.
 
     Args:
         edited: predicates that people have changed; they hold whatever the files say.
@@ -79,7 +79,7 @@ def _examine(
     declared: Mapping[str, Predicate] | None,
     edited: Mapping[str, Predicate],
 ) -> tuple[dict[str, Predicate], list[Problem]]:
-    """The predicates that the forms use, and what the templates' commands and forms show wrong."""
+    """Return the predicates that the forms use, and what the templates' commands and forms show wrong."""
     try:
         generated = generate(categories, INFERENCE_LIMIT)
         forms = [read_form(text) for text in {each.form_text for each in generated.expansions}]
@@ -96,7 +96,7 @@ def _examine(
 
 
 def _unread(files: Iterable[str]) -> Iterator[Problem]:
-    """A warning for each file that is not a generator's; a README needs none."""
+    """Yield a warning for each file that is not a generator's; a README needs none."""
     known = {*ONTOLOGY_FILES, *TRIPLE_FILES, PREDICATES_FILE}
     for name in files:
         is_read = name in known or is_grammar_name(name) or is_template_name(name)

@@ -35,7 +35,7 @@ class PairFolder:
 
 
 def read_pair_folder(folder: Path) -> PairFolder:
-    """Reads ``gen para gen_logical para_logical`` and the grounded triples, those that are there.
+    """Read ``gen para gen_logical para_logical`` and the grounded triples, those that are there.
 
     Nothing is raised; a folder with none of them is a problem too.
     """
@@ -65,7 +65,7 @@ def read_pair_folder(folder: Path) -> PairFolder:
 
 
 def _contents(folder: Path, problems: list[Problem]) -> Iterator[tuple[str, bytes]]:
-    """Path inside the folder → bytes, for every file that may be one of a corpus."""
+    """Yield path inside the folder → bytes, for every file that may be one of a corpus."""
     try:
         for name, data in read_folder(folder, "paraphras*.txt").items():
             if name in TRIPLE_FILES:

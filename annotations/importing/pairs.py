@@ -31,7 +31,7 @@ def import_pairs(
     progress: Progress = UNWATCHED,
     brings_back: bool = False,
 ) -> PairsReport:
-    """Takes the splits and paraphrases of ``folder`` into a world, all of them or nothing.
+    """Take the splits and paraphrases of ``folder`` into a world, all of them or nothing.
 
     Args:
         world_name: made where there is none.
@@ -79,7 +79,7 @@ def _store(
     progress: Progress,
     brings_back: bool,
 ) -> PairsReport | None:
-    """Prepares everything, then writes it. None where commands were generated in between."""
+    """Prepare everything, then write it. Return None where commands were generated in between."""
     world = World.objects.filter(name=report.world).first()
     finder = SourceFinder(world)
     progress.report(0.3, "finding the source of each paraphrase")
@@ -131,7 +131,7 @@ Behind = Mapping[str, Sequence[tuple[GroundedTriple, Source]]]
 
 
 def _by_utterance(triples: Sequence[GroundedTriple], sources: Sequence[Source]) -> Behind:
-    """Utterance → the records it stands in."""
+    """Return utterance → the records it stands in."""
     records: dict[str, list[tuple[GroundedTriple, Source]]] = defaultdict(list)
     for triple, source in zip(triples, sources, strict=True):
         records[triple.paraphrase].append((triple, source))

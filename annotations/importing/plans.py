@@ -63,7 +63,7 @@ def differences_of(
 
 
 def _removed(changes: Plan) -> tuple[str, ...]:
-    """Each removed row with its file, in the order of the rows."""
+    """Return each removed row with its file, in the order of the rows."""
     rows = sorted(changes.removed, key=lambda row: row.position)
     return tuple(f"{row.source}: {row}" for row in rows)
 
@@ -141,7 +141,7 @@ def _key_of_template(row: models.SemanticTemplate) -> tuple[str, str]:
 
 
 def _is_of_people(template: models.SemanticTemplate) -> bool:
-    """Whether somebody wrote, changed or put aside the template since its file was imported."""
+    """Return whether somebody wrote, changed or put aside the template since its file was imported."""
     is_as_imported = template.imported_text == f"{template.pattern} = {template.form}"
     return template.author_id is not None or template.status != Status.READY or not is_as_imported
 
@@ -183,7 +183,7 @@ def _key_of_entity(row: models.Entity) -> tuple[str, str, str]:
 def plan_predicates(
     world: models.World, generator: Generator, brings_back: bool
 ) -> Plan[models.Predicate]:
-    """Those that a person has changed stay as they are."""
+    """Plan the predicates; those that a person has changed stay as they are."""
     edited = set(world.predicates.filter(is_edited=True).values_list("name", flat=True))
     wanted = [
         models.Predicate(

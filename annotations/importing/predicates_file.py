@@ -26,7 +26,7 @@ _EXAMPLE = '[{"name": "go", "kind": "action", "signatures": [["room"]], "gloss":
 
 
 def read_predicates(data: bytes, source: str = PREDICATES_FILE) -> dict[str, Predicate]:
-    """The predicates that a file declares, by name.
+    """Return the predicates that a file declares, by name.
 
     Raises:
         LanguageError: with the position, where the file is no such list or a value is unknown.
@@ -54,7 +54,7 @@ def read_predicates(data: bytes, source: str = PREDICATES_FILE) -> dict[str, Pre
 
 
 def write_predicates(predicates: Iterable[Predicate]) -> str:
-    """The file that reads back as equal predicates, one a line."""
+    """Return the file that reads back as equal predicates, one a line."""
     rows = [json.dumps(_row(predicate), ensure_ascii=False) for predicate in predicates]
     return "[\n  " + ",\n  ".join(rows) + "\n]\n"
 
@@ -92,7 +92,7 @@ def _predicate(row: Any, place: Position) -> Predicate:
 
 
 def _place(text: str, row: Any, source: str) -> Position:
-    """The line on which the row's name is first written, as JSON keeps no positions."""
+    """Return the line on which the row's name is first written, as JSON keeps no positions."""
     name = row.get("name") if isinstance(row, dict) else None
     start = text.find(f'"{name}"') if isinstance(name, str) else -1
     return Position(source, text.count("\n", 0, start) + 1) if start >= 0 else Position(source)

@@ -39,11 +39,11 @@ class SourceFinder:
         self._commands = {row.anonymized_text: row for row in commands}
 
     def command(self, anonymized_text: str) -> Command | None:
-        """The generated command of this very text."""
+        """Return the generated command of this very text."""
         return self._commands.get(anonymized_text)
 
     def source(self, prompt: str, grounded_form: Form) -> Source:
-        """The source of a prompt with its grounded form.
+        """Return the source of a prompt with its grounded form.
 
         The form is what the record says with class tokens for the values of the prompt, whatever
         the generated command's own form: labels are shown, not repaired, on import.

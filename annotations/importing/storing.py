@@ -45,7 +45,7 @@ class PreparedProductions:
     def apply(
         self, world: models.World, grammar: models.Grammar, by: models.User | None
     ) -> Changes:
-        """Writes them; inside a transaction. Compares anew where somebody has changed the world since."""
+        """Write them, inside a transaction; compare again if somebody has changed the world since."""
         if world.revision != self._revision:
             return plan_productions(grammar, self._generator, self._brings_back).apply(by)
         self._plan.apply_to_stored(by)
@@ -60,7 +60,7 @@ def store(
     by: models.User | None = None,
     brings_back: bool = False,
 ) -> Changes:
-    """Makes the world's ontology, grammar, templates and predicates those of ``generator``.
+    """Make the world's ontology, grammar, templates and predicates those of ``generator``.
 
     What a person has changed keeps what it says; a template that a person wrote stays, behind those of
     the files. What a person has deleted stays away unless ``brings_back``. To be called inside a

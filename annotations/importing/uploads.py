@@ -32,7 +32,7 @@ class Upload(Protocol):
 
 
 def files_of(uploads: Iterable[Upload]) -> dict[str, bytes]:
-    """Name → bytes of all uploads, zip archives unpacked (their folders are dropped).
+    """Return name → bytes of all uploads, zip archives unpacked (their folders are dropped).
 
     Of the archive of a whole world only the files of its generator are taken.
 
@@ -50,7 +50,7 @@ def files_of(uploads: Iterable[Upload]) -> dict[str, bytes]:
 
 
 def unpacked_size(uploads: Iterable[Upload]) -> int:
-    """How many bytes the uploads hold, as their archives announce it; nothing is unpacked.
+    """Return how many bytes the uploads hold, as their archives announce it; nothing is unpacked.
 
     Raises:
         LanguageError: an archive that cannot be read.
@@ -71,7 +71,7 @@ def is_archive(upload: Upload) -> bool:
 
 @contextmanager
 def unpacked_pairs(upload: Upload) -> Iterator[Path]:
-    """The files of a corpus (``gen/train.txt``, ``paraphrasings.txt`` …) in a folder that is gone
+    """Unpack the files of a corpus (``gen/train.txt``, ``paraphrasings.txt`` …) in a folder that is gone
     afterwards. Whatever else the archive holds, and the folders around them, is left out.
 
     Raises:
@@ -86,7 +86,7 @@ def unpacked_pairs(upload: Upload) -> Iterator[Path]:
 
 
 def _place_of_pairs(path: str) -> str:
-    """Where a file of a corpus belongs; empty for any other."""
+    """Return where a file of a corpus belongs; empty for any other."""
     *_, directory, name = f"//{path}".split("/")
     if name in TRIPLE_FILES:
         return name
@@ -94,13 +94,13 @@ def _place_of_pairs(path: str) -> str:
 
 
 def _file_name(path: str) -> str:
-    """The name without its folders; empty for a hidden file."""
+    """Return the name without its folders; empty for a hidden file."""
     name = path.rsplit("/", 1)[-1]
     return "" if name.startswith(".") else name
 
 
 def _generator_file_name(path: str) -> str:
-    """As ``_file_name``, for the files of the generator inside the archive of a world."""
+    """Do as ``_file_name``, for the files of the generator inside the archive of a world."""
     return _file_name(path) if f"/{GENERATOR_FOLDER}" in f"/{path}" else ""
 
 
@@ -120,7 +120,7 @@ def _all(uploads: Iterable[Upload]) -> Iterator[tuple[str, bytes]]:
 
 
 def _members(upload: Upload, place: Callable[[str], str]) -> Iterator[tuple[str, bytes]]:
-    """The files of an archive, each where ``place`` puts it; those that it puts nowhere are left out.
+    """Yield the files of an archive, each where ``place`` puts it; those that it puts nowhere are left out.
 
     Sizes are checked as announced and again as read.
     """

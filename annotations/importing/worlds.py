@@ -19,7 +19,7 @@ def require_world_name(name: str) -> None:
 
 
 def locked_world(name: str, by: User | None = None) -> World:
-    """The world, made where there is none, held against a second import until this one is through.
+    """Return the world, made where there is none, held against a second import until this one is through.
 
     To be called inside a transaction. ``by`` becomes the admin of a world that this makes.
     """

@@ -24,7 +24,7 @@ Report = dict[str, Any]
 
 
 def carry_out(job: Job, give_up: Callable[[], None] | None = None) -> None:
-    """Brings a claimed job to its end, and clears away what jobs before it have left."""
+    """Bring a claimed job to its end, and clear away what jobs before it have left."""
     background.while_held(job, lambda lease: _do(job, lease), give_up)
     job.refresh_from_db()
     if job.is_ended and not job.is_waiting_for_answer:

@@ -16,7 +16,7 @@ from annotations.models import Job
 
 
 def folder_of(job: Job) -> Path:
-    """Where the uploads of ``job`` lie, named by their numbers."""
+    """Return where the uploads of ``job`` lie, named by their numbers."""
     return jobs_folder() / str(job.pk)
 
 
@@ -25,7 +25,7 @@ def jobs_folder() -> Path:
 
 
 def keep_uploads(uploads: Sequence[Any]) -> Path:
-    """Copies uploads, in pieces, into a new folder that belongs to no job yet."""
+    """Copy uploads, in pieces, into a new folder that belongs to no job yet."""
     folder = jobs_folder() / f"incoming-{token_hex(8)}"
     folder.mkdir(parents=True, mode=0o700)
     for number, upload in enumerate(uploads):
@@ -37,7 +37,7 @@ def keep_uploads(uploads: Sequence[Any]) -> Path:
 
 @contextmanager
 def kept_uploads(job: Job) -> Iterator[list[File]]:
-    """The uploads of ``job``, open, under the names that they came with."""
+    """Open the uploads of ``job``, under the names that they came with."""
     names = job.arguments.get("files", [])
     with ExitStack() as stack:
         opened: Iterable[IO[bytes]] = (
@@ -48,5 +48,5 @@ def kept_uploads(job: Job) -> Iterator[list[File]]:
 
 
 def forget_files(job: Job) -> None:
-    """Removes what was kept for ``job``."""
+    """Remove what was kept for ``job``."""
     shutil.rmtree(folder_of(job), ignore_errors=True)

@@ -22,7 +22,7 @@ def request_job(
     arguments: Mapping[str, Any] | None = None,
     uploads: Sequence[Any] = (),
 ) -> Job:
-    """Queues a job for the world called ``world_name``, with its files, and wakes a worker."""
+    """Queue a job for the world called ``world_name``, with its files, and wake a worker."""
     folder = keep_uploads(uploads) if uploads else None
     job = _new_job(kind, world_name, by, arguments, uploads)
     with transaction.atomic():
@@ -40,7 +40,7 @@ def keep_question(
     uploads: Sequence[Any],
     report: Mapping[str, Any],
 ) -> Job:
-    """Keeps the files of an import that would remove something, as a job that has asked and ended."""
+    """Keep the files of an import that would remove something, as a job that has asked and ended."""
     folder = keep_uploads(uploads)
     job = _new_job(kind, world_name, by, arguments, uploads)
     now = timezone.now()
@@ -53,7 +53,7 @@ def keep_question(
 
 
 def answer_job(job: Job, by: User) -> Job:
-    """Queues the import that ``job`` asked about, now allowed to remove what it said.
+    """Queue the import that ``job`` asked about, now allowed to remove what it said.
 
     Raises ValueError, a sentence, where the question was answered already.
     """
@@ -73,7 +73,7 @@ def answer_job(job: Job, by: User) -> Job:
 
 
 def cancel_job(job: Job) -> None:
-    """Stops a job, or drops an import that asked. Raises ValueError, a sentence, where it has ended."""
+    """Stop a job, or drop an import that asked. Raises ValueError, a sentence, where it has ended."""
     if job.kind == JobKind.DELETE_WORLD:
         raise ValueError("A deletion cannot be stopped: a part of the world may be gone already.")
     with transaction.atomic():

@@ -33,7 +33,7 @@ from annotations.worlds.world_deletion import delete_world, request_deletion
 def start_generator_import(
     world: World, uploads: Sequence[Any], by: User, brings_back: bool = False
 ) -> Job | ImportReport:
-    """An import that would remove something becomes a job that asks.
+    """Import now, or queue a job. An import that would remove something becomes a job that asks.
 
     Raises:
         LanguageError: the uploads cannot be read.
@@ -94,7 +94,7 @@ def start_update(world: World, by: User) -> Outcome:
 
 
 def start_deletion(world: World, by: User) -> Job | int:
-    """Returns the number of rows where they are gone already. The world is hidden at once."""
+    """Delete now and return the number of rows, or hide the world and return the job that deletes it."""
     if is_heavy_deletion(world):
         request_deletion(world)
         return request_job(JobKind.DELETE_WORLD, world.name, by)

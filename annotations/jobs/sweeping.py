@@ -19,7 +19,7 @@ _HIDDEN_NAME = re.compile(r"importing-job-(?P<job>\d+)")
 
 
 def hidden_name(job: Job) -> str:
-    """What a world is called while ``job`` imports it."""
+    """Return what a world is called while ``job`` imports it."""
     return f"importing-job-{job.pk}"
 
 
@@ -29,7 +29,7 @@ def remove_hidden_worlds(name: str) -> None:
 
 
 def sweep() -> None:
-    """Removes folders of jobs that are over, and hidden worlds that no job works on any more."""
+    """Remove folders of jobs that are over, and hidden worlds that no job works on any more."""
     _sweep_folders()
     active = set(Job.objects.active().values_list("pk", flat=True))
     for world in World.objects.filter(deletion_requested_at__isnull=False):
@@ -64,7 +64,7 @@ def _is_old(folder: Path) -> bool:
 
 
 def _is_forgotten(world: World, active: set[int]) -> bool:
-    """Whether the hidden ``world`` is neither being imported nor being deleted."""
+    """Return whether the hidden ``world`` is neither being imported nor being deleted."""
     match = _HIDDEN_NAME.fullmatch(world.name)
     if match:
         return int(match["job"]) not in active

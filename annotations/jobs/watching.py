@@ -24,7 +24,7 @@ class JobProgress:
         self._message = ""
 
     def report(self, fraction: float, message: str) -> None:
-        """Writes a new message at once, and a new fraction every half second."""
+        """Write a new message at once, and a new fraction every half second."""
         self.check()
         now = time.monotonic()
         if message != self._message or now - self._written >= WRITE_EVERY:
@@ -36,12 +36,12 @@ class JobProgress:
 
     @contextmanager
     def writing(self) -> Iterator[None]:
-        """A transaction that only the holder of the job can commit."""
+        """Open a transaction that only the holder of the job can commit."""
         self.check()
         with background.held(self._job):
             yield
 
     def conclude(self, report: Mapping[str, Any]) -> None:
-        """The job has succeeded as soon as the transaction is over, and not a moment earlier."""
+        """End the job as succeeded, in the transaction that writes its outcome."""
         background.finish(self._job, report=dict(report))
         self.is_concluded = True

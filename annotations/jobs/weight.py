@@ -20,7 +20,7 @@ MOST_ROWS = 5_000
 
 
 def is_heavy_generator(files: Mapping[str, bytes]) -> bool:
-    """Whether importing these files takes long: they are large, or their templates make many commands."""
+    """Return whether importing these files takes long: they are large, or their templates make many commands."""
     if sum(map(len, files.values())) > MOST_BYTES:
         return True
     texts = read_generator_files(files)
@@ -37,12 +37,12 @@ def is_heavy_pairs(uploads: Sequence[Upload]) -> bool:
 
 
 def is_heavy_world(size: int) -> bool:
-    """Whether importing an archive takes long that holds ``size`` bytes unpacked."""
+    """Return whether importing an archive of ``size`` bytes, unpacked, takes long."""
     return size > MOST_BYTES
 
 
 def is_heavy_generation(world: World) -> bool:
-    """Whether the templates of ``world`` make many commands."""
+    """Return whether the templates of ``world`` make many commands."""
     try:
         return generation_size(task_categories(world)) > MOST_COMMANDS
     except LanguageError:

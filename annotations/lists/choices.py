@@ -13,31 +13,31 @@ Choices = list[tuple[str, str]]
 
 
 def predicate_choices(request: HttpRequest) -> Choices:
-    """The predicates of the world that the page is about."""
+    """Return the predicates of the world that the page is about."""
     names = Predicate.objects.filter(world=request.world).values_list("name", flat=True)
     return [(name, name) for name in names]
 
 
 def task_category_choices(request: HttpRequest) -> Choices:
-    """The task categories that the world's commands are counted in."""
+    """Return the task categories that the world's commands are counted in."""
     rows = Command.objects.filter(world=request.world).order_by("task_category")
     names = rows.values_list("task_category", flat=True).distinct()
     return [(name, name) for name in names if name]
 
 
 def template_file_choices(request: HttpRequest) -> Choices:
-    """The files and sets that the world's templates belong to."""
+    """Return the files and sets that the world's templates belong to."""
     rows = SemanticTemplate.objects.filter(grammar__world=request.world)
     return _sources_of(rows)
 
 
 def grammar_file_choices(request: HttpRequest) -> Choices:
-    """The files that the world's productions come from."""
+    """Return the files that the world's productions come from."""
     return _sources_of(Production.objects.filter(grammar__world=request.world))
 
 
 def grammar_category_choices(request: HttpRequest) -> Choices:
-    """The task categories of the world's grammar, whether they have commands or not."""
+    """Return the task categories of the world's grammar, whether they have commands or not."""
     rows = TaskCategory.objects.filter(grammar__world=request.world)
     return [(name, name) for name in rows.values_list("name", flat=True)]
 
@@ -48,6 +48,6 @@ def _sources_of(rows: QuerySet[Any]) -> Choices:
 
 
 def member_choices(request: HttpRequest) -> Choices:
-    """The people who have a role in the world."""
+    """Return the people who have a role in the world."""
     rows = request.world.memberships.order_by("user__username")
     return [(str(key), name) for key, name in rows.values_list("user", "user__username").distinct()]

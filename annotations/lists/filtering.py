@@ -38,7 +38,7 @@ class Search(django_filters.CharFilter):
         return rows.filter(self.condition(value)) if value else rows
 
     def condition(self, value: str) -> Q:
-        """The rows with ``value`` in any of the fields."""
+        """Return the rows with ``value`` in any of the fields."""
         condition = Q()
         for field in self.searched:
             condition |= Q(**{f"{field}__icontains": value})

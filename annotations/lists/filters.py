@@ -160,6 +160,6 @@ class ProductionFilters(PageFilters):
     def by_task_category(
         self, rows: QuerySet[Production], name: str, value: str
     ) -> QuerySet[Production]:
-        """The productions that a task category is generated from, those of imported files too."""
+        """Return the productions that a task category is generated from, those of imported files too."""
         category = TaskCategory.objects.get(grammar__world=self.request.world, name=value)
         return rows.filter(source__in=[split_entry(entry)[0] for entry in category.rule_sources])

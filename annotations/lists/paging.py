@@ -75,7 +75,7 @@ def read_cursor(model: type[Model], order: str, text: str) -> tuple[Any, int] | 
 
 
 def _can_be_compared(value: Any) -> bool:
-    """Whether the database can compare a column with ``value``, which comes from a URL."""
+    """Return whether the database can compare a column with ``value``, which comes from a URL."""
     if isinstance(value, int):
         return abs(value) <= LARGEST_INTEGER
     if isinstance(value, float):

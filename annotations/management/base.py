@@ -29,7 +29,7 @@ class Refused(Exception):
 
     @classmethod
     def because(cls, errors: Sequence[Problem], report: Mapping[str, Any], folder: Path) -> Refused:
-        """An import of ``folder`` that was refused for its errors, each shown with its line."""
+        """Return an import of ``folder`` that was refused for its errors, each shown with its line."""
         count = f"{len(errors)} error{'s' if len(errors) > 1 else ''}"
         shown = [_show(problem, folder) for problem in errors[:MOST_EXCERPTS]]
         rest = map(str, errors[MOST_EXCERPTS:])
@@ -61,11 +61,11 @@ class ReportingCommand(BaseCommand):
         """Declares the arguments of this command."""
 
     def report(self, **options: Any) -> Mapping[str, Any]:
-        """Does the work and says what came of it."""
+        """Do the work and say what came of it."""
         raise NotImplementedError
 
     def describe(self, report: Mapping[str, Any]) -> str:
-        """The report for a person: one figure a line, then the problems, one a line."""
+        """Return the report for a person: one figure a line, then the problems, one a line."""
         figures = [f"{key}: {_in_words(value)}" for key, value in report.items()]
         problems = report.get("problems", ())
         return "\n".join([*figures, *(PROBLEM.format(**problem) for problem in problems)])
@@ -92,14 +92,14 @@ class ReportingCommand(BaseCommand):
 
 
 def _sentence(failure: LanguageError) -> str:
-    """With its position where there is one: what is about no file has no line either."""
+    """Return the problem with its position, where it has one."""
     if failure.source:
         return str(failure)
     return f"{failure.message} ({failure.hint})" if failure.hint else failure.message
 
 
 def _show(problem: Problem, folder: Path) -> str:
-    """The problem, and below it the line of its file with a caret at its column."""
+    """Return the problem, and below it the line of its file with a caret at its column."""
     try:
         path = folder / problem.position.source
         excerpt = problem.position.excerpt(decode(path.read_bytes()))
@@ -130,7 +130,7 @@ def say_left_out(report: Mapping[str, Any]) -> list[str]:
 
 
 def find_world(name: str) -> World:
-    """The world called ``name``. Raises CommandError with the names that exist."""
+    """Return the world called ``name``. Raises CommandError with the names that exist."""
     world = World.objects.filter(name=name).first()
     if world is None:
         names = ", ".join(World.objects.values_list("name", flat=True)) or "none"
@@ -139,7 +139,7 @@ def find_world(name: str) -> World:
 
 
 def find_split(world: World, name: str, criterion: str = Criterion.COMMAND) -> Split:
-    """The split of ``world`` called ``name``, the one by ``criterion`` where several share a name.
+    """Return the split of ``world`` called ``name``, the one by ``criterion`` where several share a name.
     Raises CommandError with the names that exist.
     """
     split = world.splits.named(name, criterion)

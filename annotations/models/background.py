@@ -57,11 +57,11 @@ class WorkQuerySet(models.QuerySet):
         return self.filter(status=Status.SUCCEEDED)
 
     def active(self):
-        """Queued or running."""
+        """Return what is queued or running."""
         return self.exclude(status__in=ENDED)
 
     def expired(self):
-        """Running rows whose worker has not extended its lease, by the database's clock.
+        """Return the running rows whose worker has not extended its lease, by the database's clock.
 
         A lease that ends far ahead is from before that clock was set back.
         """
@@ -113,4 +113,4 @@ class BackgroundWork(models.Model):
         return 100 * self.progress
 
     def note(self, message: str) -> None:
-        """Adds a line to the log of this work. A kind that keeps no log drops it."""
+        """Add a line to the log of this work. A kind that keeps no log drops it."""

@@ -13,7 +13,7 @@ MOST_CHARACTERS = 4_000  # of a comment
 
 class CommentQuerySet(models.QuerySet["Comment"]):
     def present(self) -> CommentQuerySet:
-        """Without those that are deleted."""
+        """Leave out those that are deleted."""
         return self.filter(deleted_at__isnull=True)
 
 
@@ -61,7 +61,7 @@ class Comment(models.Model):
         return is_allowed and not self.is_deleted
 
     def may_be_restored_by(self, user: User, duties: frozenset[Duty]) -> bool:
-        """Whoever deleted it; what an admin removed, every admin."""
+        """Return whether ``user`` may: who deleted it, or any admin where an admin did."""
         is_of_admins = self.deleted_by_id != self.author_id and Duty.MANAGE in duties
         return self.is_deleted and (self.deleted_by_id == user.pk or is_of_admins)
 
@@ -82,7 +82,7 @@ class EarlierText(models.Model):
 
 class NoticeQuerySet(models.QuerySet["Notice"]):
     def of(self, user: User) -> NoticeQuerySet:
-        """The notices of ``user`` in worlds that they still see, of comments that are there."""
+        """Return the notices of ``user`` in worlds that they still see, of comments that are there."""
         comments = Comment.objects.present().filter(world__in=World.objects.visible_to(user))
         return self.filter(user=user, comment__in=comments)
 

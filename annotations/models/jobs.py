@@ -35,14 +35,14 @@ def job_kind_choices() -> list[tuple[str, str]]:
 
 class JobQuerySet(WorkQuerySet):
     def visible_to(self, user: User) -> JobQuerySet:
-        """The jobs of worlds that ``user`` sees, and their own; all for an administrator of the site."""
+        """Return the jobs of worlds that ``user`` sees, and their own; all for an administrator of the site."""
         if user.is_superuser:
             return self
         of_worlds = models.Q(world__in=World.objects.visible_to(user))
         return self.filter(of_worlds | models.Q(created_by=user))
 
     def needing_attention(self) -> JobQuerySet:
-        """The jobs that wait for an answer, and those that wait or run."""
+        """Return the jobs that wait for an answer, and those that wait or run."""
         is_asking = models.Q(status=Status.SUCCEEDED, report__is_waiting=True)
         return self.filter(is_asking | ~models.Q(status__in=ENDED))
 

@@ -22,7 +22,7 @@ class Ontology(models.Model):
 
 class EntityQuerySet(models.QuerySet["Entity"]):
     def count_by_class(self) -> dict[str, int]:
-        """How many entities each class has, in the order of the classes; those that have none are left out."""
+        """Return how many entities each class has, in the order of the classes; those that have none are left out."""
         counted = self.order_by().values_list("entity_class").annotate(models.Count("pk"))
         counts = dict(counted)
         return {name: counts[name] for name in ENTITY_CLASSES if name in counts}

@@ -59,5 +59,5 @@ class ApiToken(models.Model):
 
 
 def digest_of(key: str) -> str:
-    """SHA-256 in hexadecimal; enough for a secret of 256 random bits."""
+    """Return the SHA-256 in hexadecimal; enough for a secret of 256 random bits."""
     return hashlib.sha256(key.encode()).hexdigest()

@@ -28,7 +28,7 @@ def source_choices() -> list[tuple[str, str]]:
 
 class SplitQuerySet(models.QuerySet["Split"]):
     def named(self, name: str, criterion: str = Criterion.COMMAND) -> Split | None:
-        """The split ``name``, or ``name-criterion`` where one name stands for several criteria."""
+        """Return the split ``name``, or ``name-criterion`` where one name stands for several criteria."""
         splits = {
             split.name: split for split in self.filter(name__in=[name, f"{name}-{criterion}"])
         }

@@ -23,7 +23,7 @@ def template_status_choices() -> list[tuple[str, str]]:
 
 class SemanticTemplateQuerySet(models.QuerySet["SemanticTemplate"]):
     def with_problems(self) -> SemanticTemplateQuerySet:
-        """The templates that the checker had something to say about when they were last stored."""
+        """Return the templates that the checker had something to say about when they were last stored."""
         return self.exclude(problems=[])
 
 

@@ -60,11 +60,11 @@ class UtteranceQuerySet(models.QuerySet["Utterance"]):
         return self.filter(status=UtteranceStatus.UNLABELLED)
 
     def labelled(self) -> UtteranceQuerySet:
-        """Those with an accepted form."""
+        """Return those with an accepted form."""
         return self.filter(status=UtteranceStatus.LABELLED)
 
     def unanswered_by(self, user: User) -> UtteranceQuerySet:
-        """Without those that ``user`` has answered, or skipped, and not taken back."""
+        """Leave out those that ``user`` has answered, or skipped, and not taken back."""
         answers = Label.objects.valid().filter(utterance=models.OuterRef("pk"), annotator=user)
         return self.exclude(models.Exists(answers))
 
@@ -110,7 +110,7 @@ class Utterance(Editable):
 
 class LabelQuerySet(models.QuerySet["Label"]):
     def valid(self) -> LabelQuerySet:
-        """Without those that were taken back."""
+        """Leave out those that were taken back."""
         return self.filter(taken_back_at__isnull=True)
 
     def accepted(self) -> LabelQuerySet:

@@ -63,28 +63,28 @@ class WorkItemQuerySet(models.QuerySet["WorkItem"]):
         return self.filter(closed_at__isnull=True)
 
     def free(self) -> WorkItemQuerySet:
-        """The open items that somebody can still take."""
+        """Return the open items that somebody can still take."""
         return self.open().filter(places__gt=0)
 
     def untouched(self) -> WorkItemQuerySet:
-        """The open items that nobody has had yet."""
+        """Return the open items that nobody has had yet."""
         parts = Assignment.objects.filter(item=models.OuterRef("pk"))
         return self.open().exclude(models.Exists(parts))
 
     def taken(self) -> WorkItemQuerySet:
-        """The open items that somebody has now."""
+        """Return the open items that somebody has now."""
         held = Assignment.objects.held().filter(item=models.OuterRef("pk"))
         return self.open().filter(models.Exists(held))
 
     def of_person(self, person: int) -> WorkItemQuerySet:
-        """The items that the account with this key has or has done."""
+        """Return the items that the account with this key has or has done."""
         parts = Assignment.objects.filter(
             person=person, outcome__in=OCCUPYING, item=models.OuterRef("pk")
         )
         return self.filter(models.Exists(parts))
 
     def takeable_by(self, person: User) -> WorkItemQuerySet:
-        """Without what ``person`` has or had, and without what follows from an item that they did."""
+        """Leave out what ``person`` has or had, and what follows from an item that they did."""
         theirs = Assignment.objects.filter(person=person)
         return self.free().exclude(
             models.Exists(theirs.filter(item=models.OuterRef("pk")))
@@ -92,7 +92,7 @@ class WorkItemQuerySet(models.QuerySet["WorkItem"]):
         )
 
     def returned_by(self, person: User) -> WorkItemQuerySet:
-        """The free items that ``person`` gave back or kept too long, and may have once more."""
+        """Return the free items that ``person`` gave back or kept too long, and may have once more."""
         theirs = Assignment.objects.filter(person=person, outcome__in=FREE_AGAIN)
         return self.free().filter(models.Exists(theirs.filter(item=models.OuterRef("pk"))))
 
@@ -186,7 +186,7 @@ class AssignmentQuerySet(models.QuerySet["Assignment"]):
         return self.filter(outcome=Outcome.HELD)
 
     def expired(self) -> AssignmentQuerySet:
-        """Held beyond the lease, or by an account that was deleted."""
+        """Return those held beyond the lease, or by an account that was deleted."""
         is_over = models.Q(leased_until__lt=timezone.now()) | models.Q(person__isnull=True)
         return self.held().filter(is_over)
 

@@ -35,14 +35,14 @@ DUTIES: dict[str, frozenset[Duty]] = {
 
 class WorldQuerySet(models.QuerySet["World"]):
     def visible_to(self, user: User) -> WorldQuerySet:
-        """The worlds that ``user`` is a member of; all of them for an administrator of the site."""
+        """Return the worlds that ``user`` is a member of; all of them for an administrator of the site."""
         if not user.is_authenticated:
             return self.none()
         worlds = self.present()
         return worlds if user.is_superuser else worlds.filter(memberships__user=user).distinct()
 
     def seen_by(self, user: User, name: str) -> tuple[World, frozenset[Duty]] | None:
-        """The world called ``name`` with what ``user`` may do in it; None for who does not see it.
+        """Return the world called ``name`` with what ``user`` may do in it; None for who does not see it.
 
         One query: every request into a world begins with it.
         """
@@ -57,11 +57,11 @@ class WorldQuerySet(models.QuerySet["World"]):
         return worlds[0], frozenset(duty for role in roles for duty in DUTIES[role])
 
     def present(self) -> WorldQuerySet:
-        """Without those that are being deleted."""
+        """Leave out those that are being deleted."""
         return self.filter(deletion_requested_at__isnull=True)
 
     def duties_by_world(self, user: User) -> dict[int, frozenset[Duty]]:
-        """What ``user`` may do in each of these worlds, by key: ``World.duties_of`` in one query."""
+        """Return what ``user`` may do in each of these worlds, by key: ``World.duties_of`` in one query."""
         if user.is_superuser and user.is_active:
             return dict.fromkeys(self.values_list("pk", flat=True), frozenset(Duty))
         roles = self.filter(memberships__user=user).values_list("pk", "memberships__role")
@@ -112,11 +112,11 @@ class World(models.Model):
         World.objects.filter(pk=self.pk).update(revision=models.F("revision") + 1)
 
     def allows(self, user: User, duty: Duty) -> bool:
-        """Whether ``user`` may do ``duty`` here."""
+        """Return whether ``user`` may do ``duty`` here."""
         return duty in self.duties_of(user)
 
     def duties_of(self, user: User) -> frozenset[Duty]:
-        """All that ``user`` may do here; nothing for outsiders and accounts that are switched off."""
+        """Return all that ``user`` may do here; nothing for outsiders and accounts that are switched off."""
         if not user.is_active:
             return frozenset()
         if user.is_superuser:

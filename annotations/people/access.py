@@ -34,7 +34,7 @@ WHO_MAY = {
 def world_view(
     duty: Duty, methods: tuple[str, ...] = READ, write_duty: Duty | None = None
 ) -> Callable[[View], View]:
-    """A view at ``/w/<world>/…`` for people with ``duty``; a POST needs ``write_duty`` where given.
+    """Return a view at ``/w/<world>/…`` for people with ``duty``; a POST needs ``write_duty`` where given.
 
     Sets ``request.world`` and ``request.duties`` (what the person may do here) for the templates.
     """
@@ -53,7 +53,7 @@ def world_view(
 
 
 def site_view(methods: tuple[str, ...] = READ) -> Callable[[View], View]:
-    """A view outside of any world, for the administrators of the site."""
+    """Return a view outside of any world, for the administrators of the site."""
 
     def decorate(view: View) -> View:
         @wraps(view)

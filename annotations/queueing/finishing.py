@@ -136,7 +136,7 @@ def _decide(item: WorkItem, labels: list[Label]) -> Decision:
 
 
 def agree(first: Label, second: Label) -> bool:
-    """Whether two labels say the same; the order of conjuncts does not matter."""
+    """Return whether two labels say the same; the order of conjuncts does not matter."""
     if first.verdict != second.verdict:
         return False
     if first.form == second.form or first.verdict != Verdict.FORM:

@@ -14,19 +14,19 @@ from annotations.models import TaskCategory
 
 
 def rule_sources(folder: GrammarFolder, name: str) -> list[str]:
-    """The files with productions behind the file ``name``, each once, its imports before itself."""
+    """Return the files with productions behind the file ``name``, each once, its imports before itself."""
     sources = folder.sources(name)
     return [f"{source} as ${alias}" if alias else source for source, alias in sources]
 
 
 def split_entry(entry: str) -> tuple[str, str]:
-    """The file of a rule source, and the new name of its ``$Main`` where it has one."""
+    """Return the file of a rule source, and the new name of its ``$Main`` where it has one."""
     source, _, alias = entry.partition(" as $")
     return source, alias
 
 
 def template_sources(category: Composition) -> list[str]:
-    """The template files of a category, its own last.
+    """Return the template files of a category, its own last.
 
     Its own is named even where the files have none yet, so that what people write has a place.
     """
@@ -35,12 +35,12 @@ def template_sources(category: Composition) -> list[str]:
 
 
 def own_template_source(category: Composition) -> str:
-    """``X_semantics.txt`` for the category of ``X_grammar.txt`` or ``X.txt``, spelled as it is there."""
+    """Return ``X_semantics.txt`` for the category of ``X_grammar.txt`` or ``X.txt``, spelled as it is there."""
     return category.own_template_file
 
 
 def owners(categories: Iterable[Composition]) -> dict[str, str]:
-    """File → the task category that it was written for; shared files have none."""
+    """Return file → the task category that it was written for; shared files have none."""
     names: dict[str, str] = {}
     for category in categories:
         names[category.grammar_file] = category.name
@@ -49,6 +49,6 @@ def owners(categories: Iterable[Composition]) -> dict[str, str]:
 
 
 def own_category(categories: Iterable[TaskCategory], source: str) -> str:
-    """The name of the task category that the file ``source`` was written for; empty for a shared one."""
+    """Return the name of the task category that the file ``source`` was written for; empty for a shared one."""
     own = (each.name for each in categories if split_entry(each.rule_sources[-1])[0] == source)
     return next(own, "")

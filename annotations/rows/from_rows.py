@@ -41,7 +41,7 @@ class AnnotatedCategory:
 
 
 def task_categories(world: models.World) -> tuple[TaskCategory, ...]:
-    """The task categories in order, with the templates that are ready; none without a grammar.
+    """Return the task categories in order, with the templates that are ready; none without a grammar.
 
     Raises:
         LanguageError: a stored text that cannot be read, with its file and line.
@@ -54,7 +54,7 @@ def annotated_categories(
     rows: Iterable[models.SemanticTemplate] | None = None,
     lines: Lines | None = None,
 ) -> tuple[AnnotatedCategory, ...]:
-    """As ``task_categories``, beside the rows. Three queries; each text is read once.
+    """Return what ``task_categories`` does, beside the rows. Three queries; each text is read once.
 
     ``rows`` are taken in place of the templates that are ready, in this order; each has a key.
     ``lines`` are taken in place of the productions of the world.
@@ -68,22 +68,22 @@ def annotated_categories(
 
 
 def ready_templates(world: models.World) -> QuerySet[models.SemanticTemplate]:
-    """The templates of ``world`` that make commands, in order."""
+    """Return the templates of ``world`` that make commands, in order."""
     return models.SemanticTemplate.objects.filter(grammar__world=world, status=Status.READY)
 
 
 def lines_of(world: models.World) -> Lines:
-    """The productions of the world, as they are stored."""
+    """Return the productions of the world, as they are stored."""
     return _by_source(models.Production.objects.filter(grammar__world=world))
 
 
 def grammar_from(category: models.TaskCategory, lines: Lines) -> Grammar:
-    """The grammar that the task category has with these ``lines``. Raises LanguageError for bad ones."""
+    """Return the grammar that the task category has with these ``lines``. Raises LanguageError for bad ones."""
     return _grammar(category, lines)
 
 
 def grammar_of(category: models.TaskCategory) -> Grammar:
-    """The grammar of one task category."""
+    """Return the grammar of one task category."""
     sources = [split_entry(entry)[0] for entry in category.rule_sources]
     rows = models.Production.objects.filter(grammar=category.grammar_id, source__in=sources)
     return _grammar(category, _by_source(rows))
@@ -98,7 +98,7 @@ def template_of(row: models.SemanticTemplate) -> SemanticTemplate:
 
 
 def ontology_of(world: models.World, rows: Iterable[models.Entity] | None = None) -> Ontology:
-    """The ontology in the order of its rows, empty where there are none; ``rows`` limits it to some."""
+    """Return the ontology in the order of its rows, empty where there are none; ``rows`` limits it to some."""
     chosen = models.Entity.objects.filter(ontology__world=world) if rows is None else rows
     return Ontology(tuple(map(entity_of, chosen)))
 
@@ -111,7 +111,7 @@ def entity_of(row: models.Entity) -> Entity:
 def predicates_of(
     world: models.World, rows: Iterable[models.Predicate] | None = None
 ) -> dict[str, Predicate]:
-    """The predicates by name; ``rows`` limits them to some of the world's."""
+    """Return the predicates by name; ``rows`` limits them to some of the world's."""
     chosen = world.predicates.all() if rows is None else rows
     return {row.name: predicate_of(row) for row in chosen}
 
@@ -126,7 +126,7 @@ def _production(source: str, line: int, nonterminal: str, expansion: str) -> Pro
 
 
 def _by_source(rows: QuerySet[models.Production]) -> dict[str, list[Line]]:
-    """File → its productions as they are stored: file, line, nonterminal, expansion."""
+    """Return file → its productions as they are stored: file, line, nonterminal, expansion."""
     by_source: dict[str, list[Line]] = defaultdict(list)
     for row in rows.values_list("source", "line", "nonterminal", "expansion"):
         by_source[row[0]].append(row)
@@ -134,7 +134,7 @@ def _by_source(rows: QuerySet[models.Production]) -> dict[str, list[Line]]:
 
 
 def _grammar(category: models.TaskCategory, stored: Lines) -> Grammar:
-    """The grammar of the category; the same value for the same texts, while it is kept."""
+    """Return the grammar of the category; the same value for the same texts, while it is kept."""
     parts = [
         (stored.get(source, []), alias) for source, alias in map(split_entry, category.rule_sources)
     ]
@@ -164,6 +164,6 @@ def _annotated(
 def _in_sets(
     sources: list[str], rows: Iterable[models.SemanticTemplate]
 ) -> Iterator[models.SemanticTemplate]:
-    """The rows of the sources, source by source, each in its own order."""
+    """Yield the rows of the sources, source by source, each in its own order."""
     for source in sources:
         yield from (row for row in rows if row.source == source)

@@ -38,7 +38,7 @@ def occurrences_of(entity: Entity) -> EntityOccurrences:
 
 
 def examples_of_paraphrase(paraphrase: Paraphrase) -> QuerySet[Example]:
-    """The examples of splits that were copied from ``paraphrase``."""
+    """Return the examples of splits that were copied from ``paraphrase``."""
     return Example.objects.filter(
         split__world=paraphrase.world_id,
         utterance=paraphrase.utterance,
@@ -47,18 +47,18 @@ def examples_of_paraphrase(paraphrase: Paraphrase) -> QuerySet[Example]:
 
 
 def command_of_example(example: Example) -> Command | None:
-    """The command that ``example`` was copied from or rewrites, if the world still has it."""
+    """Return the command that ``example`` was copied from or rewrites, if the world still has it."""
     text = example.source_command or example.utterance
     return example.split.world.commands.filter(anonymized_text=text).first()
 
 
 def paraphrase_of_example(example: Example) -> Paraphrase | None:
-    """The paraphrase that ``example`` was copied from, if the world still has it."""
+    """Return the paraphrase that ``example`` was copied from, if the world still has it."""
     return example.split.world.paraphrases.filter(
         utterance=example.utterance, logical_form=example.logical_form
     ).first()
 
 
 def logical_form_of(world_id: int, text: str) -> LogicalForm | None:
-    """The logical form that is written ``text``, if commands of the world have it."""
+    """Return the logical form that is written ``text``, if commands of the world have it."""
     return LogicalForm.objects.filter(world=world_id, text=text).first()

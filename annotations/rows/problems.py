@@ -34,7 +34,7 @@ def first_problems(problems: Iterable[Problem]) -> tuple[Problem, ...]:
 
 
 def as_json(problem: Problem) -> dict[str, Any]:
-    """A problem as commands print it: file, line, column, severity, message, hint."""
+    """Return a problem as commands print it: file, line, column, severity, message, hint."""
     place = problem.position
     return {
         "file": place.source,
@@ -47,7 +47,7 @@ def as_json(problem: Problem) -> dict[str, Any]:
 
 
 def store_problems(world: models.World, subject: Subject, problems: Sequence[Problem]) -> Changes:
-    """Makes the stored problems about one part of a world these."""
+    """Replace the stored problems about one part of a world."""
     stored = world.problems.filter(subject=subject)
     texts = [_text_of_problem(problem) for problem in problems]
     if Counter(texts) == Counter(stored.order_by().values_list(*TEXTS)):

@@ -52,7 +52,7 @@ class Staging:
                 cursor.execute(f"DROP TABLE IF EXISTS {self._table}")
 
     def add(self, rows: Iterable[Sequence[Any]], progress: Progress = UNWATCHED) -> None:
-        """Collects rows: each an id or None, then the columns, then the extra texts."""
+        """Collect rows: each an id or None, then the columns, then the extra texts."""
         width = 2 + len(self.columns) + len(self.extra)
         statement = f"INSERT INTO {self._table} VALUES ({', '.join(['%s'] * width)})"
         with connection.cursor() as cursor:
@@ -63,7 +63,7 @@ class Staging:
                 cursor.executemany(statement, numbered)
 
     def add_new(self, rows: Iterable[models.Model], progress: Progress = UNWATCHED) -> None:
-        """Collects unsaved instances of the model."""
+        """Collect unsaved instances of the model."""
         fields = [self.model._meta.get_field(name) for name in self._field_names()]
         self.add(
             (
@@ -74,7 +74,7 @@ class Staging:
         )
 
     def insert(self, **expressions: str) -> int:
-        """Writes the new rows in their order; ``expressions`` are SQL for further columns. Says how many.
+        """Write the new rows in their order; ``expressions`` are SQL for further columns. Return how many.
 
         An expression may use the extra texts as ``s.NAME``.
         """
@@ -88,7 +88,7 @@ class Staging:
             return cursor.rowcount
 
     def update(self, **expressions: str) -> int:
-        """Writes the rows that have an id over those that are there. Says how many."""
+        """Write the rows that have an id over those that are there. Return how many."""
         values = {_quote(name): f"s.{_quote(name)}" for name in self.columns}
         values |= {_quote(name): value for name, value in expressions.items()}
         changes = ", ".join(f"{name} = {value}" for name, value in values.items())

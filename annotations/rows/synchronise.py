@@ -76,7 +76,7 @@ class Plan(Generic[Row]):
         return Changes(added, len(self.changed), len(self.removed), len(self.moved))
 
     def apply(self, by: User | None = None) -> Changes:
-        """Adds, changes and removes the rows. To be called inside a transaction.
+        """Add, change and remove the rows. To be called inside a transaction.
 
         ``by`` is the author of the changes in the history of rows that people edit.
         """
@@ -85,7 +85,7 @@ class Plan(Generic[Row]):
         return self.changes
 
     def apply_to_stored(self, by: User | None = None) -> None:
-        """Changes and removes rows, and leaves the new ones to the caller."""
+        """Change and remove rows, and leave the new ones to the caller."""
         fields = list(self.fields)
         if issubclass(self.model, Editable):
             self._keep_history(by)
@@ -98,7 +98,7 @@ class Plan(Generic[Row]):
             keep(self.restored, ADDED, by, RESTORED)
 
     def _keep_history(self, by: User | None) -> None:
-        """A row that only moves is no new version."""
+        """Keep versions of the rows that changed; one that only moves is no new version."""
         keep_first(self.model, [row.pk for row in self.changed + self.removed])
         for row in self.changed:
             row.version += 1
@@ -114,7 +114,7 @@ def synchronise(
     is_kept: Callable[[Row], bool] = lambda row: False,
     by: User | None = None,
 ) -> Changes:
-    """Adds, changes and removes as few rows as it takes: ``plan``, carried out at once.
+    """Add, change and remove as few rows as it takes: ``plan``, carried out at once.
 
     To be called inside a transaction.
     """
@@ -128,7 +128,7 @@ def plan(
     fields: Sequence[str],
     is_kept: Callable[[Row], bool] = lambda row: False,
 ) -> Plan[Row]:
-    """What it takes to make ``stored`` equal to ``wanted``.
+    """Return what it takes to make ``stored`` equal to ``wanted``.
 
     Args:
         stored: the rows that may be changed.
@@ -157,7 +157,7 @@ def plan(
 
 
 def _take_over(row: Row, target: Row, fields: Sequence[str]) -> set[str]:
-    """Makes ``row`` equal to ``target`` and returns the fields in which it differed."""
+    """Make ``row`` equal to ``target`` and return the fields in which it differed."""
     differing = {name for name in fields if getattr(row, name) != getattr(target, name)}
     for name in differing:
         setattr(row, name, getattr(target, name))
@@ -186,14 +186,14 @@ def _rewrite(model: type[Row], rows: list[Row], fields: Sequence[str]) -> None:
 
 
 def _clear_positions(model: type[Row], rows: list[Row]) -> None:
-    """Moves the rows out of the way, so that no position is ever taken twice in between."""
+    """Move the rows out of the way, so that no position is ever taken twice in between."""
     for batch in batches(rows):
         chosen = model._default_manager.filter(pk__in=[row.pk for row in batch])
         chosen.update(position=F("position") + 1_000_000_000)
 
 
 def batches(rows: Iterable[Any], size: int = BATCH) -> Iterator[list[Any]]:
-    """The rows in lists of at most ``size``."""
+    """Yield the rows in lists of at most ``size``."""
     remaining = iter(rows)
     while batch := list(islice(remaining, size)):
         yield batch

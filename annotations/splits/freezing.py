@@ -31,7 +31,7 @@ def freeze_split(
     proportions: Sequence[float] = DEFAULT_PROPORTIONS,
     by: User | None = None,
 ) -> Split:
-    """Freezes the commands, accepted paraphrases and labelled utterances of ``world`` as the split ``name``.
+    """Freeze the commands, accepted paraphrases and labelled utterances of ``world`` as the split ``name``.
 
     Args:
         criterion: what two parts never share: a ``command``, ``source_command`` or
@@ -58,7 +58,7 @@ def plan_split(
     seed: int = 0,
     proportions: Sequence[float] = DEFAULT_PROPORTIONS,
 ) -> list[Example]:
-    """The examples that ``freeze_split`` would store, each with its part and position. Raises likewise."""
+    """Return the examples that ``freeze_split`` would store, each with its part and position. Raises likewise."""
     examples = list(_candidates(world))
     items = [
         SplitItem(each.source, each.utterance, each.source_command, each.logical_form)
@@ -102,7 +102,7 @@ class PreparedSplit:
         self._staging.__exit__(*raised)
 
     def store(self, world: World, by: User | None = None) -> tuple[Split, bool]:
-        """Stores the split; inside a transaction.
+        """Store the split; inside a transaction.
 
         Returns:
             The split and whether it is new; one of that name with the same texts is left alone.
@@ -135,7 +135,7 @@ class PreparedSplit:
 
 
 def content_hash_of(split: Split) -> str:
-    """The hash of the examples that ``split`` has now; equal to its ``content_hash`` as long as nobody
+    """Return the hash of the examples that ``split`` has now; equal to its ``content_hash`` as long as nobody
     changes them."""
     return content_hash(map(_frozen, split.examples.all().iterator(chunk_size=BATCH)))
 
@@ -149,7 +149,7 @@ def _require_split_name(name: str) -> None:
 
 
 def _candidates(world: World) -> Iterator[Example]:
-    """Every command, accepted paraphrase and labelled utterance; a pair that occurs twice is taken once."""
+    """Yield every command, accepted paraphrase and labelled utterance; a pair that occurs twice is taken once."""
     for command in world.commands.select_related("logical_form"):
         yield Example(
             source=Source.GENERATED,
@@ -182,7 +182,7 @@ def _candidates(world: World) -> Iterator[Example]:
 
 
 def _number(examples: Sequence[Example]) -> None:
-    """Positions in the order of pair files: by the number of characters of the utterance."""
+    """Return positions in the order of pair files: by the number of characters of the utterance."""
     following: dict[tuple[str, str], int] = {}
     for example in sorted(examples, key=lambda each: len(each.utterance)):
         place = (example.source, example.part)
@@ -191,7 +191,7 @@ def _number(examples: Sequence[Example]) -> None:
 
 
 def _texts(examples: Sequence[Example]) -> list[tuple[object, ...]]:
-    """What a pair file holds of each example, and where."""
+    """Return what a pair file holds of each example, and where."""
     return [
         (
             each.source,

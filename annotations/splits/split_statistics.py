@@ -38,7 +38,7 @@ class PartCounts:
 
 
 def counts_of(splits: Iterable[Split]) -> dict[int, list[PartCounts]]:
-    """Key → the counts of each source that a split has. Two queries for all splits."""
+    """Return key → the counts of each source that a split has. Two queries for all splits."""
     examples = Example.objects.filter(split__in=splits).order_by()
     sizes: dict[int, dict[tuple[str, str], int]] = defaultdict(dict)
     for key, source, part, count in examples.values_list("split_id", "source", "part").annotate(
@@ -66,7 +66,7 @@ def counts_of(splits: Iterable[Split]) -> dict[int, list[PartCounts]]:
 
 
 def counts_of_planned(examples: Sequence[Example]) -> list[PartCounts]:
-    """The counts of examples that are not stored."""
+    """Return the counts of examples that are not stored."""
     sizes = Counter((example.source, example.part) for example in examples)
     forms = Counter(source for source, _ in {(each.source, each.logical_form) for each in examples})
     return [
@@ -77,14 +77,14 @@ def counts_of_planned(examples: Sequence[Example]) -> list[PartCounts]:
 
 
 def leakage_of(split: Split) -> list[Leak]:
-    """What validation and test share with training, both sources together. One query."""
+    """Return what validation and test share with training, both sources together. One query."""
     parts = _items_by_part(split)
     train = parts.pop(Part.TRAIN, [])
     return [leak for part, items in parts.items() for leak in shared(part, items, train)]
 
 
 def near_duplicates_of(split: Split, limit: int | None = MOST_COMPARISONS) -> list[NearDuplicates]:
-    """The near duplicates of validation and of test in training, both sources together. One query.
+    """Return the near duplicates of validation and of test in training, both sources together. One query.
 
     Raises LanguageError where that takes more than ``limit`` comparisons of two utterances.
     """
@@ -100,7 +100,7 @@ def near_duplicates_of(split: Split, limit: int | None = MOST_COMPARISONS) -> li
 
 
 def _items_by_part(split: Split) -> dict[str, list[SplitItem]]:
-    """Part → its examples, in the order train, validation, test; without parts that are empty."""
+    """Return part → its examples, in the order train, validation, test; without parts that are empty."""
     rows = split.examples.order_by("pk").values_list(
         "part", "source", "utterance", "source_command", "logical_form"
     )

@@ -43,7 +43,7 @@ TYPES: tuple[tuple[type[models.Field], type | tuple[type, ...], str], ...] = (
 
 
 def parse_object(line: bytes, place: Position) -> dict[str, Any]:
-    """The JSON object in ``line``. Raises LanguageError where it holds none, or text that no database takes."""
+    """Return the JSON object in ``line``. Raises LanguageError where it holds none, or text that no database takes."""
     try:
         values = json.loads(line.decode("utf-8"))
         text = json.dumps(values, ensure_ascii=False, allow_nan=False)
@@ -145,7 +145,7 @@ def _is_signatures(value: Any) -> bool:
 
 
 def _is_spans(value: Any) -> bool:
-    """Rows of [start, end, class, entity]."""
+    """Return whether these are rows of [start, end, class, entity]."""
     return isinstance(value, list) and all(
         isinstance(row, list) and [type(each) for each in row] == [int, int, str, str]
         for row in value

@@ -28,7 +28,7 @@ class Manifest:
 
 
 def read_manifest(archive: zipfile.ZipFile, name: str) -> Manifest:
-    """The manifest of the archive called ``name``.
+    """Return the manifest of the archive called ``name``.
 
     Raises:
         LanguageError: it is missing, is of another format or version, lacks something, or a file is
@@ -58,7 +58,7 @@ def read_manifest(archive: zipfile.ZipFile, name: str) -> Manifest:
 
 
 def _prefix(archive: zipfile.ZipFile, name: str) -> str:
-    """The folder of the manifest: some programs pack a folder rather than what is in it."""
+    """Return the folder of the manifest: some programs pack a folder rather than what is in it."""
     manifests = [path for path in archive.namelist() if f"/{path}".endswith(f"/{MANIFEST}")]
     if not manifests:
         raise LanguageError(

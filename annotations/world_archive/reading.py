@@ -48,7 +48,7 @@ def import_world(
     progress: Progress = UNWATCHED,
     hidden_name: str = "",
 ) -> ImportedWorld:
-    """Makes the world ``name`` from an archive that ``world_archive`` wrote; all of it or nothing.
+    """Make the world ``name`` from an archive that ``world_archive`` wrote; all of it or nothing.
 
     Nobody sees the world before it is complete, and nobody waits for it: its rows are written in
     short transactions. Rows keep their order and what they refer to; accounts are found by their
@@ -97,7 +97,7 @@ def _make_hidden_world(manifest: Manifest, name: str) -> World:
 
 
 def _publish(world: World, name: str, by: User | None) -> None:
-    """Gives the world its name and shows it. Raises LanguageError where the name was taken meanwhile."""
+    """Give the world its name and show it. Raises LanguageError where the name was taken meanwhile."""
     try:
         with transaction.atomic():
             World.objects.filter(pk=world.pk).update(name=name, deletion_requested_at=None)
@@ -135,7 +135,7 @@ class _Loader:
         self._done = 0
 
     def load(self) -> dict[str, int]:
-        """Rows stored by table. Raises LanguageError."""
+        """Store the rows of all tables; return how many by table. Raises LanguageError."""
         for table in TABLES:
             self._keys[table.name] = keys = []
             if table.name not in self._manifest.rows:

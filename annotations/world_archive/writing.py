@@ -38,12 +38,12 @@ class ChangedMeanwhile(RuntimeError):
 
 
 def archive_name(world: World) -> str:
-    """What the archive of ``world`` is called."""
+    """Return what the archive of ``world`` is called."""
     return f"{world.name}-world.zip"
 
 
 def world_archive(world: World) -> Iterator[bytes]:
-    """The archive of ``world`` in pieces, none of them large.
+    """Yield the archive of ``world`` in pieces, none of them large.
 
     Raises:
         ChangedMeanwhile: the world was generated or imported anew while it was read.
@@ -95,7 +95,7 @@ def _member(
 
 
 def _lines(table: Table, world: World, numbers: Numbers) -> Iterator[str]:
-    """The rows in the order of their keys. Fills ``numbers`` for the tables that refer to this one."""
+    """Yield the rows in the order of their keys. Fills ``numbers`` for the tables that refer to this one."""
     rows = table.model._default_manager.filter(**{table.world_path: world}).order_by("pk")
     known = numbers[table.name]
     for number, row in enumerate(rows.select_related(*table.people).iterator(chunk_size=CHUNK)):
@@ -133,7 +133,7 @@ def _manifest(world: World, counts: dict[str, int], files: dict[str, int]) -> st
 
 
 def _readable_files(world: World) -> Iterator[tuple[str, Iterable[str]]]:
-    """Path → lines of the files for people: those of the generator, and a pair file for each part."""
+    """Yield path → lines of the files for people: those of the generator, and a pair file for each part."""
     for name, text in generator_files(world).items():
         yield f"generator/{name}", [text]
     if world.paraphrases.accepted().exists():

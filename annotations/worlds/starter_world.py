@@ -20,7 +20,7 @@ STARTER_SPLITS = {
 
 
 def load_starter_world(say: Callable[[str], object]) -> dict[Criterion, Split]:
-    """Imports, generates and freezes the starter world; one that has its splits is left as it is.
+    """Import, generate and freeze the starter world; one that has its splits is left as it is.
 
     Args:
         say: takes a sentence for whoever watches.

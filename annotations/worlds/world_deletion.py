@@ -17,7 +17,7 @@ Paths = dict[type[models.Model], list[str]]
 
 
 def delete_world(world: World, progress: Progress = UNWATCHED) -> int:
-    """Deletes ``world`` and returns the number of rows that went, its own included.
+    """Delete ``world`` and return the number of rows that went, its own included.
 
     The world is invisible from the first moment. When this is interrupted, a second call goes on
     where the first one stopped.
@@ -38,19 +38,19 @@ def delete_world(world: World, progress: Progress = UNWATCHED) -> int:
 
 
 def request_deletion(world: World) -> None:
-    """Hides the world from everybody; ``delete_world`` removes what is in it."""
+    """Hide the world from everybody; ``delete_world`` removes what is in it."""
     World.objects.filter(pk=world.pk).update(deletion_requested_at=timezone.now())
 
 
 def count_below(world: World) -> dict[type[models.Model], int]:
-    """How many rows each model has below ``world``, in an order in which they can be deleted."""
+    """Return how many rows each model has below ``world``, in an order in which they can be deleted."""
     paths = _paths_to_world()
     counts = {model: _count(model, world, paths[model]) for model in _deletion_order(paths)}
     return {model: count for model, count in counts.items() if count}
 
 
 def _paths_to_world() -> Paths:
-    """Every model whose rows go with a world, whichever application it is of."""
+    """Return every model whose rows go with a world, whichever application it is of."""
     paths: Paths = {}
     pending: list[tuple[type[models.Model], str]] = [(World, "")]
     while pending:
@@ -64,13 +64,13 @@ def _paths_to_world() -> Paths:
 
 
 def _relations_to(model: type[models.Model]) -> list[models.ForeignObjectRel]:
-    """What refers to rows of the model, its history included, whose relations have no name."""
+    """Return what refers to rows of the model, its history included, whose relations have no name."""
     fields = model._meta.get_fields(include_hidden=True)
     return [each for each in fields if each.auto_created and not each.concrete]
 
 
 def _deletion_order(paths: Paths) -> list[type[models.Model]]:
-    """Rows that refer to others before these."""
+    """Return the models in an order in which rows that refer to others come before these."""
     sorter: TopologicalSorter[type[models.Model]] = TopologicalSorter()
     for model in paths:
         referring = {relation.related_model for relation in _relations_to(model)}
@@ -88,7 +88,7 @@ def _count(model: type[models.Model], world: World, paths: list[str]) -> int:
 def _batches_of_keys(
     model: type[models.Model], world: World, paths: list[str]
 ) -> Iterator[list[int]]:
-    """Keys of rows that still exist; the caller deletes each batch before it asks for the next."""
+    """Yield keys of rows that still exist; the caller deletes each batch before it asks for the next."""
     for path in paths:
         rows = model._default_manager.filter(**{path: world.pk}).order_by()
         while keys := list(rows.values_list("pk", flat=True)[:BATCH]):

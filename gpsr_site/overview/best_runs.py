@@ -90,6 +90,6 @@ def best_runs(world: World) -> BestRuns | None:
 
 
 def _best(scores: list[Evaluation], protocol: str) -> Evaluation | None:
-    """The most accurate, the newer one of two that are equal."""
+    """Return the most accurate, the newer one of two that are equal."""
     of_protocol = (score for score in scores if score.run.protocol == protocol)
     return max(of_protocol, key=lambda score: (score.accuracy, score.run_id), default=None)

@@ -116,7 +116,7 @@ def _statement() -> tuple[str, tuple[Any, ...]]:
 
 
 def _rows_to_count() -> dict[str, tuple[QuerySet, str]]:
-    """For each count the rows that it counts and their path to the world."""
+    """Return for each count the rows that it counts and their path to the world."""
     templates = SemanticTemplate.objects
     return {
         "entities": (Entity.objects.all(), "ontology__world"),
@@ -174,7 +174,7 @@ def _uncovered() -> Coalesce:
 
 
 def _aggregate(rows: QuerySet, path: str, value: Count | Sum) -> Coalesce:
-    """``value`` over the rows of each world, 0 where it has none."""
+    """Return ``value`` over the rows of each world, 0 where it has none."""
     of_world = rows.order_by().filter(**{path: OuterRef("pk")}).values(path)
     amounts = of_world.annotate(amount=value).values("amount")
     return Coalesce(Subquery(amounts, output_field=IntegerField()), 0)

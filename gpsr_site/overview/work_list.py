@@ -170,7 +170,7 @@ class WorkList:
                 yield Task(count, sentence, each.label, url, each.tone)
 
     def _jobs_of(self, role: Role) -> Iterator[Task]:
-        """Each import or generation leads to its own page."""
+        """Yield an item for each import or generation, which leads to its own page."""
         for job in self.jobs:
             if job.duty == ROLES[role]:
                 url = reverse("job", kwargs={"pk": job.pk})
@@ -181,7 +181,7 @@ class WorkList:
                     yield Task(1, f"{job.get_kind_display()} is {job.status}", "Watch", url)
 
     def _stale(self) -> Iterator[Task]:
-        """One button brings all commands up to date, so its count is one."""
+        """Yield one item: a single button brings all commands up to date."""
         if self.counts.stale and self.counts.commands and Duty.ANNOTATE in self.duties:
             sentence = "Commands are out of date: grammar or templates have changed"
             yield Task(1, sentence, "Generate", self._address("generate"), "warn", is_action=True)

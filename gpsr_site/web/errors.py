@@ -21,7 +21,7 @@ OUTAGE_WORDS = re.compile(r"locked|unable to open|disk I/O|is full", re.IGNORECA
 
 
 def bad_request(request: HttpRequest, exception: Exception) -> HttpResponse:
-    """400: what was sent cannot be read, or names a host that this site is not."""
+    """Answer 400: what was sent cannot be read, or names a host that this site is not."""
     return refuse(
         request,
         400,
@@ -31,7 +31,7 @@ def bad_request(request: HttpRequest, exception: Exception) -> HttpResponse:
 
 
 def permission_denied(request: HttpRequest, exception: Exception) -> HttpResponse:
-    """403, inside the frame of the world that it is about."""
+    """Answer 403, inside the frame of the world that it is about."""
     if request.path.startswith("/api/"):
         return refuse(request, 403, "No access", str(exception))
     if not _has_user(request):
@@ -42,7 +42,7 @@ def permission_denied(request: HttpRequest, exception: Exception) -> HttpRespons
 
 
 def not_found(request: HttpRequest, exception: Exception) -> HttpResponse:
-    """404, inside the frame of the world in the address where the person may see that."""
+    """Answer 404, inside the frame of the world in the address where the person may see that."""
     if request.path.startswith("/api/"):
         return refuse(request, 404, "Not found", f"Nothing is at {request.path}.")
     if not _has_user(request):
@@ -52,7 +52,7 @@ def not_found(request: HttpRequest, exception: Exception) -> HttpResponse:
 
 
 def server_error(request: HttpRequest) -> HttpResponse:
-    """503 where the database is away or busy; 500 for whatever else no view has handled."""
+    """Answer 503 where the database is away or busy; 500 for whatever else no view has handled."""
     if is_outage(sys.exc_info()[1]):
         response = refuse(
             request,
@@ -74,7 +74,7 @@ def server_error(request: HttpRequest) -> HttpResponse:
 
 
 def csrf_failure(request: HttpRequest, reason: str = "") -> HttpResponse:
-    """403 for a form that does not come from a page of this site, or from one that is too old."""
+    """Answer 403 for a form that does not come from a page of this site, or from one that is too old."""
     return refuse(
         request,
         403,

@@ -70,7 +70,7 @@ def load_corpus(folder: Path, criterion: str, split: int | None, world: World | 
 
 
 def _find_knowledge(world: World | None, protocol: str) -> tuple[Knowledge, str]:
-    """What a parser may know, and the hash of it."""
+    """Return what a parser may know, and the hash of it."""
     if world is None:
         return Knowledge(), ""
     return knowledge_of(world, protocol), knowledge_hash(world, protocol)

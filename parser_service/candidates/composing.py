@@ -50,7 +50,7 @@ def candidates_for(utterance: Utterance) -> tuple[CandidateForm, ...]:
 
 
 def is_label(form: str) -> bool:
-    """Whether ``form`` is one that an utterance can be labelled with; parsers write others too."""
+    """Return whether ``form`` is one that an utterance can be labelled with; parsers write others too."""
     try:
         return canonical_label(form) == form
     except LanguageError:

@@ -21,7 +21,7 @@ def derived_forms(world: World, anonymized_text: str, how_many: int) -> list[Can
 
 @lru_cache(maxsize=KEPT_WORLDS)
 def _oracle(world_id: int, revision: int, generations: int) -> GrammarOracle | None:
-    """The chart of the grammar as it is at this revision; None where it cannot be read."""
+    """Return the chart of the grammar as it is at this revision; None where it cannot be read."""
     try:
         categories = task_categories(World.objects.get(pk=world_id))
         return GrammarOracle(knowledge=Knowledge(grammar=categories)) if categories else None

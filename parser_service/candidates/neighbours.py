@@ -68,7 +68,7 @@ def _stamp_of_labelled(world: World) -> Stamp:
 
 @lru_cache(maxsize=KEPT_WORLDS)
 def _written(world_id: int, stamp: Stamp) -> NearestNeighbour | None:
-    """The index of commands and paraphrases."""
+    """Return the index of commands and paraphrases."""
     world = World.objects.get(pk=world_id)
     return _index(chain(_commands(world), _paraphrases(world)))
 

@@ -14,7 +14,7 @@ def processor() -> torch.device:
 
 
 def has_bf16(device: torch.device) -> bool:
-    """Whether a processor multiplies bf16 matrices in hardware; emulated they are slower than fp32."""
+    """Return whether a processor multiplies bf16 matrices in hardware; emulated they are slower than fp32."""
     if device.type == "cuda":
         return bool(torch.cuda.is_bf16_supported(including_emulation=False))
     capabilities = torch.cpu.get_capabilities()

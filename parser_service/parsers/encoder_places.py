@@ -24,7 +24,7 @@ _packages: frozenset[str] = frozenset()
 def keep_encoders_in(
     encoders: Path | None, vectors: Path | None = None, packages: Collection[str] = ()
 ) -> None:
-    """Sets where this installation keeps its encoders (GPSR_ENCODERS_DIR), where frozen ones may
+    """Set where this installation keeps its encoders (GPSR_ENCODERS_DIR), where frozen ones may
     leave the vectors of many utterances for the next training, and the packages that any request
     may name (GPSR_ENCODER_PACKAGES)."""
     global _encoders, _vectors, _packages

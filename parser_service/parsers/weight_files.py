@@ -111,5 +111,5 @@ def refuse_missing_weights(config: Any, anywhere: bool = True) -> None:
 
 
 def _folders(encoders: Path | None, anywhere: bool) -> list[Path]:
-    """The folders that names start from; the installation's comes first."""
+    """Return the folders that names start from; the installation's comes first."""
     return [*([encoders] if encoders else []), *([Path()] if anywhere else [])]

@@ -144,7 +144,7 @@ def _asked(request: HttpRequest, world: World, listing: Listing) -> Utterance | 
 
 
 def _item(request: HttpRequest, row: Utterance | None) -> dict[str, Any]:
-    """What stands in the middle of the page; ``part`` says why the queue asks for it."""
+    """Show what stands in the middle of the page; ``part`` says why the queue asks for it."""
     if row is None:
         return {"row": None}
     part = part_in(row, request.user)
@@ -152,7 +152,7 @@ def _item(request: HttpRequest, row: Utterance | None) -> dict[str, Any]:
 
 
 def _strip(request: HttpRequest, world: World) -> dict[str, Any]:
-    """What stands above the utterance: how far everybody is, and the person's last answers."""
+    """Show what stands above the utterance: how far everybody is, and the person's last answers."""
     return {
         "progress": progress_of(world, request.user),
         "last": last_labels(world, request.user),

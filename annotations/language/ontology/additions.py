@@ -62,7 +62,7 @@ def additions_to(ontology: Ontology, entities: Iterable[Entity]) -> Additions:
 
 
 def _key(entity: Entity) -> tuple[str, str, str]:
-    """What may not be there twice: a place once in a room, a name once for each gender."""
+    """Return what may not be there twice: a place once in a room, a name once for each gender."""
     beside = {"location": "room", "name": "gender"}.get(entity.entity_class, "")
     return entity.entity_class, entity.text.casefold(), (entity.attribute(beside) or "").casefold()
 

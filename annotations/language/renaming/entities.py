@@ -117,7 +117,7 @@ def rename_in_attributes(
 def _values_in(
     text: str, start: int, end: int, wildcard: Wildcard, name: EntityName
 ) -> list[tuple[int, int]]:
-    """The parts of the wildcard written from ``start`` to ``end`` that are values equal to ``name``."""
+    """Return the parts of the wildcard written from ``start`` to ``end`` that are values equal to ``name``."""
     classes = {**CLASS_OF_ATTRIBUTE, "name": wildcard.entity_class}
     note = re.search(r"\bmeta\s*:", text[start:end], re.IGNORECASE)
     end = start + note.start() if note else end

@@ -212,7 +212,7 @@ class _Target:
             yield self._mended(more, distance - ADDED, near)
 
     def _mended(self, form: Form, distance: float, near: Example) -> _Candidate:
-        """``distance`` is what the changes leave unexplained."""
+        """Return a form that was changed; ``distance`` is what the changes leave unexplained."""
         return _Candidate(form, max(distance, LEAST_DISTANCE) + MEND_COST, near)
 
     def _counterparts(self, near: Example) -> dict[Key, Slot]:

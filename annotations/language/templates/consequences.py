@@ -117,7 +117,7 @@ def consequences_of(before: GeneratedState, after: GeneratedState) -> Consequenc
 
 
 def _conflicts(state: GeneratedState) -> dict[tuple[object, ...], Conflict]:
-    """Conflicts by what they say: the same forms for the same command, whichever templates give them."""
+    """Return the conflicts by what they say: the same forms for the same command, whichever templates give them."""
     return {
         (each.task_category, each.command, tuple(form for _, form in each.candidates)): each
         for each in state.generated.conflicts
@@ -152,7 +152,7 @@ def _in(category: TaskCategory, state: GeneratedState) -> Iterator[Duplicate]:
 
 
 def _shadowed(state: GeneratedState) -> dict[Name, Shadowed]:
-    """Templates that make commands, none of which is theirs in any task category."""
+    """Return the templates that make commands, none of which is theirs in any task category."""
     generated = state.generated
     winners = {each.command: each for each in generated.expansions}
     winning = {state.name(_place(each)) for each in generated.expansions}

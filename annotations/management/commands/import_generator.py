@@ -50,7 +50,7 @@ class Command(ReportingCommand):
 
 
 def _question(world: str, removals: Mapping[str, list[str]]) -> list[str]:
-    """What would go, a line each, and how to let it go."""
+    """Return what would go, a line each, and how to let it go."""
     lines = [f"  {name}: {text}" for name, texts in removals.items() for text in texts]
     return [
         f"The files lack rows that “{world}” has:",

@@ -85,7 +85,7 @@ def merge_page(
 
 
 def _written(form: forms.Form) -> list[forms.BoundField]:
-    """The fields that a person fills in."""
+    """Return the fields that a person fills in."""
     return [field for field in form.visible_fields() if not field.field.disabled]
 
 
@@ -108,7 +108,7 @@ def _as_posted(field: forms.BoundField, value: Any) -> str:
 
 
 def _sides(form: forms.Form, each: MergedField, by: str) -> list[Side]:
-    """Before, theirs and yours; the last two with what is other than before."""
+    """Return before, theirs and yours; the last two with what is other than before."""
     is_form = each.name in FORM_FIELDS
     texts = {value: _label(form[each.name], value) for value in (each.base, each.theirs, each.mine)}
     if each.base is None:

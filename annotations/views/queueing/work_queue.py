@@ -54,7 +54,7 @@ SORTS = {
 
 
 def shown_parts() -> Prefetch:
-    """The people who have an item or have done it, for lists."""
+    """Return the people who have an item or have done it, for lists."""
     parts = Assignment.objects.filter(outcome__in=OCCUPYING)
     return Prefetch("assignments", parts.select_related("person"), "parts")
 
@@ -158,7 +158,7 @@ def queue_settle(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 def _finish(part: Assignment) -> None:
-    """An utterance is done by labelling it, everything else by saying so."""
+    """End an item: an utterance by labelling it, everything else by saying so."""
     if part.item.utterance_id:
         raise NotForThem("Label the utterance; that ends this item.")
     finish(part)

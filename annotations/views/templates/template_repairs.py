@@ -101,7 +101,7 @@ def _move(request: HttpRequest, world: World, row: SemanticTemplate, version: in
 
 
 def _with_counts(world: World) -> QuerySet[SemanticTemplate]:
-    """The ready templates with how many of their commands are in the grammar and outside it."""
+    """Return the ready templates with how many of their commands are in the grammar and outside it."""
     is_outside = Q(commands__is_in_grammar=False)
     return SemanticTemplate.objects.filter(grammar__world=world, status=Status.READY).annotate(
         n_inside=Count("commands", filter=~is_outside & Q(commands__isnull=False)),

@@ -14,7 +14,7 @@ from annotations.people.access import world_view
 
 @world_view(Duty.VIEW)
 def download_part(request: HttpRequest, world: World, part: str) -> HttpResponse:
-    """One file as it is, several in an archive that the import page takes."""
+    """Download a part of a world: one file as it is, several in an archive that the import page takes."""
     if part not in Part.values:
         raise Http404("There is no such part of a world.")
     files = files_of_part(world, part)

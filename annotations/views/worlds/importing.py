@@ -21,7 +21,7 @@ from annotations.report_presentation import shown_report
 
 @world_view(Duty.MANAGE, READ_AND_WRITE)
 def import_files(request: HttpRequest, world: World) -> HttpResponse:
-    """Uploads the files of a generator; all of them are taken in, or nothing."""
+    """Import the uploaded files of a generator, all of them or nothing."""
     initial = {"keeps_others": "part" in request.GET}
     form = ImportForm(posted(request), request.FILES or None, initial=initial)
     report = None
@@ -50,7 +50,7 @@ def _uploads(world: World, form: ImportForm) -> list[Any]:
 
 @world_view(Duty.MANAGE, READ_AND_WRITE)
 def import_pair_files(request: HttpRequest, world: World) -> HttpResponse:
-    """Uploads the pairs of a published corpus; they become frozen splits and paraphrases."""
+    """Import the uploaded pairs of a published corpus as frozen splits and paraphrases."""
     form = PairsForm(posted(request), request.FILES or None)
     report = None
     if form.is_bound and form.is_valid():
@@ -77,7 +77,7 @@ def _page(
 
 @world_view(Duty.ANNOTATE, WRITE)
 def generate(request: HttpRequest, world: World) -> HttpResponse:
-    """Expands all templates into commands and forms."""
+    """Expand all templates into commands and forms."""
     try:
         started = start_generation(world, request.user)
     except LanguageError as error:

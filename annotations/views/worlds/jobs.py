@@ -22,7 +22,7 @@ LISTED = 100
 
 
 def job_view(methods: tuple[str, ...] = READ) -> Callable[..., Any]:
-    """A view of one job, for those who see it; a POST needs the duty that asking for it needed.
+    """Return a view of one job, for those who see it; a POST needs the duty that asking for it needed.
 
     The page stands in the frame of the job's world, where there is one.
     """
@@ -47,27 +47,27 @@ def job_view(methods: tuple[str, ...] = READ) -> Callable[..., Any]:
 
 @world_view(Duty.VIEW)
 def jobs(request: HttpRequest, world: World) -> HttpResponse:
-    """The jobs of a world, the newest first."""
+    """Show the jobs of a world, the newest first."""
     rows = world.jobs.select_related("created_by")[:LISTED]
     return render(request, "annotations/jobs.html", {"jobs": rows, "most": LISTED})
 
 
 @job_view()
 def job(request: HttpRequest, job: Job) -> HttpResponse:
-    """One job: how far it is, or what came of it."""
+    """Show one job: how far it is, or what came of it."""
     return render(request, "annotations/job.html", _state_of(request, job))
 
 
 @never_cache
 @job_view()
 def job_state(request: HttpRequest, job: Job) -> HttpResponse:
-    """What changes on the page of a job while it works."""
+    """Show what changes on the page of a job while it works."""
     return render(request, "annotations/_job_state.html", _state_of(request, job))
 
 
 @job_view(WRITE)
 def job_cancel(request: HttpRequest, job: Job) -> HttpResponse:
-    """Stops a job within seconds, or drops an import that asks."""
+    """Stop a job within seconds, or drop an import that asks."""
     try:
         cancel_job(job)
     except ValueError as error:
@@ -77,7 +77,7 @@ def job_cancel(request: HttpRequest, job: Job) -> HttpResponse:
 
 @job_view(WRITE)
 def job_answer(request: HttpRequest, job: Job) -> HttpResponse:
-    """Imports the kept files after all, and removes what they do not have."""
+    """Import the kept files after all, and remove what they do not have."""
     try:
         return redirect("job", pk=answer_job(job, request.user).pk)
     except ValueError as error:

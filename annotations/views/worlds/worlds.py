@@ -52,7 +52,7 @@ def world_import(request: HttpRequest) -> HttpResponse:
 
 @world_view(Duty.VIEW)
 def download(request: HttpRequest, world: World) -> StreamingHttpResponse:
-    """The whole world as one archive, packed while it is sent."""
+    """Download the whole world as one archive, packed while it is sent."""
     answer = StreamingHttpResponse(world_archive(world), content_type="application/zip")
     answer["Content-Disposition"] = f'attachment; filename="{archive_name(world)}"'
     return answer

@@ -63,7 +63,7 @@ class Command(BaseCommand):
             ) from error
 
     def create_admin(self) -> None:
-        """The first administrator, with a password that is printed now and never again."""
+        """Create the first administrator, with a password that is printed now and never again."""
         if User.objects.filter(is_superuser=True).exists():
             return
         password = secrets.token_urlsafe(12)
@@ -82,7 +82,7 @@ class Command(BaseCommand):
         self.say(f"The web server has not answered at {self.address} for a minute.")
 
     def answers(self) -> bool:
-        """Whether the web server answers at all; what it answers is the page's business."""
+        """Return whether the web server answers at all; what it answers is the page's business."""
         try:
             urllib.request.urlopen(f"{self.address}healthz", timeout=2).close()
         except urllib.error.HTTPError:

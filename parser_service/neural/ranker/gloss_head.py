@@ -29,7 +29,7 @@ class GlossHead(nn.Module):
         self.register_buffer("vectors", torch.zeros(len(self.glosses), width))
 
     def encode(self, encoder: SentenceEncoder, check: Check = keep_going) -> None:
-        """Encodes the glosses with the current ``encoder``."""
+        """Encode the glosses with the current ``encoder``."""
         self.vectors = encoder.vectors(self.glosses, check)
 
     def logits(self, utterances: Tensor) -> Tensor:

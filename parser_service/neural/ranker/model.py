@@ -55,7 +55,7 @@ class RankerModel(nn.Module):
         return logits + self.slots.scores(utterances).to(logits.device)
 
     def encode(self, utterances: Sequence[str], check: Check) -> None:
-        """Re-encodes the glosses and ``utterances``, the examples, with the current encoder."""
+        """Re-encode the glosses and ``utterances``, the examples, with the current encoder."""
         self.glosses.encode(self.encoder, check)
         self.nearest.encode(self.encoder, utterances, check)
 

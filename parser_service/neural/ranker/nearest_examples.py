@@ -30,7 +30,7 @@ class NearestExamples(nn.Module):
     def encode(
         self, encoder: SentenceEncoder, utterances: Sequence[str], check: Check = keep_going
     ) -> None:
-        """Encodes ``utterances``, the examples, with the current ``encoder``."""
+        """Encode ``utterances``, the examples, with the current ``encoder``."""
         self.vectors.copy_(encoder.vectors(utterances, check))
 
     def forward(self, utterances: Tensor) -> Tensor:

@@ -237,5 +237,5 @@ class FormRanker(Parser):
 
 
 def is_due(epoch: int, epochs: int) -> bool:
-    """Whether ``epoch`` is validated; the last one always is."""
+    """Return whether ``epoch`` is validated; the last one always is."""
     return epoch * VALIDATIONS // epochs > (epoch - 1) * VALIDATIONS // epochs

@@ -213,7 +213,7 @@ class Pooler(nn.Module):
 
 
 def is_bert(description: Mapping[str, Any]) -> bool:
-    """Whether ``Bert`` is the network that a configuration of transformers describes."""
+    """Return whether ``Bert`` is the network that a configuration of transformers describes."""
     return description.get("model_type") == "bert" and all(
         description.get(name) in (None, value) for name, value in FIXED.items()
     )

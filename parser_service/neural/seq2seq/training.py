@@ -25,7 +25,7 @@ class Result:
     loss: float  # nats a token
 
     def is_better_than(self, other: Result | None) -> bool:
-        """Whether it has more exact matches, or as many at a smaller loss. So epochs before the first exact
+        """Return whether it has more exact matches, or as many at a smaller loss. So epochs before the first exact
         match count as progress, and a tie goes to the more confident weights."""
         return other is None or (self.accuracy, -self.loss) > (other.accuracy, -other.loss)
 
@@ -44,7 +44,7 @@ class Training:
         self.best_weights: dict[str, Tensor] = {}
 
     def is_over(self) -> bool:
-        """Whether all epochs are done, or the best was ``patience`` epochs ago."""
+        """Return whether all epochs are done, or the best was ``patience`` epochs ago."""
         waited = self.epoch - self.best_epoch
         return self.epoch >= self.config.epochs or waited >= self.config.patience
 

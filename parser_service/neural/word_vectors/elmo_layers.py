@@ -47,7 +47,7 @@ class Convolution:
     activation: Callable[[Tensor], Tensor]
 
     def __call__(self, characters: Tensor) -> Tensor:
-        """[words, character size, longest word] to [words, filters]."""
+        """Map [words, character size, longest word] to [words, filters]."""
         places = conv1d(characters, self.weight, self.bias)  # [words, filters, places]
         return self.activation(places.amax(dim=-1))
 
@@ -62,7 +62,7 @@ class CharacterCnn:
     projection: Affine
 
     def __call__(self, spelled: Tensor) -> Tensor:
-        """[words, longest word] to [words, projection]."""
+        """Map [words, longest word] to [words, projection]."""
         characters = self.table[spelled].transpose(1, 2)  # [words, character size, longest word]
         values = torch.cat([each(characters) for each in self.convolutions], dim=-1)
         for highway in self.highways:
@@ -80,7 +80,7 @@ class ProjectedLstm:
     projection_clip: float
 
     def __call__(self, words: Tensor) -> Tensor:
-        """[words, projection] to the same, read from the first to the last."""
+        """Map [words, projection] to the same, read from the first to the last."""
         output = words.new_zeros(self.projection.shape[1])  # [projection]
         cell = words.new_zeros(self.projection.shape[0])  # [cells]
         outputs = []

@@ -36,7 +36,7 @@ class ElmoOptions:
 
 
 def read_elmo_options(path: Path) -> ElmoOptions:
-    """The options in a JSON file. Raises ValueError, a sentence, where one is absent or unknown."""
+    """Return the options in a JSON file. Raises ValueError, a sentence, where one is absent or unknown."""
     try:
         values = read_json(path)
         characters, lstm = values["char_cnn"], values["lstm"]

@@ -42,13 +42,13 @@ class Contexts:
     terms: tuple[Lambda, ...]  # the λs that are arguments
 
     def go_together(self, leaf: Leaf, others: Iterable[Form]) -> bool:
-        """Whether ``leaf`` has another predicate than each of ``others`` and was seen beside each of them."""
+        """Return whether ``leaf`` has another predicate than each of ``others`` and was seen beside each of them."""
         names = [each.predicate for each in others if isinstance(each, Application)]
         mine = leaf.predicate
         return all(name != mine and (mine, name) in self.beside for name in names)
 
     def may_hold(self, holder: tuple[str, int], term: Lambda) -> bool:
-        """Whether every predicate in ``term`` was seen in that argument."""
+        """Return whether every predicate in ``term`` was seen in that argument."""
         return all((*holder, name) in self.inside for name in predicates(term))
 
 
@@ -99,7 +99,7 @@ def with_children(form: Form, parts: Sequence[Form]) -> Form:
 
 
 def is_leaf(form: Form) -> TypeGuard[Leaf]:
-    """Whether a form describes a variable, with only constants and variables as arguments."""
+    """Return whether a form describes a variable, with only constants and variables as arguments."""
     if not isinstance(form, Application) or not isinstance(
         next(iter(form.arguments), None), Variable
     ):

@@ -135,7 +135,7 @@ def _only_occurrence(span: Words, sentence: Words) -> int | None:
 
 
 def _repeats(short: Short) -> bool:
-    """Whether a predicate occurs twice, as hardly any command means it."""
+    """Return whether a predicate occurs twice, as hardly any command means it."""
     names = [name for name in map(name_of, short) if name]
     return len(names) > len(set(names))
 

@@ -54,7 +54,7 @@ def name_of(token: str) -> str:
 
 
 def is_leaf_application(token: str) -> bool:
-    """Whether a token is a whole application, as ``at:$1:<room>``."""
+    """Return whether a token is a whole application, as ``at:$1:<room>``."""
     return ":" in token
 
 

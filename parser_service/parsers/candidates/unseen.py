@@ -73,7 +73,7 @@ def _without(declared: Sequence[Signature], shown: Sequence[Signature]) -> tuple
 
 
 def _is_action(place: Place) -> bool:
-    """Whether the part is an action, by itself or in a sequence."""
+    """Return whether the part is an action, by itself or in a sequence."""
     return (place.holder is None or place.holder[0] == "sequence") and not free_variables(
         place.part
     )
