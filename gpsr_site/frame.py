@@ -112,7 +112,7 @@ PLACES = (
         "work_items_free",
         "item",
         "to do",
-        below=("queue_item", "queue_settings", "agreement", "progress"),
+        below=("queue_item", "queue_settings", "audit", "agreement", "progress"),
     ),
     Place("Splits", "splits", "splits", below=("split", "split_new", "example")),
     Place(

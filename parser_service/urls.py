@@ -2,7 +2,15 @@
 
 from django.urls import path
 
-from parser_service.views import labelling, predictions, results, run_new, runs, suggestions
+from parser_service.views import (
+    audit,
+    labelling,
+    predictions,
+    results,
+    run_new,
+    runs,
+    suggestions,
+)
 
 urlpatterns = [
     path("label/", labelling.label_page, name="label"),
@@ -13,6 +21,12 @@ urlpatterns = [
     path("label/<int:pk>/mend/", labelling.label_mend, name="label_mend"),
     path("label/answers/<int:pk>/take-back/", labelling.label_take_back, name="label_take_back"),
     path("templates/suggestions/", suggestions.template_suggestions, name="template_suggestions"),
+    path("audit/", audit.audit, name="audit"),
+    path("audit/start/", audit.audit_start, name="audit_start"),
+    path("audit/<int:pk>/", audit.audit_item, name="audit_item"),
+    path("audit/<int:pk>/decide/", audit.audit_decide, name="audit_decide"),
+    path("audit/<int:pk>/check/", audit.audit_check, name="audit_check"),
+    path("audit/decisions/<int:pk>/take-back/", audit.audit_take_back, name="audit_take_back"),
     path("runs/", runs.runs, name="runs"),
     path("runs/table/", runs.runs_table, name="runs_table"),
     path("runs/new/", run_new.run_new, name="run_new"),

@@ -6,6 +6,7 @@ from django.urls import path
 from drf_spectacular.views import SpectacularAPIView
 from rest_framework.permissions import AllowAny
 
+from annotations.api.audit import AuditFindings, OneAuditFinding
 from annotations.api.utterances import OneUtterance, Utterances
 from annotations.api.views import SplitExport
 from annotations.api.work_items import (
@@ -24,6 +25,12 @@ urlpatterns = [
     path("worlds/<slug:world>/splits/<int:pk>/export/", SplitExport.as_view(), name="split-export"),
     path("worlds/<slug:world>/utterances/", Utterances.as_view(), name="utterances"),
     path("worlds/<slug:world>/utterances/<int:pk>/", OneUtterance.as_view(), name="utterance"),
+    path("worlds/<slug:world>/audit-findings/", AuditFindings.as_view(), name="audit-findings"),
+    path(
+        "worlds/<slug:world>/audit-findings/<int:pk>/",
+        OneAuditFinding.as_view(),
+        name="audit-finding",
+    ),
     path("worlds/<slug:world>/work-items/", WorkItems.as_view(), name="work-items"),
     path("worlds/<slug:world>/work-items/next/", NextWorkItem.as_view(), name="work-item-next"),
     path("worlds/<slug:world>/work-items/<int:pk>/", OneWorkItem.as_view(), name="work-item"),

@@ -16,6 +16,7 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from annotations.api.permissions import HasDuty
+from annotations.auditing import end_item
 from annotations.labelling import AnsweredMeanwhile
 from annotations.language.errors import LanguageError
 from annotations.models import Assignment, Duty, Verdict, WorkItem, World
@@ -71,7 +72,8 @@ class WorkItemQuery(serializers.Serializer):
 
 class AnswerSerializer(serializers.Serializer):
     """What an utterance means: ``form`` in any notation where the verdict is ``form``. Other subjects
-    need nothing. ``version`` is that of the utterance when it was read."""
+    need nothing. A label in doubt is kept without a verdict, corrected by a form, or excluded.
+    ``version`` is that of the utterance when it was read."""
 
     verdict = serializers.ChoiceField(choices=verdict_choices(), required=False)
     form = serializers.CharField(required=False, default="", allow_blank=True, max_length=5_000)
@@ -195,6 +197,8 @@ class FinishWorkItem(WorkItemRoute):
         return self.shown(pk)
 
     def _finish(self, part: Assignment, request: Request, values: dict[str, Any]) -> None:
+        if end_item(part, values.get("verdict", ""), values["form"], values["reason"]):
+            return
         if part.item.utterance is None:
             finish(part)
             return

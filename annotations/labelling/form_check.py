@@ -24,7 +24,7 @@ from annotations.language.predicates import gloss
 from annotations.language.symbols import Nonterminal, Wildcard
 from annotations.language.templates import read_sides, template_checker
 from annotations.language.writing import Sides, format_form, with_repairs
-from annotations.models import Utterance
+from annotations.models import World
 from annotations.rows.from_rows import predicates_of
 
 PLACE = Position("form")
@@ -39,12 +39,12 @@ def canonical_label(text: str) -> str:
     return canonical_text(_read(text))
 
 
-def check_label(utterance: Utterance, text: str) -> dict[str, Any]:
-    """Check a form in any notation for ``utterance``, against the predicates of its world.
+def check_label(world: World, anonymized_text: str, text: str) -> dict[str, Any]:
+    """Check a form in any notation for an utterance, against the predicates of its world.
 
     Returns JSON as ``annotations.editing.assistance.assist`` does, without slots.
     """
-    declared = predicates_of(utterance.world)
+    declared = predicates_of(world)
     sides, checker = Sides(STAND_IN, text), template_checker(Grammar(()), declared)
     reading = sentence = ""
     if len(text) > MAX_FORM:
@@ -55,7 +55,7 @@ def check_label(utterance: Utterance, text: str) -> dict[str, Any]:
         problems = tuple(each for each in remarks if each.position.source == PLACE.source)
         problems = with_repairs(problems, sides, checker)
         if template and not any(problem.is_error for problem in problems):
-            problems += tuple(_check_as_label(text, utterance))
+            problems += tuple(_check_as_label(text, anonymized_text))
             reading, sentence = to_reading(template.form), gloss(template.form, declared)
     return {
         "problems": [shown_problem(each, sides) for each in problems],
@@ -74,10 +74,10 @@ def _refusal(text: str) -> Problem:
     raise ValueError("this is a label")
 
 
-def _check_as_label(text: str, utterance: Utterance) -> Iterator[Problem]:
+def _check_as_label(text: str, anonymized_text: str) -> Iterator[Problem]:
     """Yield what is wrong with a form that can be read."""
     try:
-        yield from _check_slots(_read(text), text, utterance)
+        yield from _check_slots(_read(text), text, anonymized_text)
     except LanguageError as error:
         yield error.problem
 
@@ -96,9 +96,9 @@ def _read(text: str) -> Form:
     return form
 
 
-def _check_slots(form: Form, text: str, utterance: Utterance) -> Iterator[Problem]:
+def _check_slots(form: Form, text: str, anonymized_text: str) -> Iterator[Problem]:
     """Yield a problem for each class token of the form that the utterance does not have."""
-    tokens_said = CLASS_TOKEN.findall(utterance.anonymized_text)
+    tokens_said = CLASS_TOKEN.findall(anonymized_text)
     said = {token.rstrip("0123456789") for token in tokens_said}
     tokens = (
         part.token_class for part in walk(form) if isinstance(part, Constant) and part.token_class

@@ -24,7 +24,7 @@ class PageFilters(django_filters.FilterSet):
             self.filters[name].extra["choices"] = choices(self.request)
         for each in self.filters.values():
             if isinstance(each, django_filters.ChoiceFilter):
-                each.extra["empty_label"] = f"{each.label}: any"
+                each.extra.setdefault("empty_label", f"{each.label}: any")
 
 
 class Search(django_filters.CharFilter):

@@ -21,6 +21,11 @@ from annotations.models import (
     SemanticTemplate,
     TaskCategory,
 )
+from annotations.models.audit import (
+    AuditFindingQuerySet,
+    audit_reason_choices,
+    finding_status_choices,
+)
 from annotations.models.corpus import paraphrase_status_choices
 from annotations.models.predicates import predicate_kind_choices
 from annotations.models.splits import part_choices, source_choices
@@ -144,6 +149,33 @@ class WorkItemFilters(PageFilters):
 
     def by_person(self, rows: WorkItemQuerySet, name: str, value: str) -> WorkItemQuerySet:
         return rows.of_person(int(value))
+
+
+class AuditFindingFilters(PageFilters):
+    """The findings of label audits; those that are decided are hidden unless asked for."""
+
+    q = Search("text", "source_command")
+    status = django_filters.ChoiceFilter(
+        label="Status",
+        choices=finding_status_choices,
+        empty_label="Status: open",
+        method="by_status",
+    )
+    reason = django_filters.ChoiceFilter(
+        label="Against it", choices=audit_reason_choices, method="by_reason"
+    )
+
+    @property
+    def qs(self) -> AuditFindingQuerySet:
+        rows = super().qs
+        is_asked = self.is_bound and self.form.is_valid() and self.form.cleaned_data["status"]
+        return rows if is_asked else rows.open()
+
+    def by_status(self, rows: AuditFindingQuerySet, name: str, value: str) -> AuditFindingQuerySet:
+        return rows.with_status(value)
+
+    def by_reason(self, rows: AuditFindingQuerySet, name: str, value: str) -> AuditFindingQuerySet:
+        return rows.with_reason(value)
 
 
 class SplitFilters(PageFilters):

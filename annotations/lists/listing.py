@@ -16,7 +16,7 @@ from django_filters import FilterSet
 
 from annotations.lists.paging import PAGE_SIZE, Page, page_of
 
-PLACE = ("after", "before", "page")
+PLACE = ("after", "before", "page", "finding")
 
 
 @dataclass(frozen=True, slots=True)

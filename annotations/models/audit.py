@@ -60,6 +60,10 @@ class AuditFindingQuerySet(models.QuerySet["AuditFinding"]):
         """Those whose label was wrong, as somebody has decided."""
         return self.filter(status__in=(FindingStatus.CORRECTED, FindingStatus.EXCLUDED))
 
+    def with_status(self, status: str) -> AuditFindingQuerySet:
+        """Those of one status; open ones only while they wait for somebody."""
+        return self.open() if status == FindingStatus.OPEN else self.filter(status=status)
+
     def with_reason(self, reason: str) -> AuditFindingQuerySet:
         reasons = AuditReason.objects.filter(finding=models.OuterRef("pk"), reason=reason)
         return self.filter(models.Exists(reasons))
@@ -119,6 +123,12 @@ class AuditFinding(models.Model):
     @property
     def is_open(self) -> bool:
         return self.status == FindingStatus.OPEN
+
+    @property
+    def doubts(self) -> list[str]:
+        """What speaks against the label, each kind of reason once, as lists show it."""
+        kinds = dict.fromkeys(each.reason for each in self.reasons.all())
+        return [REASON_LABELS[Reason(kind)] for kind in kinds]
 
     @property
     def offers_form(self) -> bool:

@@ -37,12 +37,10 @@ def occurrences_of(entity: Entity) -> EntityOccurrences:
     )
 
 
-def examples_of_paraphrase(paraphrase: Paraphrase) -> QuerySet[Example]:
-    """Return the examples of splits that were copied from ``paraphrase``."""
+def examples_of_pair(world_id: int, utterance: str, form: str) -> QuerySet[Example]:
+    """Return the examples of splits that were copied from a paraphrase or an utterance with this form."""
     return Example.objects.filter(
-        split__world=paraphrase.world_id,
-        utterance=paraphrase.utterance,
-        logical_form=paraphrase.logical_form,
+        split__world=world_id, utterance=utterance, logical_form=form
     ).select_related("split")
 
 

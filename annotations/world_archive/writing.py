@@ -24,9 +24,10 @@ CHUNK = 2000  # rows fetched, and lines packed, at once
 README = """A world of GPSR Workbench.
 
 "Import a world" makes the same world again from this archive; it reads world.json and rows/.
-generator/ and splits/ hold the same for people and other programs. After a change of the files in
-generator/, import that folder as the files of a generator. history/ says who changed what, and when: a
-line of JSON for each version of a row that people changed or deleted. A new world begins its own.
+generator/ and splits/ hold the same for people and other programs; paraphrases that were rejected or
+excluded are in rows/ alone. After a change of the files in generator/, import that folder as the files
+of a generator. history/ says who changed what, and when: a line of JSON for each version of a row that
+people changed or deleted. A new world begins its own.
 """
 
 # Key of a row → its line number, by the name of the table.

@@ -12,6 +12,7 @@ from django.db.models import Case, Count, F, IntegerField, OuterRef, QuerySet, S
 from django.db.models.functions import Coalesce
 
 from annotations.models import (
+    AuditFinding,
     Command,
     Entity,
     LogicalForm,
@@ -63,6 +64,7 @@ class Counts:
     utterances_waiting: int
     work_items: int
     work_items_free: int
+    audit_findings: int
     splits: int
     runs: int
     runs_queued: int
@@ -136,6 +138,7 @@ def _rows_to_count() -> dict[str, tuple[QuerySet, str]]:
         "utterances_waiting": (Utterance.objects.unlabelled(), "world"),
         "work_items": (WorkItem.objects.open(), "world"),
         "work_items_free": (WorkItem.objects.free(), "world"),
+        "audit_findings": (AuditFinding.objects.open(), "world"),
         "splits": (Split.objects.all(), "world"),
         **_problem_rows(),
         **_run_rows(),

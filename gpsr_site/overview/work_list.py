@@ -109,6 +109,7 @@ FOR_REVIEWERS = (
         "",
         "to judge",
     ),
+    Waiting("audit_findings", "label", "Decide", "audit", "?status=open", "", "in doubt"),
 )
 
 

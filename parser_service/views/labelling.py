@@ -99,8 +99,8 @@ def label_send(request: HttpRequest, world: World) -> HttpResponse:
 @world_view(Duty.ANNOTATE, WRITE)
 def label_check(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     """Say what is wrong with a form while somebody writes it."""
-    row = get_object_or_404(world.utterances.select_related("world"), pk=pk)
-    return JsonResponse(check_label(row, request.POST.get("form", "")))
+    row = get_object_or_404(world.utterances, pk=pk)
+    return JsonResponse(check_label(world, row.anonymized_text, request.POST.get("form", "")))
 
 
 @world_view(Duty.ANNOTATE, WRITE)

@@ -22,6 +22,7 @@ onContent((root) => {
     ["[data-tree]", "tree"],
     ["[data-editor]", "editor"],
     ["[data-label-page]", "label"],
+    ["[data-audit-page]", "audit"],
   ]) {
     within(selector).forEach((element) => enhanceBy(name, element));
   }

@@ -44,6 +44,7 @@ PAGES = {
     "utterances-new": "utterances/new/",
     "label": "label/",
     "queue": "queue/",
+    "audit": "audit/",
     "agreement": "queue/agreement/",
     "progress": "queue/progress/",
     "queue-settings": "queue/settings/",

@@ -8,6 +8,7 @@ from typing import Any
 
 from django.core.management.base import CommandParser
 
+from annotations.auditing import examples_before
 from annotations.exporting.split_export import Format, export_split
 from annotations.management.base import ReportingCommand, find_split, find_world
 
@@ -29,5 +30,6 @@ class Command(ReportingCommand):
             "split": split.name,
             "criterion": split.criterion,
             "content_hash": split.content_hash,
+            "pairs_found_wrong_since": examples_before(split).count(),
             "files": export_split(split, as_, output),
         }

@@ -9,7 +9,7 @@ from annotations.lists.filters import ParaphraseFilters
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.models import Duty, World
 from annotations.people.access import world_view
-from annotations.rows.occurrences import MOST_SHOWN, examples_of_paraphrase, logical_form_of
+from annotations.rows.occurrences import MOST_SHOWN, examples_of_pair, logical_form_of
 
 SORTS = {
     "position": Sort("No.", "position", is_number=True),
@@ -34,6 +34,6 @@ def paraphrase(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     context = {
         "row": row,
         "logical_form": logical_form_of(world.pk, row.logical_form),
-        "examples": examples_of_paraphrase(row)[:MOST_SHOWN],
+        "examples": examples_of_pair(world.pk, row.utterance, row.logical_form)[:MOST_SHOWN],
     }
     return render(request, "annotations/paraphrase.html", context)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from django.http import HttpRequest, HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 
+from annotations.auditing import examples_before
 from annotations.forms import SplitForm, posted
 from annotations.language.errors import LanguageError
 from annotations.lists.filters import ExampleFilters, SplitFilters
@@ -65,6 +66,7 @@ def split(request: HttpRequest, world: World, pk: int) -> HttpResponse:
         "split": row,
         "counts": counts_of([row])[row.pk],
         "leakage": leakage_of(row),
+        "wrong": examples_before(row).count(),
         "listing": Listing(request, ExampleFilters, row.examples.all(), SORTS),
     }
     return render_list(request, "annotations/split.html", context)

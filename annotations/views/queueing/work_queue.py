@@ -11,6 +11,7 @@ from django.shortcuts import get_object_or_404, redirect, render
 from django.urls import reverse
 from django.views.decorators.cache import never_cache
 
+from annotations.auditing import end_item
 from annotations.forms import posted
 from annotations.labelling import AnsweredMeanwhile
 from annotations.language.english import say_count
@@ -129,6 +130,8 @@ def labels_to_compare(item: WorkItem) -> list:
 def page_of(item: WorkItem) -> str:
     """Return the address of the page on which an item is done."""
     world = item.world.name
+    if finding := item.open_finding:
+        return reverse("audit", args=[world]) + f"?finding={finding.pk}"
     if item.kind == WorkKind.ADJUDICATION or item.subject is None:
         return reverse("queue_item", args=[world, item.pk])
     if item.utterance_id:
@@ -158,7 +161,9 @@ def queue_settle(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 def _finish(part: Assignment) -> None:
-    """End an item: an utterance by labelling it, everything else by saying so."""
+    """End an item: an utterance by labelling it, everything else by saying so; a label in doubt is kept."""
+    if end_item(part):
+        return
     if part.item.utterance_id:
         raise NotForThem("Label the utterance; that ends this item.")
     finish(part)

@@ -8,7 +8,17 @@ from typing import TypeAlias
 from django.db.models import Model
 from django.urls import URLPattern, URLResolver, get_resolver, reverse
 
-from annotations.models import Entity, Job, Label, Membership, User, Utterance, WorkItem
+from annotations.models import (
+    AuditDecision,
+    AuditFinding,
+    Entity,
+    Job,
+    Label,
+    Membership,
+    User,
+    Utterance,
+    WorkItem,
+)
 from annotations.models.worlds import Role
 from tests.sample_world import SampleWorld, comment_in, paraphrase_in
 
@@ -77,6 +87,21 @@ def work_item(sample: SampleWorld) -> WorkItem:
     )[0]
 
 
+def finding(sample: SampleWorld) -> AuditFinding:
+    """Return a label that is in doubt."""
+    forms = {"form": "( go )", "suggested_form": "( find )"}
+    return AuditFinding.objects.get_or_create(
+        world=sample.world,
+        paraphrase=paraphrase_in(sample.world),
+        defaults={**forms, "rank": 1, "score": 1.0},
+    )[0]
+
+
+def decision_of_nobody(sample: SampleWorld) -> AuditDecision:
+    """Return what somebody whose account was deleted decided about it."""
+    return AuditDecision.objects.get_or_create(finding=finding(sample), decision="kept")[0]
+
+
 def predicate(sample: SampleWorld) -> Model:
     return sample.world.predicates.first()
 
@@ -134,5 +159,9 @@ KEYS: dict[str, RouteKeys] = {
         ),
         pk_of(work_item),
     ),
+    **dict.fromkeys(
+        ("audit_item", "audit_decide", "audit_check", "api:audit-finding"), pk_of(finding)
+    ),
+    "audit_take_back": pk_of(decision_of_nobody),
     "queue_ask": pk_of(utterance, kind="utterance"),
 }

@@ -99,6 +99,7 @@ POLICY = [
             "deleted",
             "queue",
             "queue_item",
+            "audit",
             "agreement",
             "progress",
         )
@@ -163,6 +164,12 @@ POLICY = [
         for name in ("queue_next", "queue_act", "queue_settle")
     ),
     Rule("queue_ask", LOG_IN, NOWHERE, NO, GONE_ON, GONE_ON, method="post"),
+    # Labels in doubt: everybody with a role decides, reviewers let them be looked for
+    Rule("audit_item", LOG_IN, NOWHERE, GONE_ON, GONE_ON, GONE_ON),
+    Rule("audit_check", *MEMBERS, method="post"),
+    Rule("audit_decide", LOG_IN, NOWHERE, GONE_ON, GONE_ON, GONE_ON, method="post"),
+    Rule("audit_take_back", LOG_IN, NOWHERE, GONE_ON, GONE_ON, GONE_ON, method="post"),
+    Rule("audit_start", LOG_IN, NOWHERE, NO, GONE_ON, GONE_ON, method="post"),
     # What admins decide
     Rule("queue_assign", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("queue_settings", *ADMINS),
@@ -191,6 +198,8 @@ POLICY = [
     Rule("api:utterances", 401, NOWHERE, YES, YES, YES),
     Rule("api:utterances", 401, NOWHERE, 400, NO, 400, method="post"),
     Rule("api:utterance", 401, NOWHERE, YES, YES, YES),
+    Rule("api:audit-findings", 401, NOWHERE, YES, YES, YES),
+    Rule("api:audit-finding", 401, NOWHERE, YES, YES, YES),
     Rule("api:work-items", 401, NOWHERE, YES, YES, YES),
     Rule("api:work-item", 401, NOWHERE, YES, YES, YES),
     Rule("api:work-item-next", 401, NOWHERE, YES, 204, YES, method="post"),
@@ -204,6 +213,7 @@ ONLY_POSTED = {
     *("queue_ask", "queue_act", "queue_settle", "api:work-item-finish", "api:work-item-give-back"),
     *("label_answer", "label_check", "label_mend", "label_take_back"),
     *("comment_delete", "comment_restore"),
+    *("audit_decide", "audit_check", "audit_take_back"),
 }
 # Routes of rows that take a POST at the address where they are read.
 READ_AND_POSTED = {

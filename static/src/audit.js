@@ -1,0 +1,79 @@
+// The label audit by keyboard: the row that has the focus is shown, and one key decides about it.
+import { loadModule } from "./modules.js";
+
+const TYPING = "input, textarea, select, [contenteditable], .cm-editor";
+const ROW = "tr[data-finding]";
+
+const shown = () => document.getElementById("finding");
+const rowShown = () => document.querySelector(`${ROW}[aria-current]`);
+const isBusy = () => Boolean(document.querySelector("#list .htmx-request"));
+
+let isListening = false;
+
+/** Called for the page and again for each list that replaces the one before. */
+export function enhance() {
+  if (!isListening) {
+    isListening = true;
+    document.addEventListener("keydown", onKey, true); // before the keys of all pages: c copies there
+    document.addEventListener("focusin", onFocus);
+  }
+  if (document.activeElement === document.body) rowShown()?.focus({ preventScroll: true });
+}
+
+function focusRow() {
+  rowShown()?.focus({ preventScroll: true });
+  rowShown()?.scrollIntoView({ block: "nearest" });
+}
+
+function onFocus(event) {
+  const row = event.target;
+  if (!row.matches(ROW) || row.dataset.finding === shown()?.dataset.shown) return;
+  rowShown()?.removeAttribute("aria-current");
+  row.setAttribute("aria-current", "true");
+  row.dispatchEvent(new CustomEvent("choose"));
+}
+
+async function openEditor() {
+  const panel = shown()?.querySelector("[data-audit-write]");
+  if (!panel) return;
+  panel.open = true;
+  const field = panel.querySelector("[data-editor-later]");
+  if (field) {
+    field.dataset.editor = field.dataset.editorLater;
+    delete field.dataset.editorLater;
+    (await loadModule("editor")).enhance(field);
+  }
+  panel.querySelector(".cm-content")?.focus();
+}
+
+function leaveField(event) {
+  if (event.target.id !== "audit-reason" && event.key !== "Escape") return;
+  if (event.key === "Escape") shown()?.querySelector("[data-audit-write]")?.removeAttribute("open");
+  event.preventDefault();
+  focusRow();
+}
+
+const press = (key) => shown()?.querySelector(`[data-key="${key}"]`)?.click();
+
+const actions = {
+  a: () => press("a"),
+  c: () => (shown()?.querySelector('[data-key="c"]') ? press("c") : openEditor()),
+  x: () => press("x"),
+  e: openEditor,
+  r: () => document.getElementById("audit-reason")?.focus(),
+  z: () => document.querySelector("form[data-take-back]")?.requestSubmit(),
+};
+
+// A key that comes while the next label is on its way is not for that one: nobody has read it yet.
+function onKey(event) {
+  if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
+  if (!document.querySelector("[data-audit-page]")) return;
+  if (event.target.closest(TYPING)) {
+    if (event.key === "Enter" || event.key === "Escape") leaveField(event);
+    return;
+  }
+  if ("jk".includes(event.key) && !event.target.matches(ROW)) focusRow();
+  if (event.repeat || !Object.hasOwn(actions, event.key)) return;
+  event.preventDefault();
+  if (!isBusy()) actions[event.key]();
+}
