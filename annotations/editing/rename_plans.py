@@ -18,6 +18,9 @@ from annotations.language.renaming import (
     require_predicate,
 )
 from annotations.models import (
+    AuditDecision,
+    AuditFinding,
+    AuditReason,
     Editable,
     Entity,
     Label,
@@ -109,7 +112,7 @@ class NonterminalRename:
 
 
 class PredicateRename:
-    """Renames a predicate in templates, and in the stored forms of paraphrases, utterances and labels."""
+    """Renames a predicate in templates, and in all stored forms of what people said."""
 
     def __init__(self, row: Predicate, old: str) -> None:
         self.row = row
@@ -138,6 +141,17 @@ class PredicateRename:
             ),
             ("utterance", Utterance.objects.filter(world=world), ("logical_form",)),
             ("label", Label.objects.filter(utterance__world=world), ("form",)),
+            (
+                "audit finding",
+                AuditFinding.objects.filter(world=world),
+                ("form", "suggested_form", "decided_form"),
+            ),
+            (
+                "audit reason",
+                AuditReason.objects.filter(finding__world=world),
+                ("suggested_form",),
+            ),
+            ("audit decision", AuditDecision.objects.filter(finding__world=world), ("form",)),
         ):
             naming = Q()
             for name in names:

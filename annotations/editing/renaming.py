@@ -12,7 +12,16 @@ from annotations.editing.edits import Overtaken, change_many
 from annotations.editing.rename_plans import PLANS
 from annotations.generation.template_problems import check_unready_templates
 from annotations.language.english import say_count
-from annotations.models import Editable, Label, TaskCategory, User, World
+from annotations.models import (
+    AuditDecision,
+    AuditFinding,
+    AuditReason,
+    Editable,
+    Label,
+    TaskCategory,
+    User,
+    World,
+)
 from annotations.rows.synchronise import BATCH
 
 MOST_EXAMPLES = 5
@@ -79,7 +88,7 @@ def rename(row: Editable, old: str, new: str, by: User, version: int) -> tuple[T
         for each, values in changes:
             if not isinstance(each, Editable):
                 _set(each, values)
-        for model in (TaskCategory, Label):
+        for model in COLUMNS:
             _store(model, [each for each, _ in changes if type(each) is model])
         change_many(world, edited, by)
         check_unready_templates(world)
@@ -91,9 +100,13 @@ def _set(row: models.Model, values: Mapping[str, Any]) -> None:
         setattr(row, name, value)
 
 
+# Rows that have no version and no history, and their fields that name something.
 COLUMNS = {
     TaskCategory: ["rule_sources"],
     Label: ["form"],
+    AuditFinding: ["form", "suggested_form", "decided_form"],
+    AuditReason: ["suggested_form"],
+    AuditDecision: ["form"],
 }
 
 

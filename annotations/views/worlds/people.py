@@ -15,7 +15,7 @@ from annotations.people.members import NoAdminLeft, find_account, members_of, se
 
 WHAT_ROLES_DO = {
     Role.ANNOTATOR: "writes templates, generates commands, makes splits",
-    Role.REVIEWER: "judges paraphrases and predictions",
+    Role.REVIEWER: "judges paraphrases, labels in doubt and predictions",
     Role.ADMIN: "does all of that, imports files, starts runs, and decides who is here",
 }
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from annotations.auditing import decide, store_findings
 from annotations.editing.edits import Overtaken, add, change, delete, restore
 from annotations.editing.renaming import rename, touched_by
 from annotations.editing.template_check import check_template
@@ -11,6 +12,7 @@ from annotations.generation.generating import generate_pairs
 from annotations.language.errors import LanguageError
 from annotations.models import (
     Entity,
+    FindingStatus,
     Paraphrase,
     Predicate,
     Production,
@@ -20,6 +22,7 @@ from annotations.models import (
 )
 from annotations.models.templates import Status
 from annotations.rows.history import history_of
+from tests.annotations.auditing.conftest import found
 from tests.sample_world import make_paraphrase
 
 GROUNDED = '( find ( lambda $1 e ( is_a $1 " tea " ) ) )'
@@ -72,6 +75,19 @@ def test_a_predicate_changes_in_templates_forms_and_paraphrases(home, admin):
     row = Paraphrase.objects.get()
     assert row.grounded_form == GROUNDED.replace("find", "locate")
     assert [entry.version for entry in history_of(Paraphrase).filter(id=row.pk)] == [2, 1]
+
+
+def test_a_predicate_changes_in_what_an_audit_found_too(home, admin):
+    row = home.paraphrases.get()
+    store_findings(home, [found(row, CLASSES.replace("find", "bring"))])
+    rename(Predicate.objects.get(name="find"), "find", "locate", admin, 1)
+    finding = home.audit_findings.open().get()
+    assert finding.form == CLASSES.replace("find", "locate")
+    decide(finding, FindingStatus.KEPT, admin)
+    touched = rename(Predicate.objects.get(name="locate"), "locate", "find", admin, 2)
+    assert nouns(touched)["audit finding"] == nouns(touched)["audit decision"] == 1
+    finding.refresh_from_db()
+    assert finding.decided_form == finding.decision.form == CLASSES
 
 
 def test_an_entity_changes_where_it_is_a_span(home, admin):
