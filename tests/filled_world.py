@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from annotations.auditing import store_findings
 from annotations.commenting import SUBJECTS, add_comment
 from annotations.editing.edits import add, change, delete
 from annotations.labelling import collect
@@ -19,6 +20,7 @@ from annotations.models import (
 )
 from annotations.models.background import Status
 from annotations.queueing import answer, refill, set_share
+from tests.annotations.auditing.conftest import found
 
 SAID = ["bring me the tea", "go to the kitchen now", "where is my milk"]
 
@@ -26,7 +28,8 @@ SAID = ["bring me the tea", "go to the kitchen now", "where is my milk"]
 def leave_traces(world: World, annotator: User, admin: User) -> None:
     """Let ``annotator`` and ``admin`` edit, delete, comment and label in ``world``, and differ once.
 
-    Afterwards some templates are disputed, in conflict or match nothing, and an utterance has two labels.
+    Afterwards some templates are disputed, in conflict or match nothing, an utterance has two labels, and
+    a label is in doubt.
     """
     _edit(world, annotator, admin)
     template = SemanticTemplate.objects.filter(grammar__world=world).first()
@@ -44,9 +47,10 @@ def leave_traces(world: World, annotator: User, admin: User) -> None:
     refill(world)
     texts = dict.fromkeys(("prompt", "utterance"), "Fetch me the tea.")
     forms = dict.fromkeys(("grounded_form", "logical_form"), "UNKNOWN")
-    Paraphrase.objects.create(
+    paraphrase = Paraphrase.objects.create(
         world=world, position=0, edit_distance=3, jaccard_distance=0.5, **texts, **forms
     )
+    store_findings(world, [found(paraphrase, '( go " <room> " )')])
     Job.objects.create(
         world=world,
         world_name=world.name,

@@ -1,5 +1,5 @@
 // The label audit by keyboard: the row that has the focus is shown, and one key decides about it.
-import { loadModule } from "./modules.js";
+import { enhanceBy } from "./modules.js";
 
 const TYPING = "input, textarea, select, [contenteditable], .cm-editor";
 const ROW = "tr[data-finding]";
@@ -41,7 +41,7 @@ async function openEditor() {
   if (field) {
     field.dataset.editor = field.dataset.editorLater;
     delete field.dataset.editorLater;
-    (await loadModule("editor")).enhance(field);
+    await enhanceBy("editor", field);
   }
   panel.querySelector(".cm-content")?.focus();
 }

@@ -5,8 +5,10 @@ from __future__ import annotations
 import pytest
 from playwright.sync_api import Page, expect
 
+from annotations.auditing import store_findings
 from annotations.labelling import collect
 from annotations.models import SemanticTemplate
+from tests.annotations.auditing.conftest import found, say
 from tests.browser.faults import (
     COLOUR_AND_SIZE,
     OF_STRUCTURE,
@@ -68,9 +70,16 @@ def open_label_panel(key: str, field: str):
         page.goto(f"{url}/w/home/label/")
         expect(page.locator("[data-label-page][data-ready]")).to_have_count(1)
         page.keyboard.press(key)
-        expect(page.get_by_label(field)).to_be_visible()
+        expect(page.get_by_role("textbox", name=field)).to_be_visible()
 
     return open_panel
+
+
+def open_written_form(page: Page, url: str) -> None:
+    page.goto(f"{url}/w/home/audit/")
+    expect(page.locator("[data-audit-page][data-ready]")).to_have_count(1)
+    page.keyboard.press("e")
+    expect(page.get_by_role("textbox", name="Logical form")).to_be_focused()
 
 
 OPENED = {
@@ -82,6 +91,7 @@ OPENED = {
     "a form to write": open_label_panel("e", "Logical form"),
     "a dispute": open_label_panel("d", "Why is it disputed?"),
     "a name to mend": open_label_panel("m", "The words"),
+    "a correction to write": open_written_form,
     "the log-in over a page": open_log_in,
 }
 
@@ -98,6 +108,7 @@ def faults_in_place(page: Page) -> Faults:
 
 def test_what_opens_on_a_page_can_be_used_by_everybody(axe, sample, admin, page_of, live_server):
     collect(sample.world, ["bring me the tea"])
+    store_findings(sample.world, [found(say(sample.world, "how many girls"))])
     page = page_of(admin, variant=WIDE_LIGHT)
     page.add_init_script(axe)
     reports = {}
