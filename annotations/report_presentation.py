@@ -51,6 +51,7 @@ def _shown_texts(rows: Mapping[str, list[str]]) -> list[dict[str, Any]]:
         {
             "count": len(texts),
             "kind": SINGULAR[name],
+            "plural": name,
             "noun": SINGULAR[name] if len(texts) == 1 else name,
             "texts": texts[:MOST_NAMES],
             "left_out": max(0, len(texts) - MOST_NAMES),

@@ -33,6 +33,7 @@ def comments_section(context: Any, kind: str, row: Any, form: Any = None) -> dic
         "kind": kind,
         "row": row,
         "comments": comments,
+        "count": sum(not each.is_deleted for each in comments),
         "shown": list(_shown(comments, request)),
         "people": people_of(world).exclude(pk=request.user.pk)[:MOST_NAMES],
         "form": form or CommentForm(),
