@@ -19,6 +19,7 @@ from annotations.lists.filters import (
     LogicalFormFilters,
     ParaphraseFilters,
     PredicateFilters,
+    ProductionFilters,
     SplitFilters,
     TemplateFilters,
     UtteranceFilters,
@@ -30,6 +31,7 @@ from annotations.models import (
     LogicalForm,
     Paraphrase,
     Predicate,
+    Production,
     SemanticTemplate,
     Split,
     Utterance,
@@ -49,8 +51,8 @@ MOST_COUNTED = 1_000  # beyond it the page says "over 1,000"
 class Kind:
     """A kind of rows that can be searched.
 
-    ``list_name`` and ``page_name`` are the URL names of its list and of the page of one row; a kind
-    whose rows have no page links to the list. ``world_path`` leads from a row to its world.
+    ``list_name`` and ``page_name`` are the URL names of its list and of the page of one row.
+    ``world_path`` leads from a row to its world.
     """
 
     title: str
@@ -79,9 +81,19 @@ KINDS = (
         Predicate,
         PredicateFilters,
         "predicates",
-        "",
+        "predicate",
         lambda row: row.name,
         lambda row: row.gloss,
+    ),
+    Kind(
+        "Productions",
+        Production,
+        ProductionFilters,
+        "grammar",
+        "production",
+        lambda row: f"${row.nonterminal} = {row.expansion}",
+        lambda row: row.source,
+        "grammar__world",
     ),
     Kind(
         "Templates",
@@ -166,7 +178,9 @@ def search(request: HttpRequest, world: World) -> HttpResponse:
     """Show what the world has for the words in ``q``, by kind."""
     words = request.GET.get("q", "").replace("\0", "").strip()
     groups = list(groups_of(request, world, words)) if words else []
-    return render(request, "gpsr_site/search.html", {"words": words, "groups": groups})
+    return render(
+        request, "gpsr_site/search.html", {"words": words, "groups": groups, "kinds": KINDS}
+    )
 
 
 def groups_of(request: HttpRequest, world: World, words: str) -> Iterator[Group]:
@@ -183,14 +197,11 @@ def _group(kind: Kind, world: World, words: str, matches: QuerySet[Any], count: 
     list_url = reverse(kind.list_name, kwargs={"world": world.name})
     all_url = f"{list_url}?{urlencode({'q': words})}"
     hits = tuple(
-        Hit(kind.text(row), kind.note(row), _page_url(kind, world, row) or all_url)
+        Hit(kind.text(row), kind.note(row), _page_url(kind, world, row))
         for row in matches[:MOST_SHOWN]
     )
     return Group(kind.title, hits, count, all_url)
 
 
 def _page_url(kind: Kind, world: World, row: Model) -> str:
-    """Return where the row has a page of its own; empty where it has none."""
-    if not kind.page_name:
-        return ""
     return reverse(kind.page_name, kwargs={"world": world.name, "pk": row.pk})

@@ -14,8 +14,7 @@ from annotations.language.decoding import decode
 from annotations.language.errors import LanguageError, Problem
 from annotations.models import Split, World
 from annotations.models.splits import Criterion
-
-PROBLEM = "  {file}:{line}:{column}: {severity}: {message} ({hint})"
+from annotations.rows.problems import from_json
 
 MOST_EXCERPTS = 20  # errors that are shown with their line
 
@@ -68,7 +67,7 @@ class ReportingCommand(BaseCommand):
         """Return the report for a person: one figure a line, then the problems, one a line."""
         figures = [f"{key}: {_in_words(value)}" for key, value in report.items()]
         problems = report.get("problems", ())
-        return "\n".join([*figures, *(PROBLEM.format(**problem) for problem in problems)])
+        return "\n".join([*figures, *(f"  {from_json(problem)}" for problem in problems)])
 
     def handle(self, *args: Any, **options: Any) -> None:
         try:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 from annotations import models
 from annotations.language.english import say_count
-from annotations.language.errors import Problem
+from annotations.language.errors import Position, Problem, Severity
 from annotations.models.problems import Subject
 from annotations.rows.synchronise import Changes, synchronise
 
@@ -44,6 +44,12 @@ def as_json(problem: Problem) -> dict[str, Any]:
         "message": problem.message,
         "hint": problem.hint,
     }
+
+
+def from_json(report: Mapping[str, Any]) -> Problem:
+    """Return the problem that ``as_json`` was given."""
+    position = Position(report["file"], report["line"], report["column"])
+    return Problem(position, Severity(report["severity"]), report["message"], report["hint"])
 
 
 def store_problems(world: models.World, subject: Subject, problems: Sequence[Problem]) -> Changes:

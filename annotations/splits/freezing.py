@@ -43,7 +43,7 @@ def freeze_split(
         The split; the one that is there already where it holds just the same.
 
     Raises:
-        LanguageError: there is nothing to split, the proportions are none, or the name is taken by
+        LanguageError: there is nothing to split, the proportions are no shares of a whole, or the name is taken by
             a split with other examples.
     """
     examples = plan_split(world, criterion, seed, proportions)

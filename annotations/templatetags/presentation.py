@@ -13,6 +13,7 @@ from django.utils import timezone
 from django.utils.html import format_html, format_html_join
 from django.utils.safestring import SafeString, mark_safe
 
+from annotations.language.errors import Position
 from annotations.language.forms import Change
 from annotations.models.drafts import NEW
 from annotations.presentation import (
@@ -28,6 +29,7 @@ from annotations.presentation import (
 
 register = template.Library()
 
+PLACE = ("source", "line", "column")
 PATTERN_TOKEN = re.compile(r"(\$\w+|\{[^{}]*\})")
 
 
@@ -216,6 +218,16 @@ def _form_with_marks(pieces: list[tuple[str, str]]) -> SafeString:
 def _marked_piece(change: str, text: str) -> str:
     element = MARKS.get(Change(change))
     return format_html("<{0}>{1}</{0}>", element, text) if element else text
+
+
+@register.filter
+def place(at: Any) -> str:
+    """Write a place as ``source:line:column``; nothing for a problem of no file.
+
+    ``at`` is a position, or what has a position's parts as keys or attributes.
+    """
+    parts = [at[name] if isinstance(at, dict) else getattr(at, name) for name in PLACE]
+    return str(Position(*parts))
 
 
 @register.filter

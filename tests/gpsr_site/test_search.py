@@ -31,6 +31,7 @@ def matches_of(client, words):
     [
         ("milk", "Entities", "milk"),
         ("is_a", "Predicates", "is_a"),
+        ("kobject", "Productions", "$object = {{kobject}}"),
         ("vbfind", "Templates", "$vbfind the $object"),
         ("LOCATE", "Commands", "locate the <object>"),
         ("( go", "Logical forms", "go(⟨room⟩)"),
@@ -61,7 +62,20 @@ def test_each_match_and_all_of_a_kind_are_linked(sample, anna):
 
 def test_nothing_and_no_words_are_told(sample, anna):
     assert "Nothing in home matches “zebra”" in anna.get("/w/home/search/?q=zebra").content.decode()
-    assert "Searches entities" in anna.get("/w/home/search/").content.decode()
+    page = " ".join(anna.get("/w/home/search/").content.decode().split())
+    assert (
+        "Searches entities, predicates, productions, templates, commands, logical forms, paraphrases, "
+        "utterances, splits and runs."
+    ) in page
+
+
+def test_a_match_leads_to_its_own_page(sample, anna):
+    groups = anna.get("/w/home/search/", {"q": "find"}).context["groups"]
+    hits = {group.title: group.hits[0].url for group in groups}
+    predicate = sample.world.predicates.get(name="find")
+    assert hits["Predicates"] == f"/w/home/predicates/{predicate.pk}/"
+    assert hits["Productions"].startswith("/w/home/grammar/")
+    assert all(anna.get(url).status_code == 200 for url in hits.values())
 
 
 @pytest.mark.parametrize(

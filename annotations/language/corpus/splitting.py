@@ -116,14 +116,17 @@ def content_hash(examples: Iterable[FrozenExample]) -> str:
 
 
 def _targets(proportions: Sequence[float]) -> dict[Part, float]:
-    shares = tuple(proportions)
-    if len(shares) != len(Part) or min(shares) < 0 or abs(sum(shares) - 1) > 1e-6:
-        written = ", ".join(map(str, shares))
-        raise LanguageError(
-            f"the proportions {written} are not three shares that sum to 1",
-            hint="write 0.7, 0.1, 0.2",
-        )
-    return dict(zip(Part, shares, strict=True))
+    trouble = ""
+    if len(proportions) != len(Part):
+        trouble = f"a split has three shares, for {', '.join(Part)}, not {len(proportions)}"
+    elif min(proportions) < 0:
+        trouble = f"a share of {100 * min(proportions):g} % is below 0 %"
+    elif abs(sum(proportions) - 1) > 1e-6:
+        whole = f"{100 * sum(proportions):g} %"
+        trouble = f"the three shares sum to {whole}; they have to sum to 100 %"
+    if trouble:
+        raise LanguageError(trouble, hint="such as 70, 10 and 20 %")
+    return dict(zip(Part, proportions, strict=True))
 
 
 def _need(

@@ -42,7 +42,7 @@ class Command(ReportingCommand):
         shares = _shares(parts)
         with transaction.atomic():
             splits = [freeze_split(chosen, names[each], each, seed, shares) for each in criteria]
-        return {"world": world, "splits": _described(splits)}
+        return {"world": world, "splits": _describe(splits)}
 
 
 def _criteria(text: str) -> list[str]:
@@ -60,7 +60,7 @@ def _shares(text: str) -> list[float]:
         raise CommandError(f"“{text}” is not three percentages, such as 70,10,20.") from None
 
 
-def _described(splits: Sequence[Split]) -> list[dict[str, Any]]:
+def _describe(splits: Sequence[Split]) -> list[dict[str, Any]]:
     counts = counts_of(splits)
     return [
         {

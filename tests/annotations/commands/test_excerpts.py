@@ -3,6 +3,10 @@
 import pytest
 from django.core.management import CommandError, call_command
 
+from annotations.language.errors import Position, warning_at
+from annotations.management.base import ReportingCommand
+from annotations.rows.problems import as_json
+
 pytestmark = pytest.mark.django_db
 
 
@@ -21,3 +25,13 @@ def test_an_error_of_the_folder_as_a_whole_stands_alone(tmp_path):
     with pytest.raises(CommandError) as refusal:
         call_command("import_generator", tmp_path, world="tiny")
     assert str(refusal.value).startswith("error: there is no grammar here")
+
+
+def test_a_warning_of_no_file_is_printed_without_a_place():
+    warning = warning_at(Position(), "no template covers it", "add one")
+    elsewhere = warning_at(Position("a.txt", 2, 3), "nothing defines $a")
+    report = {"problems": [as_json(warning), as_json(elsewhere)]}
+    assert ReportingCommand().describe(report).split("\n")[1:] == [
+        "  warning: no template covers it (add one)",
+        "  a.txt:2:3: warning: nothing defines $a",
+    ]

@@ -75,7 +75,8 @@ def test_freezing_is_all_or_nothing(generated):
     ("option", "value", "cause"),
     [
         ("--criterion", "length", "is no criterion"),
-        ("--parts", "70,10", "not three shares"),
+        ("--parts", "70,10", "a split has three shares"),
+        ("--parts", "70,10,10", "the three shares sum to 90 %; they have to sum to 100 %"),
         ("--parts", "most", "not three percentages"),
         ("--name", "a b", "cannot be the name of a split"),
     ],

@@ -116,7 +116,7 @@ def test_proportions_are_the_callers(full):
 
 @pytest.mark.parametrize("proportions", [(0.7, 0.1), (0.7, 0.1, 0.1), (1.2, -0.1, -0.1)])
 def test_shares_that_are_no_whole_are_refused(full, proportions):
-    with pytest.raises(LanguageError, match="shares"):
+    with pytest.raises(LanguageError, match="share"):
         freeze_split(full, "first", proportions=proportions)
 
 

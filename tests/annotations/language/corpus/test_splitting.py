@@ -117,9 +117,18 @@ def test_a_part_of_no_share_stays_empty() -> None:
     assert Counter(parts) == {Part.TRAIN: 8, Part.VALIDATION: 2}
 
 
-@pytest.mark.parametrize("proportions", [(0.7, 0.3), (0.7, 0.2, 0.2), (1.2, -0.1, -0.1)])
-def test_proportions_that_are_no_shares_are_refused(proportions: tuple[float, ...]) -> None:
-    with pytest.raises(LanguageError, match="not three shares that sum to 1"):
+@pytest.mark.parametrize(
+    ("proportions", "cause"),
+    [
+        ((0.7, 0.3), "three shares, for train, validation, test, not 2"),
+        ((0.7, 0.2, 0.2), "the three shares sum to 110 %; they have to sum to 100 %"),
+        ((1.2, -0.1, -0.1), "a share of -10 % is below 0 %"),
+    ],
+)
+def test_proportions_that_are_no_shares_are_refused_in_percent(
+    proportions: tuple[float, ...], cause: str
+) -> None:
+    with pytest.raises(LanguageError, match=cause):
         split([SplitItem("generated", "go", "", "f")], Criterion.COMMAND, proportions)
 
 

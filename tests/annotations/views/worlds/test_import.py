@@ -62,6 +62,13 @@ def test_one_error_refuses_everything_and_is_shown_with_its_place(world, adam, t
     assert not hasattr(world, "grammar")
 
 
+def test_an_error_of_the_files_as_a_whole_has_no_place(world, adam):
+    answer = send(adam, uploads({"names.xml": b"<names><name>Ada</name></names>"}))
+    page = answer.content.decode()
+    assert "there is no grammar here" in page
+    assert ":1:1" not in page
+
+
 def test_no_file_is_told(world, adam):
     assert "This field is required" in adam.post("/w/home/import/").content.decode()
 
