@@ -8,6 +8,12 @@ from annotations.language.english.contrasts import (
     NEGATIONS,
     PREDICATE_WORDS,
 )
+from annotations.language.english.function_words import (
+    ARTICLES,
+    NO_COMMAND_WORDS,
+    POLITE_OPENINGS,
+    RECIPIENT_PRONOUNS,
+)
 from annotations.language.english.glosses import (
     CLASS_WORDS,
     KNOWN_PATTERNS,
@@ -18,14 +24,18 @@ from annotations.language.english.glosses import (
 from annotations.language.english.inflection import plural, say_count, spellings
 
 __all__ = [
+    "ARTICLES",
     "CLASS_WORDS",
     "CONTRASTS",
     "KNOWN_PATTERNS",
     "NEAR_SYNONYMS",
     "NEGATIONS",
+    "NO_COMMAND_WORDS",
     "NUMBERS",
+    "POLITE_OPENINGS",
     "PREDICATE_WORDS",
     "PREPOSITIONS",
+    "RECIPIENT_PRONOUNS",
     "RELATIONS",
     "plural",
     "say_count",

@@ -22,6 +22,7 @@ from annotations.language.forms.terms import (
     free_variables,
     head_predicate,
     predicates,
+    size,
     walk,
 )
 from annotations.language.forms.tree_distance import FormDistances
@@ -57,6 +58,7 @@ __all__ = [
     "predicates",
     "read_form",
     "read_spans",
+    "size",
     "to_corpus",
     "to_reading",
     "to_template",

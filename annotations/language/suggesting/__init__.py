@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from annotations.language.suggesting.analogy import solve as solve_analogy
 from annotations.language.suggesting.lifting import lift_forms
 from annotations.language.suggesting.nearest import nearest_patterns
 from annotations.language.suggesting.patterns import PatternMaker
@@ -15,5 +16,6 @@ __all__ = [
     "Suggestion",
     "lift_forms",
     "nearest_patterns",
+    "solve_analogy",
     "transfer_form",
 ]

@@ -1,0 +1,38 @@
+"""An edit of an utterance, and what it does to the form."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from annotations.language.forms import Form
+
+
+class EditKind(StrEnum):
+    """What is edited. The first five keep what is meant, the others change it in a known way."""
+
+    ENTITY = "entity"
+    POLITENESS = "politeness"
+    ARTICLE = "article"
+    SPELLING = "spelling"
+    SYNONYM = "synonym"
+    RECIPIENT = "recipient"
+    PLACE = "place"
+    CLASS = "class"
+
+    @property
+    def keeps_meaning(self) -> bool:
+        """Whether a form with class tokens stays as it is."""
+        return self not in (EditKind.RECIPIENT, EditKind.PLACE, EditKind.CLASS)
+
+
+@dataclass(frozen=True, slots=True)
+class Edit:
+    """``text`` is the utterance with ``new`` in place of ``old`` (either may be empty); ``form`` is what
+    it must be parsed to."""
+
+    kind: EditKind
+    text: str
+    form: Form
+    old: str
+    new: str

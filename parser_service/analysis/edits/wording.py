@@ -1,0 +1,103 @@
+"""Edits after which an utterance means exactly the same: politeness, articles, spelling and synonyms."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from random import Random
+
+from annotations.language.english import ARTICLES, NO_COMMAND_WORDS, POLITE_OPENINGS
+from annotations.language.forms import Form, head_predicate
+from parser_service.analysis.edits.edit import Edit, EditKind
+from parser_service.analysis.edits.facts import WorldFacts
+from parser_service.analysis.edits.mentions import Mention, Utterance
+
+SHORTEST_MISSPELLED = 5  # letters; shorter words become other words too easily
+_OPENINGS = sorted((opening.split() for opening in POLITE_OPENINGS), key=len, reverse=True)
+
+
+def change_politeness(utterance: Utterance, form: Form) -> Iterator[Edit]:
+    """Take polite words away where there are some, add “please” where there are none."""
+    words = [each.text.lower() for each in utterance.mentions]
+    if not words:
+        return
+    opening = next((each for each in _OPENINGS if words[: len(each)] == each), [])
+    if opening and len(words) > len(opening):
+        old = utterance.text[: utterance.mentions[len(opening)].start]
+        text = _like(utterance.text, utterance.text[len(old) :])
+        yield Edit(EditKind.POLITENESS, text, form, old.strip(" ,"), "")
+    elif "please" in words:
+        mention = utterance.mentions[words.index("please")]
+        before = utterance.text[: mention.start].rstrip(" ,")
+        text = before + utterance.text[mention.end :]
+        yield Edit(EditKind.POLITENESS, text, form, mention.text, "")
+    elif words[0] in NO_COMMAND_WORDS:
+        end = len(utterance.text.rstrip(" .?!"))
+        text = f"{utterance.text[:end]} please{utterance.text[end:]}"
+        yield Edit(EditKind.POLITENESS, text, form, "", "please")
+    else:
+        rest = utterance.text if utterance.mentions[0].value else _lower_first(utterance.text)
+        text = f"{_like(utterance.text, 'please')} {rest}"
+        yield Edit(EditKind.POLITENESS, text, form, "", "please")
+
+
+def change_article(utterance: Utterance, form: Form) -> Iterator[Edit]:
+    """Exchange “the” and “a” before something that the world has by name or class."""
+    for article, noun in zip(utterance.mentions, utterance.mentions[1:], strict=False):
+        if article.text.lower() in ARTICLES and noun.entity_class in ("object", "location", "room"):
+            definite = article.text.lower() == "the"
+            vowel = noun.text.lstrip("<")[:1].lower() in tuple("aeiou")
+            new = _like(article.text, ("an" if vowel else "a") if definite else "the")
+            text = utterance.text[: article.start] + new + utterance.text[article.end :]
+            yield Edit(EditKind.ARTICLE, text, form, article.text, new)
+
+
+def misspell(utterance: Utterance, form: Form, facts: WorldFacts, random: Random) -> Iterator[Edit]:
+    """Exchange two letters inside one long plain word, unless that makes a word of the world."""
+    for word in utterance.mentions:
+        new = _misspelled(word, random) if not word.entity_class else ""
+        if new and new.lower() not in facts.vocabulary:
+            text = utterance.replace(word, new)
+            yield Edit(EditKind.SPELLING, text, form, word.text, new)
+
+
+def exchange_synonym(utterance: Utterance, form: Form, facts: WorldFacts) -> Iterator[Edit]:
+    """Exchange a phrase for another alternative of its nonterminal, where the grammar keeps the form."""
+    head = head_predicate(form)
+    words = [each.word for each in utterance.mentions]
+    for (old, needed, following), others in facts.synonyms.items():
+        phrase = [*old.split(), *following.split()]
+        places = _places(words, phrase) if needed == head else []
+        if len(places) != 1:
+            continue
+        first = utterance.mentions[places[0]]
+        last = utterance.mentions[places[0] + len(old.split()) - 1]
+        for new in others:
+            written = _like(first.text, new)
+            text = utterance.text[: first.start] + written + utterance.text[last.end :]
+            yield Edit(EditKind.SYNONYM, text, form, old, new)
+
+
+def _misspelled(word: Mention, random: Random) -> str:
+    letters = word.text
+    if len(letters) < SHORTEST_MISSPELLED or not letters.isalpha():
+        return ""
+    places = [at for at in range(1, len(letters) - 2) if letters[at] != letters[at + 1]]
+    if not places:
+        return ""
+    at = random.choice(places)
+    return letters[:at] + letters[at + 1] + letters[at] + letters[at + 2 :]
+
+
+def _places(words: list[str], phrase: list[str]) -> list[int]:
+    """Return where a phrase begins among words."""
+    last = len(words) - len(phrase) + 1
+    return [at for at in range(last) if words[at : at + len(phrase)] == phrase]
+
+
+def _like(model: str, text: str) -> str:
+    """Return the text with a capital letter at its beginning where ``model`` has one."""
+    return text[:1].upper() + text[1:] if model[:1].isupper() else text
+
+
+def _lower_first(text: str) -> str:
+    return text[:1].lower() + text[1:]
