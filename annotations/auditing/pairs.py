@@ -60,7 +60,7 @@ def _values(row: Paraphrase, made: AuditDecision) -> dict[str, str]:
 
 
 def examples_before(split: Split) -> QuerySet[Example]:
-    """The examples of ``split`` whose pair an audit has corrected or excluded since it was frozen."""
+    """Return the examples of ``split`` whose pair an audit has corrected or excluded since it was frozen."""
     wrong = AuditFinding.objects.confirmed().filter(
         world=split.world_id, text=OuterRef("utterance"), form=OuterRef("logical_form")
     )

@@ -44,7 +44,7 @@ def audit_reason_choices() -> list[tuple[str, str]]:
 
 class AuditFindingQuerySet(models.QuerySet["AuditFinding"]):
     def open(self) -> AuditFindingQuerySet:
-        """Those that wait for somebody: nobody has decided, and the label is still the one audited."""
+        """Return those that wait: nobody has decided, and the label is still the one audited."""
         of_paraphrase = Q(
             paraphrase__status=ParaphraseStatus.ACCEPTED, paraphrase__logical_form=F("form")
         )
@@ -57,11 +57,11 @@ class AuditFindingQuerySet(models.QuerySet["AuditFinding"]):
         return self.exclude(status=FindingStatus.OPEN)
 
     def confirmed(self) -> AuditFindingQuerySet:
-        """Those whose label was wrong, as somebody has decided."""
+        """Return those whose label was wrong, as somebody has decided."""
         return self.filter(status__in=(FindingStatus.CORRECTED, FindingStatus.EXCLUDED))
 
     def with_status(self, status: str) -> AuditFindingQuerySet:
-        """Those of one status; open ones only while they wait for somebody."""
+        """Return those of one status; open ones only while they wait for somebody."""
         return self.open() if status == FindingStatus.OPEN else self.filter(status=status)
 
     def with_reason(self, reason: str) -> AuditFindingQuerySet:
@@ -159,7 +159,7 @@ class AuditReason(models.Model):
 
 class AuditDecisionQuerySet(models.QuerySet["AuditDecision"]):
     def valid(self) -> AuditDecisionQuerySet:
-        """Without those that were taken back."""
+        """Leave out those that were taken back."""
         return self.filter(taken_back_at__isnull=True)
 
 

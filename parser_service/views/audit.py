@@ -160,7 +160,7 @@ def _asked(request: HttpRequest, world: World, listing: Listing) -> AuditFinding
 
 
 def _shown(request: HttpRequest, finding: AuditFinding | None) -> dict[str, Any]:
-    """What one finding is shown with; ``state`` are the filters of the list, for its forms."""
+    """Return what one finding is shown with; ``state`` are the filters of the list, for its forms."""
     state = request.GET.copy()
     state.pop("finding", None)
     may_decide = WorkKind.AUDIT in kinds_for(request.user, request.world)
