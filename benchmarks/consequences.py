@@ -226,7 +226,7 @@ def measure_renames(world: Any, user: Any, repeat: int, bound: float) -> None:
             milliseconds(lambda: rename(row, old, name, user, current_version(row)))  # noqa: B023
             for (row, old), name in pairs
         ]
-        report(f"{world}: rename {noun}", saved, bound)
+        report(f"{world}: rename {noun}", saved)
 
 
 def current_version(row: Any) -> int:

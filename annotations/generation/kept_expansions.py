@@ -17,7 +17,6 @@ from annotations.language.templates import (
     TemplateChecker,
     generate,
     generation_size,
-    template_checker,
 )
 
 # Pairs of a world that a request brings up to date: about two seconds on one core (docs/generation.md).
@@ -37,7 +36,8 @@ class _Checks:
     """The checker of a grammar, and what it said. It holds the grammar, whose identity is the key."""
 
     def __init__(self, grammar: Grammar) -> None:
-        self.checker = replace(template_checker(grammar), recognizer=expansions_of(grammar))
+        expansions = expansions_of(grammar)
+        self.checker = TemplateChecker(grammar, expansions.expander, expansions)
         self.problems: Kept[Hashable, tuple[Problem, ...]] = Kept(5_000)
 
 

@@ -55,7 +55,7 @@ class GrammarExpansions:
 
     def __init__(self, grammar: Grammar, most_kept: int = 0) -> None:
         self.grammar = grammar
-        self._expander = TemplateExpander(grammar)
+        self.expander = TemplateExpander(grammar)
         self._most_kept = most_kept
         self._kept: Kept[tuple[str, str], Made] = Kept(most_kept, len)
         self._sizes: Kept[tuple[str, str], int] = Kept(most_kept)
@@ -63,7 +63,7 @@ class GrammarExpansions:
 
     def size(self, template: SemanticTemplate) -> int:
         """Return an upper bound on the number of pairs of the template. Raises as ``TemplateExpander.size``."""
-        return self._sizes.get(_key(template), lambda: self._expander.size(template))
+        return self._sizes.get(_key(template), lambda: self.expander.size(template))
 
     def has(self, template: SemanticTemplate) -> bool:
         """Return whether the pairs of the template are here already."""
@@ -80,7 +80,7 @@ class GrammarExpansions:
 
     def made(self, template: SemanticTemplate, budget: Budget) -> Made:
         """Return everything that the template makes. Raises as ``pairs``."""
-        return self._kept.get(_key(template), lambda: _collect(self._expander, template, budget))
+        return self._kept.get(_key(template), lambda: _collect(self.expander, template, budget))
 
     def derived(self, commands: Collection[str], budget: Budget) -> frozenset[str]:
         """Return those of ``commands`` that the grammar derives.
