@@ -165,7 +165,7 @@ def to_latex(table: Table) -> str:
     lines = [
         [table.protocol, *heads],
         ["", *(CRITERIA[by] for _, by in table.columns)],
-        *([rf"\texttt{{{_escaped(name)}}}", *map(_in_latex, row)] for name, row in table.rows),
+        *([rf"\texttt{{{_escape(name)}}}", *map(_in_latex, row)] for name, row in table.rows),
     ]
     first, second, *body = [rf"{' & '.join(line)} \\" for line in lines]
     begin = rf"\begin{{tabular}}{{l{'r' * len(table.columns)}}}"
@@ -191,22 +191,22 @@ def _in_latex(figure: Figure | None) -> str:
     return mean + spread + paper
 
 
-def _escaped(name: str) -> str:
+def _escape(name: str) -> str:
     return name.replace("_", r"\_").replace("%", r"\%").replace("#", r"\#")
 
 
 def note(figures: pd.DataFrame, part: str) -> str:
     """What the figures are, in sentences."""
-    new = [_counted(figures[figures["criterion"] == each], "splits") for each in CRITERIA]
+    new = [_count(figures[figures["criterion"] == each], "splits") for each in CRITERIA]
     on_new = [f"{how} by {by}" for how, by in zip(new, CRITERIA.values(), strict=True) if how]
     return (
         f"Exact match in percent on the {part} parts, mean ± standard deviation over "
-        f"{_counted(figures, 'seeds')}{''.join(f', {each}' for each in on_new)}; "
+        f"{_count(figures, 'seeds')}{''.join(f', {each}' for each in on_new)}; "
         "bold: the best of its column; in parentheses: the paper's figures, on its test parts."
     )
 
 
-def _counted(figures: pd.DataFrame, what: str) -> str:
+def _count(figures: pd.DataFrame, what: str) -> str:
     """``1 or 3 seeds``; nothing where there are none."""
     counts = [count for count in sorted(figures[what].unique()) if count]
     word = what.removesuffix("s") if counts == [1] else what

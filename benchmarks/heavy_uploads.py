@@ -218,7 +218,7 @@ def measure(address: str) -> dict[str, object]:
     for world in ("pairs", "text"):
         visitor.post("/worlds/new/", {"name": world, "description": ""})
     figures: dict[str, object] = {"cores": os.cpu_count()}
-    figures["idle"] = observed(address, lambda: time.sleep(10))
+    figures["idle"] = observe(address, lambda: time.sleep(10))
     pairs = {"archive": ("pairs.zip", pair_archive())}
     text = {"files": ("text.txt", text_file())}
     results: dict[str, object] = {}
@@ -227,11 +227,11 @@ def measure(address: str) -> dict[str, object]:
         results["pairs"] = upload(visitor, "/w/pairs/import/pairs/", {"name": "big"}, pairs)
         results["text"] = upload(visitor, "/w/text/import/", {}, text)
 
-    figures["meanwhile"] = observed(address, send_both)
+    figures["meanwhile"] = observe(address, send_both)
     return {**figures, **results}
 
 
-def observed(address: str, act) -> dict[str, object]:
+def observe(address: str, act) -> dict[str, object]:
     watches = {"pages": Watch(address, False), "saves": Watch(address, True)}
     for watch in watches.values():
         watch.start()

@@ -32,7 +32,7 @@ DATA = Path(os.environ.get("GPSR_SHARED_DATA", ROOT.parent / "shared" / "data"))
 T = TypeVar("T")
 
 
-def timed(name: str, work: Callable[[], T], bound: float | None = None) -> T:
+def time_once(name: str, work: Callable[[], T], bound: float | None = None) -> T:
     """Do ``work`` once, print what it took and whether that is within ``bound``."""
     start = time.process_time()
     result = work()
@@ -51,28 +51,32 @@ def huge_grammar() -> Grammar:
 
 def main() -> None:
     folder = DATA / "generator-2018"
-    categories = timed("read generator-2018", lambda: read_generator_folder(folder).categories())
-    generated = timed("expand generator-2018 with its templates", lambda: generate(categories), 0.5)
-    chart = timed("compile the chart", lambda: TemplateChart(categories))
+    categories = time_once(
+        "read generator-2018", lambda: read_generator_folder(folder).categories()
+    )
+    generated = time_once(
+        "expand generator-2018 with its templates", lambda: generate(categories), 0.5
+    )
+    chart = time_once("compile the chart", lambda: TemplateChart(categories))
     commands = [each.command for each in generated.expansions]
-    timed(f"chart-parse {len(commands)} commands", lambda: list(map(chart.parse, commands)))
+    time_once(f"chart-parse {len(commands)} commands", lambda: list(map(chart.parse, commands)))
 
     later = read_generator_folder(DATA / "generator-2019").grammars
     gpsr = later.grammar("gpsr.txt")
-    timed("expand generator-2019 gpsr", lambda: list(gpsr.commands()))
-    timed("size of generator-2019 egpsr", later.grammar("egpsr.txt").size)
+    time_once("expand generator-2019 gpsr", lambda: list(gpsr.commands()))
+    time_once("size of generator-2019 egpsr", later.grammar("egpsr.txt").size)
 
     text = (DATA / "walker2019" / "para" / "train.txt").read_bytes()
-    timed("read para/train.txt, 1,265 pairs", lambda: read_pairs(text, "train.txt"))
+    time_once("read para/train.txt, 1,265 pairs", lambda: read_pairs(text, "train.txt"))
     line = '( bring ( lambda $1 e ( is_a $1 " <object{}> " ) ( at $1 " <location> " ) ) )'
-    timed(
+    time_once(
         "read 3,000 different forms", lambda: [read_form(line.format(n)) for n in range(3000)], 1.0
     )
 
     huge = huge_grammar()
-    timed("size of a grammar of 10^12", huge.size)
+    time_once("size of a grammar of 10^12", huge.size)
     sentence = "go " + " ".join(f"w{number % 10}" for number in range(12))
-    timed("recognise a sentence of it", lambda: Recognizer(huge).accepts(sentence))
+    time_once("recognise a sentence of it", lambda: Recognizer(huge).accepts(sentence))
 
 
 if __name__ == "__main__":

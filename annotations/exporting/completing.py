@@ -9,7 +9,7 @@ from annotations.exporting.generator_export import Part, files_of_part
 from annotations.models import SemanticTemplate, World
 
 
-def completed(world: World, uploads: Mapping[str, bytes]) -> dict[str, bytes]:
+def complete(world: World, uploads: Mapping[str, bytes]) -> dict[str, bytes]:
     """Return the files of ``world`` with ``uploads`` in the place of those of the same name.
 
     The lines of templates are as the import knows them: one that people have changed here is the line that

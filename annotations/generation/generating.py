@@ -33,7 +33,7 @@ class GenerationReport:
 
         def by_category(figure: str) -> dict[str, Any]:
             values = (getattr(column, figure) for column in self.columns)
-            return dict(zip(names, map(_rounded, values), strict=True))
+            return dict(zip(names, map(_round, values), strict=True))
 
         return {
             "commands": by_category("commands"),
@@ -113,5 +113,5 @@ def _templates(categories: tuple[AnnotatedCategory, ...]) -> Mapping[str, Any]:
     return {category.value.name: category.value.templates for category in categories}
 
 
-def _rounded(value: float | None) -> float | None:
+def _round(value: float | None) -> float | None:
     return round(value, 4) if isinstance(value, float) else value

@@ -85,7 +85,7 @@ def checker_of(
     grammar: Grammar, predicates: Mapping[str, Predicate], task_category: str
 ) -> TemplateChecker:
     """Return a checker of ``grammar``, whose rules are compiled once. Raises as ``template_checker``."""
-    return replace(_kept(grammar).checker, predicates=predicates, task_category=task_category)
+    return replace(_checks_of(grammar).checker, predicates=predicates, task_category=task_category)
 
 
 def problems_of(
@@ -98,8 +98,8 @@ def problems_of(
     """
     predicates = tuple((checker.predicates or {}).values())
     key = (predicates, checker.task_category, _texts(template))
-    return _kept(checker.grammar).problems.get(key, lambda: checker.problems(template, budget))
+    return _checks_of(checker.grammar).problems.get(key, lambda: checker.problems(template, budget))
 
 
-def _kept(grammar: Grammar) -> _Checks:
+def _checks_of(grammar: Grammar) -> _Checks:
     return _CHECKS.get(id(grammar), lambda: _Checks(grammar))

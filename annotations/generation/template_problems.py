@@ -32,7 +32,7 @@ def store_template_problems(
     """
     changed = []
     for row, remarks in _remarks(world, categories, generated).items():
-        if _said(row.problems) != _said(remarks):
+        if _texts_of(row.problems) != _texts_of(remarks):
             row.problems = remarks
             changed.append(row)
     models.SemanticTemplate.objects.bulk_update(changed, ["problems"], batch_size=BATCH)
@@ -55,7 +55,7 @@ def check_unready_templates(world: models.World) -> None:
         rows = [row for row in rows if row not in here]  # checked against the first grammar only
         for row in here:
             budget = Budget(CHECK_STEPS)
-            remarks = _checked(row, checker, budget)
+            remarks = _check(row, checker, budget)
             steps += budget.spent
             if steps > MOST_STEPS:
                 break
@@ -65,7 +65,7 @@ def check_unready_templates(world: models.World) -> None:
     models.SemanticTemplate.objects.bulk_update(changed, ["problems"], batch_size=BATCH)
 
 
-def _checked(
+def _check(
     row: models.SemanticTemplate, checker: TemplateChecker, budget: Budget | None = None
 ) -> list[StoredRemark]:
     """Return what ``checker`` says of the row alone."""
@@ -88,7 +88,7 @@ def _remarks(
         for row in category.template_rows:
             if row in remarks:  # checked against the grammar of the first category
                 continue
-            remarks[row] = _checked(row, checker)
+            remarks[row] = _check(row, checker)
         for index, problem in shared_problems(value, generated):
             remark = as_stored(problem)
             of_row = remarks[category.template_rows[index]]
@@ -97,5 +97,5 @@ def _remarks(
     return remarks
 
 
-def _said(remarks: Iterable[StoredRemark]) -> set[tuple[str, str, str]]:
+def _texts_of(remarks: Iterable[StoredRemark]) -> set[tuple[str, str, str]]:
     return {(each["severity"], each["message"], each["hint"]) for each in remarks}

@@ -91,7 +91,7 @@ def _store(
     with ExitStack() as stack:
         splits = [
             stack.enter_context(split)
-            for split in _prepared_splits(name, files, sources, finder, progress)
+            for split in _prepare_splits(name, files, sources, finder, progress)
         ]
         progress.report(0.9, "writing")
         with progress.writing():
@@ -109,7 +109,7 @@ def _store(
     return stored
 
 
-def _prepared_splits(
+def _prepare_splits(
     name: str,
     files: PairFolder,
     sources: Sequence[Source],

@@ -51,7 +51,7 @@ def collect(
         return Collected(problems=problems)
     with transaction.atomic():
         World.objects.select_for_update().get(pk=world.pk)
-        known = _known(world, wanted)
+        known = _find_known(world, wanted)
         new = [text for text in dict.fromkeys(wanted) if text not in known]
         anonymizer = anonymizer_of(world)
         rows = [
@@ -66,7 +66,7 @@ def collect(
         ]
         Utterance.objects.bulk_create(rows, batch_size=BATCH)
     request_proposals(world, by)
-    return Collected(len(rows), tuple(_repeated(wanted, known)))
+    return Collected(len(rows), tuple(_repetitions(wanted, known)))
 
 
 def _read(texts: Iterable[str]) -> tuple[list[str], tuple[Problem, ...]]:
@@ -92,7 +92,7 @@ def _read(texts: Iterable[str]) -> tuple[list[str], tuple[Problem, ...]]:
     return wanted, tuple(problems)
 
 
-def _known(world: World, texts: list[str]) -> set[str]:
+def _find_known(world: World, texts: list[str]) -> set[str]:
     known: set[str] = set()
     for some in batches(texts):
         rows = Utterance.objects.filter(world=world, text__in=some)
@@ -100,7 +100,7 @@ def _known(world: World, texts: list[str]) -> set[str]:
     return known
 
 
-def _repeated(texts: list[str], known: set[str]) -> Iterator[str]:
+def _repetitions(texts: list[str], known: set[str]) -> Iterator[str]:
     """Yield the texts that were not stored, in their order."""
     seen = set(known)
     for text in texts:

@@ -64,7 +64,7 @@ def annotated_categories(
     if rows is None:
         rows = ready_templates(world)
     values = {row: template_of(row) for row in rows}
-    return tuple(_annotated(category, productions, values) for category in categories)
+    return tuple(_annotate(category, productions, values) for category in categories)
 
 
 def ready_templates(world: models.World) -> QuerySet[models.SemanticTemplate]:
@@ -149,7 +149,7 @@ def _read_grammar(parts: Iterable[tuple[list[Line], str]]) -> Grammar:
     return Grammar(tuple(productions))
 
 
-def _annotated(
+def _annotate(
     category: models.TaskCategory,
     productions: Lines,
     templates: Mapping[models.SemanticTemplate, SemanticTemplate],

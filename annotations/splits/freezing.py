@@ -91,7 +91,7 @@ class PreparedSplit:
         self.criterion = criterion
         self.seed = seed
         self.examples = sorted(examples, key=lambda each: (each.source, each.part, each.position))
-        self.content_hash = content_hash(map(_frozen, self.examples))
+        self.content_hash = content_hash(map(_freeze, self.examples))
         self._staging = Staging(Example, self.COLUMNS)
 
     def __enter__(self) -> Self:
@@ -137,7 +137,7 @@ class PreparedSplit:
 def content_hash_of(split: Split) -> str:
     """Return the hash of the examples that ``split`` has now; equal to its ``content_hash`` as long as nobody
     changes them."""
-    return content_hash(map(_frozen, split.examples.all().iterator(chunk_size=BATCH)))
+    return content_hash(map(_freeze, split.examples.all().iterator(chunk_size=BATCH)))
 
 
 def _require_split_name(name: str) -> None:
@@ -205,7 +205,7 @@ def _texts(examples: Sequence[Example]) -> list[tuple[object, ...]]:
     ]
 
 
-def _frozen(example: Example) -> FrozenExample:
+def _freeze(example: Example) -> FrozenExample:
     return FrozenExample(
         example.part,
         example.source,

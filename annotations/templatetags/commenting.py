@@ -34,7 +34,7 @@ def comments_section(context: Any, kind: str, row: Any, form: Any = None) -> dic
         "row": row,
         "comments": comments,
         "count": sum(not each.is_deleted for each in comments),
-        "shown": list(_shown(comments, request)),
+        "shown": list(_show(comments, request)),
         "people": people_of(world).exclude(pk=request.user.pk)[:MOST_NAMES],
         "form": form or CommentForm(),
     }
@@ -49,7 +49,7 @@ class ShownComment:
     may_delete: bool
 
 
-def _shown(comments: list[Comment], request: HttpRequest) -> Iterator[ShownComment]:
+def _show(comments: list[Comment], request: HttpRequest) -> Iterator[ShownComment]:
     """Yield the comments that are there, and the deleted ones that the reader may restore."""
     for each in comments:
         if not each.is_deleted or each.may_be_restored_by(request.user, request.duties):

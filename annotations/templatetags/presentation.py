@@ -113,7 +113,7 @@ def gloss_of_form(context: Any, text: str) -> str:
 def form_beside(first: str, other: str) -> SafeString:
     """Show ``other`` with what it has beyond ``first`` and what it lacks marked; a button may hold it."""
     pieces = merged_difference(first, other)
-    marked = format_html_join("", "{}", ((_marked_piece(*piece),) for piece in pieces))
+    marked = format_html_join("", "{}", ((_mark_piece(*piece),) for piece in pieces))
     return format_html('<span class="lf"><code>{}</code></span>', marked)
 
 
@@ -206,16 +206,16 @@ MARKS = {Change.ADDED: "ins", Change.REMOVED: "del", Change.CHANGED: "mark"}
 @register.simple_tag
 def marked_text(pieces: list[tuple[str, str]]) -> SafeString:
     """Show a text with what was added and removed marked (``annotations.presentation.compare``)."""
-    marked = format_html_join("", "{}", ((_marked_piece(*piece),) for piece in pieces))
+    marked = format_html_join("", "{}", ((_mark_piece(*piece),) for piece in pieces))
     return format_html('<figure class="lf"><code>{}</code></figure>', marked)
 
 
 def _form_with_marks(pieces: list[tuple[str, str]]) -> SafeString:
-    marked = format_html_join("", "{}", ((_marked_piece(*piece),) for piece in pieces))
+    marked = format_html_join("", "{}", ((_mark_piece(*piece),) for piece in pieces))
     return format_html('<figure class="lf" data-form><code>{}</code></figure>', marked)
 
 
-def _marked_piece(change: str, text: str) -> str:
+def _mark_piece(change: str, text: str) -> str:
     element = MARKS.get(Change(change))
     return format_html("<{0}>{1}</{0}>", element, text) if element else text
 

@@ -27,13 +27,13 @@ def entity(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     row, is_there = KINDS["entity"].row_or_last_known(world, pk)
     if not is_there and request.method != "POST":
         return redirect("history", world=world.name, kind="entity", pk=pk)
-    form = EntityForm(world, row, posted(request), initial=shown(row))
+    form = EntityForm(world, row, posted(request), initial=initial_values(row))
     if request.method == "POST" and form.is_valid():
         problems = form.additions.problems
         try:
             row = save_edit(request, row, form, form.values)
         except Overtaken as clash:
-            return merge_page(request, row, form, clash, shown)
+            return merge_page(request, row, form, clash, initial_values)
         tell_saved(request, f"Saved as version {row.version}.", problems)
         return redirect("entity", world=world.name, pk=pk)
     context = {"row": row, "form": form, "occurrences": occurrences_of(row), "most": MOST_SHOWN}
@@ -98,7 +98,7 @@ def asked_class(request: HttpRequest) -> dict[str, str]:
     return {"entity_class": request.GET.get("entity_class", "object")}
 
 
-def shown(row: Editable) -> dict[str, Any]:
+def initial_values(row: Editable) -> dict[str, Any]:
     """Return what the fields of the form show for ``row``."""
     names = ("entity_class", "text", "aliases", "attributes", "version")
     return {name: as_text(getattr(row, name)) for name in names}

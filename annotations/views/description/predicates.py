@@ -28,12 +28,12 @@ def predicate(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     row, is_there = KINDS["predicate"].row_or_last_known(world, pk)
     if not is_there and request.method != "POST":
         return redirect("history", world=world.name, kind="predicate", pk=pk)
-    form = PredicateForm(world, row, posted(request), initial=shown(row))
+    form = PredicateForm(world, row, posted(request), initial=initial_values(row))
     if request.method == "POST" and form.is_valid():
         try:
             row = save_edit(request, row, form, form.values)
         except Overtaken as clash:
-            return merge_page(request, row, form, clash, shown)
+            return merge_page(request, row, form, clash, initial_values)
         messages.success(request, f"Saved as version {row.version}.")
         return redirect("predicate", world=world.name, pk=pk)
     context = {
@@ -68,7 +68,7 @@ def predicate_preview(request: HttpRequest, world: World) -> HttpResponse:
     row = Predicate.objects.filter(world=world, pk=number_in(key) or 0).first()
     if key and row is None:
         raise Http404("No such predicate.")
-    form = PredicateForm(world, row, request.POST, initial=shown(row) if row else {})
+    form = PredicateForm(world, row, request.POST, initial=initial_values(row) if row else {})
     context: dict[str, Any] = {}
     if form.is_valid():
         context["checked"] = check_predicate(world, form.predicate)
@@ -77,7 +77,7 @@ def predicate_preview(request: HttpRequest, world: World) -> HttpResponse:
     return render(request, "annotations/_predicate_preview.html", context)
 
 
-def shown(row: Editable) -> dict[str, Any]:
+def initial_values(row: Editable) -> dict[str, Any]:
     """Return what the fields of the form show for ``row``."""
     value = predicate_of(row)
     names = ("name", "kind", "gloss", "version")

@@ -34,13 +34,13 @@ def production(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     row, is_there = KINDS["production"].row_or_last_known(world, pk)
     if not is_there and request.method != "POST":
         return redirect("history", world=world.name, kind="production", pk=pk)
-    form = ProductionForm(world, row, posted(request), initial=shown(row))
+    form = ProductionForm(world, row, posted(request), initial=initial_values(row))
     if request.method == "POST" and form.is_valid():
         try:
             row = save_edit(request, row, form, {"expansion": form.cleaned_data["expansion"]})
         except Overtaken as clash:
             check_url = _check_url(world, row)
-            return merge_page(request, row, form, clash, shown, check_url=check_url)
+            return merge_page(request, row, form, clash, initial_values, check_url=check_url)
         tell_saved(request, f"Saved as version {row.version}.", form.checked.problems)
         return redirect("production", world=world.name, pk=pk)
     lines = Production.objects.filter(grammar__world=world, nonterminal=row.nonterminal)
@@ -85,14 +85,14 @@ def production_new(request: HttpRequest, world: World) -> HttpResponse:
 @world_view(Duty.ANNOTATE, WRITE)
 def production_check(request: HttpRequest, world: World) -> JsonResponse:
     """Answer the editor, which asks while somebody types."""
-    edit = _typed(request, world)
+    edit = _read_typed(request, world)
     return JsonResponse(assist_production(edit) if edit else {"problems": [], "slots": []})
 
 
 @world_view(Duty.ANNOTATE, WRITE)
 def production_preview(request: HttpRequest, world: World) -> HttpResponse:
     """Show what the typed production becomes, and what saving it would do."""
-    edit = _typed(request, world)
+    edit = _read_typed(request, world)
     context: dict[str, Any] = {"checked": check_production(edit) if edit else None}
     if edit and not context["checked"].has_errors:
         context["expected"] = consequences_of_production(edit)
@@ -100,10 +100,10 @@ def production_preview(request: HttpRequest, world: World) -> HttpResponse:
     return render(request, "annotations/_production_preview.html", context)
 
 
-def _typed(request: HttpRequest, world: World) -> ProductionEdit | None:
+def _read_typed(request: HttpRequest, world: World) -> ProductionEdit | None:
     """Return the production as it is typed; None while a field is empty or not valid."""
-    row = _stored(request, world)
-    form = ProductionForm(world, row, request.POST, initial=shown(row) if row else {})
+    row = _read_stored(request, world)
+    form = ProductionForm(world, row, request.POST, initial=initial_values(row) if row else {})
     form.is_valid()
     names = ("source", "nonterminal", "expansion")
     values = [form.cleaned_data.get(name) or form[name].value() or "" for name in names]
@@ -116,7 +116,7 @@ def _typed(request: HttpRequest, world: World) -> ProductionEdit | None:
     return ProductionEdit(world, *values, row)
 
 
-def _stored(request: HttpRequest, world: World) -> Production | None:
+def _read_stored(request: HttpRequest, world: World) -> Production | None:
     """Return the row that ``production`` names. Raises Http404 where the world has none of that key."""
     key = request.GET.get("production", "")
     if not key:
@@ -137,7 +137,7 @@ def _completion(world: World, source: str) -> dict[str, Any]:
     return {"category": next(edit.categories(), None)}
 
 
-def shown(row: Editable) -> dict[str, Any]:
+def initial_values(row: Editable) -> dict[str, Any]:
     """Return what the fields of the form show for ``row``."""
     names = ("nonterminal", "expansion", "source", "version")
     return {name: getattr(row, name) for name in names}

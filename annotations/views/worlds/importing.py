@@ -9,7 +9,7 @@ from django.core.files.uploadedfile import SimpleUploadedFile
 from django.http import HttpRequest, HttpResponse
 from django.shortcuts import redirect, render
 
-from annotations.exporting.completing import completed
+from annotations.exporting.completing import complete
 from annotations.forms import ImportForm, PairsForm, posted
 from annotations.importing.uploads import files_of
 from annotations.jobs.starting import start_generation, start_generator_import, start_pairs_import
@@ -40,11 +40,11 @@ def import_files(request: HttpRequest, world: World) -> HttpResponse:
 
 
 def _uploads(world: World, form: ImportForm) -> list[Any]:
-    """Return the files to import: those that were sent, completed with those of the world if asked for."""
+    """Return the files to import: those that were sent, complete with those of the world if asked for."""
     sent = form.cleaned_data["files"]
     if not form.cleaned_data["keeps_others"]:
         return sent
-    files = completed(world, files_of(sent))
+    files = complete(world, files_of(sent))
     return [SimpleUploadedFile(name, data) for name, data in files.items()]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from django.core.files.uploadedfile import SimpleUploadedFile
 
 from annotations.editing.edits import add, change
-from annotations.exporting.completing import completed
+from annotations.exporting.completing import complete
 from annotations.exporting.generator_export import Part, files_of_part
 from annotations.importing import import_generator
 from annotations.models import Entity, Production, SemanticTemplate
@@ -16,7 +16,7 @@ def lines_of(world):
 
 
 def test_nothing_changes_without_a_file(tiny_world, admin):
-    report = import_generator("home", completed(tiny_world, {}), admin)
+    report = import_generator("home", complete(tiny_world, {}), admin)
     assert report.changes.is_none, report
 
 
@@ -28,7 +28,7 @@ def test_what_was_downloaded_and_is_uploaded_again_changes_nothing(tiny_world, a
     before = lines_of(tiny_world)
     downloaded = files_of_part(tiny_world, Part.TEMPLATES)
     uploads = {name: text.encode() for name, text in downloaded.items()}
-    report = import_generator("home", completed(tiny_world, uploads), admin)
+    report = import_generator("home", complete(tiny_world, uploads), admin)
     assert not report.is_refused
     assert lines_of(tiny_world) == before
     assert len(before) == 3

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from annotations.editing.edits import change, delete
-from annotations.exporting.completing import completed
+from annotations.exporting.completing import complete
 from annotations.exporting.generator_export import generator_files
 from annotations.importing import import_generator, import_pairs
 from annotations.models import Entity, Paraphrase, Production, SemanticTemplate
@@ -78,7 +78,7 @@ def test_a_template_that_was_moved_is_not_doubled(tiny_world, tiny, annotator):
     template = tiny_world.grammar.templates.get(pattern="go to the {room}")
     moved = {"source": "other_semantics.txt", "task_category": "other"}
     change(template, moved, annotator, 1)
-    for files in (tiny, completed(tiny_world, tiny)):
+    for files in (tiny, complete(tiny_world, tiny)):
         report = import_generator("home", files, may_remove=False)
         assert not report.is_waiting and report.changes.added == 0
         (text,) = report.left_out.templates
