@@ -22,6 +22,7 @@ from annotations.language.english.glosses import (
     RELATIONS,
 )
 from annotations.language.english.inflection import plural, say_count, spellings
+from annotations.language.english.unrelated_sentences import UNRELATED_SENTENCES
 
 __all__ = [
     "ARTICLES",
@@ -37,6 +38,7 @@ __all__ = [
     "PREPOSITIONS",
     "RECIPIENT_PRONOUNS",
     "RELATIONS",
+    "UNRELATED_SENTENCES",
     "plural",
     "say_count",
     "spellings",
