@@ -43,9 +43,8 @@ def import_generator(
             left out and the report lists them.
 
     Returns:
-        What was read and done. If any problem is an error, nothing was stored; warnings are stored
-        with the rows that they are about. Rows that are already right are not touched, and neither
-        are those that people wrote, changed, moved or renamed.
+        What was read and done. If any problem is an error, nothing was stored; warnings are stored with
+        their rows. What is right already, and what people wrote, changed, moved or renamed, is not touched.
     """
     try:
         require_world_name(world_name)

@@ -62,8 +62,7 @@ def label(
 
     Raises:
         AnsweredMeanwhile: the utterance is at another version; a skip and a blind answer never clash.
-        LanguageError: the form cannot be read.
-        ValueError: a sentence where the verdict lacks something.
+        LanguageError, ValueError: the form cannot be read; the verdict lacks something (a sentence).
     """
     text = _check_answer(verdict, form, reason)
     decides = not is_blind and verdict != Verdict.SKIP

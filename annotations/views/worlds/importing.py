@@ -10,13 +10,14 @@ from django.http import HttpRequest, HttpResponse
 from django.shortcuts import redirect, render
 
 from annotations.exporting.completing import complete
-from annotations.forms import ImportForm, PairsForm, posted
+from annotations.forms import posted
 from annotations.importing.uploads import files_of
 from annotations.jobs.starting import start_generation, start_generator_import, start_pairs_import
 from annotations.language.errors import LanguageError
 from annotations.models import Duty, Job, JobKind, World
 from annotations.people.access import READ_AND_WRITE, WRITE, world_view
 from annotations.report_presentation import shown_report
+from annotations.upload_forms import ImportForm, PairsForm
 
 
 @world_view(Duty.MANAGE, READ_AND_WRITE)

@@ -7,11 +7,12 @@ from django.db import IntegrityError, transaction
 from django.http import HttpRequest, HttpResponse, StreamingHttpResponse
 from django.shortcuts import redirect, render
 
-from annotations.forms import WorldArchiveForm, WorldForm, posted
+from annotations.forms import WorldForm, posted
 from annotations.jobs.starting import start_world_import
 from annotations.language.errors import LanguageError
 from annotations.models import Duty, Job, World
 from annotations.people.access import READ_AND_WRITE, site_view, world_view
+from annotations.upload_forms import WorldArchiveForm
 from annotations.world_archive import archive_name, world_archive
 
 
