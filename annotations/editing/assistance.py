@@ -97,11 +97,18 @@ def _completions(category: TaskCategory) -> dict[str, Any]:
 
 
 def shown_problem(problem: Problem, sides: Sides) -> dict[str, Any]:
-    """Return a problem as the editor asks for it: as it is stored, with its offset and its repairs."""
+    """Return a problem as the editor asks for it: as it is stored, with its offset, its repairs and the
+    task category whose productions it is about.
+    """
     stored = as_stored(problem)
     text = sides.text(stored["field"])
     at = utf16_index(text, Offsets(text).index(problem.position))
-    return {**stored, "at": at, "repairs": [_repair(each, sides) for each in problem.repairs]}
+    return {
+        **stored,
+        "at": at,
+        "repairs": [_repair(each, sides) for each in problem.repairs],
+        "task_category": problem.task_category,
+    }
 
 
 def _repair(repair: Repair, sides: Sides) -> dict[str, Any]:

@@ -101,7 +101,8 @@ class Repair:
 class Problem:
     """One problem: where it is, how serious, what is wrong and what to do about it.
 
-    ``repairs`` are for an editor; they play no part in equality.
+    ``repairs`` are for an editor; ``task_category`` names the one whose productions the hint is about.
+    Neither plays a part in equality.
     """
 
     position: Position
@@ -109,6 +110,7 @@ class Problem:
     message: str
     hint: str = ""
     repairs: tuple[Repair, ...] = field(default=(), compare=False, repr=False)
+    task_category: str = field(default="", compare=False, repr=False)
 
     def __str__(self) -> str:
         place = f"{self.position}: " if str(self.position) else ""

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from django import template
+from django.db.models import QuerySet
 from django.template.loader import render_to_string
 from django.urls import reverse
 from django.utils import timezone
@@ -14,7 +15,9 @@ from django.utils.html import format_html, format_html_join
 from django.utils.safestring import SafeString, mark_safe
 
 from annotations.language.errors import Position
-from annotations.language.forms import Change
+from annotations.language.forms import Change, predicates
+from annotations.language.renaming import CLASS_OF_ATTRIBUTE
+from annotations.models import Predicate
 from annotations.models.drafts import NEW
 from annotations.presentation import (
     Piece,
@@ -107,6 +110,19 @@ def gloss_of_form(context: Any, text: str) -> str:
     """Write a form as an English sentence; empty for what is not a form."""
     form = form_of(text)
     return gloss_of(context["world"], form) if form else ""
+
+
+@register.simple_tag(takes_context=True)
+def predicates_in(context: Any, text: str) -> QuerySet[Predicate]:
+    """Return the declared predicates that a form uses."""
+    form = form_of(text)
+    return context["world"].predicates.filter(name__in=predicates(form) if form else ())
+
+
+@register.filter
+def class_named_by(attribute: str) -> str:
+    """Return the class of the entity that an attribute names, such as a room; empty where it names none."""
+    return CLASS_OF_ATTRIBUTE.get(attribute.lower(), "")
 
 
 @register.simple_tag

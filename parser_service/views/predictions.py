@@ -8,6 +8,7 @@ from django.shortcuts import get_object_or_404, render
 from annotations.lists.listing import Listing, Sort
 from annotations.models import Duty, World
 from annotations.people.access import world_view
+from annotations.rows.occurrences import command_of_example
 from parser_service.filters import PredictionFilters
 from parser_service.models import TrainingRun
 
@@ -31,13 +32,16 @@ def predictions(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 def prediction(request: HttpRequest, world: World, pk: int, example: int) -> HttpResponse:
     """Show all candidates for one example, with links to its neighbours in the filtered list."""
     run = get_object_or_404(TrainingRun.objects.for_table(), world=world, pk=pk)
-    candidates = list(run.predictions.filter(example=example).select_related("example"))
+    candidates = list(
+        run.predictions.filter(example=example).select_related("example__split__world")
+    )
     if not candidates:
         raise Http404("This run has no answer stored for that example.")
     context = {
         "run": run,
         "example": candidates[0].example,
         "candidates": candidates,
+        "command": command_of_example(candidates[0].example),
         "neighbours": neighbours_of(listing_of(request, run), example),
         "query": request.GET.urlencode(),
     }

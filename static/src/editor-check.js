@@ -116,10 +116,22 @@ class Checker {
     return { from, to: Math.min(tokenEnd(text, from), text.length), severity, message, actions };
   }
 
+  /** The hint; a link where it is about the productions of a task category. */
+  hint({ hint, task_category: category }) {
+    const url = this.form.dataset.productionsUrl;
+    const made = piece(hint, "hint");
+    if (!category || !url) return made;
+    const link = document.createElement("a");
+    link.href = `${url}?${new URLSearchParams({ task_category: category })}`;
+    link.textContent = hint;
+    made.replaceChildren(link);
+    return made;
+  }
+
   line(problem) {
     const line = document.createElement("li");
     line.append(piece(`${problem.line}:${problem.column} ${problem.message}`, problem.severity));
-    if (problem.hint) line.append(" ", piece(problem.hint, "hint"));
+    if (problem.hint) line.append(" ", this.hint(problem));
     line.append(...repairButtons(problem, (repair) => this.repair(repair)));
     return line;
   }

@@ -49,6 +49,8 @@ def test_another_task_category_is_checked_anew(page_of, live_server, annotator, 
     page.get_by_label("Task category").select_option("empty")
     write(page, "go to the {room}", "(go {room})")
     expect(report).to_contain_text("matches nothing in the grammar")
+    productions = report.get_by_role("link", name="see the productions of task category empty")
+    expect(productions).to_have_attribute("href", "/w/home/grammar/?task_category=empty")
     page.get_by_label("Task category").select_option("1")
     expect(report).not_to_contain_text("matches nothing")
     page.get_by_label("Task category").select_option("empty")

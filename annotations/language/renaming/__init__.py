@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from annotations.language.renaming.entities import (
+    CLASS_OF_ATTRIBUTE,
     EntityName,
     rename_in_attributes,
     rename_in_conditions,
@@ -22,6 +23,7 @@ from annotations.language.renaming.nonterminals import (
 from annotations.language.renaming.predicates import rename_predicate
 
 __all__ = [
+    "CLASS_OF_ATTRIBUTE",
     "EntityName",
     "rename_in_attributes",
     "rename_in_conditions",

@@ -153,11 +153,12 @@ class TemplateChecker:
                 template.position, "the template makes no command", "check its pattern"
             )
         elif judged and len(outside) == len(judged):
-            yield warning_at(
+            warning = warning_at(
                 template.position,
                 f'the pattern matches nothing in the grammar; it makes "{outside[0]}"',
                 f"see the productions of {self._category()}",
             )
+            yield replace(warning, task_category=self.task_category)
         elif outside:
             is_cut = len(commands) == CHECKED_PAIRS or len(judged) < len(set(commands))
             first = "the first " if is_cut else ""

@@ -89,6 +89,26 @@ def test_a_template_leads_to_its_commands_and_productions(links, command, anna):
     assert 'href="/w/home/grammar/?task_category=1"' in page
 
 
+@pytest.mark.parametrize("kind", ["form", "template"])
+def test_a_form_leads_to_its_predicates_and_they_lead_back(kind, links, sample, anna):
+    page = anna.get(links[kind]).content.decode()
+    find = sample.world.predicates.get(name="find")
+    assert f'href="/w/home/predicates/{find.pk}/"' in page
+    back = anna.get(f"/w/home/predicates/{find.pk}/").content.decode()
+    assert 'href="/w/home/forms/?mentions=find"' in back
+    assert links["form"] in anna.get("/w/home/forms/?mentions=find").content.decode()
+
+
+@pytest.mark.parametrize("path", ["", "{entity}/"])
+def test_an_attribute_leads_to_what_it_names(path, links, sample, anna):
+    sink = Entity.objects.filter(text="sink", attributes__room="kitchen").get()
+    page = anna.get(f"/w/home/ontology/{path.format(entity=sink.pk)}").content.decode()
+    address = "/w/home/ontology/?entity_class=room&amp;q=kitchen"
+    assert f'href="{address}"' in page
+    (room,) = anna.get(address.replace("&amp;", "&")).context["listing"].rows
+    assert (room.entity_class, room.text) == ("room", "kitchen")
+
+
 def test_a_row_of_another_world_has_no_page(links, other_world, stranger, client):
     client.force_login(stranger)
     for link in links.values():

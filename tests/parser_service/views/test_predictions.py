@@ -54,6 +54,14 @@ def test_a_wrong_answer_shows_the_difference(sample, anna):
     assert "✗ wrong" in page
 
 
+def test_a_paraphrase_leads_to_the_command_that_it_rewrites(sample, anna):
+    example = sample.example
+    command = sample.world.commands.first()
+    sample.split.examples.filter(pk=example.pk).update(source_command=command.anonymized_text)
+    page = anna.get(f"/w/home/runs/{sample.run.pk}/predictions/{example.pk}/").content.decode()
+    assert f'href="/w/home/commands/{command.pk}/"' in page
+
+
 def test_no_answer_is_told_as_such(sample, anna):
     Prediction.objects.filter(is_exact_match=False).update(logical_form="", is_well_formed=False)
     assert "no answer" in predictions(anna, sample, outcome="none").content.decode()

@@ -27,6 +27,15 @@ def form(sample, parser="seq2seq", **changes):
     return {**general, **defaults(parser, **changes)}
 
 
+@pytest.mark.parametrize("path", ["", "runs/"])
+def test_a_run_in_a_list_leads_to_its_split(path, sample, adam):
+    page = adam.get(f"/w/home/{path}").content.decode()
+    assert (
+        f'href="/w/home/splits/{sample.split.pk}/">{sample.split.name}</a>'
+        in page.split("<table", 1)[1]
+    )
+
+
 @pytest.mark.parametrize("parser", PARSERS)
 def test_every_parser_has_a_form_with_its_hyperparameters(parser, sample, adam):
     page = adam.get("/w/home/runs/new/", {"parser": parser})

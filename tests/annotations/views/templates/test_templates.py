@@ -99,6 +99,15 @@ def test_the_checker_says_in_which_field_and_where(sample, new, anna):
     assert (problem["field"], problem["severity"], problem["line"]) == ("form", "error", 1)
 
 
+def test_what_the_grammar_never_says_leads_to_its_productions(sample, new, anna, reviewer):
+    new = {**new, "pattern": "bring it to the {room}", "form": "(go {room})"}
+    (problem,) = anna.post("/w/home/templates/check/", new).json()["problems"]
+    assert problem["hint"] == "see the productions of task category 1"
+    assert problem["task_category"] == "1"
+    page = anna.post("/w/home/templates/preview/", new).content.decode()
+    assert 'href="/w/home/grammar/?task_category=1"' in page
+
+
 def test_the_checker_says_what_is_wrong_with_both_sides(sample, new, anna):
     both = {**new, "pattern": "find {kobjct}", "form": "(find"}
     fields = [
