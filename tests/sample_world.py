@@ -8,6 +8,7 @@ from typing import Any
 from annotations.generation.generating import generate_pairs
 from annotations.importing import import_generator
 from annotations.models import (
+    Comment,
     Example,
     LogicalForm,
     Paraphrase,
@@ -108,3 +109,10 @@ def make_paraphrase(
     return Paraphrase.objects.create(
         world=world, prompt=prompt, utterance=utterance, **{**defaults, **columns}
     )
+
+
+def comment_in(world: World) -> Comment:
+    """Return a comment in ``world``, made where there is none, by nobody of its members."""
+    template = world.grammar.templates.first()
+    about = {"kind": "template", "subject": template.pk, "about": str(template)}
+    return Comment.objects.get_or_create(world=world, text="Hm.", **about)[0]
