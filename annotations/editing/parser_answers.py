@@ -22,7 +22,6 @@ from annotations.models import TaskCategory, World
 from annotations.rows.from_rows import grammar_of, predicates_of
 
 MOST_LOOKED_AT = 2_000  # commands of a pattern
-PLACE = 1  # of the first answer: behind the most likely form of the templates
 
 
 def command_for(category: TaskCategory, pattern: str, wanted: str = "") -> str:
@@ -45,6 +44,8 @@ def add_answers(
 ) -> list[SuggestedForm]:
     """Return the suggestions with the first well-typed answer of each parser, marked as its own.
 
+    What is new stands last, so that the others keep their digits while an answer comes.
+
     Args:
         answers: of each parser, ranked. Their forms are of one command of ``pattern``, with class tokens.
     """
@@ -62,9 +63,8 @@ def add_answers(
             by_text[text] = SuggestedForm(text, lifting.gloss(text), "")
             added.append(text)
         by_text[text] = by_text[text].answered_by(answer)
-    order = [each.text for each in suggestions]
-    order[PLACE:PLACE] = added
-    return [by_text[text] for text in order[:MOST_SUGGESTIONS]]
+    kept = [each.text for each in suggestions][: MOST_SUGGESTIONS - len(added)]
+    return [by_text[text] for text in (*kept, *added)]
 
 
 class _Lifting:

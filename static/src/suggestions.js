@@ -9,6 +9,14 @@ function write(radio) {
   field.dispatchEvent(new Event("input", { bubbles: true })); // checker, preview and draft look again
 }
 
+// Suggestions that come while somebody works: the one that is written stays chosen.
+document.addEventListener("htmx:afterSwap", () => {
+  for (const radio of document.querySelectorAll("[data-suggestions] input[type=radio]")) {
+    const field = document.getElementById(radio.closest("[data-suggestions]").dataset.suggestions);
+    if (field && field.value.trim() === radio.value) radio.checked = true;
+  }
+});
+
 document.addEventListener("change", (event) => {
   if (event.target.matches("[data-suggestions] input[type=radio]")) write(event.target);
 });

@@ -26,6 +26,7 @@ def test_a_suggested_form_is_chosen_by_its_digit_and_covers_the_command(
     expect(page.locator(".cm-content").first).to_have_text("$vbfind the {kobject}")
     suggestions = page.get_by_role("group", name="Suggested forms")
     expect(suggestions.get_by_role("radio").first).not_to_be_checked()  # no template says "find"
+    expect(page.get_by_text("is asked about")).to_be_visible()  # the answers at once are there
     form = page.locator(".cm-content").nth(1)
     for number in (2, 1):
         page.keyboard.press(str(number))

@@ -57,7 +57,7 @@ def test_the_best_well_typed_answer_is_marked_with_its_parser(without_go, sample
     assert not any("fly" in each.text for each in suggested.forms)
 
 
-def test_an_answer_stands_behind_the_most_likely_form_of_the_templates(sample):
+def test_a_new_answer_stands_behind_the_forms_of_the_templates(sample):
     kind = {"kind": "action", "signatures": [["room"]]}
     Predicate.objects.create(world=sample.world, name="wave", **kind)
     pattern = "$vbfind the {kobject} and go to the {room}"
@@ -65,7 +65,7 @@ def test_an_answer_stands_behind_the_most_likely_form_of_the_templates(sample):
     command = suggest(sample.world, pattern).command
     answer(sample.world, sample.run, '( wave " <room> " )', command=command)
     texts = [each.text for each in suggest(sample.world, pattern).forms]
-    assert texts == [before[0], "(wave {room})", *before[1:]]
+    assert texts == [*before, "(wave {room})"]
 
 
 def test_an_answer_that_does_not_fit_is_not_suggested(sample):
