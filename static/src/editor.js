@@ -100,8 +100,10 @@ export function enhance(field) {
   const place = document.createElement("div");
   place.className = "editor";
   place.append(view.dom);
+  const hasFocus = document.activeElement === field;
   field.after(place);
   field.hidden = true;
+  if (hasFocus) view.focus(); // somebody was quicker than this module
   field.required = false; // a hidden field cannot be pointed at; the server says that it is missing
   field.addEventListener("draft:restored", () => replaceText(view, field.value));
   field.labels.forEach((label) => label.addEventListener("click", () => view.focus()));

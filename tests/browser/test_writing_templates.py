@@ -26,22 +26,6 @@ def other_category(sample) -> TaskCategory:
     )
 
 
-def test_the_editor_says_what_the_checker_finds_and_shows_what_comes_out(
-    page_of, live_server, annotator
-):
-    page = page_of(annotator)
-    page.goto(f"{live_server.url}/w/home/templates/new/")
-    expect(page.locator(".cm-editor")).to_have_count(2)  # before, the plain fields stand there
-    page.get_by_role("textbox", name="Pattern").fill("$vbfind the {kobject} now")
-    form = page.get_by_role("textbox", name="Logical form")
-    form.fill("(find {room})")
-    expect(page.locator(".editor-report").nth(1)).to_contain_text("the pattern never produces")
-    form.fill("(find {kobject})")
-    expect(page.locator("#preview")).to_contain_text("2 commands")
-    page.keyboard.press("Control+Enter")
-    expect(page.locator(".message")).to_contain_text("Saved")
-
-
 def test_another_task_category_is_checked_anew(page_of, live_server, annotator, other_category):
     page = page_of(annotator)
     open_editor(page, live_server.url)
@@ -125,32 +109,6 @@ def test_a_draft_of_an_old_version_overwrites_nobody(page_of, live_server, annot
     expect(page.get_by_role("alert").first).to_contain_text("saved version 2 in the meantime")
     sample.template.refresh_from_db()
     assert sample.template.pattern == "find a $object"
-
-
-def test_a_template_with_mistakes_is_repaired_and_saved_by_keyboard_alone(
-    page_of, live_server, annotator
-):
-    page = page_of(annotator)
-    open_editor(page, live_server.url)
-    reports = page.locator(".editor-report")
-    page.get_by_role("textbox", name="Pattern").press_sequentially("$vbfind me the {kobject}")
-    page.keyboard.press("Tab")
-    # A backslash is a λ; the closing brackets come by themselves, and one is taken away.
-    page.keyboard.type("(fnd (\\$1:e (is_a $1 {kobject}))")
-    page.keyboard.press("End")
-    page.keyboard.press("Backspace")
-    expect(reports.nth(1)).to_contain_text("ends too early")
-    page.keyboard.press("Control+.")
-    expect(reports.nth(1)).to_contain_text("there is no predicate fnd")
-    repair = page.get_by_role("button", name="Write find for fnd")
-    repair.focus()
-    page.keyboard.press("Enter")
-    expect(page.get_by_role("textbox", name="Logical form")).to_have_text(
-        "(find (λ$1:e (is_a $1 {kobject})))"
-    )
-    expect(reports.nth(1)).to_contain_text("find the object")
-    page.keyboard.press("Control+Enter")
-    expect(page.locator(".message")).to_contain_text("Saved")
 
 
 def test_the_cursor_lights_a_slot_on_both_sides_and_the_selection_grows_by_subterm(

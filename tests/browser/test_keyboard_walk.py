@@ -1,0 +1,202 @@
+"""An annotator's sitting by keyboard alone: a template is written, mended, saved and taken back; then fifty
+utterances are labelled."""
+
+from __future__ import annotations
+
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+from annotations.editing.edits import delete
+from annotations.labelling import collect
+from annotations.models import Entity, Label, SemanticTemplate, Utterance
+from annotations.models.worlds import World
+
+pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
+
+# What each of them has in store stands in ``label_fifty``.
+SAID = [f"find the tea {said}" for said in ("now", "please", "quickly", "for me", "at once")]
+SAID += [f"go to the kitchen {said}" for said in ("now", "please", "again", "for me")]
+SAID += ["fetch my cuppa", *(f"go to the bath {time} times" for time in range(2, 42))]
+MOST_TABS = 40
+
+
+def tab_to(page: Page, target: Locator, key: str = "Tab") -> None:
+    """Press ``key`` until ``target`` has the focus."""
+    for _ in range(MOST_TABS):
+        page.keyboard.press(key)
+        if target.evaluate("target => target.contains(document.activeElement)"):
+            return
+    pytest.fail(f"{MOST_TABS} times {key} do not reach {target}")
+
+
+def arrive(page: Page, title: str) -> None:
+    """Wait for the page called ``title`` and for its scripts, which obey the keys."""
+    expect(page.locator("h1")).to_have_text(title)
+    page.wait_for_load_state("domcontentloaded")
+
+
+def skip_to_content(page: Page) -> None:
+    page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+    expect(page.locator("main")).to_be_focused()
+
+
+def follow(page: Page, target: Locator, title: str) -> None:
+    """Open a link by Tab and Enter; the page that it leads to is called ``title``."""
+    tab_to(page, target)
+    page.keyboard.press("Enter")
+    arrive(page, title)
+
+
+def log_in(page: Page) -> None:
+    """Type name and password; the cursor stands in the first field."""
+    page.keyboard.type("anna")
+    page.keyboard.press("Tab")
+    page.keyboard.type("correct horse")
+    page.keyboard.press("Enter")
+    arrive(page, "Worlds")
+    page.keyboard.press("j")
+    page.keyboard.press("Enter")
+    arrive(page, "home")
+
+
+def place(page: Page, name: str) -> Locator:
+    return page.locator("#rail a", has_text=name)
+
+
+def expect_counts(page: Page, templates: int, commands: int, covered: str) -> None:
+    """The overview and its rail say how much there is, and how much of the grammar has a form."""
+    follow(page, place(page, "Overview"), "home")
+    for name, count in (("Templates", templates), ("Commands", commands)):
+        expect(place(page, name).locator(".rail-count")).to_have_text(str(count))
+    expect(page.locator(".coverage-bars")).to_contain_text(covered)
+
+
+def write_template(page: Page) -> None:
+    """Type a template with mistakes, and take the repairs that are offered."""
+    pattern, form = (page.get_by_role("textbox", name=name) for name in ("Pattern", "Logical form"))
+    reports = page.locator(".editor-report")
+    tab_to(page, pattern)
+    page.keyboard.type("$vbfind me the {kobject}")
+    tab_to(page, form)
+    # A backslash is a λ; the closing brackets come by themselves, and one is taken away.
+    page.keyboard.type("(fnd (\\$1:e (is_a $1 {kobject}))")
+    page.keyboard.press("End")
+    page.keyboard.press("Backspace")
+    expect(reports.nth(1)).to_contain_text("ends too early")
+    page.keyboard.press("Control+.")
+    expect(reports.nth(1)).to_contain_text("there is no predicate fnd")
+    tab_to(page, page.get_by_role("button", name="Write find for fnd"))
+    page.keyboard.press("Enter")
+    expect(form).to_have_text("(find (λ$1:e (is_a $1 {kobject})))")
+    expect(reports.nth(1)).to_contain_text("find the object")
+    expect(reports.first).to_contain_text("matches nothing in the grammar")
+    tab_to(page, pattern, "Shift+Tab")
+    page.keyboard.press("Home")
+    for _ in "$vbfind me":
+        page.keyboard.press("ArrowRight")
+    for _ in " me":
+        page.keyboard.press("Backspace")
+    expect(page.locator("#preview")).to_contain_text("2 commands")
+    expect(page.locator("#consequences")).to_contain_text("2 commands newly covered")
+    page.keyboard.press("Control+Enter")
+    expect(page.locator(".message")).to_contain_text("Saved. 2 commands newly covered")
+
+
+def expect_utterance(page: Page, text: str) -> None:
+    key = str(Utterance.objects.get(text=text).pk)
+    page.wait_for_function(
+        "key => document.querySelector('[data-item]')?.dataset.item === key", arg=key
+    )
+
+
+def label_fifty(page: Page) -> None:
+    """Use every key of the page, and take the first candidate for most utterances."""
+    keys, said = page.keyboard, iter(SAID)
+    expect(page.locator("[data-label-page][data-ready]")).to_have_count(1)
+
+    def press(*pressed: str) -> None:
+        for key in pressed:
+            expect_utterance(page, next(said))
+            keys.press(key)
+
+    press("1", "1", "1", "1", "1", "u", "s", "d")
+    expect(page.get_by_label("Why is it disputed?")).to_be_focused()
+    keys.type("again or not")
+    keys.press("Enter")
+    expect_utterance(page, SAID[8])
+    keys.press("z")  # the dispute is taken back, and its utterance is there again
+    expect_utterance(page, SAID[7])
+    keys.press("e")
+    editor = page.get_by_role("textbox", name="Logical form")
+    expect(page.locator(".cm-editor")).to_have_count(1)  # until then the plain field is there
+    expect(editor).to_be_focused()
+    keys.press("ControlOrMeta+a")  # what candidate 1 says
+    keys.type("(go")
+    keys.press("Delete")  # the closing bracket, which came by itself
+    keys.press("Control+Enter")  # refused, and what was written stays
+    expect(page.get_by_role("alert")).to_contain_text("ends too early")
+    expect(editor).to_contain_text("(go")
+    keys.press("ControlOrMeta+a")
+    keys.type('(go "<room>")')
+    keys.press("Control+Enter")
+    press("1")
+    expect_utterance(page, next(said))
+    keys.press("m")
+    expect(page.get_by_label("The words")).to_be_focused()
+    keys.type("cuppa")
+    keys.press("Tab")
+    keys.type("tea (object)")
+    keys.press("Enter")
+    expect(page.locator(".label-text .chip")).to_contain_text("cuppa")
+    keys.press("1")
+    press(*"1" * 40)
+    expect(page.locator("[data-label-done]")).to_be_visible()
+
+
+def forms(world: World) -> dict[str, str]:
+    return dict(world.commands.values_list("anonymized_text", "logical_form__text"))
+
+
+def test_an_annotators_sitting_without_a_mouse(page_of, live_server, sample, annotator):
+    world = sample.world
+    delete(sample.template, annotator, sample.template.version)
+    collect(world, SAID, by=annotator)
+    before = forms(world)
+    page = page_of(None)
+    page.goto(f"{live_server.url}/")
+    log_in(page)
+    expect_counts(page, 1, 1, "33.3 %")
+
+    follow(page, place(page, "Templates"), "Templates")
+    skip_to_content(page)
+    follow(page, page.get_by_role("button", name="New template"), "New template")
+    skip_to_content(page)
+    write_template(page)
+    assert forms(world).keys() - before == {"find the <object>", "locate the <object>"}
+    expect_counts(page, 2, 3, "100.0 %")
+
+    follow(page, place(page, "Templates"), "Templates")
+    page.keyboard.press("j")
+    page.keyboard.press("j")
+    page.keyboard.press("Enter")
+    arrive(page, "Template")
+    skip_to_content(page)
+    follow(page, page.get_by_role("button", name="Delete"), "Delete template")
+    expect(page.locator("main")).to_contain_text("2 commands")
+    skip_to_content(page)
+    tab_to(page, page.get_by_role("button", name="Delete"))
+    page.keyboard.press("Enter")
+    expect(page.locator(".message")).to_contain_text("Deleted")
+    assert forms(world) == before
+    expect_counts(page, 1, 1, "33.3 %")
+
+    follow(page, place(page, "Utterances"), "Utterances")
+    skip_to_content(page)
+    follow(page, page.get_by_role("button", name="Label"), "Label")
+    label_fifty(page)
+    assert Label.objects.valid().count() == len(SAID) == 50
+    assert Label.objects.exclude(seconds=None).count() == 51
+    assert Utterance.objects.get(text=SAID[7]).logical_form == '( go " <room> " )'
+    assert Entity.objects.get(text="tea").aliases == ["cuppa"]
+    assert SemanticTemplate.objects.count() == 1
