@@ -101,6 +101,13 @@ def paraphrase_in(world: World) -> Paraphrase:
     )
 
 
+def comment_in(world: World) -> Comment:
+    """Return a comment in ``world``, made where there is none, by nobody of its members."""
+    template = world.grammar.templates.first()
+    about = {"kind": "template", "subject": template.pk, "about": str(template)}
+    return Comment.objects.get_or_create(world=world, text="Hm.", **about)[0]
+
+
 def make_paraphrase(
     world: World, prompt: str = "go", utterance: str = "go", **columns: Any
 ) -> Paraphrase:
