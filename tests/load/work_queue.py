@@ -28,6 +28,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+SETTLE_SECONDS = 10  # until several servers are all there
 UNKNOWN = {"verdict": "unknown"}
 
 
@@ -94,6 +95,7 @@ async def work(callers: list[Caller], rate: float, seconds: float) -> Counter[in
         await asyncio.sleep(max(0.0, began + number / rate - time.perf_counter()))
         steps.append(asyncio.create_task(step(await free.get())))
     await asyncio.gather(*steps)
+    print(f"{len(steps)} saves, {len(steps) / (time.perf_counter() - began):.0f} a second")
     return given
 
 
@@ -129,6 +131,7 @@ def server():
     process = subprocess.Popen(command, cwd=ROOT, env=environment, stdout=subprocess.DEVNULL)
     try:
         wait_for(port, process)
+        time.sleep(SETTLE_SECONDS)
         yield port
     finally:
         process.terminate()
