@@ -116,10 +116,3 @@ def make_paraphrase(
     return Paraphrase.objects.create(
         world=world, prompt=prompt, utterance=utterance, **{**defaults, **columns}
     )
-
-
-def comment_in(world: World) -> Comment:
-    """Return a comment in ``world``, made where there is none, by nobody of its members."""
-    template = world.grammar.templates.first()
-    about = {"kind": "template", "subject": template.pk, "about": str(template)}
-    return Comment.objects.get_or_create(world=world, text="Hm.", **about)[0]
