@@ -190,8 +190,8 @@ class FinishWorkItem(WorkItemRoute):
         part = self.held(request, pk)
         try:
             self._finish(part, request, dict(sent.validated_data))
-        except (AnsweredMeanwhile, NoLongerYours) as clash:
-            raise Conflict(str(clash)) from clash
+        except (AnsweredMeanwhile, NoLongerYours) as error:
+            raise Conflict(str(error)) from error
         except (LanguageError, ValueError) as error:
             raise ValidationError({"form": [str(error)]}) from error
         return self.shown(pk)

@@ -114,7 +114,7 @@ def change(row: Row, values: Mapping[str, Any], by: User, version: int) -> Row:
     """
     with transaction.atomic():
         world = _lock_for(row)
-        stored = _stored(row, version)
+        stored = _read_stored(row, version)
         if all(getattr(stored, name) == value for name, value in values.items()):
             return stored
         _require_version(stored, version)
@@ -183,7 +183,7 @@ def delete(row: Editable, by: User, version: int) -> None:
     """
     with transaction.atomic():
         world = _lock_for(row)
-        stored = _stored(row, version)
+        stored = _read_stored(row, version)
         _require_version(stored, version)
         keep_first(type(row), [row.pk])
         keep([stored], DELETED, by)
@@ -250,7 +250,7 @@ def _lock_for(row: Editable) -> World:
     return _lock(row.owning_world) if row.bears_on_commands else row.owning_world
 
 
-def _stored(row: Row, version: int) -> Row:
+def _read_stored(row: Row, version: int) -> Row:
     stored = type(row)._default_manager.select_for_update().filter(pk=row.pk).first()
     if stored is None:
         raise Overtaken(None, entry_at(row, version), _last_entry(row))

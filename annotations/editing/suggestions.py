@@ -69,7 +69,7 @@ def suggest_pattern(world: World, category: StoredCategory, command: str) -> str
         categories = task_categories(world)
         templates = tuple(each for one in categories for each in one.templates)
         covered = frozenset(world.commands.values_list("anonymized_text", flat=True))
-        maker = PatternMaker(_chosen(categories, category).grammar, templates, covered)
+        maker = PatternMaker(_find_category(categories, category).grammar, templates, covered)
         pattern = maker.pattern(plain)
     except LanguageError:
         return plain
@@ -82,7 +82,7 @@ def suggest_nearest(world: World, row: StoredTemplate) -> list[SuggestedPattern]
     if category is None:
         return []
     try:
-        chosen = _chosen(task_categories(world), category)
+        chosen = _find_category(task_categories(world), category)
         made = TemplateExpander(chosen.grammar).pairs(template_of(row), Budget(CHECK_STEPS))
         command, _ = next(made, ("", ""))
         derived = passages(chosen.grammar, Budget(CHECK_STEPS), MOST_COMPARED)
@@ -116,7 +116,7 @@ def suggest_forms(
     ]
 
 
-def _chosen(categories: tuple[TaskCategory, ...], category: StoredCategory) -> TaskCategory:
+def _find_category(categories: tuple[TaskCategory, ...], category: StoredCategory) -> TaskCategory:
     return next(each for each in categories if each.name == category.name)
 
 

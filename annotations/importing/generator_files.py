@@ -54,7 +54,7 @@ def read_generator(
     """
     ontology, ontology_problems = read_ontology(files)
     texts = read_generator_files(files)
-    problems = [*texts.problems, *_unread(files)]
+    problems = [*texts.problems, *_warn_of_unread(files)]
     declared, further = _read_declared(files)
     problems += further
     predicates = dict(declared or {})
@@ -95,7 +95,7 @@ def _examine(
     return inferred, list(set_problems(categories, generated, known))
 
 
-def _unread(files: Iterable[str]) -> Iterator[Problem]:
+def _warn_of_unread(files: Iterable[str]) -> Iterator[Problem]:
     """Yield a warning for each file that is not a generator's; a README needs none."""
     known = {*ONTOLOGY_FILES, *TRIPLE_FILES, PREDICATES_FILE}
     for name in files:

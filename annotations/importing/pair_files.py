@@ -74,5 +74,5 @@ def _contents(folder: Path, problems: list[Problem]) -> Iterator[tuple[str, byte
             if (folder / directory).is_dir():
                 for name, data in read_folder(folder / directory, "*.txt").items():
                     yield f"{directory}/{name}", data
-    except LanguageError as failure:
-        problems.append(failure.problem)
+    except LanguageError as error:
+        problems.append(error.problem)

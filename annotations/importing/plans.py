@@ -56,19 +56,19 @@ def differences_of(
         plans["productions"] = plan_productions(grammar, generator, brings_back)
     if ontology:
         plans["entities"] = plan_entities(ontology, generator, brings_back)
-    removals = {name: _removed(planned) for name, planned in plans.items()}
+    removals = {name: _list_removed(planned) for name, planned in plans.items()}
     plans["predicates"] = plan_predicates(world, generator, brings_back)
-    left_out = {name: _left_out(planned) for name, planned in plans.items()}
+    left_out = {name: _list_left_out(planned) for name, planned in plans.items()}
     return Differences(Texts(**removals), Texts(**left_out))
 
 
-def _removed(changes: Plan) -> tuple[str, ...]:
+def _list_removed(changes: Plan) -> tuple[str, ...]:
     """Return each removed row with its file, in the order of the rows."""
     rows = sorted(changes.removed, key=lambda row: row.position)
     return tuple(f"{row.source}: {row}" for row in rows)
 
 
-def _left_out(changes: Plan) -> tuple[str, ...]:
+def _list_left_out(changes: Plan) -> tuple[str, ...]:
     return tuple(
         f"{row.source}: {row} ({why})" if hasattr(row, "source") else f"{row} ({why})"
         for row, why in changes.left_out

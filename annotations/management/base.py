@@ -72,17 +72,17 @@ class ReportingCommand(BaseCommand):
     def handle(self, *args: Any, **options: Any) -> None:
         try:
             report = self.report(**options)
-        except Refused as refused:
-            self._print(refused.report, options["json"])
-            raise CommandError(str(refused)) from None
-        except DatabaseError as failure:
+        except Refused as error:
+            self._print(error.report, options["json"])
+            raise CommandError(str(error)) from None
+        except DatabaseError as error:
             raise CommandError(
-                f"The database answered: {failure}. Has “manage.py migrate” been run?"
-            ) from failure
-        except LanguageError as failure:
-            raise CommandError(_sentence(failure)) from failure
-        except (ValueError, OSError) as failure:
-            raise CommandError(str(failure)) from failure
+                f"The database answered: {error}. Has “manage.py migrate” been run?"
+            ) from error
+        except LanguageError as error:
+            raise CommandError(_sentence(error)) from error
+        except (ValueError, OSError) as error:
+            raise CommandError(str(error)) from error
         self._print(report, options["json"])
 
     def _print(self, report: Mapping[str, Any], as_json: bool) -> None:
@@ -90,11 +90,11 @@ class ReportingCommand(BaseCommand):
         self.stdout.write(text)
 
 
-def _sentence(failure: LanguageError) -> str:
+def _sentence(error: LanguageError) -> str:
     """Return the problem with its position, where it has one."""
-    if failure.source:
-        return str(failure)
-    return f"{failure.message} ({failure.hint})" if failure.hint else failure.message
+    if error.source:
+        return str(error)
+    return f"{error.message} ({error.hint})" if error.hint else error.message
 
 
 def _show(problem: Problem, folder: Path) -> str:

@@ -47,7 +47,7 @@ def enqueue(
     shares = shares_of(world)
     for some in batches(wanted, BATCH):
         with transaction.atomic():
-            asked = _asked_already(WorkKind(kind), some) if kind in DOUBLE_KINDS else set()
+            asked = _find_asked(WorkKind(kind), some) if kind in DOUBLE_KINDS else set()
             rows = [
                 _make_item(world, WorkKind(kind), each, by, shares)
                 for each in some
@@ -57,7 +57,7 @@ def enqueue(
     return world.work_items.filter(pk__gt=newest, kind=kind).count()
 
 
-def _asked_already(kind: WorkKind, wanted: Sequence[WantedItem]) -> set[int]:
+def _find_asked(kind: WorkKind, wanted: Sequence[WantedItem]) -> set[int]:
     """Return the utterances about which people are asked; less urgent untouched items are removed first."""
     keys = [each.subject.pk for each in wanted if isinstance(each.subject, Utterance)]
     rows = WorkItem.objects.open().filter(utterance__in=keys, kind__in=DOUBLE_KINDS)

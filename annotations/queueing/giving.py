@@ -64,7 +64,9 @@ class NotForThem(ValueError):
 
 def held_item(person: User, world: World, wanted: Wanted = ANYTHING) -> Assignment | None:
     """Return the most urgent item that ``person`` holds in ``world``, or None."""
-    rows = wanted.of_assignments(_held(person, world)).exclude(leased_until__lt=timezone.now())
+    rows = wanted.of_assignments(_assignments_of(person, world)).exclude(
+        leased_until__lt=timezone.now()
+    )
     rows = rows.select_related("item__utterance", "item__world")
     return rows.order_by("-item__priority", "id").first()
 
@@ -109,7 +111,7 @@ def return_expired(world: World) -> None:
     keys = list(expired.values_list("pk", "item_id")[:MOST_EXPIRED])
     for key, item in keys:
         with transaction.atomic():
-            rows = _unlocked(WorkItem.objects.filter(pk=item))
+            rows = _lock_free(WorkItem.objects.filter(pk=item))
             if not rows.exists():
                 continue  # somebody else is at it
             if Assignment.objects.expired().filter(pk=key).update(outcome=Outcome.EXPIRED):
@@ -124,7 +126,7 @@ def kinds_for(person: User, world: World) -> list[str]:
     return list(DONE_ELSEWHERE) if Duty.REVIEW in duties else []
 
 
-def _held(person: User, world: World) -> AssignmentQuerySet:
+def _assignments_of(person: User, world: World) -> AssignmentQuerySet:
     return Assignment.objects.held().filter(person=person, item__world=world)
 
 
@@ -167,10 +169,10 @@ def close_item(item: WorkItem) -> None:
 
 
 def _first(rows: WorkItemQuerySet) -> WorkItem | None:
-    return _unlocked(rows.order_by("-priority", "id")).select_related("utterance").first()
+    return _lock_free(rows.order_by("-priority", "id")).select_related("utterance").first()
 
 
-def _unlocked(rows: WorkItemQuerySet) -> WorkItemQuerySet:
+def _lock_free(rows: WorkItemQuerySet) -> WorkItemQuerySet:
     """Lock the rows that nobody else has locked. On SQLite the transaction itself keeps others out."""
     can_skip = connection.features.has_select_for_update_skip_locked
     return rows.select_for_update(skip_locked=True, of=("self",)) if can_skip else rows

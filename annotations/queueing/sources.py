@@ -21,13 +21,13 @@ def refill(world: World) -> int:
     What has an open item of any kind gets no other one.
     """
     return (
-        enqueue(world, WorkKind.UNLABELLED, _unlabelled(world))
+        enqueue(world, WorkKind.UNLABELLED, _unlabelled_utterances(world))
         + enqueue(world, WorkKind.DISPUTED, _disputed_utterances(world))
         + enqueue(world, WorkKind.DISPUTED, _disputed_templates(world))
     )
 
 
-def _unlabelled(world: World) -> Iterator[WantedItem]:
+def _unlabelled_utterances(world: World) -> Iterator[WantedItem]:
     for row in _without_item(world, UtteranceStatus.UNLABELLED):
         yield WantedItem(row, "Nobody has said yet what this means.")
 

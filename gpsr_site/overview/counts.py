@@ -110,7 +110,7 @@ def _statement() -> tuple[str, tuple[Any, ...]]:
     """
     counted = {name: _count(rows, path) for name, (rows, path) in _rows_to_count().items()}
     counted["members"] = _aggregate(Membership.objects.all(), "world", Count("user", distinct=True))
-    counted["uncovered"] = _uncovered()
+    counted["uncovered"] = _count_uncovered()
     counted["stale"] = Case(When(generated_revision__lt=F("revision"), then=1), default=0)
     columns = {f"n_{field.name}": counted[field.name] for field in fields(Counts)}
     rows = World.objects.order_by().annotate(**columns).values("id", *columns)
@@ -170,7 +170,7 @@ def _count(rows: QuerySet, path: str) -> Coalesce:
     return _aggregate(rows, path, Count("pk"))
 
 
-def _uncovered() -> Coalesce:
+def _count_uncovered() -> Coalesce:
     without_form = F("commands_in_grammar") - F("commands_with_form")
     counted = TaskCategory.objects.filter(commands_in_grammar__isnull=False)
     return _aggregate(counted, "grammar__world", Sum(without_form))

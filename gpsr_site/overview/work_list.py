@@ -153,9 +153,9 @@ class WorkList:
         yield from self._jobs_of(role)
         if role == Role.ADMIN:
             yield from self._stale()
-            yield from self._queued()
+            yield from self._queued_runs()
             yield from self._waiting(FOR_ADMINS)
-            yield from self._alone()
+            yield from self._missing_people()
         elif role == Role.ANNOTATOR:
             yield from self._waiting(FOR_ANNOTATORS)
             yield from self._stale()
@@ -187,7 +187,7 @@ class WorkList:
             sentence = "Commands are out of date: grammar or templates have changed"
             yield Task(1, sentence, "Generate", self._address("generate"), "warn", is_action=True)
 
-    def _queued(self) -> Iterator[Task]:
+    def _queued_runs(self) -> Iterator[Task]:
         waiting = self.counts.runs_queued
         if not waiting:
             return
@@ -199,7 +199,7 @@ class WorkList:
             sentence = f"{say_count(waiting, 'run')} {verb}. {self.workers.headline}"
             yield Task(waiting, sentence, "Watch", url, "bad")
 
-    def _alone(self) -> Iterator[Task]:
+    def _missing_people(self) -> Iterator[Task]:
         if self.counts.members == 1:
             sentence = "Only one person belongs to this world"
             yield Task(1, sentence, "Add people", self._address("people"))

@@ -34,8 +34,8 @@ def nearest_forms(world: World, anonymized_text: str, how_many: int) -> list[Can
     or the text has and the other lacks.
     """
     indices = (
-        _written(world.pk, _stamp_of_written(world)),
-        _labelled(world.pk, _stamp_of_labelled(world)),
+        _index_commands(world.pk, _stamp_of_written(world)),
+        _index_labelled(world.pk, _stamp_of_labelled(world)),
     )
     best: dict[str, float] = {}
     for index in indices:
@@ -67,14 +67,14 @@ def _stamp_of_labelled(world: World) -> Stamp:
 
 
 @lru_cache(maxsize=KEPT_WORLDS)
-def _written(world_id: int, stamp: Stamp) -> NearestNeighbour | None:
+def _index_commands(world_id: int, stamp: Stamp) -> NearestNeighbour | None:
     """Return the index of commands and paraphrases."""
     world = World.objects.get(pk=world_id)
     return _index(chain(_commands(world), _paraphrases(world)))
 
 
 @lru_cache(maxsize=KEPT_WORLDS)
-def _labelled(world_id: int, stamp: Stamp) -> NearestNeighbour | None:
+def _index_labelled(world_id: int, stamp: Stamp) -> NearestNeighbour | None:
     rows = World.objects.get(pk=world_id).utterances.labelled().order_by("-pk")
     texts = rows.values_list("anonymized_text", "logical_form")[:MOST_LABELLED]
     return _index(Pair(text, form) for text, form in texts)

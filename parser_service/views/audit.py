@@ -121,8 +121,8 @@ def audit_decide(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     form, reason = sent.get("form", ""), sent.get("reason", "")
     try:
         decide(finding, sent.get("decision", ""), request.user, form, reason)
-    except (AnsweredMeanwhile, DecidedMeanwhile, NotForThem) as refusal:
-        messages.error(request, str(refusal))
+    except (AnsweredMeanwhile, DecidedMeanwhile, NotForThem) as error:
+        messages.error(request, str(error))
         return _to(request, world, finding)
     except (LanguageError, ValueError) as error:
         return _refuse(request, world, finding, str(error))
@@ -138,8 +138,8 @@ def audit_take_back(request: HttpRequest, world: World, pk: int) -> HttpResponse
     made = get_object_or_404(AuditDecision.objects.filter(finding__world=world), pk=pk)
     try:
         take_back(made, request.user)
-    except ValueError as refusal:
-        messages.error(request, str(refusal))
+    except ValueError as error:
+        messages.error(request, str(error))
     return _to(request, world, made.finding)
 
 

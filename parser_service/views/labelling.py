@@ -38,7 +38,7 @@ MOST_WITHOUT = 50
 def label_page(request: HttpRequest, world: World) -> HttpResponse:
     """Show the next utterance that the filters of the URL leave, or the one that it names."""
     listing = _listing(request, world)
-    row = _asked(request, world, listing)
+    row = _find_asked(request, world, listing)
     context = {
         "listing": listing,
         "entities": _entity_names(world),
@@ -52,7 +52,7 @@ def label_page(request: HttpRequest, world: World) -> HttpResponse:
 @world_view(Duty.ANNOTATE)
 def label_item(request: HttpRequest, world: World) -> HttpResponse:
     """Return the next utterance alone; ``without`` are the keys of those that the page has already."""
-    row = _asked(request, world, _listing(request, world))
+    row = _find_asked(request, world, _listing(request, world))
     return render(request, "parser_service/_label_item.html", _item(request, row))
 
 
@@ -66,8 +66,8 @@ def label_answer(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     form, reason = sent.get("form", ""), sent.get("reason", "")
     try:
         answer(row, verdict, form, request.user, int(version or 0), seconds, reason)
-    except (AnsweredMeanwhile, NoLongerYours) as clash:
-        return _reply(request, world, row, str(clash), 409)
+    except (AnsweredMeanwhile, NoLongerYours) as error:
+        return _reply(request, world, row, str(error), 409)
     except (LanguageError, ValueError) as error:
         return _reply(request, world, row, str(error), 422)
     return _reply(request, world, row)
@@ -115,8 +115,8 @@ def label_mend(request: HttpRequest, world: World, pk: int) -> HttpResponse:
             raise ValueError(f"The utterance does not have the words “{words[:60]}”.")
         version = int(_number(request.POST.get("version")) or 0)
         row = mend_span(row, start, start + len(words), entity, request.user, version)
-    except AnsweredMeanwhile as clash:
-        return _reply(request, world, row, str(clash), 409)
+    except AnsweredMeanwhile as error:
+        return _reply(request, world, row, str(error), 409)
     except ValueError as error:
         return _reply(request, world, row, str(error), 422)
     return _reply(request, world, row, stays=True)
@@ -126,7 +126,7 @@ def _listing(request: HttpRequest, world: World) -> Listing:
     return Listing(request, UtteranceFilters, world.utterances.all(), SORTS)
 
 
-def _asked(request: HttpRequest, world: World, listing: Listing) -> Utterance | None:
+def _find_asked(request: HttpRequest, world: World, listing: Listing) -> Utterance | None:
     """Return the utterance that the URL names; without a filter the next one of the person's queue.
 
     Raises Http404 for one of another world.

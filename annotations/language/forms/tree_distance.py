@@ -100,7 +100,7 @@ class FormDistances:
             return 0
         key = (left, right) if left < right else (right, left)
         if key not in self._forests:
-            matched = self._matched(first, second)
+            matched = self._match(first, second)
             self._forests[key] = self._best_inside(self._shared_forest, left, right, matched)
         return self._forests[key]
 
@@ -115,7 +115,7 @@ class FormDistances:
                 best = max(best, shared(one, other))
         return best
 
-    def _matched(self, first: tuple[int, ...], second: tuple[int, ...]) -> int:
+    def _match(self, first: tuple[int, ...], second: tuple[int, ...]) -> int:
         """Count the nodes that two sets of trees share when each is paired with one of the other."""
         shared = [[self._shared_tree(left, right) for right in second] for left in first]
         if len(first) == 1 or len(second) == 1:

@@ -35,8 +35,8 @@ def find_problems(
         *_missing_root(productions, edges, root),
         *(_cycle(productions, cycle) for cycle in traversal.cycles),
         *((too_large,) if too_large is not None else ()),
-        *_undefined(productions, edges),
-        *_unreachable(productions, edges, root),
+        *_undefined_nonterminals(productions, edges),
+        *_unreachable_nonterminals(productions, edges, root),
     )
 
 
@@ -117,7 +117,7 @@ def _too_long(productions: tuple[Production, ...], lengths: Mapping[str, int]) -
     return None
 
 
-def _undefined(productions: tuple[Production, ...], edges: Edges) -> Iterator[Problem]:
+def _undefined_nonterminals(productions: tuple[Production, ...], edges: Edges) -> Iterator[Problem]:
     places: dict[str, list[Position]] = {}
     for production in productions:
         for name, place in production.references:
@@ -132,7 +132,9 @@ def _undefined(productions: tuple[Production, ...], edges: Edges) -> Iterator[Pr
         )
 
 
-def _unreachable(productions: tuple[Production, ...], edges: Edges, root: str) -> Iterator[Problem]:
+def _unreachable_nonterminals(
+    productions: tuple[Production, ...], edges: Edges, root: str
+) -> Iterator[Problem]:
     if root not in edges:
         return
     reached = reachable(edges, root)

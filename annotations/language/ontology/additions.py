@@ -57,7 +57,9 @@ def additions_to(ontology: Ontology, entities: Iterable[Entity]) -> Additions:
     after = ontology_problems(Ontology((*ontology.entities, *new)))
     problems = [each for each in after if (each.position, each.message) not in before]
     return Additions(
-        tuple(new), tuple(duplicates), tuple(sorted({*problems, *_shared(ontology, new)}))
+        tuple(new),
+        tuple(duplicates),
+        tuple(sorted({*problems, *_warn_of_shared_names(ontology, new)})),
     )
 
 
@@ -67,7 +69,7 @@ def _key(entity: Entity) -> tuple[str, str, str]:
     return entity.entity_class, entity.text.casefold(), (entity.attribute(beside) or "").casefold()
 
 
-def _shared(ontology: Ontology, new: Iterable[Entity]) -> Iterable[Problem]:
+def _warn_of_shared_names(ontology: Ontology, new: Iterable[Entity]) -> Iterable[Problem]:
     """Warn of names that another entity of the class has too: nobody can tell which one is meant."""
     owner: dict[tuple[str, str], str] = {}
     for entity in ontology.entities:

@@ -52,11 +52,11 @@ def exchange(form: Form, slots: Mapping[Key, Slot]) -> Form:
             return Lambda(variable, type_, tuple(exchange(body, slots) for body in bodies))
         case Application(predicate, arguments):
             if isinstance(predicate, Nonterminal):
-                new = _exchanged(predicate, slots)
+                new = _exchange(predicate, slots)
                 predicate = new if isinstance(new, Nonterminal) else absent(predicate)
             return Application(predicate, tuple(exchange(each, slots) for each in arguments))
         case Wildcard() | Nonterminal():
-            return _exchanged(form, slots)
+            return _exchange(form, slots)
         case _:
             return form
 
@@ -113,7 +113,7 @@ def _slots(form: Form) -> Iterator[Slot]:
             yield node
 
 
-def _exchanged(slot: Slot, slots: Mapping[Key, Slot]) -> Slot:
+def _exchange(slot: Slot, slots: Mapping[Key, Slot]) -> Slot:
     return slots.get(key_of(slot)) or absent(slot)
 
 

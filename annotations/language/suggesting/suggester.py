@@ -166,7 +166,7 @@ class _Target:
     def candidates(self) -> Iterator[_Candidate]:
         """Yield forms with what they cost; a form may come several times."""
         for near in sorted(self.known.examples, key=self.distance)[:NEAREST]:
-            for candidate in chain(self._transferred(near), self._by_analogy(near)):
+            for candidate in chain(self._transfer(near), self._by_analogy(near)):
                 form = canonicalize(candidate.form)
                 if not has_absent(form) and keys_of(form) <= self.slots.keys():
                     yield _Candidate(form, candidate.cost + self._penalty(form), near)
@@ -193,25 +193,25 @@ class _Target:
     def _tracked(self) -> frozenset[Key]:
         return frozenset(key for each in self.known.examples for key in keys_of(each.form))
 
-    def _transferred(self, near: Example) -> Iterator[_Candidate]:
+    def _transfer(self, near: Example) -> Iterator[_Candidate]:
         alignment = self.known.align(near.units, self.units)
         form = drop_absent(exchange(near.form, self._counterparts(near)))
         if form is None:
             return
         yield _Candidate(form, alignment.cost, near)
         names, habits = self.known.predicates, self.known.habits
-        yield from self._with_slots_added(form, alignment.cost, near)
+        yield from self._add_slots(form, alignment.cost, near)
         for exchanged in exchange_predicates(form, alignment, habits, names):
             left = alignment.cost - EXCHANGED - EXCHANGED_SHARE * alignment.cost
-            yield self._mended(exchanged, left, near)
-            yield from self._with_slots_added(exchanged, left, near)
+            yield self._mend(exchanged, left, near)
+            yield from self._add_slots(exchanged, left, near)
 
-    def _with_slots_added(self, form: Form, distance: float, near: Example) -> Iterator[_Candidate]:
+    def _add_slots(self, form: Form, distance: float, near: Example) -> Iterator[_Candidate]:
         slots = {key: slot for key, slot in self.slots.items() if self._is_usually_said(key)}
         for more in add_slots(form, slots, self.labels, self.known.habits):
-            yield self._mended(more, distance - ADDED, near)
+            yield self._mend(more, distance - ADDED, near)
 
-    def _mended(self, form: Form, distance: float, near: Example) -> _Candidate:
+    def _mend(self, form: Form, distance: float, near: Example) -> _Candidate:
         """Return a form that was changed; ``distance`` is what the changes leave unexplained."""
         return _Candidate(form, max(distance, LEAST_DISTANCE) + MEND_COST, near)
 

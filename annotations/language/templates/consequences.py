@@ -99,7 +99,7 @@ def consequences_of(before: GeneratedState, after: GeneratedState) -> Consequenc
     """Return the difference of two generations of the same task categories."""
     old = {each.command: each for each in before.generated.expansions}
     new = {each.command: each for each in after.generated.expansions}
-    conflicts, conflicts_gone = _different(_conflicts(before), _conflicts(after))
+    conflicts, conflicts_gone = _compare(_conflicts(before), _conflicts(after))
     return Consequences(
         covered=tuple(each for command, each in new.items() if command not in old),
         lost=tuple(each for command, each in old.items() if command not in new),
@@ -110,9 +110,9 @@ def consequences_of(before: GeneratedState, after: GeneratedState) -> Consequenc
         ),
         conflicts=conflicts,
         conflicts_gone=conflicts_gone,
-        duplicates=_added(_duplicates(before), _duplicates(after)),
-        shadowed=_added(_shadowed(before), _shadowed(after)),
-        left_out=_added(_left_out(before), _left_out(after)),
+        duplicates=_find_added(_duplicates(before), _duplicates(after)),
+        shadowed=_find_added(_find_shadowed(before), _find_shadowed(after)),
+        left_out=_find_added(_index_left_out(before), _index_left_out(after)),
     )
 
 
@@ -124,7 +124,7 @@ def _conflicts(state: GeneratedState) -> dict[tuple[object, ...], Conflict]:
     }
 
 
-def _different(
+def _compare(
     before: Mapping[tuple[object, ...], Conflict], after: Mapping[tuple[object, ...], Conflict]
 ) -> tuple[tuple[Conflict, ...], tuple[Conflict, ...]]:
     """Return the conflicts that are new and those that are gone."""
@@ -134,7 +134,7 @@ def _different(
     )
 
 
-def _added(before: Mapping[Name, Row], after: Mapping[Name, Row]) -> tuple[Row, ...]:
+def _find_added(before: Mapping[Name, Row], after: Mapping[Name, Row]) -> tuple[Row, ...]:
     return tuple(each for name, each in after.items() if name not in before)
 
 
@@ -151,7 +151,7 @@ def _in(category: TaskCategory, state: GeneratedState) -> Iterator[Duplicate]:
             yield Duplicate(name, earlier)
 
 
-def _shadowed(state: GeneratedState) -> dict[Name, Shadowed]:
+def _find_shadowed(state: GeneratedState) -> dict[Name, Shadowed]:
     """Return the templates that make commands, none of which is theirs in any task category."""
     generated = state.generated
     winners = {each.command: each for each in generated.expansions}
@@ -165,7 +165,7 @@ def _shadowed(state: GeneratedState) -> dict[Name, Shadowed]:
     return shadowed
 
 
-def _left_out(state: GeneratedState) -> dict[Name, LeftOut]:
+def _index_left_out(state: GeneratedState) -> dict[Name, LeftOut]:
     return {
         state.name((each.task_category, each.template_index)): each
         for each in state.generated.left_out

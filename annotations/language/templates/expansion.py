@@ -146,7 +146,7 @@ def generate(
     return Generated(
         _distinct(expanded),
         tuple(conflict for each in expanded for conflict in each.conflicts()),
-        _unmatched(expanded),
+        _find_unmatched(expanded),
         tuple(left for each in chosen for left in each.left_out),
         {
             (each.category.name, index): commands
@@ -263,7 +263,7 @@ def _distinct(expanded: Sequence[_Expanded]) -> tuple[Expansion, ...]:
     return tuple(expansions.values())
 
 
-def _unmatched(expanded: Sequence[_Expanded]) -> tuple[tuple[str, int], ...]:
+def _find_unmatched(expanded: Sequence[_Expanded]) -> tuple[tuple[str, int], ...]:
     """Return templates whose commands no category's grammar derives, each with its first category."""
     places: dict[SemanticTemplate, tuple[str, int]] = {}
     matched: set[SemanticTemplate] = set()

@@ -101,7 +101,7 @@ class TemplateChecker:
         """Yield what is wrong with the slots of both sides, without expanding anything."""
         yield from self._slots_of_the_form_only(template)
         yield from self._wildcards_of_the_pattern_only(template)
-        yield from self._undefined(template)
+        yield from self._undefined_nonterminals(template)
 
     def _slots_of_the_form_only(self, template: SemanticTemplate) -> Iterator[Problem]:
         spoken = self.grammar.spoken(template.pattern)
@@ -134,7 +134,7 @@ class TemplateChecker:
                 "ignore this if intended",
             )
 
-    def _undefined(self, template: SemanticTemplate) -> Iterator[Problem]:
+    def _undefined_nonterminals(self, template: SemanticTemplate) -> Iterator[Problem]:
         for symbol in self.grammar.spoken(template.pattern):
             if isinstance(symbol, Nonterminal) and symbol.name not in self.grammar.rules:
                 yield warning_at(

@@ -51,7 +51,7 @@ def form_only(template: SemanticTemplate, grammar: Grammar, offset: int) -> Iter
     if at is None:
         return
     in_form = [place for place in places_in_form(template.form_text) if place.key == at.key]
-    for slot, rank in _produced(template, grammar, at.slot):
+    for slot, rank in _list_produced(template, grammar, at.slot):
         edits = [Edit(FORM, place.start, place.end, print_symbol(slot)) for place in in_form]
         yield candidate(f"Write {print_symbol(slot)}", edits, rank)
     said = {slot_key(slot) for slot in template.slots()}
@@ -66,7 +66,7 @@ def form_only(template: SemanticTemplate, grammar: Grammar, offset: int) -> Iter
 
 def in_place_of(template: SemanticTemplate, grammar: Grammar, at: Slot | None) -> Iterator[Slot]:
     """Yield what the pattern produces and could stand where ``at`` is, the most likely first."""
-    ranked = _produced(template, grammar, at)
+    ranked = _list_produced(template, grammar, at)
     yield from (slot for slot, _ in sorted(ranked, key=lambda pair: pair[1]))
 
 
@@ -76,7 +76,7 @@ def unlike(slot: Slot, other: Slot) -> float:
     return rank + (type(slot) is not type(other)) + (_class(slot) != _class(other)) / 2
 
 
-def _produced(
+def _list_produced(
     template: SemanticTemplate, grammar: Grammar, wanted: Slot | None
 ) -> Iterator[tuple[Slot, float]]:
     """Yield each slot that the pattern produces, bare, with its rank; those not in the form come first."""

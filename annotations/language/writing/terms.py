@@ -78,16 +78,16 @@ def misuse(
     application = parent if parent and parent.kind == "application" else span
     if application.kind != "application":
         return
-    yield from _other_predicates(form, application, predicates)
+    yield from _rename_predicate(form, application, predicates)
     if application.name not in predicates:
         return  # other arguments would not make it known
-    yield from _exchanged(form, application)
-    yield from _exchanged_slots(template)
-    yield from _fewer(form, application)
-    yield from _more(form, application, template, grammar)
+    yield from _exchange_arguments(form, application)
+    yield from _exchange_slots(template)
+    yield from _remove_arguments(form, application)
+    yield from _add_arguments(form, application, template, grammar)
     for argument in application.children if is_head else (span,):
-        yield from _wrapped(form, argument, predicates)
-        yield from _unwrapped(form, argument)
+        yield from _wrap(form, argument, predicates)
+        yield from _unwrap(form, argument)
         for slot in list(in_place_of(template, grammar, None))[:MOST_SLOTS]:
             text = print_symbol(slot)
             edit = Edit(FORM, argument.start, argument.end, text)
@@ -100,7 +100,7 @@ def unbound(form_text: str, offset: int) -> Iterator[Candidate]:
     span = form.at(offset)
     if span is None or span.kind != "variable":
         return
-    bound = dict.fromkeys([*form.bound_around(span), *_bound(form)])
+    bound = dict.fromkeys([*form.bound_around(span), *_bound_variables(form)])
     for number, name in enumerate(bound):
         edits = [
             Edit(FORM, each.start, each.end, name)
@@ -109,7 +109,7 @@ def unbound(form_text: str, offset: int) -> Iterator[Candidate]:
         ]
         yield candidate(f"Write {name} for {span.name}", edits[:1], 0.1 + number / 10)
         yield candidate(f"Write {name} for every {span.name}", edits, 0.2 + number / 10)
-    inner = form.parent(span) if span.name not in _bound(form) else None
+    inner = form.parent(span) if span.name not in _bound_variables(form) else None
     while inner is not None:
         outer = form.parent(inner)
         run = [
@@ -122,7 +122,7 @@ def unbound(form_text: str, offset: int) -> Iterator[Candidate]:
         inner = outer
 
 
-def _bound(form: FormText) -> list[str]:
+def _bound_variables(form: FormText) -> list[str]:
     return [each.name for each in form.spans if each.kind == "abstraction"]
 
 
@@ -130,7 +130,7 @@ def _mentions(span: Span, name: str) -> bool:
     return any(each.kind == "variable" and each.name == name for each in span.walk())
 
 
-def _other_predicates(
+def _rename_predicate(
     form: FormText, application: Span, predicates: Mapping[str, Predicate]
 ) -> Iterator[Candidate]:
     """Rename the predicate, wherever it stands if nothing declares it."""
@@ -147,7 +147,7 @@ def _other_predicates(
         yield candidate(f"Write {other} for {name}", edits, rank + (name in predicates) / 2)
 
 
-def _exchanged(form: FormText, application: Span) -> Iterator[Candidate]:
+def _exchange_arguments(form: FormText, application: Span) -> Iterator[Candidate]:
     for one, other in combinations(application.children, 2):
         texts = form.of(one), form.of(other)
         edits = [
@@ -157,7 +157,7 @@ def _exchanged(form: FormText, application: Span) -> Iterator[Candidate]:
         yield candidate(f"Exchange {shorten(texts[0])} and {shorten(texts[1])}", edits, 0.2)
 
 
-def _exchanged_slots(template: SemanticTemplate) -> Iterator[Candidate]:
+def _exchange_slots(template: SemanticTemplate) -> Iterator[Candidate]:
     """Exchange two slots wherever the form has them."""
     places = places_in_form(template.form_text)
     texts = {place.key: template.form_text[place.start : place.end] for place in places}
@@ -168,14 +168,14 @@ def _exchanged_slots(template: SemanticTemplate) -> Iterator[Candidate]:
         yield candidate(label, edits, 0.25)
 
 
-def _fewer(form: FormText, application: Span) -> Iterator[Candidate]:
+def _remove_arguments(form: FormText, application: Span) -> Iterator[Candidate]:
     for argument in application.children:
         start = len(form.text[: argument.start].rstrip())
         label = f"Remove {shorten(form.of(argument))} from {application.name}"
         yield candidate(label, [Edit(FORM, start, argument.end, "")], 1.0)
 
 
-def _more(
+def _add_arguments(
     form: FormText, application: Span, template: SemanticTemplate, grammar: Grammar
 ) -> Iterator[Candidate]:
     """Add a variable in front or a slot behind, for what takes more arguments."""
@@ -193,7 +193,7 @@ def _more(
             )
 
 
-def _wrapped(
+def _wrap(
     form: FormText, argument: Span, predicates: Mapping[str, Predicate]
 ) -> Iterator[Candidate]:
     """Describe a value by a λ: ``{kobject}`` becomes ``(λ$1:e (is_a $1 {kobject}))``."""
@@ -214,8 +214,8 @@ def _wrapped(
         yield candidate(f"Write {shorten(whole, 40)}", [edit], 0.4 + number / 100)
 
 
-def _unwrapped(form: FormText, argument: Span) -> Iterator[Candidate]:
-    """Take the value out of its description: the other way of ``_wrapped``."""
+def _unwrap(form: FormText, argument: Span) -> Iterator[Candidate]:
+    """Take the value out of its description: the other way of ``_wrap``."""
     if argument.kind != "abstraction" or len(argument.children) != 1:
         return
     for value in argument.children[0].children:

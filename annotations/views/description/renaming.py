@@ -33,9 +33,9 @@ def rename_row(request: HttpRequest, world: World, kind: str, pk: int) -> HttpRe
     if request.method == "POST" and form.is_valid():
         try:
             touched = _rename(request, row, form)
-        except Overtaken as clash:
+        except Overtaken as error:
             form.add_error(
-                None, f"{clash.args[0].split('.')[0]}. Look at the list again, then rename."
+                None, f"{error.args[0].split('.')[0]}. Look at the list again, then rename."
             )
         else:
             messages.success(request, f"Renamed in {_counts(touched)}.")

@@ -76,10 +76,10 @@ def _save_edit(request: HttpRequest, row: Comment, form: CommentEditForm) -> boo
         return False
     try:
         change_comment(row, form.cleaned_data["text"], form.cleaned_data["version"])
-    except EditedElsewhere as clash:
-        form.add_error("text", f"{clash} What it says now stands below; save again to replace it.")
+    except EditedElsewhere as error:
+        form.add_error("text", f"{error} What it says now stands below; save again to replace it.")
         form.data = form.data.copy()
-        form.data["version"] = clash.current.version
+        form.data["version"] = error.current.version
         return False
     return True
 

@@ -34,8 +34,8 @@ def delete_row(request: HttpRequest, world: World, kind: str, pk: int) -> HttpRe
         return render(request, "annotations/delete.html", context)
     try:
         delete(row, request.user, number_in(request.POST.get("version", "")) or 0)
-    except Overtaken as clash:
-        messages.error(request, f"Not deleted. {clash}")
+    except Overtaken as error:
+        messages.error(request, f"Not deleted. {error}")
         return here
     messages.success(request, f"Deleted. “Deleted {of_kind.plural}” below the list brings it back.")
     return redirect(of_kind.list_page, world=world.name)

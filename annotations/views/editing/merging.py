@@ -79,18 +79,18 @@ def merge_page(
         "form": form,
         "clash": clash,
         "changed": [(form[name], each, _sides(form, each, by)) for name, each in changed.items()],
-        "others": [field for field in _written(form) if field.name not in changed],
+        "others": [field for field in _fields_to_fill_in(form) if field.name not in changed],
     }
     return render(request, "annotations/merge.html", context, status=409)
 
 
-def _written(form: forms.Form) -> list[forms.BoundField]:
+def _fields_to_fill_in(form: forms.Form) -> list[forms.BoundField]:
     """Return the fields that a person fills in."""
     return [field for field in form.visible_fields() if not field.field.disabled]
 
 
 def _merge(form: forms.Form, clash: Overtaken, shown: Shown) -> dict[str, MergedField]:
-    fields = _written(form)
+    fields = _fields_to_fill_in(form)
     mine = {field.name: _as_posted(field, field.value()) for field in fields}
     theirs = _posted_values(fields, shown(clash.current))
     base = _posted_values(fields, shown(clash.base.instance)) if clash.base else None

@@ -153,8 +153,8 @@ def queue_settle(request: HttpRequest, world: World, pk: int) -> HttpResponse:
         return _item_page(request, item, form, status=422)
     try:
         answer(item.utterance, by=request.user, version=item.utterance.version, **form.decision)
-    except (AnsweredMeanwhile, ValueError) as refusal:
-        messages.error(request, str(refusal))
+    except (AnsweredMeanwhile, ValueError) as error:
+        messages.error(request, str(error))
         return redirect("queue_item", world=world.name, pk=pk)
     messages.success(request, f"Settled: {item.title[:80]}")
     return redirect("queue", world=world.name)
@@ -216,8 +216,8 @@ def queue_act(request: HttpRequest, world: World, pk: int) -> HttpResponse:
             take(request.user, item)
             return redirect(page_of(item))
         messages.success(request, _act(request, item, step))
-    except (NotForThem, NoLongerYours) as refusal:
-        messages.error(request, str(refusal))
+    except (NotForThem, NoLongerYours) as error:
+        messages.error(request, str(error))
     return redirect("queue_item", world=world.name, pk=pk)
 
 

@@ -32,13 +32,13 @@ class Group:
 @world_view(Duty.ANNOTATE, WRITE)
 def template_consequences(request: HttpRequest, world: World) -> HttpResponse:
     """Show what saving the typed template would do, over the stored one that ``template`` names."""
-    row = _stored(world, request.GET.get("template", ""))
+    row = _find_row(world, request.GET.get("template", ""))
     expected = _consequences(world, TemplateForm(world, request.POST), row)
     context = {"expected": expected, "groups": groups_of(expected) if expected else []}
     return render(request, "annotations/_template_consequences.html", context)
 
 
-def _stored(world: World, key: str) -> SemanticTemplate | None:
+def _find_row(world: World, key: str) -> SemanticTemplate | None:
     """Return None for no key. Raises Http404 where the world has no template of that key."""
     if not key:
         return None

@@ -66,8 +66,8 @@ def template_repair(request: HttpRequest, world: World, pk: int) -> HttpResponse
         else:
             delete(row, request.user, version)
             messages.success(request, "Deleted. You can restore it from its history.")
-    except Overtaken as clash:
-        messages.error(request, f"{clash} Nothing was changed here.")
+    except Overtaken as error:
+        messages.error(request, f"{error} Nothing was changed here.")
     except ValidationError as error:
         messages.error(request, f"Not changed. {' '.join(error.messages)}")
     asked = request.POST.get("list", "")

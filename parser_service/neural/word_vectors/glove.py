@@ -32,7 +32,9 @@ def read_glove(path: Path, wanted: Collection[str], size: int) -> dict[str, Tens
     with _open(path) as stream:
         for number, line in enumerate(_lines(stream, path), start=1):
             if line.count(b" ") != size:
-                raise _malformed(path, number, f"has {line.count(b' ')} numbers, not {size}", size)
+                raise _malformed_line(
+                    path, number, f"has {line.count(b' ')} numbers, not {size}", size
+                )
             word, _, numbers = line.partition(b" ")
             text = word.decode("utf-8", errors="replace")
             if text in wanted:
@@ -60,11 +62,11 @@ def _vector(numbers: bytes, path: Path, line: int, size: int) -> list[float]:
     except ValueError:
         values = []
     if not values or not all(map(isfinite, values)):
-        raise _malformed(path, line, "has something that is not a number", size)
+        raise _malformed_line(path, line, "has something that is not a number", size)
     return values
 
 
-def _malformed(path: Path, line: int, fault: str, size: int) -> ValueError:
+def _malformed_line(path: Path, line: int, fault: str, size: int) -> ValueError:
     return ValueError(
         f"{path}, line {line}: a line is a word and {size} numbers, but this one {fault}. Get "
         f"GloVe's file again, or set embedding_size to the width of its vectors."
