@@ -8,9 +8,10 @@ from django import forms
 from django.http import HttpRequest, QueryDict
 
 from annotations.editing.once import new_key
-from annotations.editing.template_check import MOST_CHARACTERS, Checked, check_template
+from annotations.editing.template_check import Checked, check_template
 from annotations.language.decoding import decode
 from annotations.language.errors import LanguageError
+from annotations.language.limits import MAX_FORM, MAX_PATTERN
 from annotations.models import Origin, Production, SemanticTemplate, TaskCategory, World
 from annotations.models.comments import MOST_CHARACTERS as MOST_CHARACTERS_OF_COMMENT
 from annotations.models.splits import criterion_choices
@@ -30,12 +31,12 @@ class TemplateForm(forms.Form):
 
     task_category = forms.ModelChoiceField(queryset=None, empty_label=None)
     pattern = forms.CharField(
-        max_length=MOST_CHARACTERS,
+        max_length=MAX_PATTERN,
         widget=forms.Textarea(attrs={"rows": 2, "data-editor": "pattern"}),
     )
     form = forms.CharField(
         label="Logical form",
-        max_length=MOST_CHARACTERS,
+        max_length=MAX_FORM,
         widget=forms.Textarea(attrs={"rows": 4, "data-editor": "form"}),
     )
     status = forms.ChoiceField(

@@ -36,7 +36,7 @@ def table_of(about: str, splits: str, answers: Callable[[Trained], Iterator[dict
     """
     parser = argparse.ArgumentParser(description=about)
     parser.add_argument("--splits", default=splits, help="their numbers, separated by commas")
-    parser.add_argument("--setting", default=SETTINGS[0], choices=SETTINGS)
+    parser.add_argument("--train-test", default=SETTINGS[0], choices=SETTINGS)
     given = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         site = Site(Path(folder) / "var")
@@ -45,7 +45,7 @@ def table_of(about: str, splits: str, answers: Callable[[Trained], Iterator[dict
         return pd.DataFrame(
             {"split": split, **row}
             for split in map(int, given.splits.split(","))
-            for row in answers(_train(split, given.setting))
+            for row in answers(_train(split, given.train_test))
         )
 
 

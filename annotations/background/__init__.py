@@ -19,9 +19,8 @@ from annotations.background.fencing import (
     is_cancel_requested,
     log,
     record_progress,
-    write,
 )
-from annotations.background.kinds import Kind, carry_out, claim_in_turn, kinds, register
+from annotations.background.kinds import carry_out, claim_in_turn, kinds, register
 from annotations.background.lease_watch import LeaseWatch
 from annotations.background.leasing import Lease, Stopped
 from annotations.background.outages import DatabaseAway, outlasting
@@ -42,7 +41,6 @@ __all__ = [
     "TASK",
     "DatabaseAway",
     "Fenced",
-    "Kind",
     "Lease",
     "LeaseWatch",
     "Stopped",
@@ -71,5 +69,4 @@ __all__ = [
     "wake_for_forgotten",
     "wake_for_next",
     "while_held",
-    "write",
 ]

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from annotations.editing.template_check import MOST_CHARACTERS
 from annotations.language.errors import LanguageError
 from annotations.language.forms import to_template
 from annotations.language.grammar import CHECK_STEPS, Budget, passages
+from annotations.language.limits import MAX_PATTERN
 from annotations.language.predicates import gloss
 from annotations.language.suggesting import (
     FormSuggester,
@@ -96,7 +96,7 @@ def suggest_forms(
     world: World, category: StoredCategory | None, pattern: str
 ) -> list[SuggestedForm]:
     """Return forms for a pattern, the most likely first; none for a pattern that cannot be read."""
-    if category is None or not pattern.strip() or len(pattern) > MOST_CHARACTERS:
+    if category is None or not pattern.strip() or len(pattern) > MAX_PATTERN:
         return []
     declared = predicates_of(world)
     try:

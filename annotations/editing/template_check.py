@@ -7,8 +7,9 @@ from itertools import islice
 
 from annotations.editing.template_problems import StoredRemark, as_stored, from_stored
 from annotations.generation.kept_expansions import checker_of
-from annotations.language.errors import LanguageError, Position, Problem, error_at
+from annotations.language.errors import LanguageError, Position, Problem
 from annotations.language.grammar import CHECK_STEPS, Budget, Grammar
+from annotations.language.limits import MAX_FORM, MAX_PATTERN, require_length
 from annotations.language.predicates import gloss
 from annotations.language.templates import (
     SemanticTemplate,
@@ -21,7 +22,7 @@ from annotations.rows.from_rows import grammar_of, predicates_of
 
 MOST_COMMANDS = 2_000  # looked at to count and sample what a template makes
 SHOWN_COMMANDS = 12
-MOST_CHARACTERS = 5_000  # of a pattern, and of a form
+MOST_CHARACTERS = {"pattern": MAX_PATTERN, "form": MAX_FORM}
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,13 +84,11 @@ def recall_check(world: World, row: StoredTemplate) -> Checked:
 
 
 def _too_long(source: str, text: str) -> Problem | None:
-    if len(text) <= MOST_CHARACTERS:
-        return None
-    return error_at(
-        Position(source),
-        f"the {source} has {len(text):,} characters",
-        f"use at most {MOST_CHARACTERS:,}",
-    )
+    try:
+        require_length(text, source, MOST_CHARACTERS[source], Position(source))
+    except LanguageError as error:
+        return error.problem
+    return None
 
 
 def _with_commands(checked: Checked, checker: TemplateChecker) -> Checked:

@@ -19,7 +19,6 @@ from annotations.importing.worlds import locked_world, require_world_name
 from annotations.language.errors import LanguageError
 from annotations.language.predicates import Predicate
 from annotations.models import Entity, Production, User, World
-from annotations.rows.composition import own_template_source
 from annotations.rows.from_rows import predicates_of, task_categories
 
 
@@ -115,7 +114,7 @@ def _report(world_name: str, generator: Generator) -> ImportReport:
         world_name,
         productions={name: len(file.productions) for name, file in texts.grammars.files.items()},
         templates={
-            each.name: len(texts.templates.get(own_template_source(each), ()))
+            each.name: len(texts.templates.get(each.own_template_file, ()))
             for each in texts.compositions
         },
         entities=dict(Counter(each.entity_class for each in generator.ontology.entities)),

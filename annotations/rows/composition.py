@@ -30,13 +30,8 @@ def template_sources(category: Composition) -> list[str]:
 
     Its own is named even where the files have none yet, so that what people write has a place.
     """
-    own = own_template_source(category)
+    own = category.own_template_file
     return [name for name in category.template_files if name != own] + [own]
-
-
-def own_template_source(category: Composition) -> str:
-    """Return ``X_semantics.txt`` for the category of ``X_grammar.txt`` or ``X.txt``, spelled as it is there."""
-    return category.own_template_file
 
 
 def owners(categories: Iterable[Composition]) -> dict[str, str]:
@@ -44,7 +39,7 @@ def owners(categories: Iterable[Composition]) -> dict[str, str]:
     names: dict[str, str] = {}
     for category in categories:
         names[category.grammar_file] = category.name
-        names[own_template_source(category)] = category.name
+        names[category.own_template_file] = category.name
     return names
 
 

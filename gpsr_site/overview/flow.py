@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from annotations.language.english import say_count
 from gpsr_site.overview.counts import Counts
-from gpsr_site.words import say_count
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,9 +23,9 @@ class Stage:
 
 def stages(counts: Counts) -> list[Stage]:
     """List the nouns in the order in which people make them."""
-    ontology_note = say_count(counts.ontology_problems, "remark")
-    grammar_note = say_count(counts.grammar_problems, "remark")
-    forms = say_count(counts.forms, "form") or "0 forms"
+    ontology_note = _remarks(counts.ontology_problems)
+    grammar_note = _remarks(counts.grammar_problems)
+    forms = say_count(counts.forms, "form")
     return [
         Stage("Ontology", "ontology", counts.entities, "entities", "describe", ontology_note),
         Stage("Grammar", "grammar", counts.productions, "productions", "annotate", grammar_note),
@@ -36,6 +36,10 @@ def stages(counts: Counts) -> list[Stage]:
         Stage("Runs", "runs", counts.runs, "started", "evaluate", _active(counts)),
         Stage("Results", "results", counts.evaluated, "evaluated"),
     ]
+
+
+def _remarks(count: int) -> str:
+    return say_count(count, "remark") if count else ""
 
 
 def _unready(counts: Counts) -> str:

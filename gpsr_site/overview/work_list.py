@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 from django.urls import reverse
 
+from annotations.language.english import say_count
 from annotations.models import Duty, Job, World
 from annotations.models.worlds import Role
 from gpsr_site.overview.best_runs import BestRuns
 from gpsr_site.overview.counts import Counts
-from gpsr_site.words import say_count
 from gpsr_site.workers import Workers
 
 # The duty that makes somebody one of a role, the role with most to decide first.

@@ -125,10 +125,7 @@ def risk_coverage(
         ValueError: there is no example, or a score is not a number.
     """
     values = np.asarray(scores, dtype=float)
-    if not len(values):
-        raise ValueError("There is no answer to draw a curve of.")
-    if np.isnan(values).any():
-        raise ValueError("A score is not a number.")
+    _require_numbers(values)
     unknown = np.zeros(len(values), dtype=bool) if is_unknown is None else is_unknown
     order = np.argsort(-values, kind="stable")
     ranked, right, refusable = values[order], correct[order], unknown[order]
@@ -152,6 +149,13 @@ def risk_coverage(
         area=_area(~right, last),
         best_area=_area(np.sort(~right), np.arange(len(right))),
     )
+
+
+def _require_numbers(scores: Floats) -> None:
+    if not len(scores):
+        raise ValueError("There is no answer to draw a curve of.")
+    if np.isnan(scores).any():
+        raise ValueError("A score is not a number.")
 
 
 def _area(wrong: Bools, last: Ints) -> float:

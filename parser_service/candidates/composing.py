@@ -19,14 +19,14 @@ NOW, GRAMMAR, NEIGHBOUR = "the answer now", "grammar", "nearest utterance"
 
 
 @dataclass(frozen=True, slots=True)
-class CandidateForm:
+class LabelCandidate:
     """A form in canonical corpus text, and which sources give it, the first one first."""
 
     form: str
     sources: tuple[str, ...]
 
 
-def candidates_for(utterance: Utterance) -> tuple[CandidateForm, ...]:
+def candidates_for(utterance: Utterance) -> tuple[LabelCandidate, ...]:
     """Return up to nine forms for ``utterance``, each once, the most likely first.
 
     The form that it has comes first, then what the grammar derives, which is certain for a generated
@@ -46,7 +46,7 @@ def candidates_for(utterance: Utterance) -> tuple[CandidateForm, ...]:
         if is_label(form):
             sources.setdefault(form, []).append(source)
     first = list(sources.items())[:MOST_CANDIDATES]
-    return tuple(CandidateForm(form, tuple(dict.fromkeys(names))) for form, names in first)
+    return tuple(LabelCandidate(form, tuple(dict.fromkeys(names))) for form, names in first)
 
 
 def is_label(form: str) -> bool:

@@ -5,19 +5,16 @@ from __future__ import annotations
 from annotations.language.agreement.estimates import (
     Agreement,
     Distances,
-    Estimate,
     alpha,
     exact_match,
     gwet_ac1,
     measure,
 )
-from annotations.language.agreement.ratings import Ratings, read_ratings
+from annotations.language.agreement.ratings import read_ratings
 
 __all__ = [
     "Agreement",
     "Distances",
-    "Estimate",
-    "Ratings",
     "alpha",
     "exact_match",
     "gwet_ac1",

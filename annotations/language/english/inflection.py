@@ -18,8 +18,8 @@ def plural(noun: str) -> str:
 
 
 def say_count(count: int, noun: str) -> str:
-    """Return ``0 arguments``, ``1 argument`` or ``2 arguments``."""
-    return f"{count} {noun if count == 1 else plural(noun)}"
+    """Return ``0 arguments``, ``1 argument`` or ``2,000 arguments``."""
+    return f"{count:,} {noun if count == 1 else plural(noun)}"
 
 
 def spellings(noun: str) -> Iterator[str]:

@@ -12,7 +12,6 @@ from annotations.language.grammar.folder import (
     apply_alias,
     is_grammar_name,
     read_grammar_files,
-    resolve_import,
 )
 from annotations.language.grammar.grammar import ROOT, Grammar
 from annotations.language.grammar.graph import MAX_WORDS
@@ -53,5 +52,4 @@ __all__ = [
     "read_production",
     "read_productions",
     "readable",
-    "resolve_import",
 ]

@@ -4,20 +4,15 @@ from __future__ import annotations
 
 from annotations.language.templates.chart import TemplateChart
 from annotations.language.templates.consequences import (
-    ChangedForm,
     Consequences,
-    Duplicate,
     GeneratedState,
-    Shadowed,
     consequences_of,
 )
 from annotations.language.templates.expansion import (
     DEFAULT_LIMIT,
     Conflict,
     Expansion,
-    ExpansionsOf,
     Generated,
-    LeftOut,
     TaskCategory,
     generate,
     generation_size,
@@ -44,22 +39,17 @@ from annotations.language.templates.templates import (
 
 __all__ = [
     "DEFAULT_LIMIT",
-    "ChangedForm",
     "Composition",
     "Conflict",
     "Consequences",
     "Derivation",
-    "Duplicate",
     "Expansion",
-    "ExpansionsOf",
     "Generated",
     "GeneratedState",
     "GeneratorFolder",
     "GrammarExpansions",
     "Kept",
-    "LeftOut",
     "SemanticTemplate",
-    "Shadowed",
     "TaskCategory",
     "TemplateChart",
     "TemplateChecker",

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from annotations.language.writing.completion import Completion, Completions, completions
-from annotations.language.writing.correspondence import Correspondence, correspondences
+from annotations.language.writing.completion import completions
+from annotations.language.writing.correspondence import correspondences
 from annotations.language.writing.formatting import format_form, format_pattern
 from annotations.language.writing.left_out import Usage, usage_of
 from annotations.language.writing.offering import with_repairs
 from annotations.language.writing.trial import Sides
 
 __all__ = [
-    "Completion",
-    "Completions",
-    "Correspondence",
     "Sides",
     "Usage",
     "completions",

@@ -6,7 +6,13 @@ import re
 from collections.abc import Iterator
 
 from annotations.language.errors import Edit
-from annotations.language.writing.candidates import FORM, Candidate, candidate, insert, shorten
+from annotations.language.writing.candidates import (
+    FORM,
+    RepairCandidate,
+    candidate,
+    insert,
+    shorten,
+)
 
 MOST_PLACES = 80  # tried for one bracket
 MOST_WORDS = 4  # that a quotation mark or a brace is closed after
@@ -15,7 +21,7 @@ _FORM_TOKEN = re.compile(r'"[^"]*"|\{[^{}]*\}|[()]|[^\s(){}"]+|["{}]')
 _PATTERN_TOKEN = re.compile(r"\{[^{}]*\}|[()|]|(?:[^\s(){}|,\\]|\\.)+|[{},\\]")
 
 
-def parentheses(text: str, source: str) -> Iterator[Candidate]:
+def parentheses(text: str, source: str) -> Iterator[RepairCandidate]:
     """Yield candidates that add or remove one parenthesis, if the text has too many of one kind."""
     pattern = _FORM_TOKEN if source == FORM else _PATTERN_TOKEN
     tokens = list(pattern.finditer(text))[:MOST_PLACES]
@@ -34,7 +40,7 @@ def parentheses(text: str, source: str) -> Iterator[Candidate]:
 
 def _closings(
     text: str, source: str, tokens: list[re.Match[str]], missing: int
-) -> Iterator[Candidate]:
+) -> Iterator[RepairCandidate]:
     """Close one parenthesis after each token, and the others at the end of the text."""
     end = len(text.rstrip())
     rest = [insert(source, end, ")" * (missing - 1))] * (missing > 1)
@@ -51,7 +57,7 @@ def _closings(
         )
 
 
-def _openings(source: str, tokens: list[re.Match[str]], missing: int) -> Iterator[Candidate]:
+def _openings(source: str, tokens: list[re.Match[str]], missing: int) -> Iterator[RepairCandidate]:
     for token in tokens:
         if token.group() not in (")", "|"):
             yield candidate(
@@ -61,12 +67,12 @@ def _openings(source: str, tokens: list[re.Match[str]], missing: int) -> Iterato
             )
 
 
-def _removal(token: re.Match[str], source: str, rank: float) -> Candidate:
+def _removal(token: re.Match[str], source: str, rank: float) -> RepairCandidate:
     label = f"Remove the {token.group()} at character {token.start() + 1}"
     return candidate(label, [Edit(source, token.start(), token.end(), "")], rank)
 
 
-def moved_parentheses(text: str, offset: int) -> Iterator[Candidate]:
+def moved_parentheses(text: str, offset: int) -> Iterator[RepairCandidate]:
     """Yield candidates that move a ) from before ``offset`` to behind it: something was closed too early."""
     tokens = list(_FORM_TOKEN.finditer(text))[:MOST_PLACES]
     before = [each for each in tokens if each.group() == ")" and each.start() < offset]
@@ -77,7 +83,7 @@ def moved_parentheses(text: str, offset: int) -> Iterator[Candidate]:
             yield candidate("Close the λ later", edits, 0.45 + late.start() / 1e5)
 
 
-def marks(text: str, source: str, offset: int) -> Iterator[Candidate]:
+def marks(text: str, source: str, offset: int) -> Iterator[RepairCandidate]:
     """Yield candidates that close, open or remove the quotation mark or brace at ``offset``."""
     mark = text[offset : offset + 1]
     closing = {'"': '"', "{": "}"}.get(mark)

@@ -14,16 +14,16 @@ MOST_UNLIKE = 0.6  # names that differ more are not offered for one another
 
 
 @dataclass(frozen=True, slots=True)
-class Candidate:
+class RepairCandidate:
     """A repair that has not been tried; the lowest ``rank`` is the most likely among equally good ones."""
 
     repair: Repair
     rank: float = 0.0
 
 
-def candidate(label: str, edits: Iterable[Edit], rank: float = 0.0) -> Candidate:
+def candidate(label: str, edits: Iterable[Edit], rank: float = 0.0) -> RepairCandidate:
     """Return a candidate that is called ``label``."""
-    return Candidate(Repair(label, tuple(edits)), rank)
+    return RepairCandidate(Repair(label, tuple(edits)), rank)
 
 
 def insert(source: str, at: int, text: str) -> Edit:

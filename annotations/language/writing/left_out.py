@@ -17,7 +17,13 @@ from annotations.language.symbols import (
     slot_key,
 )
 from annotations.language.templates import SemanticTemplate, bare
-from annotations.language.writing.candidates import FORM, Candidate, candidate, insert, shorten
+from annotations.language.writing.candidates import (
+    FORM,
+    RepairCandidate,
+    candidate,
+    insert,
+    shorten,
+)
 from annotations.language.writing.terms import FormText
 
 MOST_USES = 4  # of one class that are tried
@@ -60,7 +66,7 @@ def usage_of(templates: Sequence[SemanticTemplate], grammar: Grammar) -> Usage:
 
 def left_out(
     template: SemanticTemplate, usage: Callable[[], Usage], grammar: Grammar, offset: int
-) -> Iterator[Candidate]:
+) -> Iterator[RepairCandidate]:
     """Yield candidates for the slots at ``offset`` of the pattern, which the form does not mention."""
     wanted = dict(_missing(template, grammar, offset))
     if not wanted:

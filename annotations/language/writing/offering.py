@@ -14,7 +14,7 @@ from itertools import islice
 from annotations.language.errors import LanguageError, Offsets, Problem, Repair
 from annotations.language.templates import SemanticTemplate, TemplateChecker
 from annotations.language.writing import brackets, slots, terms, words
-from annotations.language.writing.candidates import FORM, PATTERN, Candidate
+from annotations.language.writing.candidates import FORM, PATTERN, RepairCandidate
 from annotations.language.writing.left_out import Usage, left_out, no_usage
 from annotations.language.writing.trial import Sides, Trial
 
@@ -71,7 +71,7 @@ class _Offering:
             if self.template is None
             else self._of_readable(self.template, source, offset)
         )
-        ranked: dict[Sides, tuple[Rank, Candidate]] = {}
+        ranked: dict[Sides, tuple[Rank, RepairCandidate]] = {}
         most = MOST_READ // (len(self.sides.pattern) + len(self.sides.form) + 1)
         for each in islice(candidates, min(most, MOST_TRIED)):
             after = self.sides.after(each.repair)
@@ -92,7 +92,7 @@ class _Offering:
         )
         return replace(repair, edits=tuple(edits))
 
-    def _of_unreadable(self, source: str, offset: int) -> Iterator[Candidate]:
+    def _of_unreadable(self, source: str, offset: int) -> Iterator[RepairCandidate]:
         sides = self.sides
         text = sides.text(source)
         yield from words.wildcards(((PATTERN, sides.pattern), (FORM, sides.form)), source, offset)
@@ -110,7 +110,7 @@ class _Offering:
 
     def _of_readable(
         self, template: SemanticTemplate, source: str, offset: int
-    ) -> Iterator[Candidate]:
+    ) -> Iterator[RepairCandidate]:
         grammar = self.trial.grammar
         if source == PATTERN:
             yield from slots.undefined(template, grammar, offset)
@@ -120,7 +120,9 @@ class _Offering:
             yield from slots.form_only(template, grammar, offset)
             yield from terms.misuse(template, self.trial.predicates, grammar, offset)
 
-    def _try(self, problem: Problem, offset: int, each: Candidate, sides: Sides) -> Rank | None:
+    def _try(
+        self, problem: Problem, offset: int, each: RepairCandidate, sides: Sides
+    ) -> Rank | None:
         """Return how good the template is after a repair; None where the repair does not help."""
         _, after = self.trial.look(sides)
         key = _identity(problem)
@@ -140,7 +142,7 @@ class _Offering:
         self,
         key: tuple[str, str],
         offset: int,
-        each: Candidate,
+        each: RepairCandidate,
         sides: Sides,
     ) -> Rank | None:
         """Accept what lets the side be read, or moves its first error further on."""
@@ -156,7 +158,7 @@ class _Offering:
         return (bool(still), _errors(after), len(after), outside, each.rank, each.repair.label)
 
     def _rank_of_membership(
-        self, each: Candidate, sides: Sides, after: tuple[Problem, ...]
+        self, each: RepairCandidate, sides: Sides, after: tuple[Problem, ...]
     ) -> Rank | None:
         """Accept what brings commands into the grammar: the trial's problems do not say."""
         outside = self.trial.outside(sides)
@@ -165,9 +167,9 @@ class _Offering:
         return (False, _errors(after), len(after), outside, each.rank, each.repair.label)
 
 
-def _best(ranked: Iterable[tuple[Rank, Candidate]]) -> list[Candidate]:
+def _best(ranked: Iterable[tuple[Rank, RepairCandidate]]) -> list[RepairCandidate]:
     """Return the best candidates, each label once, without those that are much less likely than the first."""
-    best: dict[str, Candidate] = {}
+    best: dict[str, RepairCandidate] = {}
     for _, each in sorted(ranked, key=lambda pair: pair[0]):
         if not best or each.rank <= next(iter(best.values())).rank + MOST_BEHIND:
             best.setdefault(each.repair.label, each)

@@ -19,7 +19,7 @@ from annotations.language.templates import SemanticTemplate, bare
 from annotations.language.writing.candidates import (
     FORM,
     PATTERN,
-    Candidate,
+    RepairCandidate,
     candidate,
     distance,
     nearest,
@@ -28,7 +28,9 @@ from annotations.language.writing.candidates import (
 Slot = Nonterminal | Wildcard
 
 
-def undefined(template: SemanticTemplate, grammar: Grammar, offset: int) -> Iterator[Candidate]:
+def undefined(
+    template: SemanticTemplate, grammar: Grammar, offset: int
+) -> Iterator[RepairCandidate]:
     """Yield candidates for the nonterminal at ``offset`` of the pattern: defined ones with like names."""
     at = _at(places_in_pattern(template.pattern_text), offset)
     if at is None or not isinstance(at.slot, Nonterminal):
@@ -42,7 +44,9 @@ def undefined(template: SemanticTemplate, grammar: Grammar, offset: int) -> Iter
         yield candidate(f"Write ${name}", edits, rank)
 
 
-def form_only(template: SemanticTemplate, grammar: Grammar, offset: int) -> Iterator[Candidate]:
+def form_only(
+    template: SemanticTemplate, grammar: Grammar, offset: int
+) -> Iterator[RepairCandidate]:
     """Yield candidates for the slot at ``offset`` of the form, which the pattern never produces.
 
     The form takes a slot of the pattern in its place, or the pattern takes the form's.

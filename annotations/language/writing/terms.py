@@ -15,7 +15,7 @@ from annotations.language.symbols import places_in_form, print_symbol
 from annotations.language.templates import SemanticTemplate
 from annotations.language.writing.candidates import (
     FORM,
-    Candidate,
+    RepairCandidate,
     candidate,
     insert,
     nearest,
@@ -67,7 +67,7 @@ def misuse(
     predicates: Mapping[str, Predicate],
     grammar: Grammar,
     offset: int,
-) -> Iterator[Candidate]:
+) -> Iterator[RepairCandidate]:
     """Yield candidates for the application, or the argument of one, at ``offset`` of the form."""
     form = FormText(template.form_text)
     span = form.at(offset)
@@ -94,7 +94,7 @@ def misuse(
             yield candidate(f"Write {text} for {shorten(form.of(argument))}", [edit], 1.2)
 
 
-def unbound(form_text: str, offset: int) -> Iterator[Candidate]:
+def unbound(form_text: str, offset: int) -> Iterator[RepairCandidate]:
     """Yield candidates for the variable at ``offset``, which no λ binds."""
     form = FormText(form_text)
     span = form.at(offset)
@@ -132,7 +132,7 @@ def _mentions(span: Span, name: str) -> bool:
 
 def _rename_predicate(
     form: FormText, application: Span, predicates: Mapping[str, Predicate]
-) -> Iterator[Candidate]:
+) -> Iterator[RepairCandidate]:
     """Rename the predicate, wherever it stands if nothing declares it."""
     name = application.name
     same = [
@@ -147,7 +147,7 @@ def _rename_predicate(
         yield candidate(f"Write {other} for {name}", edits, rank + (name in predicates) / 2)
 
 
-def _exchange_arguments(form: FormText, application: Span) -> Iterator[Candidate]:
+def _exchange_arguments(form: FormText, application: Span) -> Iterator[RepairCandidate]:
     for one, other in combinations(application.children, 2):
         texts = form.of(one), form.of(other)
         edits = [
@@ -157,7 +157,7 @@ def _exchange_arguments(form: FormText, application: Span) -> Iterator[Candidate
         yield candidate(f"Exchange {shorten(texts[0])} and {shorten(texts[1])}", edits, 0.2)
 
 
-def _exchange_slots(template: SemanticTemplate) -> Iterator[Candidate]:
+def _exchange_slots(template: SemanticTemplate) -> Iterator[RepairCandidate]:
     """Exchange two slots wherever the form has them."""
     places = places_in_form(template.form_text)
     texts = {place.key: template.form_text[place.start : place.end] for place in places}
@@ -168,7 +168,7 @@ def _exchange_slots(template: SemanticTemplate) -> Iterator[Candidate]:
         yield candidate(label, edits, 0.25)
 
 
-def _remove_arguments(form: FormText, application: Span) -> Iterator[Candidate]:
+def _remove_arguments(form: FormText, application: Span) -> Iterator[RepairCandidate]:
     for argument in application.children:
         start = len(form.text[: argument.start].rstrip())
         label = f"Remove {shorten(form.of(argument))} from {application.name}"
@@ -177,7 +177,7 @@ def _remove_arguments(form: FormText, application: Span) -> Iterator[Candidate]:
 
 def _add_arguments(
     form: FormText, application: Span, template: SemanticTemplate, grammar: Grammar
-) -> Iterator[Candidate]:
+) -> Iterator[RepairCandidate]:
     """Add a variable in front or a slot behind, for what takes more arguments."""
     for name in form.bound_around(application)[:2]:
         edit = insert(FORM, application.name_end, f" {name}")
@@ -195,7 +195,7 @@ def _add_arguments(
 
 def _wrap(
     form: FormText, argument: Span, predicates: Mapping[str, Predicate]
-) -> Iterator[Candidate]:
+) -> Iterator[RepairCandidate]:
     """Describe a value by a λ: ``{kobject}`` becomes ``(λ$1:e (is_a $1 {kobject}))``."""
     variable, text = form.new_variable(), form.of(argument)
     descriptions = [
@@ -214,7 +214,7 @@ def _wrap(
         yield candidate(f"Write {shorten(whole, 40)}", [edit], 0.4 + number / 100)
 
 
-def _unwrap(form: FormText, argument: Span) -> Iterator[Candidate]:
+def _unwrap(form: FormText, argument: Span) -> Iterator[RepairCandidate]:
     """Take the value out of its description: the other way of ``_wrap``."""
     if argument.kind != "abstraction" or len(argument.children) != 1:
         return

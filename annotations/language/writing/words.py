@@ -19,7 +19,7 @@ from annotations.language.templates import SemanticTemplate
 from annotations.language.writing.candidates import (
     FORM,
     PATTERN,
-    Candidate,
+    RepairCandidate,
     candidate,
     distance,
     insert,
@@ -33,7 +33,7 @@ _BOUND = re.compile(r"(λ|lambda\s)\s*(\$\d+)(?!\s*:?\s*[^\W\d])")
 _BINDER = re.compile(r"\(\s*([^\s(){}$\"]*)\s*(\$\d+)\s*[:.]")
 
 
-def in_form(form: str, pattern: str, offset: int) -> Iterator[Candidate]:
+def in_form(form: str, pattern: str, offset: int) -> Iterator[RepairCandidate]:
     """Yield candidates for the word at ``offset`` of a form, where it is not allowed."""
     yield from _bare_word(form, pattern, offset)
     for match in _BOUND.finditer(form):
@@ -48,7 +48,7 @@ def in_form(form: str, pattern: str, offset: int) -> Iterator[Candidate]:
         yield candidate("Remove the commas", [Edit(FORM, at, at + 1, " ") for at in commas], 0.5)
 
 
-def _bare_word(form: str, pattern: str, offset: int) -> Iterator[Candidate]:
+def _bare_word(form: str, pattern: str, offset: int) -> Iterator[RepairCandidate]:
     match = _BARE.match(form, offset)
     if match is None:
         return
@@ -75,7 +75,9 @@ def _names_of(slot: Nonterminal | Wildcard) -> tuple[str, ...]:
     return (slot.name,) if isinstance(slot, Nonterminal) else (slot.name, slot.entity_class)
 
 
-def wildcards(texts: Iterable[tuple[str, str]], source: str, offset: int) -> Iterator[Candidate]:
+def wildcards(
+    texts: Iterable[tuple[str, str]], source: str, offset: int
+) -> Iterator[RepairCandidate]:
     """Yield candidates for a wildcard of an unknown kind or type around ``offset``, on every side.
 
     Args:
@@ -106,7 +108,7 @@ def wildcards(texts: Iterable[tuple[str, str]], source: str, offset: int) -> Ite
         yield candidate(label, [Edit(source, start, word.end(), "")], 0.5)
 
 
-def in_pattern(pattern: str, offset: int) -> Iterator[Candidate]:
+def in_pattern(pattern: str, offset: int) -> Iterator[RepairCandidate]:
     """Yield candidates for a bar, a dollar sign or a backslash that has nothing to stand for."""
     for match in re.finditer(r"\s*\|", pattern):
         if abs(match.start() - offset) <= 2 or abs(match.end() - offset) <= 2:
@@ -117,7 +119,7 @@ def in_pattern(pattern: str, offset: int) -> Iterator[Candidate]:
         yield candidate(f"Remove the {mark}", [Edit(PATTERN, offset, offset + 1, "")], 1.0)
 
 
-def unheard(template: SemanticTemplate, grammar: Grammar) -> Iterator[Candidate]:
+def unheard(template: SemanticTemplate, grammar: Grammar) -> Iterator[RepairCandidate]:
     """Yield candidates for the words of a pattern that the grammar never says."""
     heard = {
         symbol.value

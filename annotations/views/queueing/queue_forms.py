@@ -7,9 +7,9 @@ from typing import Any
 
 from django import forms
 
-from annotations.editing.template_check import MOST_CHARACTERS
 from annotations.labelling import canonical_label
 from annotations.language.errors import LanguageError
+from annotations.language.limits import MAX_FORM
 from annotations.models import Label, User, Verdict, World
 from annotations.queueing import DOUBLE_KINDS
 
@@ -59,7 +59,7 @@ class SettleForm(forms.Form):
     form = forms.CharField(
         label="Another form",
         required=False,
-        max_length=MOST_CHARACTERS,
+        max_length=MAX_FORM,
         widget=forms.Textarea(attrs={"rows": 3}),
     )
 

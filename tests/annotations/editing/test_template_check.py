@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from django.db import connection
 
-from annotations.editing.template_check import MOST_CHARACTERS
+from annotations.language.limits import MAX_PATTERN
 from annotations.models import SemanticTemplate
 from tests.work import steps_of
 
@@ -61,7 +61,7 @@ def test_texts_that_nobody_types_are_not_looked_at(field, path, category, anna, 
         "annotations.editing.template_check.read_sides", lambda *args: pytest.fail("looked at")
     )
     sent = {"pattern": "go", "form": "UNKNOWN", "task_category": category.pk, "status": "ready"}
-    sent[field] = "a " * MOST_CHARACTERS
+    sent[field] = "a " * MAX_PATTERN
     answer = anna.post(f"/w/home/templates/{path}/", sent)
     assert answer.status_code == 200
     assert "5,000" in answer.content.decode() or "5000" in answer.content.decode()
