@@ -40,6 +40,10 @@ ROOMS = {
         "device", "weights", "pretrained", "training", "word_vectors", "sentence_encoder", "seq2seq",
         "ranker",
     ),
+    "parser_service/analysis": (
+        "arrays", "labels", "reading", "proportions", "resampling", "scores", "seeds", "comparing", "slicing",
+        "confusions", "categories", "attractors", "risk_coverage", "edits", "sensitivity", "probing",
+    ),
     "parser_service": (
         "parsers", "neural", "analysis", "models", "runs", "serving", "results", "benchmarking", "audit",
     ),

@@ -9,12 +9,12 @@ from __future__ import annotations
 import numpy as np
 
 from parser_service.analysis.arrays import Floats, Ints
-from parser_service.analysis.proportions import wilson_interval
+from parser_service.analysis.proportions import Z_95, wilson_interval
 
 SAMPLES = 2000
 SEED = 2019
 _DECIMALS = 6  # sums that agree to so many places count as the same example
-_MOST_AT_ONCE = 4_000_000  # counts held in memory
+_MOST_KINDS = 1000  # distinct examples that are resampled
 
 
 def multinomial_samples(counts: Ints, samples: int, random: np.random.Generator) -> Ints:
@@ -33,21 +33,27 @@ def ratio_interval(
 
     Returns:
         The 2.5th and 97.5th percentile. Where every ratio is 0, or every one is 1, samples do not
-        differ, and it is Wilson's interval over the examples. None without an example.
+        differ, and it is Wilson's interval over the examples; where very many examples are distinct,
+        it is the limit that percentiles approach. None without an example.
     """
     if not len(numerators):
         return None
     total, weight = float(numerators.sum()), float(denominators.sum())
     if total in (0.0, weight):
         return wilson_interval(len(numerators) if total else 0, len(numerators))
-    rows = np.round(np.column_stack([numerators, denominators]), _DECIMALS)
-    kinds, counts = np.unique(rows, axis=0, return_counts=True)
-    random = np.random.default_rng(seed)
-    step = max(1, _MOST_AT_ONCE // len(kinds))
-    sums = [
-        multinomial_samples(counts, min(step, samples - start), random) @ kinds
-        for start in range(0, samples, step)
-    ]
-    ratios = np.concatenate(sums)
-    low, high = np.percentile(ratios[:, 0] / ratios[:, 1], [2.5, 97.5])
+    pairs = (
+        np.round(numerators, _DECIMALS) + 1j * denominators
+    )  # complex numbers are sorted at once
+    kinds, counts = np.unique(pairs, return_counts=True)
+    if len(kinds) > _MOST_KINDS:
+        return _limit(numerators, denominators)
+    drawn = multinomial_samples(counts, samples, np.random.default_rng(seed)) @ kinds
+    low, high = np.percentile(drawn.real / drawn.imag, [2.5, 97.5])
     return float(low), float(high)
+
+
+def _limit(numerators: Floats, denominators: Floats) -> tuple[float, float]:
+    """Return the normal interval of a ratio (Cochran, Sampling Techniques, 3rd edition 1977, §2.11)."""
+    ratio = numerators.sum() / denominators.sum()
+    error = np.sqrt(((numerators - ratio * denominators) ** 2).sum()) / denominators.sum()
+    return max(0.0, float(ratio - Z_95 * error)), min(1.0, float(ratio + Z_95 * error))

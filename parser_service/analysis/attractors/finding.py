@@ -84,22 +84,12 @@ def find_attractors(
     for place in counts.ranked()[:most]:
         code = int(counts.forms[place])
         attracted = inputs.of(code)
-        spread, own_spread, spread_p = texts.compare(code, attracted, owns.of(code))
-        rows.append(
-            Attractor(
-                form=both.values[code],
-                predicted=int(counts.predicted[place]),
-                missed=int(counts.missed[place]),
-                annotated=int(counts.annotated[place]),
-                p_value=float(counts.p_values[place]),
-                q_value=float(counts.q_values[place]),
-                dispersion=spread,
-                own_dispersion=own_spread,
-                dispersion_p=spread_p,
-                inputs=attracted,
-            )
-        )
+        spreads = texts.compare(code, attracted, owns.of(code))
+        rows.append(counts.row(place, both.values[code], spreads, attracted))
     return tuple(sorted(rows, key=lambda row: not row.is_attractor))
+
+
+_Spreads = tuple[float, float, float] | tuple[None, None, None]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -118,6 +108,21 @@ class _Counts:
         order = np.lexsort((self.forms, -self.predicted, self.q_values))
         ranked: list[int] = order[self.q_values[order] <= LEVEL].tolist()
         return ranked
+
+    def row(self, place: int, form: str, spreads: _Spreads, inputs: Ints) -> Attractor:
+        spread, own_spread, spread_p = spreads
+        return Attractor(
+            form=form,
+            predicted=int(self.predicted[place]),
+            missed=int(self.missed[place]),
+            annotated=int(self.annotated[place]),
+            p_value=float(self.p_values[place]),
+            q_value=float(self.q_values[place]),
+            dispersion=spread,
+            own_dispersion=own_spread,
+            dispersion_p=spread_p,
+            inputs=inputs,
+        )
 
 
 def _count(labels: Ints, answers: Ints, size: int) -> _Counts:
@@ -169,9 +174,7 @@ class _Texts:
         self._utterances, self._known, self._seed = utterances, known, seed
         self._of_known = _Groups(forms.codes, np.ones(len(forms.codes), dtype=bool))
 
-    def compare(
-        self, code: int, attracted: Ints, own: Ints
-    ) -> tuple[float, float, float] | tuple[None, None, None]:
+    def compare(self, code: int, attracted: Ints, own: Ints) -> _Spreads:
         random = np.random.default_rng((self._seed, code))
         first = self._draw(self._utterances, attracted, random)
         second = self._draw(self._utterances, own, random)

@@ -9,7 +9,11 @@ from parser_service.analysis.categories.evidence import (
     Neighbour,
     RunEvidence,
 )
-from parser_service.analysis.categories.proposing import Proposals, propose_category
+from parser_service.analysis.categories.proposing import (
+    Proposals,
+    propose_categories,
+    propose_category,
+)
 from parser_service.analysis.categories.structure import Proposal
 
 __all__ = [
@@ -21,5 +25,6 @@ __all__ = [
     "Proposal",
     "Proposals",
     "RunEvidence",
+    "propose_categories",
     "propose_category",
 ]

@@ -8,9 +8,10 @@ with the number of words of the corpus and not with the number of pairs of utter
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import chain
+from string import punctuation
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,25 +20,26 @@ from parser_service.analysis.arrays import Bools, Ints
 from parser_service.analysis.labels import encode
 
 MOST_NEIGHBOURS = 8
-_WORD = re.compile(r"<\w+>|[\w'’]+")
+_NO_WORDS = "".join(set(punctuation) - set("<>'_")) + "“”„…–—"
+_SPACES = str.maketrans(_NO_WORDS, " " * len(_NO_WORDS))
 _Hashes = NDArray[np.uint64]
 
 
 def words_of(text: str) -> tuple[str, ...]:
     """Return the lower-cased words of a text without its punctuation; a class token is a word."""
-    return tuple(_WORD.findall(text.lower()))
+    return tuple(text.lower().translate(_SPACES).split())
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class OneEditPairs:
     """Pair k: utterance ``second[k]`` has another word at ``position[k]`` (from 0) than utterance ``first[k]``,
-    or, where ``is_addition[k]``, one word more there. ``words`` are those of each utterance."""
+    or, where ``is_addition[k]``, one word more there."""
 
+    utterances: Sequence[str]
     first: Ints  # [pairs]
     second: Ints
     position: Ints
     is_addition: Bools
-    words: tuple[tuple[str, ...], ...]
 
     def __len__(self) -> int:
         return len(self.first)
@@ -45,8 +47,10 @@ class OneEditPairs:
     def changed_words(self, pair: int) -> tuple[str, str]:
         """Return the word of the first utterance, empty where none, and that of the second."""
         place = int(self.position[pair])
-        old = "" if self.is_addition[pair] else self.words[int(self.first[pair])][place]
-        return old, self.words[int(self.second[pair])][place]
+        new = words_of(self.utterances[int(self.second[pair])])[place]
+        if self.is_addition[pair]:
+            return "", new
+        return words_of(self.utterances[int(self.first[pair])])[place], new
 
 
 def mine_pairs(utterances: Sequence[str], most_neighbours: int = MOST_NEIGHBOURS) -> OneEditPairs:
@@ -57,45 +61,50 @@ def mine_pairs(utterances: Sequence[str], most_neighbours: int = MOST_NEIGHBOURS
         most_neighbours: of the utterances that share all but one word, each is paired with so many that
             follow it, so that a frequent pattern does not give a pair for each two of its utterances.
     """
-    words = tuple(map(words_of, utterances))
-    distinct = {row: number for number, row in reversed(list(enumerate(words))) if row}
-    numbers = np.sort(np.fromiter(distinct.values(), dtype=np.int64, count=len(distinct)))
-    hashed = _hash([words[number] for number in numbers.tolist()])
+    hashed = _hash([words_of(text) for text in utterances])
     first, second, position = _exchanged(hashed, most_neighbours)
     shorter, longer, added_at = _added(hashed)
-    one, other = numbers[np.append(first, shorter)], numbers[np.append(second, longer)]
+    one, other = np.append(first, shorter), np.append(second, longer)
     places = np.append(position, added_at)
     is_addition = np.repeat([False, True], [len(first), len(shorter)])
     order = np.lexsort((other, one))
-    return OneEditPairs(one[order], other[order], places[order], is_addition[order], words)
+    return OneEditPairs(utterances, one[order], other[order], places[order], is_addition[order])
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Deletions:
-    """For each word of a corpus: its row, its place, and two hashes of the row without it; and of whole rows.
+    """For each word of the distinct utterances: which utterance, its place, and two hashes of the rest of it.
 
+    ``distinct`` are the first of equal utterances, without empty ones, and ``whole`` two hashes of each.
     Two independent hashes of 64 bits make a chance agreement out of the question.
     """
 
     rows: Ints  # [words]
     places: Ints
     without: tuple[_Hashes, _Hashes]  # [words] each
-    whole: tuple[_Hashes, _Hashes]  # [rows] each
+    distinct: Ints  # [distinct]
+    whole: tuple[_Hashes, _Hashes]  # [distinct] each
 
 
 def _hash(rows: Sequence[tuple[str, ...]]) -> _Deletions:
     lengths = np.fromiter(map(len, rows), dtype=np.int64, count=len(rows))
-    codes = encode([word for row in rows for word in row]).codes
+    codes = encode(list(chain.from_iterable(rows))).codes
     starts = np.cumsum(lengths) - lengths
     places = np.arange(len(codes)) - np.repeat(starts, lengths)
     random = np.random.default_rng(1982)
     hashes = [_polynomials(codes, starts, lengths, places, random) for _ in range(2)]
     (without, whole), (without_again, whole_again) = hashes
+    first_of_equals = np.unique(whole, return_index=True)[1]
+    distinct = first_of_equals[lengths[first_of_equals] > 0]
+    is_distinct = np.zeros(len(rows), dtype=bool)
+    is_distinct[distinct] = True
+    is_kept = np.repeat(is_distinct, lengths)
     return _Deletions(
-        rows=np.repeat(np.arange(len(rows)), lengths),
-        places=places,
-        without=(without, without_again),
-        whole=(whole, whole_again),
+        rows=np.repeat(np.arange(len(rows)), lengths)[is_kept],
+        places=places[is_kept],
+        without=(without[is_kept], without_again[is_kept]),
+        distinct=distinct,
+        whole=(whole[distinct], whole_again[distinct]),
     )
 
 
@@ -139,18 +148,19 @@ def _exchanged(hashed: _Deletions, most: int) -> tuple[Ints, Ints, Ints]:
 
 def _added(hashed: _Deletions) -> tuple[Ints, Ints, Ints]:
     """Return the pairs of rows of which the second without the word at a place is the first, and the place."""
-    order = np.argsort(hashed.whole[0])
-    if not len(order):
+    if not len(hashed.distinct):
         return _nothing(), _nothing(), _nothing()
-    near = np.searchsorted(hashed.whole[0][order], hashed.without[0])
-    rows = order[np.minimum(near, len(order) - 1)]
-    is_equal = (hashed.whole[0][rows] == hashed.without[0]) & (
-        hashed.whole[1][rows] == hashed.without[1]
+    # ``np.unique`` has sorted the hashes of whole rows.
+    near = np.searchsorted(hashed.whole[0], hashed.without[0])
+    near = np.minimum(near, len(hashed.distinct) - 1)
+    is_equal = (hashed.whole[0][near] == hashed.without[0]) & (
+        hashed.whole[1][near] == hashed.without[1]
     )
     at = np.flatnonzero(is_equal)
-    shorter, longer, places = rows[at], hashed.rows[at], hashed.places[at]
+    shorter, longer, places = hashed.distinct[near[at]], hashed.rows[at], hashed.places[at]
     # A word that stands twice in a row may be deleted at either place.
-    _, first = np.unique(shorter * len(order) + longer, return_index=True)
+    width = int(hashed.distinct.max()) + 1
+    _, first = np.unique(shorter * width + longer, return_index=True)
     return shorter[first], longer[first], places[first]
 
 

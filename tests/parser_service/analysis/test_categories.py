@@ -13,6 +13,7 @@ from parser_service.analysis.categories import (
     ErrorEvidence,
     Neighbour,
     RunEvidence,
+    propose_categories,
     propose_category,
 )
 from tests.annotations.language.random_forms import forms
@@ -168,6 +169,15 @@ def test_any_wrong_answer_gets_one_category_with_a_reason_the_same_each_time(gol
     assert all(each.reason.endswith(".") for each in ranked)
     assert len({each.category for each in ranked}) == len(ranked)
     assert proposals == propose_category(gold, predicted)
+
+
+def test_many_answers_get_the_proposals_of_each():
+    gold = [canonical_text(GOLD)] * 4
+    answers = [canonical_text(GO), "( go", canonical_text(GOLD), canonical_text(GO)]
+    run = RunEvidence(attractors=frozenset({canonical_text(GO)}))
+    proposals = propose_categories(gold, answers, run)
+    drastic = propose_category(GOLD, GO, run)
+    assert proposals == [drastic, propose_category(GOLD, None, run), None, drastic]
 
 
 def test_every_category_is_described():

@@ -51,5 +51,20 @@ def test_where_samples_cannot_differ_the_interval_is_wilsons(share, right):
     assert interval == wilson_interval(right, 12)
 
 
+def test_very_many_distinct_values_have_the_interval_of_scipys_bootstrap_too():
+    random = np.random.default_rng(4)
+    weights = random.integers(1, 5, 3000).astype(float)
+    values = random.beta(2, 5, 3000) * weights
+
+    def ratio(numerators, denominators, axis):
+        return numerators.sum(axis=axis) / denominators.sum(axis=axis)
+
+    expected = stats.bootstrap(
+        (values, weights), ratio, paired=True, method="percentile", n_resamples=2000, rng=random
+    ).confidence_interval
+    interval = ratio_interval(values, weights)
+    assert interval == pytest.approx((expected.low, expected.high), abs=1e-3)
+
+
 def test_nothing_has_no_interval():
     assert ratio_interval(np.array([]), np.array([])) is None

@@ -1,0 +1,138 @@
+"""Seconds that each analysis takes for a million generated predictions.
+
+    python benchmarks/analysis.py [--predictions 1000000] [--only attractors]
+
+Commands and forms are those of the starter world. Every command gets a word of its own, so that texts differ;
+four answers of five are right, some are a default form, and the rest are forms of other commands.
+"""
+
+from __future__ import annotations
+
+import argparse
+import resource
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))
+
+from annotations.language.forms import read_form  # noqa: E402
+from annotations.language.ontology import Ontology  # noqa: E402
+from annotations.language.predicates import infer_signatures  # noqa: E402
+from annotations.language.templates import generate, read_generator_folder  # noqa: E402
+from parser_service.analysis.attractors import find_attractors  # noqa: E402
+from parser_service.analysis.categories import RunEvidence, propose_categories  # noqa: E402
+from parser_service.analysis.comparing import compare_runs  # noqa: E402
+from parser_service.analysis.confusions import confuse_heads, confuse_slots  # noqa: E402
+from parser_service.analysis.edits import gather_facts, generate_edits, mine_pairs  # noqa: E402
+from parser_service.analysis.probing import make_probes  # noqa: E402
+from parser_service.analysis.risk_coverage import risk_coverage  # noqa: E402
+from parser_service.analysis.sensitivity import (  # noqa: E402
+    EditAnswers,
+    find_deciding_words,
+    measure_sensitivity,
+)
+from parser_service.analysis.slicing import (  # noqa: E402
+    accuracy_by,
+    are_seen,
+    form_depths,
+    head_predicates,
+    length_bins,
+)
+
+RUNS = 5
+
+
+class World:
+    """Predictions of five runs for commands of the starter world."""
+
+    def __init__(self, count: int) -> None:
+        self.categories = read_generator_folder(ROOT / "annotations" / "starter").categories()
+        expansions = generate(self.categories).expansions
+        self.commands = [each.command for each in expansions]
+        self.forms = [each.form_text for each in expansions]
+        random = np.random.default_rng(0)
+        drawn = random.integers(len(expansions), size=count)
+        self.utterances = [
+            f"{self.commands[place]} w{number % 5000}"
+            for number, place in enumerate(drawn.tolist())
+        ]
+        self.gold = [self.forms[place] for place in drawn.tolist()]
+        luck, others = random.random(count), random.integers(len(expansions), size=count)
+        answers = np.where(luck < 0.8, drawn, np.where(luck < 0.9, 0, others))
+        self.predicted = [self.forms[place] for place in answers.tolist()]
+        self.correct = random.random((RUNS, count)) < np.linspace(0.7, 0.9, RUNS)[:, None]
+        self.scores = random.random(count)
+        pairs = set(zip(self.gold, self.predicted, strict=True))
+        self.errors = [pair for pair in pairs if pair[0] != pair[1]]
+
+
+def tasks(world: World) -> dict[str, Callable[[], object]]:
+    right = world.correct[0]
+    return {
+        "comparing": lambda: compare_runs(world.correct),
+        "slicing: head predicate": lambda: accuracy_by(world.correct, head_predicates(world.gold)),
+        "slicing: length": lambda: accuracy_by(world.correct, length_bins(world.utterances)),
+        "slicing: depth": lambda: accuracy_by(world.correct, form_depths(world.gold)),
+        "slicing: form seen": lambda: accuracy_by(
+            world.correct, are_seen(world.gold, world.forms[::2]).tolist()
+        ),
+        "confusions: heads": lambda: confuse_heads(world.gold, world.predicted),
+        "confusions: slots": lambda: confuse_slots(world.gold, world.predicted),
+        "attractors": lambda: find_attractors(world.utterances, world.gold, world.predicted),
+        "risk and coverage": lambda: risk_coverage(world.scores, right).at(0.5),
+        "edits: mining": lambda: mine_pairs(world.utterances),
+        f"edits: generating for {len(world.commands):,}": lambda: edit(world),
+        "sensitivity": lambda: measure(world),
+        "deciding words": lambda: find_deciding_words(
+            [text.partition(" ")[0] for text in world.utterances], right
+        ),
+        "probing": lambda: make_probes(world.utterances, 200),
+        "categories": lambda: propose_categories(
+            world.gold, world.predicted, RunEvidence(attractors=frozenset({world.forms[0]}))
+        ),
+    }
+
+
+def edit(world: World) -> None:
+    known = list(zip(world.commands, map(read_form, world.forms), strict=True))
+    grammars = [category.grammar for category in world.categories]
+    predicates = infer_signatures(form for _, form in known)
+    facts = gather_facts(Ontology(), grammars, known, predicates)
+    for utterance, form in known:
+        generate_edits(utterance, form, facts)
+
+
+def measure(world: World) -> None:
+    count = len(world.gold)
+    kinds = [("article", "entity", "place")[number % 3] for number in range(count)]
+    bases = [number // 4 for number in range(count)]
+    after = world.predicted[1:] + world.predicted[:1]
+    measure_sensitivity(EditAnswers(kinds, bases, world.predicted, after, world.gold, world.gold))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--predictions", type=int, default=1_000_000)
+    parser.add_argument("--only", default="", help="measure what has this in its name")
+    arguments = parser.parse_args()
+    world = World(arguments.predictions)
+    print(
+        f"{arguments.predictions:,} predictions, {len(set(world.utterances)):,} texts, "
+        f"{len(set(world.forms)):,} forms, {len(world.errors):,} distinct errors"
+    )
+    for name, task in tasks(world).items():
+        if arguments.only in name:
+            began = time.process_time()
+            task()
+            print(f"{name:40} {time.process_time() - began:8.2f} s", flush=True)
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    print(f"most memory: {peak:,.0f} MiB")
+
+
+if __name__ == "__main__":
+    main()
