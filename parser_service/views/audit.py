@@ -77,7 +77,7 @@ def audit(request: HttpRequest, world: World) -> HttpResponse:
     """List the labels in doubt, and show one of them: the first, or the one that the URL names."""
     rows = world.audit_findings.prefetch_related("reasons")
     listing = Listing(request, AuditFindingFilters, rows, SORTS)
-    finding = _asked(request, world, listing)
+    finding = _find_asked(request, world, listing)
     context = {
         "listing": listing,
         "last": _last_decisions(request, world),
@@ -85,7 +85,7 @@ def audit(request: HttpRequest, world: World) -> HttpResponse:
         "job": world.jobs.filter(kind=JobKind.AUDIT).first(),
         "audit_form": AuditForm(),
         "page_keys": KEYS,
-        **_shown(request, finding),
+        **_context_of(request, finding),
     }
     return render_list(request, "parser_service/audit.html", context)
 
@@ -97,7 +97,7 @@ def audit_item(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     finding = get_object_or_404(world.audit_findings, pk=pk)
     if not request.htmx:
         return _to(request, world, finding)
-    return render(request, "parser_service/_audit_finding.html", _shown(request, finding))
+    return render(request, "parser_service/_audit_finding.html", _context_of(request, finding))
 
 
 @world_view(Duty.REVIEW, WRITE)
@@ -150,7 +150,7 @@ def audit_check(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     return JsonResponse(check_label(world, finding.anonymized_text, request.POST.get("form", "")))
 
 
-def _asked(request: HttpRequest, world: World, listing: Listing) -> AuditFinding | None:
+def _find_asked(request: HttpRequest, world: World, listing: Listing) -> AuditFinding | None:
     """Return the finding that the URL names, or the first of the list. Raises Http404 for one of another
     world."""
     if name := request.GET.get("finding", ""):
@@ -159,7 +159,7 @@ def _asked(request: HttpRequest, world: World, listing: Listing) -> AuditFinding
     return next(iter(listing.rows), None)
 
 
-def _shown(request: HttpRequest, finding: AuditFinding | None) -> dict[str, Any]:
+def _context_of(request: HttpRequest, finding: AuditFinding | None) -> dict[str, Any]:
     """Return what one finding is shown with; ``state`` are the filters of the list, for its forms."""
     state = request.GET.copy()
     state.pop("finding", None)

@@ -32,7 +32,7 @@ def test_many_errors_are_told_in_part():
     assert told[MOST_PROBLEMS:] == (
         error_at(
             Position("rules.txt", MOST_PROBLEMS + 1),
-            "4000 more problems from here on, not listed",
+            "4,000 more problems from here on, not listed",
             "correct the listed ones first",
         ),
     )
