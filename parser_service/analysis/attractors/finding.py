@@ -61,7 +61,8 @@ def find_attractors(
         utterances: the texts, [examples].
         gold: canonical text of each label, [examples].
         predicted: canonical text of each answer, or the parser's text: [examples].
-        known: utterances and their forms from the training pairs: further inputs of a form's own.
+        known: utterances and their forms from the training pairs: further inputs of a form's own. Hand in those
+            of the same source only, since generated commands are less varied than what people say.
         most: rows to return; only these are tested for dispersion.
         seed: of the texts and permutations that are drawn.
 
