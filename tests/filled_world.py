@@ -47,8 +47,9 @@ def leave_traces(world: World, annotator: User, admin: User) -> None:
     refill(world)
     texts = dict.fromkeys(("prompt", "utterance"), "Fetch me the tea.")
     forms = dict.fromkeys(("grounded_form", "logical_form"), "UNKNOWN")
-    paraphrase = Paraphrase.objects.create(
-        world=world, position=0, edit_distance=3, jaccard_distance=0.5, **texts, **forms
+    distances = {"edit_distance": 3, "jaccard_distance": 0.5}
+    paraphrase, _ = Paraphrase.objects.get_or_create(
+        world=world, position=0, defaults={**texts, **forms, **distances}
     )
     store_findings(world, [found(paraphrase, '( go " <room> " )')])
     Job.objects.create(

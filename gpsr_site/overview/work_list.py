@@ -70,7 +70,7 @@ FOR_ADMINS = (
     Waiting("runs_lost", "lost run", "Read why", "runs", "?status=lost&since=no", "bad"),
     Waiting("ontology_problems", "remark", "Read", "ontology", "", "warn", "on the ontology"),
     Waiting("grammar_problems", "remark", "Read", "grammar", "", "warn", "on the grammar"),
-    Waiting("runs_running", "running run", "Watch", "runs", "?status=running"),
+    Waiting("runs_running", "run", "Watch", "runs", "?status=running", "", "in progress"),
 )
 FOR_ANNOTATORS = (
     Waiting(
@@ -179,7 +179,7 @@ class WorkList:
                     sentence = f"{job.get_kind_display()} waits for an answer"
                     yield Task(1, sentence, "Answer", url, "warn")
                 else:
-                    yield Task(1, f"{job.get_kind_display()} is {job.status}", "Watch", url)
+                    yield Task(1, f"{job.get_kind_display()}: {job.status}", "Watch", url)
 
     def _stale(self) -> Iterator[Task]:
         """Yield one item: a single button brings all commands up to date."""

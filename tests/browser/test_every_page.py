@@ -12,9 +12,10 @@ from playwright.sync_api import Page
 
 from annotations.models import User
 from tests.browser.faults import (
-    BESIDE,
+    OF_WIDTH,
     Faults,
     listen,
+    look_for,
     narrow_and_dark,
     only_faults,
     wide_and_light,
@@ -79,7 +80,8 @@ class Window:
         report = narrow_and_dark(page)
         for width in WIDTHS:
             page.set_viewport_size({"width": width, "height": 600})
-            report[f"beside {width} pixels"] = page.evaluate(BESIDE)
+            faults = look_for(page, OF_WIDTH)
+            report |= {f"{what} at {width} pixels": each for what, each in faults.items()}
         page.set_viewport_size(WIDE_LIGHT.size)
         page.emulate_media(color_scheme="light")
         report |= wide_and_light(page)

@@ -8,11 +8,10 @@ from playwright.sync_api import Page, expect
 from annotations.models import TaskCategory
 from parser_service.models import Evaluation, TrainingRun
 from tests.browser.screenshots import log_in
+from tests.browser.variants import NARROW_DARK
 from tests.parser_service.made_up import make_split
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
-
-BESIDE = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
 
 
 def test_wrong_answers_are_two_clicks_from_the_log_in(page: Page, live_server, sample, reviewer):
@@ -70,21 +69,6 @@ def test_without_scripts_a_parser_is_chosen_by_button(browser, live_server, samp
     context.close()
 
 
-@pytest.mark.parametrize("path", ["/", "/w/home/", "/w/home/runs/new/"])
-def test_nothing_stands_beside_the_screen_at_twice_the_size(
-    path, page_of, live_server, sample, admin
-):
-    """A window of 640 pixels is one of 1280 at 200 %."""
-    page = page_of(admin, viewport={"width": 640, "height": 400})
-    page.goto(live_server.url + path)
-    assert page.evaluate(BESIDE) <= 0
-
-
-CUT = """() => [...document.querySelectorAll(".card, .parser-option, .flow-noun")]
-  .filter((element) => element.scrollWidth > element.clientWidth + 1)
-  .map((element) => element.outerHTML.slice(0, 80))"""
-
-
 def test_bars_of_coverage_have_one_length(page_of, live_server, sample, annotator):
     second, third = (
         TaskCategory(grammar=sample.world.grammar, name=name, position=position)
@@ -103,13 +87,23 @@ def test_bars_of_coverage_have_one_length(page_of, live_server, sample, annotato
         assert len(widths) == 3 and len(set(widths)) == 1, (width, widths)
 
 
-@pytest.mark.parametrize("width", [360, 640, 820, 1000])
-def test_nothing_is_cut_in_between_the_usual_widths(width, page_of, live_server, sample, admin):
-    page = page_of(admin, viewport={"width": width, "height": 700})
-    for path in ("/", "/w/home/", "/w/home/runs/new/"):
-        page.goto(live_server.url + path)
-        assert page.evaluate(CUT) == [], path
-        assert page.evaluate(BESIDE) <= 0, path
+COVERED = """() => [...document.querySelectorAll("main a, main button, main input, main select")]
+  .filter((element) => element.checkVisibility() && element.type !== "hidden")
+  .filter((element) => {
+    element.focus();
+    const {left, top, width, height} = element.getClientRects()[0];
+    const seen = document.elementFromPoint(left + width / 2, top + height / 2);
+    return !element.contains(seen);
+  })
+  .map((element) => element.outerHTML.slice(0, 80))"""
+
+
+def test_the_banner_covers_nothing_that_has_the_focus(page_of, live_server, sample, admin):
+    page = page_of(admin, variant=NARROW_DARK)
+    for path in ("templates/new/", "queue/settings/"):
+        page.goto(f"{live_server.url}/w/home/{path}")
+        expect(page.locator("#banner")).to_contain_text("No worker is running.")
+        assert page.evaluate(COVERED) == [], path
 
 
 def test_the_first_tab_leads_past_the_rail(page_of, live_server, sample, admin):

@@ -70,7 +70,8 @@ def exact_match(ratings: Ratings) -> Estimate:
         return _nothing()
     share = float(observed_agreement(ratings, _once(ratings))[0])
     interval = _wilson(share, ratings.items)
-    meaning = f"Two people give the same form to {100 * share:.0f} % of {ratings.items:,} items."
+    noun = "item" if ratings.items == 1 else "items"
+    meaning = f"Two people give the same form to {100 * share:.0f} % of {ratings.items:,} {noun}."
     return Estimate(share, interval, meaning + _caution(ratings))
 
 

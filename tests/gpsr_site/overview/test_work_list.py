@@ -93,7 +93,7 @@ def test_each_count_is_the_number_of_rows_behind_its_link(busy, adam):
         "1 lost run": 1,
         "2 remarks on the ontology": 2,
         "3 remarks on the grammar": 3,
-        "1 running run": 1,
+        "1 run in progress": 1,
         "Only one person belongs to this world": 1,
         "2 commands without a form": 2,
         "3 templates with problems": 3,
@@ -170,7 +170,7 @@ def test_jobs_stand_with_whom_they_wait_for(sample, admin, adam, anna):
     assert own.items[0].sentence == "Import of generator files waits for an answer"
     assert own.items[0].url == f"/jobs/{asking.pk}/"
     own, *_ = anna.get("/w/home/").context["work_groups"]
-    assert own.items[0].sentence == "Generation of commands is running"
+    assert own.items[0].sentence == "Generation of commands: running"
     assert anna.get(own.items[0].url).status_code == 200
 
 
