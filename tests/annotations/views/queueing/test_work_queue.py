@@ -195,7 +195,7 @@ def test_an_admin_sets_the_shares(tiny_world, adam, item):
 
 def test_agreement_says_what_the_figures_mean(tiny_world, anna, differing):
     page = anna.get("/w/home/queue/agreement/")
-    assert "Two people give the same form to 0 % of 1 items." in page.text
+    assert "Two people give the same form to 0 % of 1 item." in page.text
     assert page.context["report"].disagreements[0].count == 1
 
 
