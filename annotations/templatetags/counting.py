@@ -1,0 +1,17 @@
+"""A filter that counts in words."""
+
+from __future__ import annotations
+
+import re
+
+from django import template
+
+register = template.Library()
+
+
+@register.filter
+def of_rows(total: int, plural: str) -> str:
+    """Write ``1,211 commands`` or ``1 command``; ``plural`` is what the rows of a list are called."""
+    if total != 1:
+        return f"{total:,} {plural}"
+    return "1 " + re.sub(r"(ie)?s\b", lambda ending: "y" if ending[1] else "", plural, count=1)
