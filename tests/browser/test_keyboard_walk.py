@@ -44,14 +44,16 @@ def skip_to_content(page: Page) -> None:
 def follow(page: Page, target: Locator, title: str) -> None:
     """Open a link by Tab and Enter; the page that it leads to is called ``title``."""
     tab_to(page, target)
-    page.keyboard.press("Enter")
+    with page.expect_navigation(wait_until="domcontentloaded"):  # also to a page of the same title
+        page.keyboard.press("Enter")
     arrive(page, title)
 
 
 def log_in(page: Page) -> None:
     """Type name and password; the cursor stands in the first field."""
+    expect(page.get_by_label("Name")).to_be_focused()
     page.keyboard.type("anna")
-    page.keyboard.press("Tab")
+    tab_to(page, page.get_by_label("Password"))
     page.keyboard.type("correct horse")
     page.keyboard.press("Enter")
     arrive(page, "Worlds")
@@ -74,6 +76,7 @@ def expect_counts(page: Page, templates: int, commands: int, covered: str) -> No
 
 def write_template(page: Page) -> None:
     """Type a template with mistakes, and take the repairs that are offered."""
+    expect(page.locator(".cm-editor")).to_have_count(2)  # until then the plain fields are there
     pattern, form = (page.get_by_role("textbox", name=name) for name in ("Pattern", "Logical form"))
     reports = page.locator(".editor-report")
     tab_to(page, pattern)
