@@ -4,8 +4,8 @@
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 VENV := .venv
 BIN := $(VENV)/bin
-# Three at a time: on two cores the tests of whole processes mostly wait. A file's tests share what they set up.
-PYTEST_ARGS ?= --numprocesses 3 --dist loadfile
+# Four at a time: on two cores the tests of whole processes mostly wait. A file's tests share what they set up.
+PYTEST_ARGS ?= --numprocesses 4 --dist loadfile
 SOURCES := $(wildcard static/src/*.js static/css/*.css) static/build.mjs
 
 .PHONY: run test install lint
