@@ -8,6 +8,7 @@ from playwright.sync_api import Page, expect
 from annotations.labelling import collect, label
 from annotations.models import Utterance, Verdict
 from tests.browser.conftest import give_window
+from tests.waiting import wait_for
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
@@ -64,7 +65,7 @@ def test_answers_outlive_the_session(label_page, live_server, annotator):
     give_window(page.context, annotator, live_server.url)
     page.goto(f"{live_server.url}/w/home/label/")
     expect(page.locator(".label-last")).to_contain_text(SAID[0])
-    assert Utterance.objects.get(text=SAID[0]).status == "labelled"
+    wait_for(Utterance.objects.labelled().filter(text=SAID[0]).exists, "the answer is stored")
 
 
 def test_answers_without_a_connection_arrive_later(label_page, live_server):
@@ -75,4 +76,4 @@ def test_answers_without_a_connection_arrive_later(label_page, live_server):
     page.unroute("**/answer/")
     page.goto(f"{live_server.url}/w/home/label/")
     expect(page.locator(".label-last")).to_contain_text(SAID[0])
-    assert Utterance.objects.get(text=SAID[0]).status == "labelled"
+    wait_for(Utterance.objects.labelled().filter(text=SAID[0]).exists, "the answer is stored")
