@@ -19,7 +19,7 @@ def start_run(page: Page, url: str) -> None:
     page.goto(f"{url}/w/home/")
     page.click("nav.rail >> text=Runs")
     page.click("text=Start a run")
-    page.get_by_label("Sequence to sequence").check()
+    page.check("#parser-seq2seq")
     expect(page.locator("#chosen-title")).to_have_text("Sequence to sequence")
     page.select_option("#id_train_sources", "gen")
     page.click("text=Advanced")
