@@ -52,6 +52,7 @@ def test_parsers_are_chosen_by_keyboard(page_of, live_server, sample, admin):
     page.keyboard.press("ArrowDown")
     expect(page.locator("#chosen-title")).to_have_text("Nearest neighbour")
     expect(page.locator("#parser-knn")).to_be_focused()
+    expect(page.locator(".htmx-added")).to_have_count(0)  # until then no key is heard
     page.keyboard.press("ArrowDown")
     expect(page.locator("#chosen-title")).to_have_text("Sequence to sequence")
 
