@@ -48,8 +48,8 @@ def differences_of(
     """Compare the files of ``generator`` with ``world``. Nothing is written."""
     if world is None:
         return Differences()
-    grammar = models.Grammar.objects.filter(world=world).first()
-    ontology = models.Ontology.objects.filter(world=world).first()
+    grammar = models.Grammar.objects.select_related("world").filter(world=world).first()
+    ontology = models.Ontology.objects.select_related("world").filter(world=world).first()
     plans: dict[str, Plan] = {}
     if grammar:
         plans["templates"] = plan_templates(grammar, generator, brings_back)

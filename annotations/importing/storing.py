@@ -28,7 +28,8 @@ class PreparedProductions:
     def __init__(
         self, world: models.World | None, generator: Generator, brings_back: bool = False
     ) -> None:
-        grammar = models.Grammar.objects.filter(world=world).first() if world else None
+        of_world = models.Grammar.objects.select_related("world").filter(world=world)
+        grammar = of_world.first() if world else None
         self._generator = generator
         self._brings_back = brings_back
         self._revision = world.revision if world else 0
@@ -66,8 +67,8 @@ def store(
     the files. What a person has deleted stays away unless ``brings_back``. To be called inside a
     transaction.
     """
-    grammar, _ = models.Grammar.objects.get_or_create(world=world)
-    ontology, _ = models.Ontology.objects.get_or_create(world=world)
+    grammar, _ = models.Grammar.objects.select_related("world").get_or_create(world=world)
+    ontology, _ = models.Ontology.objects.select_related("world").get_or_create(world=world)
     changes = _store_categories(grammar, generator)
     changes += productions.apply(world, grammar, by)
     changes += plan_templates(grammar, generator, brings_back).apply(by)

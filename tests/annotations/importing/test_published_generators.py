@@ -57,7 +57,7 @@ def test_a_second_import_changes_no_row(db, shared_data, year, django_assert_max
     folder = shared_data / f"generator-{year}"
     import_generator("again", folder)
     before = rows_of(World.objects.get(name="again"))
-    with django_assert_max_num_queries(45):
+    with django_assert_max_num_queries(40):
         report = import_generator("again", folder)
     assert rows_of(World.objects.get(name="again")) == before
     assert report.changes.as_json() == {"added": 0, "changed": 0, "removed": 0, "moved": 0}
