@@ -45,7 +45,8 @@ ROOMS = {
         "confusions", "categories", "attractors", "risk_coverage", "edits", "sensitivity", "probing",
     ),
     "parser_service": (
-        "parsers", "neural", "analysis", "models", "runs", "serving", "results", "benchmarking", "audit",
+        "parsers", "neural", "analysis", "models", "runs", "serving", "results", "slices", "reviewing", "analysing",
+        "reporting", "benchmarking", "audit",
     ),
 }  # fmt: skip
 MOST_MODULES, MOST_FILES = 3, 15

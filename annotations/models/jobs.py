@@ -18,6 +18,8 @@ class JobKind(models.TextChoices):
     GENERATE = "generate", "Generation of commands"
     PROPOSE = "propose", "Forms proposed by a parser"
     AUDIT = "audit", "Label audit"
+    ANALYSE = "analyse", "Error analysis of a run"
+    ANSWER = "answer", "Answers of runs to a text"
     DELETE_WORLD = "delete_world", "Deletion of a world"
 
 
@@ -26,6 +28,8 @@ DUTIES = {
     JobKind.GENERATE: Duty.ANNOTATE,
     JobKind.PROPOSE: Duty.ANNOTATE,
     JobKind.AUDIT: Duty.REVIEW,
+    JobKind.ANALYSE: Duty.REVIEW,
+    JobKind.ANSWER: Duty.VIEW,
 }
 
 

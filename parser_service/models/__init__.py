@@ -1,15 +1,24 @@
+from parser_service.models.analyses import Expectation, Probe, ProbeAnswer, RunAnalysis
 from parser_service.models.folders import RunFolder
 from parser_service.models.predictions import Evaluation, Prediction
+from parser_service.models.reviews import ErrorCategory, Review, Slice
 from parser_service.models.runs import Checkpoint, EpochMetric, RunEvent, TrainingRun
 from parser_service.models.workers import Worker
 
 __all__ = [
     "Checkpoint",
     "EpochMetric",
+    "ErrorCategory",
     "Evaluation",
+    "Expectation",
     "Prediction",
+    "Probe",
+    "ProbeAnswer",
+    "Review",
+    "RunAnalysis",
     "RunEvent",
     "RunFolder",
+    "Slice",
     "TrainingRun",
     "Worker",
 ]

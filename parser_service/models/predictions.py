@@ -54,7 +54,12 @@ class PredictionQuerySet(models.QuerySet["Prediction"]):
 
 
 class Prediction(models.Model):
-    """A ranked candidate for one example. An example without candidates has one row with an empty form."""
+    """A ranked candidate for one example. An example without candidates has one row with an empty form.
+
+    ``answer_in_training`` and ``label_in_training`` count the training pairs that have this form and the
+    example's, None where it is not known. ``origin`` says where the parser has the form from, and
+    ``score_parts`` what its score is made of; both are empty where the parser does not tell.
+    """
 
     run = models.ForeignKey(TrainingRun, on_delete=models.CASCADE, related_name="predictions")
     example = models.ForeignKey(Example, on_delete=models.CASCADE, related_name="predictions")
@@ -64,6 +69,10 @@ class Prediction(models.Model):
     is_exact_match = models.BooleanField()
     is_equivalent = models.BooleanField()
     is_well_formed = models.BooleanField()
+    answer_in_training = models.PositiveIntegerField(null=True, blank=True)
+    label_in_training = models.PositiveIntegerField(null=True, blank=True)
+    origin = models.CharField(max_length=20, blank=True)
+    score_parts = models.JSONField(default=dict, blank=True)
 
     objects = PredictionQuerySet.as_manager()
 

@@ -26,6 +26,18 @@ def protocol_choices() -> list[tuple[str, str]]:
     return [(each.value, each.value.capitalize()) for each in Protocol]
 
 
+class ScoreKind(models.TextChoices):
+    """What the score of an answer is."""
+
+    PROBABILITY = "probability", "probability"
+    LOG_PROBABILITY = "log_probability", "log-probability"
+    SIMILARITY = "similarity", "similarity"
+
+
+def score_kind_choices() -> list[tuple[str, str]]:
+    return ScoreKind.choices
+
+
 class TrainingRunQuerySet(WorkQuerySet):
     def scored_or_active(self) -> TrainingRunQuerySet:
         """Return the runs that an accuracy table shows or will show."""
@@ -63,7 +75,8 @@ class TrainingRun(BackgroundWork):
     """One parser trained once.
 
     ``train_sources`` is ``gen``, ``para`` or ``gen+para``. ``content_key`` hashes all that decides the
-    result; a second request for the same is answered with this row.
+    result; a second request for the same is answered with this row. ``score_kind`` is empty where the
+    scores of its answers only order them.
     """
 
     noun: ClassVar[str] = "run"
@@ -81,6 +94,7 @@ class TrainingRun(BackgroundWork):
 
     parameters = models.PositiveBigIntegerField(null=True, blank=True)
     seconds_trained = models.FloatField(default=0)
+    score_kind = models.CharField(max_length=20, choices=score_kind_choices, blank=True)
 
     objects = TrainingRunQuerySet.as_manager()
 
