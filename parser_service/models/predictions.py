@@ -81,7 +81,12 @@ class Prediction(models.Model):
         constraints = [
             models.UniqueConstraint(fields=["run", "example", "rank"], name="predicted_once")
         ]
-        indexes = [models.Index(fields=["run", "rank", "is_exact_match"])]
+        # In the order of examples, so that a reader goes on to the next wrong answer at once.
+        indexes = [
+            models.Index(
+                fields=["run", "rank", "is_exact_match", "example"], name="answers_in_order"
+            )
+        ]
 
     def __str__(self) -> str:
         return self.logical_form

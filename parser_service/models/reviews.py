@@ -62,7 +62,9 @@ class Review(models.Model):
     """Why the first answer of a run to an example is wrong, as one reviewer or the machine says.
 
     ``answer`` is the form that was reviewed, so that a later answer is not taken for it. A proposal has no
-    reviewer and says in ``reason`` what it goes by; ``category`` is None for a note alone.
+    reviewer and says in ``reason`` what it goes by; ``category`` is None for a note alone. ``is_new`` of a
+    proposal says whether no earlier run of the same parser was wrong there; None where there is no earlier
+    run, and in reviews of people.
     """
 
     run = models.ForeignKey(TrainingRun, on_delete=models.CASCADE, related_name="reviews")
@@ -74,6 +76,7 @@ class Review(models.Model):
         User, null=True, blank=True, on_delete=models.SET_NULL, related_name="reviews"
     )
     is_proposed = models.BooleanField(default=False)
+    is_new = models.BooleanField(null=True, blank=True)
     answer = models.TextField(blank=True)
     note = models.TextField(blank=True)
     reason = models.TextField(blank=True)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from parser_service.analysis.categories.error_categories import DESCRIPTIONS, ErrorCategory
+from parser_service.analysis.categories.error_categories import DESCRIPTIONS, NAMES, ErrorCategory
 from parser_service.analysis.categories.evidence import (
+    NOTHING_MORE,
     Audit,
     ErrorEvidence,
     Neighbour,
@@ -18,6 +19,8 @@ from parser_service.analysis.categories.structure import Proposal
 
 __all__ = [
     "DESCRIPTIONS",
+    "NAMES",
+    "NOTHING_MORE",
     "Audit",
     "ErrorCategory",
     "ErrorEvidence",

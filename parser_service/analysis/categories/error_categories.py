@@ -21,6 +21,20 @@ class ErrorCategory(StrEnum):
     OUTSIDE_ONTOLOGY = "outside_ontology"
 
 
+NAMES = {
+    ErrorCategory.UNEXPECTED_DEFAULT: "Unexpected default",
+    ErrorCategory.OVERLY_SENSITIVE: "Overly sensitive",
+    ErrorCategory.WRONG_PREDICATE: "Wrong predicate",
+    ErrorCategory.WRONG_ARGUMENT: "Wrong argument",
+    ErrorCategory.MISSING_CONSTRAINT: "Missing constraint",
+    ErrorCategory.EXTRA_CONSTRAINT: "Extra constraint",
+    ErrorCategory.WRONG_STRUCTURE: "Wrong structure",
+    ErrorCategory.ILL_FORMED: "Ill-formed",
+    ErrorCategory.AMBIGUOUS_UTTERANCE: "Ambiguous utterance",
+    ErrorCategory.WRONG_GOLD_LABEL: "Wrong gold label",
+    ErrorCategory.OUTSIDE_ONTOLOGY: "Outside the ontology",
+}
+
 DESCRIPTIONS = {
     ErrorCategory.UNEXPECTED_DEFAULT: "Unlike utterances get this same form, as if by default.",
     ErrorCategory.OVERLY_SENSITIVE: "A change of one word leads to a quite different form.",

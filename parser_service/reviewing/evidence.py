@@ -1,0 +1,139 @@
+"""What is known of the errors of a run beside the two forms, as ``analysis.categories`` takes it."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from django.db.models import Count
+
+from annotations.language.forms import CLASS_TOKEN, read_form
+from annotations.models import AuditFinding, Entity, Example, FindingStatus, Split, World
+from parser_service.analysis.categories import Audit, ErrorEvidence, Neighbour, RunEvidence
+from parser_service.analysis.edits import mine_pairs, words_of
+from parser_service.analysis.reading import read_or_none
+from parser_service.models import TrainingRun
+from parser_service.reviewing.answers import Answered
+
+PREDICATE = re.compile(r"\( ([^\s()\"]+) ")  # in canonical corpus text
+ROWS_AT_ONCE = 500
+MOST_NEIGHBOURS = 4  # with different answers; the tree distance to each costs time
+DECIDED = {
+    FindingStatus.CORRECTED: "Somebody has corrected this label since the split was frozen.",
+    FindingStatus.EXCLUDED: "Somebody has excluded this pair from new splits.",
+}
+
+
+def evidence_of_run(run: TrainingRun, attractors: frozenset[str]) -> RunEvidence:
+    """Return what holds for all errors of ``run``; ``attractors`` are canonical texts of forms.
+
+    The predicates of a world are those that it declares and those of its training labels; its classes are
+    those of its entities and, again, of those labels.
+    """
+    declared = frozenset(run.world.predicates.values_list("name", flat=True))
+    entities = Entity.objects.filter(ontology__world=run.world_id).order_by()
+    classes = frozenset(entities.values_list("entity_class", flat=True).distinct())
+    used, named = _names_in_training(run.split) if declared or classes else (set(), set())
+    return RunEvidence(
+        declared | used if declared else None, classes | named if classes else None, attractors
+    )
+
+
+def _names_in_training(split: Split) -> tuple[set[str], set[str]]:
+    """Return the predicates and the classes that the training labels of ``split`` name."""
+    labels = split.examples.filter(part="train").order_by().values_list("logical_form", flat=True)
+    used: set[str] = set()
+    classes: set[str] = set()
+    for text in labels.distinct().iterator():
+        used.update(PREDICATE.findall(text))
+        classes.update(name.rstrip("0123456789") for name in CLASS_TOKEN.findall(text))
+    return used, classes
+
+
+class ErrorEvidences:
+    """What is known of each answer of one run."""
+
+    def __init__(self, run: TrainingRun, answers: Sequence[Answered]) -> None:
+        self._answers = answers
+        self._audits = dict(_read_audits(run.world))
+        self._labels = _ambiguous_labels(run.split)
+        self._neighbours = _Neighbours(answers)
+
+    def of(self, at: int) -> ErrorEvidence:
+        """Return what is known of the answer number ``at``."""
+        answered = self._answers[at]
+        labels = self._labels.get(answered.utterance, ())
+        return ErrorEvidence(
+            neighbours=tuple(self._neighbours.of(at)),
+            other_golds=tuple(read_form(text) for text in labels if text != answered.label),
+            audit=self._audits.get((answered.utterance, answered.label)),
+        )
+
+
+def _read_audits(world: World) -> Iterator[tuple[tuple[str, str], Audit]]:
+    """Yield text and label of each pair in doubt, and the doubt; what people have decided comes last.
+
+    A pair stands in a split as it was said, or with class tokens.
+    """
+    findings = world.audit_findings.prefetch_related("reasons")
+    of_machine = ((row, _doubt(row)) for row in findings.open().iterator(ROWS_AT_ONCE))
+    of_people = ((row, _decision(row)) for row in findings.confirmed().iterator(ROWS_AT_ONCE))
+    for rows in (of_machine, of_people):
+        for row, audit in rows:
+            for text in {row.text, row.anonymized_text}:
+                yield (text, row.form), audit
+
+
+def _doubt(finding: AuditFinding) -> Audit:
+    sentences = " ".join(each.sentence for each in finding.reasons.all())
+    suggested = read_or_none(finding.suggested_form)
+    return Audit(f"The label audit doubts the label: {sentences}", suggested)
+
+
+def _decision(finding: AuditFinding) -> Audit:
+    decided = read_or_none(finding.decided_form)
+    return Audit(DECIDED[FindingStatus(finding.status)], decided)
+
+
+def _ambiguous_labels(split: Split) -> dict[str, list[str]]:
+    """Return the labels of each text of ``split`` that has several."""
+    texts = split.examples.order_by().values("utterance")
+    several = texts.annotate(labels=Count("logical_form", distinct=True)).filter(labels__gt=1)
+    rows = Example.objects.filter(split=split, utterance__in=several.values("utterance"))
+    labels = defaultdict(list)
+    for text, label in rows.order_by().values_list("utterance", "logical_form").distinct():
+        labels[text].append(label)
+    return {text: sorted(forms) for text, forms in labels.items()}
+
+
+class _Neighbours:
+    """The answers to utterances one edit away from those of the run."""
+
+    def __init__(self, answers: Sequence[Answered]) -> None:
+        self._answers = answers
+        numbers: dict[tuple[str, ...], int] = {}
+        self._number_of = [
+            numbers.setdefault(words_of(each.utterance), len(numbers)) for each in answers
+        ]
+        first_of = dict(zip(reversed(self._number_of), reversed(range(len(answers))), strict=True))
+        self._first_of = [first_of[number] for number in range(len(numbers))]
+        pairs = mine_pairs([answers[at].utterance for at in self._first_of])
+        both_ways = np.concatenate((pairs.first, pairs.second))
+        order = np.argsort(both_ways, kind="stable")
+        self._others = np.concatenate((pairs.second, pairs.first))[order]
+        self._starts = np.searchsorted(both_ways[order], np.arange(len(numbers) + 1))
+
+    def of(self, at: int) -> Iterator[Neighbour]:
+        """Yield the neighbours with another answer than number ``at``, one of each label and answer."""
+        answer, number = self._answers[at].answer, self._number_of[at]
+        seen: set[tuple[str, str]] = set()
+        for other in self._others[self._starts[number] : self._starts[number + 1]]:
+            near = self._answers[self._first_of[other]]
+            if near.answer == answer or (near.label, near.answer) in seen:
+                continue
+            seen.add((near.label, near.answer))
+            yield Neighbour(near.utterance, read_form(near.label), read_or_none(near.answer))
+            if len(seen) == MOST_NEIGHBOURS:
+                return

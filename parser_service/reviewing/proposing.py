@@ -1,0 +1,113 @@
+"""Verb: propose a category for each error of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from annotations.background.progress import Progress
+from annotations.language.forms import read_form
+from annotations.rows.synchronise import batches
+from parser_service.analysis.categories import (
+    NOTHING_MORE,
+    ErrorEvidence,
+    Proposal,
+    Proposals,
+    RunEvidence,
+    propose_category,
+)
+from parser_service.analysis.reading import read_or_none
+from parser_service.models import Review, TrainingRun
+from parser_service.reviewing.answers import Answered, read_answers, read_earlier_errors
+from parser_service.reviewing.categories import ensure_categories
+from parser_service.reviewing.evidence import ErrorEvidences, evidence_of_run
+
+BATCH = 500
+
+
+def propose_for_run(run: TrainingRun, attractors: frozenset[str], progress: Progress) -> int:
+    """Store a proposed review of each wrong first answer of ``run``, in place of earlier proposals.
+
+    Each batch is a transaction, so that a repetition after a stop makes what is missing, and pages have
+    a proposal for each error meanwhile.
+
+    Args:
+        attractors: canonical texts of the forms that attract unlike inputs.
+
+    Returns:
+        How many proposals there are now.
+
+    Raises:
+        What ``progress`` raises to stop it.
+    """
+    progress.report(0, "reading the errors")
+    answers = read_answers(run, progress.check)
+    maker = _Maker(run, attractors, answers)
+    errors = [at for at, each in enumerate(answers) if not each.is_right]
+    done, last = 0, 0
+    for some in batches(errors, BATCH):
+        progress.report(done / len(errors), "proposing error categories")
+        rows = list(maker.make(some))
+        with progress.writing():
+            _replace(run, rows, last)
+        done, last = done + len(rows), rows[-1].example_id
+    with progress.writing():
+        run.reviews.proposed().filter(example__gt=last).delete()
+    return done
+
+
+def _replace(run: TrainingRun, rows: Sequence[Review], after: int) -> None:
+    """Store the proposals; earlier ones of examples behind ``after`` and up to the last of ``rows`` go."""
+    earlier = run.reviews.proposed().filter(example__gt=after, example__lte=rows[-1].example_id)
+    earlier.delete()
+    Review.objects.bulk_create(rows)
+
+
+class _Maker:
+    """Makes the rows of one run. Errors with the same two forms and nothing else share their work."""
+
+    def __init__(
+        self, run: TrainingRun, attractors: frozenset[str], answers: Sequence[Answered]
+    ) -> None:
+        self._run, self._answers = run, answers
+        self._categories = ensure_categories(run.world)
+        self._of_run: RunEvidence = evidence_of_run(run, attractors)
+        self._of_errors = ErrorEvidences(run, answers)
+        self._earlier = read_earlier_errors(run)
+        self._known: dict[tuple[str, str], Proposals] = {}
+
+    def make(self, errors: Sequence[int]) -> Iterator[Review]:
+        """Yield an unsaved proposal for each of the answers with these numbers."""
+        for at in errors:
+            answered = self._answers[at]
+            proposal = self._choose(self._propose(answered, self._of_errors.of(at)))
+            yield Review(
+                run=self._run,
+                example_id=answered.example,
+                category=self._categories.get(proposal.category),
+                is_proposed=True,
+                is_new=self._is_new(answered),
+                answer=answered.answer,
+                reason=proposal.reason,
+            )
+
+    def _is_new(self, answered: Answered) -> bool | None:
+        if self._earlier is None:
+            return None
+        return (answered.utterance, answered.label) not in self._earlier
+
+    def _propose(self, answered: Answered, evidence: ErrorEvidence) -> Proposals:
+        forms = answered.label, answered.answer
+        if evidence != NOTHING_MORE:
+            return self._propose_for(*forms, evidence)
+        if forms not in self._known:
+            self._known[forms] = self._propose_for(*forms, evidence)
+        return self._known[forms]
+
+    def _propose_for(self, label: str, answer: str, evidence: ErrorEvidence) -> Proposals:
+        return propose_category(read_form(label), read_or_none(answer), self._of_run, evidence)
+
+    def _choose(self, proposals: Proposals) -> Proposal:
+        """Return the first proposal whose category the world has; the first one where it has none of them."""
+        each_in_turn = (proposals.first, *proposals.runners_up)
+        known = (each for each in each_in_turn if each.category in self._categories)
+        return next(known, proposals.first)
