@@ -1,4 +1,4 @@
-"""What the lists of runs and predictions may be filtered by."""
+"""What the list of runs may be filtered by; predictions: ``parser_service.slices``."""
 
 from __future__ import annotations
 
@@ -9,21 +9,12 @@ from django import forms
 from django.db.models import Q, QuerySet
 from django.http import HttpRequest
 
-from annotations.lists.choices import Choices, predicate_choices, task_category_choices
-from annotations.lists.filtering import Head, PageFilters, Search
+from annotations.lists.choices import Choices
+from annotations.lists.filtering import PageFilters, Search
 from annotations.models import Split
-from annotations.models.splits import part_choices, source_choices
-from parser_service.models import Prediction, TrainingRun
+from parser_service.models import TrainingRun
 from parser_service.models.runs import TrainingRunQuerySet, status_choices
 from parser_service.parsers.registry import PARSERS
-
-OUTCOMES = [
-    ("correct", "correct"),
-    ("wrong", "wrong"),
-    ("equivalent", "equivalent only"),
-    ("malformed", "malformed"),
-    ("none", "no answer"),
-]
 
 
 def parser_choices() -> Choices:
@@ -77,16 +68,3 @@ class RunFilters(PageFilters):
         """Return a run of this world and those that differ from it only by the seed."""
         run = self.request.world.runs.filter(pk=value).first()
         return rows.seeds_of(run) if run else rows.none()
-
-
-class PredictionFilters(PageFilters):
-    q = Search("example__utterance")
-    outcome = django_filters.ChoiceFilter(label="Outcome", choices=OUTCOMES, method="by_outcome")
-    part = django_filters.ChoiceFilter("example__part", label="Part", choices=part_choices)
-    source = django_filters.ChoiceFilter("example__source", label="Source", choices=source_choices)
-    task_category = django_filters.ChoiceFilter("example__task_category", label="Task category")
-    head = Head("example__logical_form", label="Head predicate")
-    world_choices = {"task_category": task_category_choices, "head": predicate_choices}
-
-    def by_outcome(self, rows: QuerySet[Prediction], name: str, value: str) -> QuerySet[Prediction]:
-        return rows.with_outcome(value)

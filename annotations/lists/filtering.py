@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from typing import Any
 
 import django_filters
@@ -12,16 +13,38 @@ from django.db.models.functions import Cast
 from django.db.models.lookups import IContains
 
 
+class ChoicesLater:
+    """Choices that are looked up where a form is shown or has a value to check, not before."""
+
+    def __init__(self, choices: Callable[[Any], Any], request: Any):
+        self.choices = choices
+        self.request = request
+        self.known: list[Any] | None = None
+
+    def __call__(self) -> list[Any]:
+        if self.known is None:
+            self.known = list(self.choices(self.request))
+        return self.known
+
+    def __deepcopy__(self, memo: Any) -> ChoicesLater:
+        return self  # forms copy their fields, and a request cannot be copied
+
+
 class PageFilters(django_filters.FilterSet):
-    """Filters whose choices may depend on the world of the page: see ``world_choices``."""
+    """Filters whose choices may depend on the world of the page: see ``world_choices``.
+
+    The filters called ``further`` stand behind a button where pages show them.
+    """
 
     # Name of a filter → what gives its choices for a request.
     world_choices: dict[str, Any] = {}
+    further: tuple[str, ...] = ()
 
     def __init__(self, *args: Any, **kwargs: Any):
         super().__init__(*args, **kwargs)
+        later = {each: ChoicesLater(each, self.request) for each in self.world_choices.values()}
         for name, choices in self.world_choices.items():
-            self.filters[name].extra["choices"] = choices(self.request)
+            self.filters[name].extra["choices"] = later[choices]
         for each in self.filters.values():
             if isinstance(each, django_filters.ChoiceFilter):
                 each.extra.setdefault("empty_label", f"{each.label}: any")

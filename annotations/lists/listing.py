@@ -50,11 +50,29 @@ class Sort:
 class FilteredList:
     """What all lists have in common: filters that stand in the URL, and links to the same list with others.
 
-    ``form`` holds the filters, bound to the URL.
+    ``form`` holds the filters, bound to the URL; those called ``further`` stand behind a button.
     """
 
     query: QueryDict
     form: Any
+    further: Sequence[str] = ()
+
+    @property
+    def first_fields(self) -> list[Any]:
+        """The fields of the filters that one sees at once."""
+        return [field for field in self.form if field.name not in self.further]
+
+    @property
+    def further_fields(self) -> list[Any]:
+        """The fields behind the button."""
+        return [field for field in self.form if field.name in self.further]
+
+    @property
+    def n_further(self) -> int:
+        """How many of the filters behind the button are set."""
+        self.form.is_valid()
+        values = self.form.cleaned_data
+        return sum(values.get(name) not in (None, "", []) for name in self.further)
 
     @property
     def clear_url(self) -> str:
@@ -86,11 +104,15 @@ class FilteredList:
     def url(self, **changes: str) -> str:
         """Return the URL of the first page of this list with ``changes``; an empty value is removed."""
         query = QueryDict(mutable=True)
-        query.update({k: v for k, v in self.query.items() if k not in PLACE and v})
+        for name, values in self.query.lists():
+            if name not in PLACE:
+                query.setlist(name, values)
         for name, value in changes.items():
             query[name] = value
         given = QueryDict(mutable=True)
-        given.update({name: value for name, value in query.items() if value})
+        for name, values in query.lists():
+            if some := [value for value in values if value]:
+                given.setlist(name, some)
         return f"?{given.urlencode(safe='/')}"
 
 
@@ -111,6 +133,7 @@ class Listing(FilteredList):
     ):
         self.query = request.GET
         self.filterset = filters(request.GET, queryset=rows, request=request, **options)
+        self.further = getattr(filters, "further", ())
         self.sorts = sorts
         self.size = size
 

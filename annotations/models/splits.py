@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from django.db import models
 
 from annotations.language.corpus import Criterion, Part
+from annotations.language.errors import LanguageError
+from annotations.language.forms import depth, head_predicate, read_form
+from annotations.models.derived import DerivedCharField, DerivedIntegerField
 from annotations.models.people import User
 from annotations.models.worlds import World
+
+HEAD_LENGTH = 80  # of the name of a predicate, as in ``LogicalForm``
 
 
 class Source(models.TextChoices):
@@ -66,7 +73,8 @@ class Example(models.Model):
     """An utterance with its form (canonical corpus text), at its ``position`` in the part's file.
 
     ``written_form`` is the form as the file wrote it where that is not the canonical text, so that an
-    export gives the file back.
+    export gives the file back. ``head_predicate`` (``UNKNOWN`` for a form without any) and ``depth`` are
+    those of the form, empty and 0 for a text that is no form; ``word_count`` counts what spaces separate.
     """
 
     split = models.ForeignKey(Split, on_delete=models.CASCADE, related_name="examples")
@@ -79,6 +87,11 @@ class Example(models.Model):
     logical_form = models.TextField()
     written_form = models.TextField(blank=True)
     grounded_form = models.TextField(blank=True)
+    head_predicate = DerivedCharField(
+        max_length=HEAD_LENGTH, blank=True, default="", editable=False
+    )
+    depth = DerivedIntegerField(default=0, editable=False)
+    word_count = DerivedIntegerField(default=0, editable=False)
 
     objects = ExampleQuerySet.as_manager()
 
@@ -92,3 +105,22 @@ class Example(models.Model):
 
     def __str__(self) -> str:
         return self.utterance
+
+    def derive_head_predicate(self) -> str:
+        return shape_of(self.logical_form)[0]
+
+    def derive_depth(self) -> int:
+        return shape_of(self.logical_form)[1]
+
+    def derive_word_count(self) -> int:
+        return len(self.utterance.split())
+
+
+@lru_cache(maxsize=4096)
+def shape_of(text: str) -> tuple[str, int]:
+    """Return the head predicate and the depth of a form; ``("", 0)`` for a text that is no form."""
+    try:
+        form = read_form(text)
+    except LanguageError:
+        return "", 0
+    return head_predicate(form)[:HEAD_LENGTH], depth(form)

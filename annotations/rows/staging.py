@@ -66,10 +66,7 @@ class Staging:
         """Collect unsaved instances of the model."""
         fields = [self.model._meta.get_field(name) for name in self._field_names()]
         self.add(
-            (
-                (None, *(_for_database(field, getattr(row, field.attname)) for field in fields))
-                for row in rows
-            ),
+            ((None, *(_for_database(field, row) for field in fields)) for row in rows),
             progress,
         )
 
@@ -108,5 +105,7 @@ def _quote(name: str) -> str:
     return connection.ops.quote_name(name)
 
 
-def _for_database(field: models.Field, value: Any) -> Any:
+def _for_database(field: models.Field, row: models.Model) -> Any:
+    is_derived = getattr(field, "is_derived", False)
+    value = field.pre_save(row, add=True) if is_derived else getattr(row, field.attname)
     return field.get_db_prep_save(value, connection)

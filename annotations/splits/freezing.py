@@ -80,6 +80,7 @@ class PreparedSplit:
     COLUMNS = (
         *("position", "part", "source", "utterance", "source_command", "task_category"),
         *("logical_form", "written_form", "grounded_form"),
+        *("head_predicate", "depth", "word_count"),
     )
 
     def __init__(

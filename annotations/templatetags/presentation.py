@@ -265,6 +265,19 @@ def decimals(number: float | None, digits: int = 2) -> str:
 
 
 @register.filter
+def signed(number: float) -> str:
+    """Write a difference with one decimal and its sign; nothing that rounds to 0 has one."""
+    rounded = round(number, 1)
+    return f"{rounded:+.1f}".replace("-", "−") if rounded else "0.0"
+
+
+@register.filter
+def p_value(p: float) -> str:
+    """Write the probability of a test."""
+    return "< 0.001" if p < 0.001 else f"{p:.3f}"
+
+
+@register.filter
 def duration(seconds: float | None) -> str:
     """Write seconds as ``48 s``, ``3 min 20 s`` or ``2 h 5 min``; nothing for None."""
     if seconds is None:

@@ -63,13 +63,15 @@ class Table:
 
     @cached_property
     def columns(self) -> tuple[models.Field, ...]:
-        """The fields that are written as they are."""
+        """The fields that are written as they are; derived ones follow from them."""
         apart = {"id", self.owner, *self.references, *self.people}
         apart |= {"subject"} if self.subjects else set()
         return tuple(
             each
             for each in self.model._meta.concrete_fields
-            if each.name not in apart and not getattr(each, "auto_now_add", False)
+            if each.name not in apart
+            and not getattr(each, "auto_now_add", False)
+            and not getattr(each, "is_derived", False)
         )
 
     @cached_property

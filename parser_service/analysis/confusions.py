@@ -21,7 +21,7 @@ from annotations.language.forms import (
 )
 from annotations.language.predicates import ArgumentKind, argument_kind
 from parser_service.analysis.arrays import Ints
-from parser_service.analysis.labels import distinct_pairs, encode
+from parser_service.analysis.labels import Labels, distinct_pairs, encode
 from parser_service.analysis.reading import NO_FORM, read_or_none
 
 NOTHING = "nothing"
@@ -75,6 +75,25 @@ def confuse_heads(gold: Sequence[str], predicted: Sequence[str]) -> HeadConfusio
     totals: Counter[tuple[str, str]] = Counter()
     for left, right, count in _distinct(gold, predicted):
         totals[_head(left), _head(right)] += count
+    return _head_confusion(totals)
+
+
+def confuse_labels(gold: Labels[str], predicted: Labels[str]) -> HeadConfusion:
+    """Return the same for head predicates that are known already, [pairs] each."""
+    first, second, counts = distinct_pairs(gold.codes, predicted.codes)
+    return _head_confusion(
+        Counter(
+            {
+                (gold.values[left], predicted.values[right]): count
+                for left, right, count in zip(
+                    first.tolist(), second.tolist(), counts.tolist(), strict=True
+                )
+            }
+        )
+    )
+
+
+def _head_confusion(totals: Counter[tuple[str, str]]) -> HeadConfusion:
     labels: Counter[str] = Counter()
     answers: Counter[str] = Counter()
     for (said, answered), count in totals.items():

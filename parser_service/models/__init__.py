@@ -1,4 +1,5 @@
 from parser_service.models.analyses import Expectation, Probe, ProbeAnswer, RunAnalysis
+from parser_service.models.columns import AnswerColumns, ExampleColumns
 from parser_service.models.folders import RunFolder
 from parser_service.models.predictions import Evaluation, Prediction
 from parser_service.models.reviews import ErrorCategory, Review, Slice
@@ -6,10 +7,12 @@ from parser_service.models.runs import Checkpoint, EpochMetric, RunEvent, Traini
 from parser_service.models.workers import Worker
 
 __all__ = [
+    "AnswerColumns",
     "Checkpoint",
     "EpochMetric",
     "ErrorCategory",
     "Evaluation",
+    "ExampleColumns",
     "Expectation",
     "Prediction",
     "Probe",

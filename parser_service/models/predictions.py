@@ -35,6 +35,15 @@ class Evaluation(models.Model):
         return f"{self.run}: {self.accuracy:.3f} on {self.test_source} {self.part}"
 
 
+OUTCOMES = {
+    "correct": models.Q(is_exact_match=True),
+    "wrong": models.Q(is_exact_match=False),
+    "equivalent": models.Q(is_exact_match=False, is_equivalent=True),
+    "malformed": models.Q(is_well_formed=False) & ~models.Q(logical_form=""),
+    "none": models.Q(logical_form=""),
+}
+
+
 class PredictionQuerySet(models.QuerySet["Prediction"]):
     def best(self) -> PredictionQuerySet:
         """Return the first-ranked prediction of each example."""
@@ -43,14 +52,7 @@ class PredictionQuerySet(models.QuerySet["Prediction"]):
     def with_outcome(self, outcome: str) -> PredictionQuerySet:
         """Return those with the outcome ``correct``, ``wrong``, ``equivalent`` (but not exact), ``malformed``
         or ``none`` (no answer)."""
-        conditions = {
-            "correct": models.Q(is_exact_match=True),
-            "wrong": models.Q(is_exact_match=False),
-            "equivalent": models.Q(is_exact_match=False, is_equivalent=True),
-            "malformed": models.Q(is_well_formed=False) & ~models.Q(logical_form=""),
-            "none": models.Q(logical_form=""),
-        }
-        return self.filter(conditions[outcome])
+        return self.filter(OUTCOMES[outcome])
 
 
 class Prediction(models.Model):

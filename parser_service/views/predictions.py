@@ -9,8 +9,8 @@ from annotations.lists.listing import Listing, Sort
 from annotations.models import Duty, World
 from annotations.people.access import world_view
 from annotations.rows.occurrences import command_of_example
-from parser_service.filters import PredictionFilters
 from parser_service.models import TrainingRun
+from parser_service.slices import PredictionFilters
 
 SORTS = {
     "position": Sort("No.", "example_id", is_number=True),
@@ -24,7 +24,11 @@ def predictions(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     """List the first answer to every example, filtered by the URL."""
     run = get_object_or_404(TrainingRun.objects.for_table(), world=world, pk=pk)
     aside = f"{run.parser}, run {run.pk}"
-    context = {"run": run, "aside": aside, "listing": listing_of(request, run)}
+    context = {
+        "run": run,
+        "aside": aside,
+        "listing": listing_of(request, run),
+    }
     return render(request, "parser_service/predictions.html", context)
 
 

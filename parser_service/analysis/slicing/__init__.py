@@ -6,9 +6,11 @@ from parser_service.analysis.reading import NO_FORM
 from parser_service.analysis.slicing.accuracies import (
     SliceAccuracies,
     accuracy_by,
+    accuracy_of_labels,
     accuracy_where,
 )
 from parser_service.analysis.slicing.example_values import (
+    BIN_STARTS,
     are_seen,
     bin_names,
     count_words,
@@ -18,9 +20,11 @@ from parser_service.analysis.slicing.example_values import (
 )
 
 __all__ = [
+    "BIN_STARTS",
     "NO_FORM",
     "SliceAccuracies",
     "accuracy_by",
+    "accuracy_of_labels",
     "accuracy_where",
     "are_seen",
     "bin_names",

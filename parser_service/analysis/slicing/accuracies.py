@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from parser_service.analysis.arrays import Bools, Floats, Ints
-from parser_service.analysis.labels import encode
+from parser_service.analysis.labels import Labels, encode
 from parser_service.analysis.proportions import wilson_intervals
 
 
@@ -47,11 +48,15 @@ def accuracy_by(
     Raises:
         ValueError: there are not as many labels as examples.
     """
-    _require_same_length(correct, len(labels))
-    encoded = encode(labels, values)
-    size = len(encoded.values)
-    right = [np.bincount(encoded.codes[run], minlength=size) for run in correct]
-    return _summarize(encoded.values, encoded.counts(), np.array(right).reshape(-1, size))
+    return accuracy_of_labels(correct, encode(labels, values))
+
+
+def accuracy_of_labels(correct: Bools, labels: Labels[Any]) -> SliceAccuracies:
+    """Return the same for labels that are encoded already. Raises likewise."""
+    _require_same_length(correct, len(labels.codes))
+    size = len(labels.values)
+    right = [np.bincount(labels.codes[run], minlength=size) for run in correct]
+    return _summarize(labels.values, labels.counts(), np.array(right).reshape(-1, size))
 
 
 def accuracy_where(correct: Bools, mask: Bools) -> SliceAccuracies:

@@ -77,7 +77,7 @@ def test_text_that_is_no_form_is_shown_as_it_is(sample, anna):
 
 
 def test_the_list_costs_no_query_a_row(sample, anna, django_assert_max_num_queries):
-    with django_assert_max_num_queries(16):
+    with django_assert_max_num_queries(18):
         predictions(anna, sample)
 
 

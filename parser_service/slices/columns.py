@@ -1,0 +1,163 @@
+"""Examples and answers as arrays: made once, stored compressed, read in milliseconds.
+
+A split is frozen and the answers of a run that succeeded do not change, so a copy stays right.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from annotations.models import Split
+from parser_service.analysis.arrays import Bools, Ints
+from parser_service.analysis.labels import Labels, encode
+from parser_service.analysis.slicing import NO_FORM, head_predicates
+from parser_service.models import AnswerColumns, ExampleColumns, TrainingRun
+from parser_service.models.runs import Status
+
+TEXTS = ".values"  # ends the name of the array with the texts that codes stand for
+Column = "NDArray[Any] | Labels[str]"
+UNKNOWN_COUNT = -1  # where it is not known how often training had a label
+AT_ONCE = 20_000  # rows read from the database
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Examples:
+    """The examples of one part: ``keys`` ascending, and by name the columns ``source``, ``task_category``,
+    ``head_predicate`` (texts), ``depth`` and ``word_count``, [examples] each."""
+
+    keys: Ints
+    columns: Mapping[str, Any]
+
+    def mask_of_keys(self, keys: Sequence[int]) -> Bools:
+        """Return which examples have one of these keys, [examples]."""
+        mask = np.zeros(len(self.keys), dtype=bool)
+        wanted = np.asarray(keys, dtype=np.int64)
+        places = np.searchsorted(self.keys, wanted)
+        inside = places < len(self.keys)
+        places, wanted = places[inside], wanted[inside]
+        mask[places[self.keys[places] == wanted]] = True
+        return mask
+
+
+def examples_of(split: Split, part: str) -> Examples:
+    """Return the examples of a part. The first call for it reads every row."""
+    stored = ExampleColumns.objects.filter(split=split, part=part).first()
+    if stored is None:
+        arrays = _read_examples(split, part)
+        stored, _ = ExampleColumns.objects.get_or_create(
+            split=split, part=part, defaults={"data": _pack(arrays)}
+        )
+    columns = _unpack(stored.data)
+    return Examples(columns.pop("keys"), columns)
+
+
+def answers_of(run: TrainingRun, part: str, examples: Examples) -> dict[str, Any]:
+    """Return the columns of a run's first answers to ``examples``, [examples] each.
+
+    They are ``is_there``, ``is_exact_match``, ``is_equivalent``, ``is_well_formed``, ``is_empty``,
+    ``answer_in_training`` and ``label_in_training`` (``UNKNOWN_COUNT`` where not known), and the texts
+    ``answer_head`` and ``logical_form``, of which only the empty one is kept apart. They are stored once the
+    run has succeeded.
+    """
+    stored = AnswerColumns.objects.filter(run=run, part=part).first()
+    if stored is not None:
+        return _with_emptiness(_unpack(stored.data))
+    arrays = _read_answers(run, part, examples.keys)
+    if run.status == Status.SUCCEEDED:
+        AnswerColumns.objects.get_or_create(run=run, part=part, defaults={"data": _pack(arrays)})
+    return _with_emptiness(arrays)
+
+
+def forget_answers(run: TrainingRun) -> None:
+    """Let the columns of a run be made again, after its predictions were changed."""
+    AnswerColumns.objects.filter(run=run).delete()
+
+
+def _with_emptiness(arrays: dict[str, Any]) -> dict[str, Any]:
+    codes = np.where(arrays["is_empty"], 0, 1)
+    return {**arrays, "logical_form": Labels(("", "a form"), codes)}
+
+
+def _read_examples(split: Split, part: str) -> dict[str, Any]:
+    fields = ("pk", "source", "task_category", "head_predicate", "depth", "word_count")
+    rows = split.examples.filter(part=part).order_by("pk").values_list(*fields)
+    keys, *texts, depths, words = _transpose(rows, len(fields))
+    return {
+        "keys": np.array(keys, dtype=np.int64),
+        **dict(zip(fields[1:4], map(encode, texts), strict=True)),
+        "depth": np.array(depths, dtype=np.int64),
+        "word_count": np.array(words, dtype=np.int64),
+    }
+
+
+def _read_answers(run: TrainingRun, part: str, keys: Ints) -> dict[str, Any]:
+    flags = ("is_exact_match", "is_equivalent", "is_well_formed")
+    counts = ("answer_in_training", "label_in_training")
+    fields = ("example_id", "logical_form", *counts, *flags)
+    best = run.predictions.best().filter(example__part=part, example__split=run.split_id)
+    read = _transpose(best.order_by().values_list(*fields), len(fields))
+    examples, forms, seen, outcomes = read[0], read[1], read[2:4], read[4:]
+    places = np.searchsorted(keys, np.array(examples, dtype=np.int64))
+    arrays: dict[str, Any] = {"is_there": _scatter(places, len(keys), True)}
+    for name, values in zip(flags, outcomes, strict=True):
+        arrays[name] = _scatter(places, len(keys), np.array(values, dtype=bool))
+    empty = np.fromiter((not form for form in forms), dtype=bool, count=len(forms))
+    arrays["is_empty"] = _scatter(places, len(keys), empty)
+    for name, values in zip(counts, seen, strict=True):
+        arrays[name] = np.full(len(keys), UNKNOWN_COUNT, dtype=np.int64)
+        arrays[name][places] = [UNKNOWN_COUNT if each is None else each for each in values]
+    heads = encode(head_predicates(forms), (NO_FORM,))
+    codes = np.zeros(len(keys), dtype=np.int64)
+    codes[places] = heads.codes
+    arrays["answer_head"] = Labels(heads.values, codes)
+    return arrays
+
+
+def _transpose(rows: Any, width: int) -> list[Sequence[Any]]:
+    return list(zip(*rows.iterator(chunk_size=AT_ONCE), strict=True)) or [()] * width
+
+
+def _scatter(places: Ints, length: int, values: Any) -> Bools:
+    column = np.zeros(length, dtype=bool)
+    column[places] = values
+    return column
+
+
+def _pack(columns: Mapping[str, Any]) -> bytes:
+    """Write arrays as small types and texts as codes; nothing in it is a pickle."""
+    arrays: dict[str, NDArray[Any]] = {}
+    for name, column in columns.items():
+        if isinstance(column, Labels):
+            arrays[name + TEXTS] = np.array(column.values, dtype=np.str_)
+            arrays[name] = _shrink(column.codes)
+        elif column.dtype == bool:
+            arrays[name] = column
+        else:
+            arrays[name] = _shrink(column)
+    file = io.BytesIO()
+    np.savez_compressed(file, **arrays)
+    return file.getvalue()
+
+
+def _shrink(numbers: Ints) -> NDArray[Any]:
+    low, high = numbers.min(initial=0), numbers.max(initial=0)
+    return numbers.astype(np.result_type(np.min_scalar_type(low), np.min_scalar_type(high)))
+
+
+def _unpack(data: bytes) -> dict[str, Any]:
+    with np.load(io.BytesIO(bytes(data)), allow_pickle=False) as archive:
+        arrays = {name: archive[name] for name in archive.files}
+    columns: dict[str, Any] = {}
+    for name, array in arrays.items():
+        if name.endswith(TEXTS):
+            continue
+        wide = array if array.dtype == bool else array.astype(np.int64)
+        texts = arrays.get(name + TEXTS)
+        columns[name] = wide if texts is None else Labels(tuple(texts.tolist()), wide)
+    return columns
