@@ -7,8 +7,8 @@ from typing import Any
 from django import forms
 from django.http import HttpRequest, QueryDict
 
+from annotations.checking import Checked, check_template
 from annotations.editing.once import new_key
-from annotations.editing.template_check import Checked, check_template
 from annotations.language.decoding import decode
 from annotations.language.errors import LanguageError
 from annotations.language.limits import MAX_FORM, MAX_PATTERN

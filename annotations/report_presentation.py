@@ -46,7 +46,7 @@ def shown_report(kind: str, report: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _shown_texts(rows: Mapping[str, list[str]]) -> list[dict[str, Any]]:
-    """Return rows by what they are: how many, and the first of them. ``kind`` is a name in editing.kinds."""
+    """Return rows by what they are: how many, and the first of them. ``kind`` is a name in rows.kinds."""
     return [
         {
             "count": len(texts),

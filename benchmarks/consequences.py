@@ -176,13 +176,13 @@ def spread(rows: Any, count: int) -> list[Any]:
 
 def measure_productions(world: Any, user: Any, repeat: int, bound: float) -> None:
     """What a production would become and change, asked about with another word each time, and saved."""
-    from annotations.editing.deletion_check import check_deletion
-    from annotations.editing.edits import change
-    from annotations.editing.production_check import (
+    from annotations.checking import (
         ProductionEdit,
+        check_deletion,
         check_production,
         consequences_of_production,
     )
+    from annotations.editing.edits import change
     from annotations.models import Production
 
     rows = spread(Production.objects.filter(grammar__world=world), repeat)
@@ -207,8 +207,8 @@ def measure_productions(world: Any, user: Any, repeat: int, bound: float) -> Non
 
 def measure_renames(world: Any, user: Any, repeat: int, bound: float) -> None:
     """What another name changes, and changing it."""
-    from annotations.editing.renaming import rename, touched_by
     from annotations.models import Entity, Predicate, Production
+    from annotations.renaming import rename, touched_by
 
     productions = Production.objects.filter(grammar__world=world).exclude(nonterminal="Main")
     first = {row.nonterminal: row for row in reversed(productions)}

@@ -10,9 +10,9 @@ from django.http import HttpRequest
 from django.urls import ResolverMatch, reverse
 from django.utils.functional import SimpleLazyObject
 
-from annotations.editing.kinds import KINDS
 from annotations.language.english import say_count
 from annotations.models import Duty, Notice, World
+from annotations.rows.kinds import KINDS
 from gpsr_site.overview.counts import Counts, counts_of
 from gpsr_site.workers import workers_now
 

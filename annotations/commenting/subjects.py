@@ -9,8 +9,8 @@ from django.db import models
 from django.http import Http404
 from django.urls import reverse
 
-from annotations.editing.kinds import KINDS
 from annotations.models import Comment, LogicalForm, World
+from annotations.rows.kinds import KINDS
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,9 +11,8 @@ from typing import Any, TypeVar
 from django.db import models, transaction
 from django.db.models import Max
 
-from annotations.editing.checking import check_again
+from annotations.checking import check_again
 from annotations.editing.drafts import discard_draft_of_new
-from annotations.editing.kinds import kind_of
 from annotations.editing.once import made_before, remember
 from annotations.jobs.starting import start_update
 from annotations.models import Editable, User, World
@@ -27,6 +26,7 @@ from annotations.rows.history import (
     keep,
     keep_first,
 )
+from annotations.rows.kinds import kind_of
 from annotations.rows.synchronise import BATCH, batches
 
 Row = TypeVar("Row", bound=Editable)

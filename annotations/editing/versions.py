@@ -8,13 +8,12 @@ from datetime import datetime
 from itertools import pairwise
 from typing import Any
 
-from annotations.editing.kinds import FORM_FIELDS, Kind, as_text, label_of
 from annotations.models import User, World
 from annotations.presentation import Pieces, compare
-from annotations.rows.history import ADDED, AS_IMPORTED, CHANGED, DELETED, OF_IMPORT, RESTORED
+from annotations.rows.history import AS_IMPORTED, DELETED, what_happened
+from annotations.rows.kinds import FORM_FIELDS, Kind, as_text, label_of
 
 MOST_SHOWN = 30
-WHAT = {ADDED: "Added", CHANGED: "Changed", DELETED: "Deleted"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,18 +72,6 @@ def _version(kind: Kind, entry: Any, older: Any, newest: int | None) -> Version:
         is_deletion=entry.history_type == DELETED,
         is_current=entry.history_id == newest,
     )
-
-
-def what_happened(entry: Any) -> str:
-    """Say what made the version that a history entry keeps."""
-    match entry.history_change_reason:
-        case reason if reason == AS_IMPORTED:
-            return "First known version"
-        case reason if reason == RESTORED:
-            return "Restored"
-        case reason if reason == OF_IMPORT:
-            return f"{WHAT[entry.history_type]} by an import"
-    return WHAT[entry.history_type]
 
 
 def _changes(kind: Kind, entry: Any, older: Any) -> Iterator[FieldChange]:

@@ -6,7 +6,6 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 
 from annotations import models
-from annotations.editing.template_problems import StoredRemark, as_stored
 from annotations.generation.kept_expansions import checker_of, problems_of
 from annotations.language.errors import LanguageError
 from annotations.language.grammar import CHECK_STEPS, Budget
@@ -18,6 +17,7 @@ from annotations.language.templates import (
 )
 from annotations.models.templates import Status
 from annotations.rows.from_rows import AnnotatedCategory, grammar_of, predicates_of
+from annotations.rows.template_problems import StoredRemark, as_stored
 
 BATCH = 500
 MOST_STEPS = 5 * CHECK_STEPS  # for all templates that are not ready: a second of processor time

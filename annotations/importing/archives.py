@@ -12,6 +12,7 @@ from typing import IO, Any
 
 from annotations.language.errors import LanguageError, Position
 
+MANIFEST = "world.json"  # what the archive of a whole world says of itself
 LONGEST_NAME = 200
 MOST_RATIO = 200  # bytes unpacked for each byte of an archive that are taken for honest
 ALWAYS_ALLOWED_BYTES = 1_000_000  # so small that the ratio does not matter
@@ -58,6 +59,11 @@ def sentences_for(name: str) -> Iterator[None]:
             Position(name),
             "pack the files again, as a plain zip without a password",
         ) from error
+
+
+def manifests_in(archive: zipfile.ZipFile) -> list[str]:
+    """Return where ``archive`` keeps the manifest of a world; nothing where it holds other files."""
+    return [path for path in archive.namelist() if f"/{path}".endswith(f"/{MANIFEST}")]
 
 
 def read_member(archive: zipfile.ZipFile, member: zipfile.ZipInfo, most_bytes: int) -> bytes:

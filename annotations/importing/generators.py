@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from annotations.background.progress import UNWATCHED, Progress
-from annotations.editing.checking import check_again
+from annotations.checking import check_again
 from annotations.generation.coverage import count_coverage, store_coverage
 from annotations.importing.files import gather
 from annotations.importing.generator_files import Generator, read_generator

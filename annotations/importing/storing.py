@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any, Self
 
 from annotations import models
-from annotations.editing.template_problems import store_problems_of_import
 from annotations.importing.generator_files import Generator
 from annotations.importing.plans import (
     plan_entities,
@@ -18,6 +17,7 @@ from annotations.rows.composition import rule_sources, template_sources
 from annotations.rows.problems import store_problems
 from annotations.rows.staging import Staging
 from annotations.rows.synchronise import Changes, synchronise
+from annotations.rows.template_problems import store_problems_of_import
 
 
 class PreparedProductions:

@@ -11,11 +11,10 @@ from typing import Protocol
 
 from django.conf import settings
 
-from annotations.importing.archives import LONGEST_NAME, open_archive, read_member
+from annotations.importing.archives import LONGEST_NAME, manifests_in, open_archive, read_member
 from annotations.language.corpus import CORPUS_FOLDERS
 from annotations.language.errors import LanguageError, Position
 from annotations.language.grammar import TRIPLE_FILES
-from annotations.world_archive.tables import MANIFEST
 
 GENERATOR_FOLDER = "generator/"
 
@@ -125,7 +124,7 @@ def _members(upload: Upload, place: Callable[[str], str]) -> Iterator[tuple[str,
     Sizes are checked as announced and again as read.
     """
     with _open(upload) as archive:
-        if place is _file_name and _is_of_a_world(archive):
+        if place is _file_name and manifests_in(archive):
             place = _generator_file_name
         for member in archive.infolist():
             name = "" if member.is_dir() else place(member.filename)
@@ -139,7 +138,3 @@ def _open(upload: Upload) -> Iterator[zipfile.ZipFile]:
     upload.seek(0)
     with open_archive(upload, upload.name, *bounds) as archive:
         yield archive
-
-
-def _is_of_a_world(archive: zipfile.ZipFile) -> bool:
-    return any(f"/{path}".endswith(f"/{MANIFEST}") for path in archive.namelist())

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from annotations.editing.assistance import shown_problem
+from annotations.checking import shown_problem
 from annotations.language.errors import LanguageError, Offsets, Position, Problem, warning_at
 from annotations.language.forms import (
     CLASS_TOKEN,
@@ -42,7 +42,7 @@ def canonical_label(text: str) -> str:
 def check_label(world: World, anonymized_text: str, text: str) -> dict[str, Any]:
     """Check a form in any notation for an utterance, against the predicates of its world.
 
-    Returns JSON as ``annotations.editing.assistance.assist`` does, without slots.
+    Returns JSON as ``annotations.checking.assistance.assist`` does, without slots.
     """
     declared = predicates_of(world)
     sides, checker = Sides(STAND_IN, text), template_checker(Grammar(()), declared)

@@ -33,7 +33,7 @@ class SemanticTemplate(Editable):
     ``source`` is the file or set it belongs to; ``task_category`` the category that set was written for.
     ``imported_text`` is the line that it was imported as, by which a later import knows it whatever
     people have made of it since; empty for one that a person wrote here. ``problems`` are what the
-    checker said when it was last stored, as ``annotations.editing.template_problems`` writes them.
+    checker said when it was last stored, as ``annotations.rows.template_problems`` writes them.
     """
 
     world_path = "grammar__world"

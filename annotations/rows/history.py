@@ -17,6 +17,7 @@ from annotations.models import Editable, User, World
 ADDED, CHANGED, DELETED = "+", "~", "-"
 BATCH = 500  # rows a statement
 AS_IMPORTED, OF_IMPORT, RESTORED = "as it was before", "import", "restored"
+WHAT = {ADDED: "Added", CHANGED: "Changed", DELETED: "Deleted"}
 
 
 def keep(rows: Iterable[Editable], kind: str, by: User | None = None, reason: str = "") -> None:
@@ -85,3 +86,15 @@ def entry_at(row: Editable, version: int) -> models.Model | None:
         .order_by("-history_id")
         .first()
     )
+
+
+def what_happened(entry: Any) -> str:
+    """Say what made the version that a history entry keeps."""
+    match entry.history_change_reason:
+        case reason if reason == AS_IMPORTED:
+            return "First known version"
+        case reason if reason == RESTORED:
+            return "Restored"
+        case reason if reason == OF_IMPORT:
+            return f"{WHAT[entry.history_type]} by an import"
+    return WHAT[entry.history_type]

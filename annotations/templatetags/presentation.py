@@ -73,7 +73,7 @@ def empty_state(content: str, url: str = "", action: str = "") -> str:
 def draft_attributes(context: Any, kind: str, row: Any = None, name: str = "") -> SafeString:
     """Return the attributes of a form whose text is kept as a draft while it is typed.
 
-    ``kind`` is a name in ``annotations.editing.kinds``; without a ``row`` the form makes a new one.
+    ``kind`` is a name in ``annotations.rows.kinds``; without a ``row`` the form makes a new one.
     ``name``, a short slug, tells apart the forms that make new rows for different reasons.
     """
     new = f"{NEW}-{name}" if name else NEW

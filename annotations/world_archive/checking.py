@@ -10,10 +10,10 @@ from typing import Any
 from django.core.exceptions import ValidationError
 from django.db import models
 
-from annotations.editing.template_problems import is_stored_problems
 from annotations.language.errors import LanguageError, Position
 from annotations.language.forms import read_form
 from annotations.language.predicates import ArgumentKind
+from annotations.rows.template_problems import is_stored_problems
 from annotations.world_archive.tables import Table
 
 # Columns that name a file, by table; and those that hold a logical form.

@@ -7,11 +7,11 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from annotations.importing.archives import read_member
+from annotations.importing.archives import MANIFEST, manifests_in, read_member
 from annotations.language.errors import LanguageError, Position
 from annotations.models import World
 from annotations.world_archive.checking import check_value, parse_object
-from annotations.world_archive.tables import FORMAT, MANIFEST, TABLES, VERSION, WORLD_FIELDS
+from annotations.world_archive.tables import FORMAT, TABLES, VERSION, WORLD_FIELDS
 
 MOST_BYTES = 1_000_000
 
@@ -59,7 +59,7 @@ def read_manifest(archive: zipfile.ZipFile, name: str) -> Manifest:
 
 def _prefix(archive: zipfile.ZipFile, name: str) -> str:
     """Return the folder of the manifest: some programs pack a folder rather than what is in it."""
-    manifests = [path for path in archive.namelist() if f"/{path}".endswith(f"/{MANIFEST}")]
+    manifests = manifests_in(archive)
     if not manifests:
         raise LanguageError(
             f"the archive holds no world: {MANIFEST} is missing",

@@ -34,7 +34,6 @@ from annotations.models import (
 )
 
 FORMAT, VERSION = "gpsr-workbench-world", 1
-MANIFEST = "world.json"
 WORLD_FIELDS = ("description", "revision", "generated_revision")
 
 

@@ -11,14 +11,15 @@ from typing import Any
 
 from django.db.models import Count
 
-from annotations.editing.kinds import KINDS, Kind
-from annotations.editing.versions import what_happened
 from annotations.exporting.generator_export import generator_files
 from annotations.exporting.split_export import Format, export_lines, folder_of
+from annotations.importing.archives import MANIFEST
 from annotations.language.corpus import PART_FILES, TRIPLES_FILE
 from annotations.models import Split, World
+from annotations.rows.history import what_happened
+from annotations.rows.kinds import KINDS, Kind
 from annotations.rows.synchronise import batches
-from annotations.world_archive.tables import FORMAT, MANIFEST, TABLES, VERSION, WORLD_FIELDS, Table
+from annotations.world_archive.tables import FORMAT, TABLES, VERSION, WORLD_FIELDS, Table
 
 CHUNK = 2000  # rows fetched, and lines packed, at once
 README = """A world of GPSR Workbench.

@@ -4,10 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from annotations.editing.parser_answers import add_answers, command_for
-from annotations.editing.suggestions import ParserAnswer, SuggestedForm, suggest_forms
 from annotations.labelling.proposals import last_request, request_answer
 from annotations.models import TaskCategory, User, World
+from annotations.suggesting import (
+    ParserAnswer,
+    SuggestedForm,
+    add_answers,
+    command_for,
+    suggest_forms,
+)
 from parser_service.candidates.composing import NEIGHBOUR, say_source
 from parser_service.candidates.neighbours import nearest_forms
 from parser_service.serving import best_run

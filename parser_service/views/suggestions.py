@@ -5,10 +5,10 @@ from __future__ import annotations
 from django.http import HttpRequest, HttpResponse
 from django.shortcuts import render
 
-from annotations.editing.suggestions import MOST_COMMAND
 from annotations.forms import TemplateForm
 from annotations.models import Duty, World
 from annotations.people.access import WRITE, world_view
+from annotations.suggesting import MOST_COMMAND
 from parser_service.candidates.for_templates import suggest_with_parsers
 
 

@@ -7,8 +7,8 @@ import re
 import pytest
 from playwright.sync_api import expect
 
-from annotations.editing.kinds import KINDS, as_text
 from annotations.models import SemanticTemplate
+from annotations.rows.kinds import KINDS, as_text
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 

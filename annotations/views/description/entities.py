@@ -9,13 +9,13 @@ from django.http import HttpRequest, HttpResponse
 from django.shortcuts import redirect, render
 
 from annotations.editing.edits import Overtaken, add, add_many
-from annotations.editing.kinds import KINDS, as_text
 from annotations.editing.once import made_before
 from annotations.forms import posted
 from annotations.language.english import say_count
 from annotations.language.errors import Problem
 from annotations.models import Duty, Editable, Entity, Ontology, World
 from annotations.people.access import READ_AND_WRITE, world_view
+from annotations.rows.kinds import KINDS, as_text
 from annotations.rows.occurrences import MOST_SHOWN, occurrences_of
 from annotations.views.description.world_forms import EntitiesForm, EntityForm
 from annotations.views.editing.merging import merge_page, save_edit

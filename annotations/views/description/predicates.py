@@ -9,14 +9,14 @@ from django.core.exceptions import ValidationError
 from django.http import Http404, HttpRequest, HttpResponse
 from django.shortcuts import redirect, render
 
+from annotations.checking import check_predicate
 from annotations.editing.edits import Overtaken, add
-from annotations.editing.kinds import KINDS
-from annotations.editing.predicate_check import check_predicate
 from annotations.forms import posted
 from annotations.language.predicates import print_signatures
 from annotations.models import Duty, Editable, Predicate, World
 from annotations.people.access import READ_AND_WRITE, WRITE, world_view
 from annotations.rows.from_rows import predicate_of
+from annotations.rows.kinds import KINDS
 from annotations.views.description.predicate_forms import PredicateForm
 from annotations.views.editing.history import number_in
 from annotations.views.editing.merging import merge_page, save_edit

@@ -6,13 +6,13 @@ from typing import Any
 
 from django import forms
 
-from annotations.editing.once import new_key
-from annotations.editing.production_check import (
-    FIELD,
+from annotations.checking import (
+    EXPANSION_FIELD,
     CheckedProduction,
     ProductionEdit,
     check_production,
 )
+from annotations.editing.once import new_key
 from annotations.language.errors import LanguageError
 from annotations.language.limits import MAX_NONTERMINAL, MAX_PATTERN
 from annotations.language.renaming import require_nonterminal
@@ -77,7 +77,9 @@ class ProductionForm(forms.Form):
             return cleaned
         self.checked = check_production(self.edit)
         for problem in filter(lambda each: each.is_error, self.checked.problems):
-            self.add_error(FIELD, sentence_of(LanguageError(problem.message, hint=problem.hint)))
+            self.add_error(
+                EXPANSION_FIELD, sentence_of(LanguageError(problem.message, hint=problem.hint))
+            )
         return cleaned
 
     @property

@@ -8,18 +8,18 @@ from django.http import Http404, HttpRequest, HttpResponse, JsonResponse
 from django.shortcuts import redirect, render
 from django.urls import reverse
 
-from annotations.editing.edits import Overtaken, add
-from annotations.editing.kinds import KINDS
-from annotations.editing.production_check import (
+from annotations.checking import (
     ProductionEdit,
     assist_production,
     check_production,
     consequences_of_production,
 )
+from annotations.editing.edits import Overtaken, add
 from annotations.forms import posted
 from annotations.models import Duty, Editable, Production, World
 from annotations.people.access import READ_AND_WRITE, WRITE, world_view
 from annotations.rows.composition import own_category
+from annotations.rows.kinds import KINDS
 from annotations.views.description.entities import tell_saved
 from annotations.views.description.production_forms import ProductionForm, sources_of
 from annotations.views.editing.history import number_in

@@ -8,11 +8,10 @@ from django.shortcuts import redirect, render
 from django.urls import reverse
 
 from annotations.editing.edits import Overtaken
-from annotations.editing.kinds import Kind
-from annotations.editing.rename_plans import PLANS
-from annotations.editing.renaming import Touched, rename
 from annotations.models import Duty, Editable, World
 from annotations.people.access import READ_AND_WRITE, world_view
+from annotations.renaming import PLANS, Touched, rename
+from annotations.rows.kinds import Kind
 from annotations.views.description.world_forms import RenameForm, names_of
 from annotations.views.editing.history import kind_named
 

@@ -7,7 +7,6 @@ from typing import Any
 from django import forms
 
 from annotations.editing.once import new_key
-from annotations.editing.renaming import Touched, touched_by
 from annotations.language.errors import LanguageError, Position
 from annotations.language.limits import MAX_ENTITY, require_writable
 from annotations.language.ontology import Additions, additions_to, read_entities
@@ -15,6 +14,7 @@ from annotations.language.ontology import Entity as EntityValue
 from annotations.language.renaming import require_entity_name
 from annotations.models import Editable, Entity, Production, World
 from annotations.models.ontology import entity_class_choices
+from annotations.renaming import Touched, touched_by
 from annotations.rows.from_rows import ontology_of
 
 

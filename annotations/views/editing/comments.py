@@ -19,11 +19,11 @@ from annotations.commenting import (
     restore_comment,
 )
 from annotations.commenting.versions import versions_of
-from annotations.editing.kinds import KINDS
 from annotations.forms import CommentEditForm, CommentForm, posted
 from annotations.models import Comment, Duty, Notice, World
 from annotations.people.access import READ_AND_WRITE, WRITE, world_view
 from annotations.people.rate_limits import Rate
+from annotations.rows.kinds import KINDS
 from annotations.views.editing.history import number_in
 
 COMMENTS = Rate("comments", limit=60, seconds=600)

@@ -7,7 +7,7 @@ from django.http import Http404, HttpRequest, HttpResponse
 from django.shortcuts import redirect, render
 from django.urls import reverse
 
-from annotations.editing.deletion_check import check_deletion
+from annotations.checking import check_deletion
 from annotations.editing.edits import Overtaken, delete
 from annotations.models import Duty, World
 from annotations.people.access import READ_AND_WRITE, world_view

@@ -9,11 +9,11 @@ from django.shortcuts import redirect, render
 from django.urls import reverse
 
 from annotations.editing.edits import restore
-from annotations.editing.kinds import KINDS, Kind
 from annotations.editing.versions import history_of_row
 from annotations.labelling import restore_utterance
 from annotations.models import Duty, Utterance, World
 from annotations.people.access import READ_AND_WRITE, world_view
+from annotations.rows.kinds import KINDS, Kind
 
 DELETED_SHOWN = 50
 MOST_DIGITS = 18  # of the key of a history entry

@@ -13,10 +13,10 @@ from django.shortcuts import render
 
 from annotations.editing.drafts import discard_draft
 from annotations.editing.edits import Overtaken, bring_back, change
-from annotations.editing.kinds import FORM_FIELDS, kind_of
 from annotations.editing.merging import MergedField, merge
 from annotations.models import Editable
 from annotations.presentation import Pieces, compare
+from annotations.rows.kinds import FORM_FIELDS, kind_of
 
 # What the fields of a form are called → what they show for a row.
 Shown = Callable[[Editable], Mapping[str, Any]]

@@ -7,8 +7,8 @@ from typing import Any
 
 from django.http import HttpRequest
 
-from annotations.editing.suggestions import MOST_COMMAND, suggest_forms, suggest_pattern
 from annotations.models import TaskCategory, World
+from annotations.suggesting import MOST_COMMAND, suggest_forms, suggest_pattern
 
 
 def suggestions_for_command(request: HttpRequest, world: World) -> dict[str, Any]:

@@ -9,15 +9,15 @@ from django.http import HttpRequest, HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.views.decorators.cache import never_cache
 
+from annotations.checking import check_template
 from annotations.editing.edits import Overtaken, change, delete
-from annotations.editing.suggestions import moved_form
-from annotations.editing.template_check import check_template
 from annotations.generation.conflicts import conflicts_of
 from annotations.lists.filters import TemplateFilters
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.models import Duty, SemanticTemplate, TaskCategory, World
 from annotations.models.templates import Status
 from annotations.people.access import WRITE, world_view
+from annotations.suggesting import moved_form
 from annotations.views.editing.history import number_in
 
 SORTS = {

@@ -14,13 +14,16 @@ from django.utils.cache import patch_cache_control
 from django.utils.html import format_html, format_html_join
 from django.views.decorators.http import condition
 
-from annotations.editing.assistance import assist, completion_tag, completions_of
-from annotations.editing.duplicates import duplicate_of
+from annotations.checking import (
+    Checked,
+    assist,
+    check_template,
+    completion_tag,
+    completions_of,
+    recall_check,
+    samples_of,
+)
 from annotations.editing.edits import Overtaken, add
-from annotations.editing.kinds import KINDS
-from annotations.editing.suggestions import suggest_nearest
-from annotations.editing.template_check import Checked, check_template, recall_check
-from annotations.editing.template_samples import samples_of
 from annotations.forms import TemplateForm, posted
 from annotations.generation.consequences import WorldConsequences, consequences
 from annotations.language.english import say_count
@@ -33,6 +36,8 @@ from annotations.models.problems import Subject
 from annotations.models.templates import Status
 from annotations.people.access import READ_AND_WRITE, WRITE, world_view
 from annotations.presentation import form_of
+from annotations.rows.kinds import KINDS
+from annotations.suggesting import duplicate_of, suggest_nearest
 from annotations.views.editing.history import number_in
 from annotations.views.editing.merging import merge_page, save_edit
 from annotations.views.templates.suggestions import suggestions_for_command

@@ -10,8 +10,8 @@ from django.test import Client
 
 from annotations.editing.drafts import read_draft, save_draft
 from annotations.editing.edits import Overtaken, change
-from annotations.editing.kinds import KINDS
 from annotations.models import Draft, SemanticTemplate, Utterance, World
+from annotations.rows.kinds import KINDS
 from tests.conftest import member
 from tests.sample_world import fill_world, paraphrase_in
 from tests.waiting import PATIENCE_SECONDS

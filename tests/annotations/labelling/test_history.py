@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.editing.kinds import KINDS
 from annotations.editing.versions import history_of_row
 from annotations.labelling import collect, label, mend_span, restore_utterance, take_back
 from annotations.models import Label, Utterance, Verdict
+from annotations.rows.kinds import KINDS
 from tests.annotations.labelling.test_answers import BRING, CANONICAL, GO, state_of
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.editing.deletion_check import check_deletion
+from annotations.checking import check_deletion
 from annotations.editing.edits import delete
 from annotations.models import Entity, Predicate, Production, SemanticTemplate
 from annotations.splits.freezing import freeze_split

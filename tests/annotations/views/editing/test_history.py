@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from annotations.editing.edits import change, delete
-from annotations.editing.kinds import KINDS
 from annotations.editing.versions import MOST_SHOWN, history_of_row
 from annotations.models import Entity, Predicate, Production, SemanticTemplate
+from annotations.rows.kinds import KINDS
 from tests.sample_world import paraphrase_in
 
 

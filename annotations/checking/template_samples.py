@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import islice
 from random import Random
 
-from annotations.editing.template_check import Checked
+from annotations.checking.template_check import Checked
 from annotations.language.errors import LanguageError
 from annotations.language.grammar import CHECK_STEPS, Budget
 from annotations.language.grounding import ground

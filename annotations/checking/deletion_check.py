@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from annotations.editing.predicate_check import BrokenTemplates, templates_without
-from annotations.editing.production_check import ProductionEdit, problems_without
+from annotations.checking.predicate_check import BrokenTemplates, templates_without
+from annotations.checking.production_check import ProductionEdit, problems_without
 from annotations.generation.consequences import (
     TemplateChange,
     WorldConsequences,

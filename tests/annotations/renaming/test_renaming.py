@@ -5,9 +5,8 @@ from __future__ import annotations
 import pytest
 
 from annotations.auditing import decide, store_findings
+from annotations.checking import check_template
 from annotations.editing.edits import Overtaken, add, change, delete, restore
-from annotations.editing.renaming import rename, touched_by
-from annotations.editing.template_check import check_template
 from annotations.generation.generating import generate_pairs
 from annotations.language.errors import LanguageError
 from annotations.models import (
@@ -21,6 +20,7 @@ from annotations.models import (
     World,
 )
 from annotations.models.templates import Status
+from annotations.renaming import rename, touched_by
 from annotations.rows.history import history_of
 from tests.annotations.auditing.conftest import found
 from tests.sample_world import make_paraphrase

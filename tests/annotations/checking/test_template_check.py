@@ -47,7 +47,7 @@ def test_a_draft_is_opened_without_expanding_it(sample, anna, monkeypatch):
     row.pattern, row.form, row.status, row.problems = pattern, form, "draft", [remark]
     row.save()
     monkeypatch.setattr(
-        "annotations.editing.template_check.checker_of", lambda *args: pytest.fail("expanded")
+        "annotations.checking.template_check.checker_of", lambda *args: pytest.fail("expanded")
     )
     page = anna.get(f"/w/home/templates/{row.pk}/")
     assert page.status_code == 200
@@ -58,7 +58,7 @@ def test_a_draft_is_opened_without_expanding_it(sample, anna, monkeypatch):
 @pytest.mark.parametrize("path", ["check", "preview", "new"])
 def test_texts_that_nobody_types_are_not_looked_at(field, path, category, anna, monkeypatch):
     monkeypatch.setattr(
-        "annotations.editing.template_check.read_sides", lambda *args: pytest.fail("looked at")
+        "annotations.checking.template_check.read_sides", lambda *args: pytest.fail("looked at")
     )
     sent = {"pattern": "go", "form": "UNKNOWN", "task_category": category.pk, "status": "ready"}
     sent[field] = "a " * MAX_PATTERN

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 
-from annotations.editing.suggestions import ParserAnswer, SuggestedForm
 from annotations.generation.kept_expansions import checker_of, problems_of
 from annotations.language.errors import LanguageError
 from annotations.language.forms import canonicalize, read_form, to_template
@@ -20,6 +19,7 @@ from annotations.language.templates import (
 )
 from annotations.models import TaskCategory, World
 from annotations.rows.from_rows import grammar_of, predicates_of
+from annotations.suggesting.suggestions import ParserAnswer, SuggestedForm
 
 MOST_LOOKED_AT = 2_000  # commands of a pattern
 

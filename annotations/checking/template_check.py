@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from itertools import islice
 
-from annotations.editing.template_problems import StoredRemark, as_stored, from_stored
 from annotations.generation.kept_expansions import checker_of
 from annotations.language.errors import LanguageError, Position, Problem
 from annotations.language.grammar import CHECK_STEPS, Budget, Grammar
@@ -19,6 +18,7 @@ from annotations.language.templates import (
 from annotations.models import SemanticTemplate as StoredTemplate
 from annotations.models import TaskCategory, World
 from annotations.rows.from_rows import grammar_of, predicates_of
+from annotations.rows.template_problems import StoredRemark, as_stored, from_stored
 
 MOST_COMMANDS = 2_000  # looked at to count and sample what a template makes
 SHOWN_COMMANDS = 12

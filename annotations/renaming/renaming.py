@@ -9,7 +9,6 @@ from typing import Any
 from django.db import models, transaction
 
 from annotations.editing.edits import Overtaken, change_many
-from annotations.editing.rename_plans import PLANS
 from annotations.generation.template_problems import check_unready_templates
 from annotations.language.english import say_count
 from annotations.models import (
@@ -22,6 +21,7 @@ from annotations.models import (
     User,
     World,
 )
+from annotations.renaming.rename_plans import PLANS
 from annotations.rows.synchronise import BATCH
 
 MOST_EXAMPLES = 5

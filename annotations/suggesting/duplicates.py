@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from annotations.editing.parser_answers import command_for
 from annotations.generation.kept_expansions import expansions_of
 from annotations.language.errors import LanguageError
 from annotations.models import SemanticTemplate, TaskCategory, World
 from annotations.models.templates import Status
 from annotations.rows.from_rows import grammar_of, ready_templates, template_of
+from annotations.suggesting.parser_answers import command_for
 
 
 @dataclass(frozen=True, slots=True)

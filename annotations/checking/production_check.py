@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import Any
 
-from annotations.editing.assistance import utf16_index
+from annotations.checking.assistance import utf16_index
 from annotations.generation.consequences import WorldConsequences, consequences_of_lines
 from annotations.language.errors import LanguageError, Position, Problem
 from annotations.language.grammar import CHECK_STEPS, Budget, Grammar, readable
@@ -18,7 +18,7 @@ from annotations.rows.from_rows import Line, Lines, grammar_from, lines_of
 
 MOST_EXPANSIONS = 500  # looked at for samples
 SHOWN_EXPANSIONS = 12
-FIELD = "expansion"  # what positions in the typed text are called
+EXPANSION_FIELD = "expansion"  # what positions in the typed text are called
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ class CheckedProduction:
 
 def check_production(edit: ProductionEdit) -> CheckedProduction:
     """Read the expansion, check the grammars that have it, and expand some of it."""
-    reader = SymbolReader(edit.expansion, Position(FIELD))
+    reader = SymbolReader(edit.expansion, Position(EXPANSION_FIELD))
     try:
         expansion = reader.whole_line()
     except LanguageError as error:
@@ -137,9 +137,9 @@ def assist_production(edit: ProductionEdit) -> dict[str, Any]:
 
 
 def _as_json(problem: Problem, edit: ProductionEdit) -> dict[str, Any]:
-    column = problem.position.column if problem.position.source == FIELD else 1
+    column = problem.position.column if problem.position.source == EXPANSION_FIELD else 1
     return {
-        "field": FIELD,
+        "field": EXPANSION_FIELD,
         "line": 1,
         "column": column,
         "at": utf16_index(edit.expansion, column - 1),

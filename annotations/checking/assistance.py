@@ -11,8 +11,7 @@ from typing import Any
 
 from django.core.cache import cache
 
-from annotations.editing.template_check import Checked, check_template
-from annotations.editing.template_problems import as_stored
+from annotations.checking.template_check import Checked, check_template
 from annotations.language.errors import LanguageError, Offsets, Problem, Repair
 from annotations.language.forms import to_reading
 from annotations.language.grammar import Grammar
@@ -31,6 +30,7 @@ from annotations.language.writing import (
 from annotations.models import SemanticTemplate as StoredTemplate
 from annotations.models import TaskCategory, World
 from annotations.rows.from_rows import grammar_of, predicates_of, ready_templates, template_of
+from annotations.rows.template_problems import as_stored
 
 KEPT_SECONDS = 3600
 # World, its revision and the identity of a grammar → how its templates say slots. The grammar is kept with it.

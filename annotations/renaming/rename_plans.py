@@ -7,7 +7,6 @@ from typing import Protocol
 
 from django.db.models import Q
 
-from annotations.editing.entity_rename import Changes, EntityRename, differing
 from annotations.language.errors import LanguageError
 from annotations.language.grammar import ROOT
 from annotations.language.renaming import (
@@ -30,6 +29,7 @@ from annotations.models import (
     SemanticTemplate,
     Utterance,
 )
+from annotations.renaming.entity_rename import Changes, EntityRename, differing
 from annotations.rows.composition import split_entry
 
 
