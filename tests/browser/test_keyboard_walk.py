@@ -3,6 +3,8 @@ utterances are labelled."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
@@ -116,21 +118,39 @@ def expect_utterance(page: Page, text: str) -> None:
 
 def label_fifty(page: Page) -> None:
     """Use every key of the page, and take the first candidate for most utterances."""
-    keys, said = page.keyboard, iter(SAID)
+    said = iter(SAID)
     expect(page.locator("[data-label-page][data-ready]")).to_have_count(1)
+    press_each(page, said, "11111us")
+    dispute_and_take_back(page, next(said), after=SAID[8])
+    write_form(page, SAID[7])
+    press_each(page, said, "1")
+    name_entity(page, next(said))
+    press_each(page, said, "1" * 40)
+    expect(page.locator("[data-label-done]")).to_be_visible()
 
-    def press(*pressed: str) -> None:
-        for key in pressed:
-            expect_utterance(page, next(said))
-            keys.press(key)
 
-    press("1", "1", "1", "1", "1", "u", "s", "d")
+def press_each(page: Page, said: Iterator[str], keys: str) -> None:
+    """Press one of ``keys`` at each of the next utterances."""
+    for key in keys:
+        expect_utterance(page, next(said))
+        page.keyboard.press(key)
+
+
+def dispute_and_take_back(page: Page, text: str, after: str) -> None:
+    expect_utterance(page, text)
+    page.keyboard.press("d")
     expect(page.get_by_label("Why is it disputed?")).to_be_focused()
-    keys.type("again or not")
-    keys.press("Enter")
-    expect_utterance(page, SAID[8])
-    keys.press("z")  # the dispute is taken back, and its utterance is there again
-    expect_utterance(page, SAID[7])
+    page.keyboard.type("again or not")
+    page.keyboard.press("Enter")
+    expect_utterance(page, after)
+    page.keyboard.press("z")  # the dispute is taken back, and its utterance is there again
+    expect_utterance(page, text)
+
+
+def write_form(page: Page, text: str) -> None:
+    """Write a form instead of a candidate: one that is refused, and one that is taken."""
+    keys = page.keyboard
+    expect_utterance(page, text)
     keys.press("e")
     editor = page.get_by_role("textbox", name="Logical form")
     expect(page.locator(".cm-editor")).to_have_count(1)  # until then the plain field is there
@@ -144,18 +164,19 @@ def label_fifty(page: Page) -> None:
     keys.press("ControlOrMeta+a")
     keys.type('(go "<room>")')
     keys.press("Control+Enter")
-    press("1")
-    expect_utterance(page, next(said))
-    keys.press("m")
+
+
+def name_entity(page: Page, text: str) -> None:
+    """Say which words name an entity, then take the first candidate."""
+    expect_utterance(page, text)
+    page.keyboard.press("m")
     expect(page.get_by_label("The words")).to_be_focused()
-    keys.type("cuppa")
-    keys.press("Tab")
-    keys.type("tea (object)")
-    keys.press("Enter")
+    page.keyboard.type("cuppa")
+    page.keyboard.press("Tab")
+    page.keyboard.type("tea (object)")
+    page.keyboard.press("Enter")
     expect(page.locator(".label-text .chip")).to_contain_text("cuppa")
-    keys.press("1")
-    press(*"1" * 40)
-    expect(page.locator("[data-label-done]")).to_be_visible()
+    page.keyboard.press("1")
 
 
 def forms(world: World) -> dict[str, str]:
@@ -172,14 +193,32 @@ def test_an_annotators_sitting_without_a_mouse(page_of, live_server, sample, ann
     log_in(page)
     expect_counts(page, 1, 1, "33.3 %")
 
+    add_template(page)
+    assert forms(world).keys() - before == {"find the <object>", "locate the <object>"}
+    expect_counts(page, 2, 3, "100.0 %")
+
+    delete_template(page)
+    assert forms(world) == before
+    expect_counts(page, 1, 1, "33.3 %")
+
+    follow(page, place(page, "Utterances"), "Utterances")
+    skip_to_content(page)
+    follow(page, page.get_by_role("button", name="Label"), "Label")
+    label_fifty(page)
+    expect_fifty_labels()
+    assert SemanticTemplate.objects.count() == 1
+
+
+def add_template(page: Page) -> None:
     follow(page, place(page, "Templates"), "Templates")
     skip_to_content(page)
     follow(page, page.get_by_role("button", name="New template"), "New template")
     skip_to_content(page)
     write_template(page)
-    assert forms(world).keys() - before == {"find the <object>", "locate the <object>"}
-    expect_counts(page, 2, 3, "100.0 %")
 
+
+def delete_template(page: Page) -> None:
+    """Delete the second template of the list, whose page says what it takes with it."""
     follow(page, place(page, "Templates"), "Templates")
     page.keyboard.press("j")
     page.keyboard.press("j")
@@ -192,16 +231,11 @@ def test_an_annotators_sitting_without_a_mouse(page_of, live_server, sample, ann
     tab_to(page, page.get_by_role("button", name="Delete"))
     page.keyboard.press("Enter")
     expect(page.locator(".message")).to_contain_text("Deleted")
-    assert forms(world) == before
-    expect_counts(page, 1, 1, "33.3 %")
 
-    follow(page, place(page, "Utterances"), "Utterances")
-    skip_to_content(page)
-    follow(page, page.get_by_role("button", name="Label"), "Label")
-    label_fifty(page)
+
+def expect_fifty_labels() -> None:
     assert len(SAID) == 50  # the page goes on while the last answer is on its way
     wait_for(lambda: Label.objects.valid().count() == len(SAID), "every answer is stored")
     assert Label.objects.exclude(seconds=None).count() == 51
     assert Utterance.objects.get(text=SAID[7]).logical_form == '( go " <room> " )'
     assert Entity.objects.get(text="tea").aliases == ["cuppa"]
-    assert SemanticTemplate.objects.count() == 1

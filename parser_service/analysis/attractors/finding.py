@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -77,17 +77,23 @@ def find_attractors(
         raise ValueError("Utterances, labels and answers have to be as many.")
     both = encode([*gold, *predicted])
     labels, answers = both.codes[: len(gold)], both.codes[len(gold) :]
-    counts = _count(labels, answers, len(both.values))
+    texts = _Texts(utterances, encode(known[1], both.values), known[0], seed)
+    rows = _rows(labels, answers, both.values, texts, most)
+    return tuple(sorted(rows, key=lambda row: not row.is_attractor))
+
+
+def _rows(
+    labels: Ints, answers: Ints, values: Sequence[str], texts: _Texts, most: int
+) -> Iterator[Attractor]:
+    """Yield the rows of the first ``most`` forms by q-value; ``values`` are the forms by code."""
+    counts = _count(labels, answers, len(values))
     inputs = _Groups(answers, labels != answers)
     owns = _Groups(labels, np.ones(len(labels), dtype=bool))
-    texts = _Texts(utterances, encode(known[1], both.values), known[0], seed)
-    rows = []
     for place in counts.ranked()[:most]:
         code = int(counts.forms[place])
         attracted = inputs.of(code)
         spreads = texts.compare(code, attracted, owns.of(code))
-        rows.append(counts.row(place, both.values[code], spreads, attracted))
-    return tuple(sorted(rows, key=lambda row: not row.is_attractor))
+        yield counts.row(place, values[code], spreads, attracted)
 
 
 _Spreads = tuple[float, float, float] | tuple[None, None, None]
