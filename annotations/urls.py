@@ -12,7 +12,7 @@ from annotations.views.description import (
     renaming,
 )
 from annotations.views.editing import comments, deletion, drafts, history
-from annotations.views.queueing import agreement, work_queue
+from annotations.views.queueing import agreement, sending, work_queue
 from annotations.views.templates import (
     coverage,
     template_actions,
@@ -85,6 +85,8 @@ urlpatterns = [
     path("forms/<int:pk>/", logical_forms.logical_form, name="logical_form"),
     path("paraphrases/", paraphrases.paraphrases, name="paraphrases"),
     path("paraphrases/<int:pk>/", paraphrases.paraphrase, name="paraphrase"),
+    path("paraphrases/<int:pk>/label/", paraphrases.paraphrase_label, name="paraphrase_label"),
+    path("paraphrases/<int:pk>/check/", paraphrases.paraphrase_check, name="paraphrase_check"),
     path("utterances/", utterances.utterances, name="utterances"),
     path("utterances/new/", utterances.utterances_new, name="utterances_new"),
     path("utterances/<int:pk>/", utterances.utterance, name="utterance"),
@@ -102,5 +104,8 @@ urlpatterns = [
     path("splits/new/", splits.split_new, name="split_new"),
     path("splits/<int:pk>/", splits.split, name="split"),
     path("splits/<int:split>/examples/<int:pk>/", splits.example, name="example"),
+    path("splits/<int:split>/examples/<int:pk>/send/", sending.example_send, name="example_send"),
+    path("splits/<int:pk>/changes/", splits.split_changes, name="split_changes"),
+    path("splits/<int:pk>/renew/", splits.split_renew, name="split_renew"),
     path("splits/<int:pk>/near/", splits.near_duplicates, name="near_duplicates"),
 ]

@@ -2,9 +2,10 @@
 
 Findings come from ``parser_service.audit``. ``store_findings`` keeps what people have decided before;
 ``decide`` keeps, corrects or excludes a pair and ends its item in the work queue, and ``end_item`` does
-the same for somebody who ends the item.
+the same for somebody who ends the item. ``correct_label`` needs no audit.
 """
 
+from annotations.auditing.correcting import correct_label
 from annotations.auditing.deciding import DecidedMeanwhile, decide, take_back
 from annotations.auditing.items import end_item
 from annotations.auditing.pairs import examples_before
@@ -14,6 +15,7 @@ __all__ = [
     "DecidedMeanwhile",
     "FoundPair",
     "StoredAudit",
+    "correct_label",
     "decide",
     "end_item",
     "examples_before",

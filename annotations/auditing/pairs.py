@@ -55,8 +55,14 @@ def change_back(finding: AuditFinding, made: AuditDecision, by: User) -> None:
 def _values(row: Paraphrase, made: AuditDecision) -> dict[str, str]:
     if made.decision == FindingStatus.EXCLUDED:
         return {"status": ParaphraseStatus.EXCLUDED}
-    forms = map(read_form, (made.form, row.logical_form, row.grounded_form))
-    return {"logical_form": made.form, "grounded_form": canonical_text(ground_like(*forms))}
+    return values_with_label(row, made.form)
+
+
+def values_with_label(row: Paraphrase, label: str) -> dict[str, str]:
+    """Return the columns of a paraphrase that get another label, canonical text: its grounded form has the
+    entities of the old one where they are certain."""
+    forms = map(read_form, (label, row.logical_form, row.grounded_form))
+    return {"logical_form": label, "grounded_form": canonical_text(ground_like(*forms))}
 
 
 def examples_before(split: Split) -> QuerySet[Example]:

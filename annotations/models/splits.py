@@ -43,12 +43,20 @@ class SplitQuerySet(models.QuerySet["Split"]):
 
 
 class Split(models.Model):
-    """``content_hash`` is the SHA-256 of all examples; ``seed`` is null for an imported split."""
+    """``content_hash`` is the SHA-256 of all examples; ``seed`` is null for an imported split.
+
+    ``proportions`` are the shares of train, validation and test that were asked for, fractions of 1; empty
+    where nobody asked for any. ``follows`` is the split that this one freezes anew.
+    """
 
     world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="splits")
     name = models.SlugField(max_length=80)
     criterion = models.CharField(max_length=20, choices=criterion_choices)
     seed = models.PositiveBigIntegerField(null=True, blank=True)
+    proportions = models.JSONField(default=list, blank=True)
+    follows = models.ForeignKey(
+        "self", null=True, blank=True, on_delete=models.SET_NULL, related_name="followed_by"
+    )
     content_hash = models.CharField(max_length=64)
     created_by = models.ForeignKey(User, null=True, blank=True, on_delete=models.SET_NULL)
     created_at = models.DateTimeField(auto_now_add=True)

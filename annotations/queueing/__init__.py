@@ -2,7 +2,8 @@
 
 ``enqueue`` adds items and ``refill`` the ones that rows call for. ``next_item`` gives a person the item
 they hold or the most urgent free one, under a lease; ``finish``, ``skip``, ``give_back`` and ``take_back``
-end and reopen their part of it; ``settle`` and ``unsettle`` do so for what is decided elsewhere. A share
+end and reopen their part of it; ``settle`` and ``unsettle`` do so for what is decided elsewhere.
+``send_examples`` asks about what examples of splits were copied from. A share
 of the utterances goes to two people, who do not see each other's labels; where these differ a third person
 compares them. ``answer`` labels an utterance and ends the part in one transaction.
 """
@@ -20,6 +21,7 @@ from annotations.queueing.giving import (
     take,
     withdraw,
 )
+from annotations.queueing.sending import Sent, send_examples
 from annotations.queueing.settling import settle, unsettle
 from annotations.queueing.shares import DOUBLE_KINDS, set_share, shares_of
 from annotations.queueing.sources import refill
@@ -29,6 +31,7 @@ __all__ = [
     "Decision",
     "NoLongerYours",
     "NotForThem",
+    "Sent",
     "Wanted",
     "WantedItem",
     "answer",
@@ -40,6 +43,7 @@ __all__ = [
     "next_item",
     "part_in",
     "refill",
+    "send_examples",
     "set_share",
     "settle",
     "shares_of",

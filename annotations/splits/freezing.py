@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Self
 
 from django.core.exceptions import ValidationError
@@ -12,6 +12,7 @@ from annotations.language.corpus import (
     DEFAULT_PROPORTIONS,
     Criterion,
     FrozenExample,
+    Part,
     SplitItem,
     content_hash,
     split,
@@ -47,7 +48,10 @@ def freeze_split(
             a split with other examples.
     """
     examples = plan_split(world, criterion, seed, proportions)
-    with PreparedSplit(name, criterion, examples, seed) as prepared, transaction.atomic():
+    with (
+        PreparedSplit(name, criterion, examples, seed, proportions) as prepared,
+        transaction.atomic(),
+    ):
         World.objects.select_for_update().get(pk=world.pk)
         return prepared.store(world, by)[0]
 
@@ -59,16 +63,23 @@ def plan_split(
     proportions: Sequence[float] = DEFAULT_PROPORTIONS,
 ) -> list[Example]:
     """Return the examples that ``freeze_split`` would store, each with its part and position. Raises likewise."""
-    examples = list(_candidates(world))
-    items = [
+    examples = list(candidates(world))
+    assign_parts(examples, split(as_items(examples), Criterion(criterion), proportions, seed))
+    return examples
+
+
+def as_items(examples: Iterable[Example]) -> list[SplitItem]:
+    return [
         SplitItem(each.source, each.utterance, each.source_command, each.logical_form)
         for each in examples
     ]
-    parts = split(items, Criterion(criterion), proportions, seed)
+
+
+def assign_parts(examples: Sequence[Example], parts: Iterable[Part]) -> None:
+    """Give unsaved examples their parts, and their positions in these."""
     for example, part in zip(examples, parts, strict=True):
         example.part = str(part)
     _number(examples)
-    return examples
 
 
 class PreparedSplit:
@@ -84,13 +95,21 @@ class PreparedSplit:
     )
 
     def __init__(
-        self, name: str, criterion: str, examples: Sequence[Example], seed: int | None = None
+        self,
+        name: str,
+        criterion: str,
+        examples: Sequence[Example],
+        seed: int | None = None,
+        proportions: Sequence[float] = (),
+        follows: Split | None = None,
     ) -> None:
         """Raises LanguageError where no split can have the name."""
         _require_split_name(name)
         self.name = name
         self.criterion = criterion
         self.seed = seed
+        self.proportions = list(proportions)
+        self.follows = follows
         self.examples = sorted(examples, key=lambda each: (each.source, each.part, each.position))
         self.content_hash = content_hash(map(_freeze, self.examples))
         self._staging = Staging(Example, self.COLUMNS)
@@ -120,6 +139,8 @@ class PreparedSplit:
             name=self.name,
             criterion=self.criterion,
             seed=self.seed,
+            proportions=self.proportions,
+            follows=self.follows,
             content_hash=self.content_hash,
             created_by=by,
         )
@@ -149,7 +170,7 @@ def _require_split_name(name: str) -> None:
         raise LanguageError(f"“{name}” cannot be the name of a split: {sentences}") from error
 
 
-def _candidates(world: World) -> Iterator[Example]:
+def candidates(world: World) -> Iterator[Example]:
     """Yield every command, accepted paraphrase and labelled utterance; a pair that occurs twice is taken once."""
     for command in world.commands.select_related("logical_form"):
         yield Example(

@@ -32,6 +32,8 @@ FORMS = {
     "audit_decisions": ("form",),
     "examples": ("logical_form", "grounded_form"),
 }
+# References that archives of earlier releases do not have, by table.
+ADDED_REFERENCES = {"splits": {"follows"}}
 TYPES: tuple[tuple[type[models.Field], type | tuple[type, ...], str], ...] = (
     (models.CharField, str, "a text"),
     (models.TextField, str, "a text"),
@@ -66,6 +68,7 @@ def check_row(table: Table, values: Mapping[str, Any], place: Position) -> None:
     wanted |= {"subject"} if table.subjects else set()
     people = [table.model._meta.get_field(name) for name in table.people]
     optional = {each.name for each in (*table.columns, *people) if each.has_default()}
+    optional |= ADDED_REFERENCES.get(table.name, set())
     if wrong := (values.keys() - wanted) | (wanted - optional - values.keys()):
         names = ", ".join(sorted(wrong))
         raise LanguageError(f"these columns are missing or unknown: {names}", place)
@@ -152,6 +155,12 @@ def _is_spans(value: Any) -> bool:
     )
 
 
+def _is_shares(value: Any) -> bool:
+    """Return whether these are no shares, or three fractions of 1."""
+    is_numbers = isinstance(value, list) and all(type(each) in (int, float) for each in value)
+    return is_numbers and len(value) in (0, 3) and all(0 <= each <= 1 for each in value)
+
+
 SHAPES: dict[str, Callable[[Any], bool]] = {
     "aliases": _is_texts,
     "attributes": _is_text_by_text,
@@ -160,6 +169,7 @@ SHAPES: dict[str, Callable[[Any], bool]] = {
     "signatures": _is_signatures,
     "problems": is_stored_problems,
     "spans": _is_spans,
+    "proportions": _is_shares,
 }
 
 

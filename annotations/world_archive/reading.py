@@ -195,7 +195,7 @@ class _Loader:
             setattr(row, table.owner, self._owner(table, place))
         for name, other in table.references.items():
             if other == table.name:
-                self._links.append((row, name, values[name]))
+                self._links.append((row, name, values.get(name)))
                 continue
             is_optional = table.model._meta.get_field(name).null
             setattr(row, f"{name}_id", self._key(values[name], other, is_optional, place))

@@ -126,7 +126,7 @@ TABLES = (
         people=("person", "assigned_by"),
     ),
     Table("work_shares", WorkShare, "world"),
-    Table("splits", Split, "world", people=("created_by",)),
+    Table("splits", Split, "world", {"follows": "splits"}, people=("created_by",)),
     Table("examples", Example, references={"split": "splits"}),
     Table("problems", StoredProblem, "world"),
     Table(

@@ -1,4 +1,4 @@
-"""Runs and their figures as one JSON-ready mapping, for scripts."""
+"""Runs and their figures as one JSON-ready mapping, for scripts; and the order of the figures."""
 
 from __future__ import annotations
 
@@ -9,6 +9,12 @@ from typing import Any
 
 from parser_service.analysis.seeds import over_seeds
 from parser_service.models import Evaluation, TrainingRun
+from parser_service.parsers.conditions import TEST_SOURCES
+
+
+def order_of(score: Evaluation) -> tuple[str, int]:
+    """Return a sort key: by part, then by source in the order of ``TEST_SOURCES``."""
+    return score.part, list(TEST_SOURCES).index(score.test_source)
 
 
 def report_run(run: TrainingRun) -> dict[str, Any]:

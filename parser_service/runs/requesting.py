@@ -61,6 +61,24 @@ def request(
     return run, created
 
 
+def retrain(run: TrainingRun, split: Split, by: User | None = None) -> tuple[TrainingRun, bool]:
+    """Request the same configuration on another split. Returns and raises as ``request`` does.
+
+    ``run`` and what it was trained on stay as they are.
+    """
+    return request(
+        run.world,
+        split,
+        run.parser,
+        run.config,
+        run.protocol,
+        run.train_sources,
+        run.seed,
+        by,
+        anywhere=True,  # its weights were admitted when it was started
+    )
+
+
 def request_seeds(
     world: World, split: Split, parser: str, *, seeds: Sequence[int], **asked: Any
 ) -> list[tuple[TrainingRun, bool]]:

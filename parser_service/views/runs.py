@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from django.contrib import messages
 from django.http import HttpRequest, HttpResponse, JsonResponse
 from django.shortcuts import get_object_or_404, redirect, render
@@ -11,12 +13,13 @@ from annotations.lists.listing import Listing, Sort
 from annotations.models import Duty, World
 from annotations.people.access import WRITE, world_view
 from parser_service.filters import RunFilters
-from parser_service.models import Evaluation, TrainingRun
+from parser_service.models import TrainingRun
 from parser_service.models.runs import Status
-from parser_service.parsers.conditions import TEST_SOURCES
 from parser_service.parsers.registry import PARSERS
+from parser_service.results.reports import order_of
 from parser_service.runs import lifecycle
 from parser_service.runs.curves import CURVES, loss_curves, will_have_curves
+from parser_service.runs.retraining import retrained
 from parser_service.runs.waiting import waiting_of
 
 SORTS = {
@@ -47,7 +50,9 @@ def runs_of(request: HttpRequest, world: World) -> Listing:
 @world_view(Duty.VIEW)
 def run(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     """Show one run: progress, curves, log and results."""
-    return render(request, "parser_service/run.html", state_of(world, pk))
+    context = state_of(world, pk)
+    context["newest"], context["again"] = retrained(context["run"])
+    return render(request, "parser_service/run.html", context)
 
 
 @never_cache
@@ -65,7 +70,7 @@ def run_charts(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     return render(request, "parser_service/_run_charts.html", state_of(world, pk))
 
 
-def state_of(world: World, pk: int) -> dict[str, object]:
+def state_of(world: World, pk: int) -> dict[str, Any]:
     run = get_object_or_404(TrainingRun.objects.for_table(), world=world, pk=pk)
     entry = PARSERS.get(run.parser)
     return {
@@ -80,11 +85,6 @@ def state_of(world: World, pk: int) -> dict[str, object]:
         "events": list(run.events.order_by("-id")[:200])[::-1],
         "checkpoints": run.checkpoints.all(),
     }
-
-
-def order_of(score: Evaluation) -> tuple[str, int]:
-    """Return a sort key: by part, then by source in the order of ``TEST_SOURCES``."""
-    return score.part, list(TEST_SOURCES).index(score.test_source)
 
 
 @never_cache

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import astuple, dataclass
 from enum import StrEnum
 from random import Random
+from types import MappingProxyType
 
 from annotations.language.errors import LanguageError
 
@@ -28,6 +29,7 @@ class Criterion(StrEnum):
 
 
 DEFAULT_PROPORTIONS = (0.7, 0.1, 0.2)
+NOTHING_KEPT: Mapping[str, Part] = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +72,7 @@ def split(
     criterion: Criterion,
     proportions: Sequence[float] = DEFAULT_PROPORTIONS,
     seed: int = 0,
+    kept: Mapping[str, Part] = NOTHING_KEPT,
 ) -> tuple[Part, ...]:
     """Return the part of each item, in the order of the items.
 
@@ -77,6 +80,10 @@ def split(
     match. The order of the keys depends only on the seed; each key goes to the part that lacks
     most, counting both sources by their shares. Every part with a proportion above 0 gets a key if
     there are enough keys.
+
+    Args:
+        kept: key → the part that it has already; these come first, so that the other keys fill what
+            they leave.
 
     Raises:
         LanguageError: the proportions are not three shares of a whole, or there are no items.
@@ -88,8 +95,9 @@ def split(
     weights: dict[str, Counter[str]] = {}
     for item in items:
         weights.setdefault(item.key(criterion), Counter())[item.source] += 1
-    keys = sorted(weights)
+    keys = sorted(weights.keys() - kept.keys())
     Random(seed).shuffle(keys)
+    keys = [*sorted(weights.keys() & kept.keys()), *keys]
     missing = {
         part: {source: share * total for source, total in totals.items()}
         for part, share in targets.items()
@@ -98,7 +106,9 @@ def split(
     empty = [part for part, share in targets.items() if share > 0]
     for place, key in enumerate(keys):
         choices = empty if len(keys) - place <= len(empty) else list(targets)
-        chosen = max(choices, key=lambda part: _need(missing[part], weights[key], totals))
+        chosen = kept.get(key) or max(
+            choices, key=lambda part: _need(missing[part], weights[key], totals)
+        )
         parts[key] = chosen
         empty = [part for part in empty if part is not chosen]
         for source, count in weights[key].items():

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
-from django.http import HttpRequest, HttpResponse
-from django.shortcuts import get_object_or_404, render
+from django.contrib import messages
+from django.http import HttpRequest, HttpResponse, JsonResponse
+from django.shortcuts import get_object_or_404, redirect, render
 
+from annotations.auditing import correct_label
+from annotations.editing.edits import Overtaken
+from annotations.labelling import check_label
+from annotations.labelling.spans import anonymizer_of
+from annotations.language.errors import LanguageError
 from annotations.lists.filters import ParaphraseFilters
 from annotations.lists.listing import Listing, Sort, render_list
-from annotations.models import Duty, World
-from annotations.people.access import world_view
+from annotations.models import Duty, WorkKind, World
+from annotations.people.access import WRITE, world_view
+from annotations.queueing import NotForThem
+from annotations.queueing.giving import kinds_for
 from annotations.rows.occurrences import MOST_SHOWN, examples_of_pair, logical_form_of
 
 SORTS = {
@@ -33,7 +41,41 @@ def paraphrase(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     row = get_object_or_404(world.paraphrases.select_related("command"), pk=pk)
     context = {
         "row": row,
+        "may_correct": WorkKind.AUDIT in kinds_for(request.user, world),
         "logical_form": logical_form_of(world.pk, row.logical_form),
         "examples": examples_of_pair(world.pk, row.utterance, row.logical_form)[:MOST_SHOWN],
     }
     return render(request, "annotations/paraphrase.html", context)
+
+
+@world_view(Duty.VIEW, WRITE)
+def paraphrase_label(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """Correct the label of a paraphrase; the queue knows who may."""
+    row = get_object_or_404(world.paraphrases, pk=pk)
+    sent = request.POST.get("version", "")
+    version = int(sent) if sent.isascii() and sent.isdigit() and len(sent) < 10 else 0
+    try:
+        corrected = correct_label(row, request.POST.get("form", ""), request.user, version)
+    except Overtaken:
+        messages.error(
+            request, "Somebody has changed this paraphrase in the meantime. Look at it again."
+        )
+    except (LanguageError, NotForThem) as error:
+        messages.error(request, str(error))
+    else:
+        is_same = corrected.version == row.version
+        said = (
+            "This is its label already."
+            if is_same
+            else "The label is corrected. Frozen splits keep the old one."
+        )
+        messages.success(request, said)
+    return redirect("paraphrase", world=world.name, pk=pk)
+
+
+@world_view(Duty.VIEW, WRITE)
+def paraphrase_check(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """Say what is wrong with a label while somebody writes it."""
+    row = get_object_or_404(world.paraphrases, pk=pk)
+    anonymized = anonymizer_of(world).anonymize(row.utterance).command
+    return JsonResponse(check_label(world, anonymized, request.POST.get("form", "")))

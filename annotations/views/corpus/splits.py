@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from django.contrib import messages
 from django.http import HttpRequest, HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 
@@ -11,9 +12,10 @@ from annotations.language.errors import LanguageError
 from annotations.lists.filters import ExampleFilters, SplitFilters
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.models import Duty, Example, Split, World
-from annotations.people.access import READ_AND_WRITE, world_view
+from annotations.people.access import READ_AND_WRITE, WRITE, world_view
 from annotations.rows.occurrences import command_of_example, logical_form_of, paraphrase_of_example
 from annotations.splits.freezing import freeze_split, plan_split
+from annotations.splits.renewing import changes_since, freeze_anew, is_from_import, last_of
 from annotations.splits.split_statistics import (
     counts_of,
     counts_of_planned,
@@ -28,6 +30,10 @@ SORTS = {
 }
 SPLIT_SORTS = {"created": Sort("Frozen", "-created_at"), "name": Sort("Split", "name")}
 MOST_SHOWN = 100
+MOST_COMPARED = (
+    5_000  # examples that are compared with the corpus of today before the page is shown
+)
+MOST_CHANGES = 20  # labels that the page of a split shows before and after
 
 
 @world_view(Duty.VIEW)
@@ -61,15 +67,51 @@ def split_new(request: HttpRequest, world: World) -> HttpResponse:
 @world_view(Duty.VIEW)
 def split(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     """Show one split: its parts, what they share, its examples."""
-    row = get_object_or_404(Split.objects.select_related("created_by"), world=world, pk=pk)
+    row = get_object_or_404(
+        Split.objects.select_related("created_by", "follows", "world"), world=world, pk=pk
+    )
+    newest, counts = last_of(row), counts_of([row])[row.pk]
     context = {
         "split": row,
-        "counts": counts_of([row])[row.pk],
+        "newest": newest if newest != row else None,
+        "counts": counts,
         "leakage": leakage_of(row),
         "wrong": examples_before(row).count(),
         "listing": Listing(request, ExampleFilters, row.examples.all(), SORTS),
     }
+    if newest == row and sum(each.total for each in counts) <= MOST_COMPARED:
+        context |= {"is_compared": True, **_changes_of(row)}
     return render_list(request, "annotations/split.html", context)
+
+
+@world_view(Duty.VIEW)
+def split_changes(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """Say what freezing a split anew would change: a part of its page, loaded by a large one."""
+    row = get_object_or_404(Split.objects.select_related("world", "follows"), world=world, pk=pk)
+    context = {"split": row, **_changes_of(row)}
+    return render(request, "annotations/_split_changes.html", context)
+
+
+def _changes_of(row: Split) -> dict[str, object]:
+    """Return what ``_split_changes.html`` shows of a split."""
+    try:
+        changed: dict[str, object] = {"changes": changes_since(row)}
+    except LanguageError as error:
+        changed = {"refusal": error.problem}
+    return {"most": MOST_CHANGES, "is_from_import": is_from_import(row), **changed}
+
+
+@world_view(Duty.ANNOTATE, WRITE)
+def split_renew(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """Freeze a split anew from the corpus of today, and show the new one."""
+    row = get_object_or_404(Split.objects.select_related("world", "follows"), world=world, pk=pk)
+    try:
+        renewed = freeze_anew(row, request.user)
+    except LanguageError as error:
+        messages.error(request, str(error))
+        return redirect("split", world=world.name, pk=pk)
+    messages.success(request, f"Frozen anew as {renewed}. {row} stays as it was.")
+    return redirect("split", world=world.name, pk=renewed.pk)
 
 
 @world_view(Duty.VIEW)

@@ -133,17 +133,33 @@ KEYS: dict[str, RouteKeys] = {
     "deleted": lambda _: {"kind": "template"},
     "logical_form": pk_of(lambda sample: sample.form),
     "command": pk_of(lambda sample: sample.world.commands.first()),
-    "paraphrase": pk_of(lambda sample: paraphrase_in(sample.world)),
+    **dict.fromkeys(
+        ("paraphrase", "paraphrase_label", "paraphrase_check"),
+        pk_of(lambda sample: paraphrase_in(sample.world)),
+    ),
     "entity": pk_of(lambda sample: Entity.objects.filter(ontology__world=sample.world).first()),
     "predicate": pk_of(predicate),
     "rename": pk_of(predicate, kind="predicate"),
     "production": pk_of(lambda sample: sample.world.grammar.productions.first()),
     "download_part": lambda _: {"part": "grammar"},
     "notice_open": lambda _: {"pk": 10**6},
-    **dict.fromkeys(("split", "near_duplicates", "api:split-export"), pk_of(split)),
-    "example": lambda sample: {"split": sample.split.pk, "pk": sample.example.pk},
     **dict.fromkeys(
-        ("run", "run_state", "run_charts", "run_curves", "run_cancel", "predictions"), pk_of(run)
+        (
+            *("split", "near_duplicates", "split_changes", "split_renew", "split_runs"),
+            "api:split-export",
+        ),
+        pk_of(split),
+    ),
+    **dict.fromkeys(
+        ("example", "example_send"),
+        lambda sample: {"split": sample.split.pk, "pk": sample.example.pk},
+    ),
+    **dict.fromkeys(
+        (
+            *("run", "run_state", "run_charts", "run_curves", "run_cancel", "run_retrain"),
+            *("run_report", "predictions", "predictions_send"),
+        ),
+        pk_of(run),
     ),
     "prediction": lambda sample: {"pk": sample.run.pk, "example": sample.example.pk},
     **dict.fromkeys(("job", "job_state", "job_cancel", "job_answer"), pk_of(waiting_job)),

@@ -1,0 +1,35 @@
+"""The wrong answers of a run with the differences to their labels, as a stream."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+
+from annotations.presentation import Pieces, difference
+from parser_service.models import Prediction, TrainingRun
+from parser_service.reporting.answers import answers_of
+
+MOST_WRONG = 2_000
+ROWS_AT_ONCE = 200
+
+
+@dataclass(frozen=True, slots=True)
+class WrongAnswer:
+    """A first answer that is wrong; ``expected`` and ``predicted`` are both forms in pieces, what changes marked."""
+
+    prediction: Prediction
+    expected: Pieces
+    predicted: Pieces
+
+
+def count_wrong(run: TrainingRun, part: str) -> int:
+    return answers_of(run, part).filter(is_exact_match=False).count()
+
+
+def wrong_answers(run: TrainingRun, part: str, most: int = MOST_WRONG) -> Iterator[WrongAnswer]:
+    """Yield the first wrong answers, at most ``most``, in the order of their examples."""
+    rows = answers_of(run, part).filter(is_exact_match=False).select_related("example")
+    compare = lru_cache(maxsize=4096)(difference)
+    for row in rows[:most].iterator(chunk_size=ROWS_AT_ONCE):
+        yield WrongAnswer(row, *compare(row.example.logical_form, row.logical_form))

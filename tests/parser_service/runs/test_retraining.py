@@ -1,0 +1,77 @@
+"""The same configuration is trained again on a split that was frozen anew."""
+
+from __future__ import annotations
+
+import pytest
+
+from annotations.models import Split
+from parser_service.models import TrainingRun
+from parser_service.models.runs import Status
+from parser_service.runs.requesting import request, retrain
+from parser_service.runs.retraining import retrainable, retrained
+from tests.parser_service.made_up import make_split
+
+
+@pytest.fixture
+def newer(split) -> Split:
+    made = make_split(split.world, "home-2")
+    made.follows = split
+    made.save()
+    return made
+
+
+@pytest.fixture
+def run(split) -> TrainingRun:
+    made, _ = request(
+        split.world,
+        split,
+        "knn",
+        {"least_overlap": 0.25},
+        train_sources="gen+para",
+        seed=7,
+        send=False,
+    )
+    TrainingRun.objects.filter(pk=made.pk).update(status=Status.SUCCEEDED)
+    made.refresh_from_db()
+    return made
+
+
+def test_a_run_is_asked_for_again_with_its_own_values(run, newer, admin):
+    again, is_new = retrain(run, newer, admin)
+    assert is_new and again.status == Status.QUEUED and again.created_by == admin
+    for name in ("parser", "config", "protocol", "train_sources", "seed"):
+        assert getattr(again, name) == getattr(run, name)
+    assert again.split == newer
+    run.refresh_from_db()
+    assert (run.split, run.status) == (newer.follows, Status.SUCCEEDED)
+
+
+def test_it_is_trained_once(run, newer):
+    first, _ = retrain(run, newer)
+    assert retrain(run, newer) == (first, False)
+
+
+def test_a_split_of_another_world_is_refused(run, other_world):
+    with pytest.raises(ValueError, match="another world"):
+        retrain(run, make_split(other_world))
+
+
+def test_the_newest_run_of_each_configuration_can_be_retrained(run, newer):
+    (row,) = retrainable(newer)
+    assert (row.run, row.again) == (run, None)
+    again, _ = retrain(run, newer)
+    (row,) = retrainable(newer)
+    assert row.again == again
+    assert retrained(run) == (newer, again)
+    TrainingRun.objects.filter(pk=again.pk).update(status=Status.FAILED)
+    assert retrained(run) == (newer, None)
+
+
+def test_runs_without_success_are_not_offered(run, newer):
+    TrainingRun.objects.filter(pk=run.pk).update(status=Status.CANCELLED)
+    assert retrainable(newer) == []
+
+
+def test_a_split_that_follows_none_has_nothing_to_retrain(run, split):
+    assert retrainable(split) == []
+    assert retrained(run) == (None, None)
