@@ -59,8 +59,9 @@ class Prediction(models.Model):
     """A ranked candidate for one example. An example without candidates has one row with an empty form.
 
     ``answer_in_training`` and ``label_in_training`` count the training pairs that have this form and the
-    example's, None where it is not known. ``origin`` says where the parser has the form from, and
-    ``score_parts`` what its score is made of; both are empty where the parser does not tell.
+    example's, None where it is not known and for the empty form. ``origin`` says where the parser has the
+    form from: ``training`` unless the parser tells something else; ``score_parts`` says what its score is
+    made of. Both are empty where that is not known.
     """
 
     run = models.ForeignKey(TrainingRun, on_delete=models.CASCADE, related_name="predictions")

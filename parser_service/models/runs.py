@@ -12,6 +12,7 @@ from annotations.models.background import BackgroundWork, Status, WorkQuerySet
 from annotations.models.background import queue_choices as queue_choices  # for the migrations
 from annotations.models.background import status_choices as status_choices
 from parser_service.parsers.conditions import Protocol
+from parser_service.parsers.interface import ScoreKind
 from parser_service.parsers.registry import PARSERS, config_fields
 
 if TYPE_CHECKING:
@@ -26,16 +27,8 @@ def protocol_choices() -> list[tuple[str, str]]:
     return [(each.value, each.value.capitalize()) for each in Protocol]
 
 
-class ScoreKind(models.TextChoices):
-    """What the score of an answer is."""
-
-    PROBABILITY = "probability", "probability"
-    LOG_PROBABILITY = "log_probability", "log-probability"
-    SIMILARITY = "similarity", "similarity"
-
-
 def score_kind_choices() -> list[tuple[str, str]]:
-    return ScoreKind.choices
+    return [(each.value, each.value.replace("_", "-")) for each in ScoreKind]
 
 
 class TrainingRunQuerySet(WorkQuerySet):

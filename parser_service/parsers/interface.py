@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
@@ -14,6 +15,8 @@ if TYPE_CHECKING:
     from annotations.language.ontology import Ontology
     from annotations.language.predicates import Predicate
     from annotations.language.templates import TaskCategory
+
+TRAINING = "training"  # the origin of a form that a training pair has
 
 Check = Callable[[], None]
 """Called between batches; raises ``Cancelled`` when the work has to stop."""
@@ -29,16 +32,30 @@ class Pair:
     task_category: str = ""
 
 
+class ScoreKind(StrEnum):
+    """What the score of an answer is. A score that only orders the answers is none of these."""
+
+    PROBABILITY = "probability"
+    LOG_PROBABILITY = "log_probability"
+    SIMILARITY = "similarity"
+
+
 @dataclass(frozen=True, slots=True)
 class Candidate:
     """One answer.
 
     ``form`` is canonical corpus text, or the text that the parser wrote where that is not a form;
     ``score`` orders the candidates of one utterance and can be compared within one parser only.
+
+    ``origin`` names what gave the parser this form: the pairs it learned from (``TRAINING``), a step of
+    ``candidates``, or what the parser documents; empty where it does not tell. ``parts`` are the
+    numbers that the score is made of, by name. Neither tells two answers apart.
     """
 
     form: str
     score: float
+    origin: str = field(default="", compare=False)
+    parts: Mapping[str, float] = field(default_factory=dict, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,12 +134,14 @@ class Parser(ABC):
 
     A subclass has the name that the registry gives it. Its ``version`` is raised whenever the same
     pairs, configuration and seed may give another result, or saved parsers can no longer be loaded.
-    Forms are canonical corpus text on both sides.
+    Forms are canonical corpus text on both sides. ``score_kind`` is None where scores only order the
+    answers.
     """
 
     name: ClassVar[str]
     version: ClassVar[int]
     protocols: ClassVar[tuple[Protocol, ...]]
+    score_kind: ClassVar[ScoreKind | None] = None
     Config: ClassVar[type]  # a frozen dataclass that validates itself, ValueError sentences
 
     def __init__(self, config: Any = None, seed: int = 0, knowledge: Knowledge | None = None):

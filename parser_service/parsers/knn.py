@@ -13,18 +13,21 @@ import numpy as np
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.config_fields import hyperparameter, validate
 from parser_service.parsers.interface import (
+    TRAINING,
     Candidate,
     Check,
     Knowledge,
     Observer,
     Pair,
     Parser,
+    ScoreKind,
     keep_going,
 )
 from parser_service.parsers.storage import open_sealed, read_json, seal, write_json
 from parser_service.parsers.words import words
 
 PAIRS = "pairs.json"
+VALIDATION = "validation"  # the origin of a form that no training pair has
 
 
 @dataclass(frozen=True)
@@ -57,6 +60,7 @@ class NearestNeighbour(Parser):
     name = "knn"
     version = 1
     protocols = (Protocol.STRICT,)
+    score_kind = ScoreKind.SIMILARITY
     Config = NearestNeighbourConfig
 
     def __init__(
@@ -83,13 +87,15 @@ class NearestNeighbour(Parser):
     def for_test_part(self, validation: Sequence[Pair]) -> NearestNeighbour:
         """Return a nearest neighbour among the training pairs and ``validation``."""
         other = NearestNeighbour(self.config, self.seed, self.knowledge)
-        other._store(self._pairs + [(pair.utterance, pair.form) for pair in validation])
+        added = [(pair.utterance, pair.form) for pair in validation]
+        other._store(self._pairs + added, trained=len(self._pairs))
         return other
 
     def predict(
         self, utterances: Sequence[str], beam_width: int = 1, check: Check = keep_going
     ) -> list[list[Candidate]]:
-        """Return the nearest forms; the score is the share of common words, 1 − distance."""
+        """Return the nearest forms; the score is the share of common words, 1 − distance. Its parts are
+        that ``similarity`` and the number of ``neighbours`` with the form at this distance."""
         answers = []
         for utterance in utterances:
             check()
@@ -111,9 +117,11 @@ class NearestNeighbour(Parser):
     def parameters(self) -> int:
         return 0
 
-    def _store(self, pairs: list[tuple[str, str]]) -> None:
-        """Build the inverted index: for each word, the positions of the pairs that have it."""
+    def _store(self, pairs: list[tuple[str, str]], trained: int | None = None) -> None:
+        """Build the inverted index: for each word, the positions of the pairs that have it. The first
+        ``trained`` pairs, by default all, are training pairs."""
         self._pairs = pairs
+        self._trained_forms = {form for _, form in pairs[:trained]}
         self._forms = sorted({form for _, form in pairs})
         number = {form: index for index, form in enumerate(self._forms)}
         postings: dict[str, list[int]] = defaultdict(list)
@@ -135,10 +143,16 @@ class NearestNeighbour(Parser):
         votes = np.bincount(at_best, minlength=len(self._forms))  # [forms]
         order = np.lexsort((np.arange(len(best)), -votes, -best))[:beam_width]
         return [
-            Candidate(self._forms[form], float(best[form]))
+            self._candidate(self._forms[form], float(best[form]), int(votes[form]))
             for form in order
             if best[form] >= self.config.least_overlap
         ]
+
+    def _candidate(self, form: str, similarity: float, neighbours: int) -> Candidate:
+        origin = TRAINING if form in self._trained_forms else VALIDATION
+        return Candidate(
+            form, similarity, origin, {"similarity": similarity, "neighbours": neighbours}
+        )
 
     def _overlap(self, utterance: str) -> np.ndarray:
         """Return 1 − the Jaccard distance to every pair. Shape [pairs]; equal ratios are equal floats."""

@@ -29,6 +29,7 @@ from parser_service.parsers.interface import (
 )
 from parser_service.parsers.storage import open_sealed, read_json, seal, write_json
 
+GRAMMAR_FORM = "grammar"  # the origin of all its forms
 GRAMMAR, ONTOLOGY = "grammar.json", "ontology.json"
 
 
@@ -89,7 +90,12 @@ class GrammarOracle(Parser):
             forms = self._forms(utterance) or self._forms(
                 self._anonymizer.anonymize(utterance).text
             )
-            answers.append([Candidate(form, -rank) for rank, form in enumerate(forms[:beam_width])])
+            answers.append(
+                [
+                    Candidate(form, -rank, GRAMMAR_FORM)
+                    for rank, form in enumerate(forms[:beam_width])
+                ]
+            )
         return answers
 
     def _forms(self, text: str) -> list[str]:

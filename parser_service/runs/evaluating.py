@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 
 from annotations.background import outlasting
 from annotations.models import Example
@@ -10,22 +11,27 @@ from annotations.models.splits import Part
 from parser_service.analysis.scores import NO_ANSWER, Score, judge, score
 from parser_service.models import Evaluation, Prediction, TrainingRun
 from parser_service.parsers.conditions import TEST_SOURCES
-from parser_service.parsers.interface import Candidate, Pair, Parser
+from parser_service.parsers.interface import TRAINING, Candidate, Pair, Parser
 from parser_service.runs import lifecycle
 from parser_service.runs.observing import RunObserver
 
 BEAM_WIDTH = 5
 AT_ONCE = 64
 ROWS_AT_ONCE = 500
+DECIMALS = 4  # of the parts of a score
 
 
 def evaluate(
-    run: TrainingRun, parser: Parser, validation: list[Pair], observe: RunObserver
+    run: TrainingRun,
+    parser: Parser,
+    train: Sequence[Pair],
+    validation: Sequence[Pair],
+    observe: RunObserver,
 ) -> None:
     """Predict every validation and test example of the run's split and store the outcomes.
 
-    ``validation`` are the pairs that the parser may consult when the test part is scored. An earlier
-    attempt's predictions are replaced. Raises Cancelled and Fenced.
+    ``train`` are the pairs that the parser learned from, ``validation`` those that it may consult when
+    the test part is scored. An earlier attempt's predictions are replaced. Raises Cancelled and Fenced.
     """
     predicted: list[tuple[Example, list[Candidate]]] = []
     parts = {Part.VALIDATION: parser, Part.TEST: parser.for_test_part(validation)}
@@ -38,14 +44,16 @@ def evaluate(
             answers = answering.predict(utterances, BEAM_WIDTH, observe.check)
             predicted += zip(batch, answers, strict=True)
             observe.evaluation_progress(len(predicted) / total, f"predicting the {part} part")
-    _store(run, predicted)
+    counts = Counter(pair.form for pair in train)
+    ranked = [_rank_answers(run, example, answers, counts) for example, answers in predicted]
+    _store(run, ranked, parser.score_kind or "")
 
 
 @outlasting
-def _store(run: TrainingRun, predicted: Sequence[tuple[Example, list[Candidate]]]) -> None:
-    """Replace the run's predictions and evaluations."""
-    ranked = [_rank_answers(run, example, answers) for example, answers in predicted]
+def _store(run: TrainingRun, ranked: Sequence[Sequence[Prediction]], score_kind: str) -> None:
+    """Replace the run's predictions, one list for each example, and its evaluations."""
     with lifecycle.held(run):
+        TrainingRun.objects.filter(pk=run.pk).update(score_kind=score_kind)
         run.predictions.all().delete()
         run.evaluations.all().delete()
         rows = [row for rows in ranked for row in rows]
@@ -54,17 +62,20 @@ def _store(run: TrainingRun, predicted: Sequence[tuple[Example, list[Candidate]]
 
 
 def _rank_answers(
-    run: TrainingRun, example: Example, answers: Sequence[Candidate]
+    run: TrainingRun, example: Example, answers: Sequence[Candidate], counts: Mapping[str, int]
 ) -> list[Prediction]:
-    """Return one row per candidate, best first; a single row without a form where there is none."""
+    """Return one row per candidate, best first; a single row without a form where there is none.
+
+    ``counts`` says how many training pairs have a form.
+    """
     return [
-        _make_prediction(run, example, rank, answer)
+        _make_prediction(run, example, rank, answer, counts)
         for rank, answer in enumerate(answers or [Candidate("", 0.0)], start=1)
     ]
 
 
 def _make_prediction(
-    run: TrainingRun, example: Example, rank: int, answer: Candidate
+    run: TrainingRun, example: Example, rank: int, answer: Candidate, counts: Mapping[str, int]
 ) -> Prediction:
     judgement = judge(answer.form, example.logical_form) if answer.form else NO_ANSWER
     return Prediction(
@@ -76,6 +87,10 @@ def _make_prediction(
         is_exact_match=judgement.is_exact_match,
         is_equivalent=judgement.is_equivalent,
         is_well_formed=judgement.is_well_formed,
+        answer_in_training=counts.get(answer.form, 0) if answer.form else None,
+        label_in_training=counts.get(example.logical_form, 0),
+        origin=answer.origin or (TRAINING if answer.form in counts else ""),
+        score_parts={name: round(value, DECIMALS) for name, value in answer.parts.items()},
     )
 
 

@@ -56,7 +56,7 @@ def _fit_and_evaluate(run: TrainingRun, observe: RunObserver) -> None:
     parser.fit(train_pairs, validation, observe)
     lifecycle.record_progress(run, TRAINING_SHARE, "saving the parser")
     write_folder(model_folder(run.pk), parser.save)
-    evaluate(run, parser, validation, observe)
+    evaluate(run, parser, train_pairs, validation, observe)
     epochs = sum(run.epochs.values_list("seconds", flat=True))
     lifecycle.finish(run, parser.parameters(), epochs or time.monotonic() - began)
     request_proposals(run.world)  # it may be the best parser now

@@ -14,6 +14,8 @@ from torch.nn.functional import cross_entropy, logsigmoid
 
 EXPERTS = ("examples", "glosses", "slots", "support")
 Weights = tuple[float, ...]  # by EXPERTS
+# What a log-probability is the sum of: the experts, whether the form is new, and how well others fit.
+TERMS = (*EXPERTS, "novelty", "others")
 EQUAL: Weights = (1.0,) * len(EXPERTS)
 SPREAD = 0.5  # standard deviation of the prior of the logarithm of a weight
 # By how many nats new forms have to fit better than known ones, negated, and the scale of the prior
@@ -68,6 +70,26 @@ class Decision:
         new = torch.log_softmax(combine(scores.new, self.new), -1)
         odds = (self.novelty + scores.evidence)[:, None]
         return torch.cat([known + logsigmoid(-odds), new + logsigmoid(odds)], -1)
+
+    def terms(self, scores: Scores, forms: Tensor) -> Tensor:
+        """Return the ``TERMS`` of the log-probabilities of ``forms`` [utterances, answers], in nats.
+
+        Shape [terms, utterances, answers]. They sum to the log-probability: the weighted score of each
+        expert; the logarithm of the probability that the form is known, or new, whichever this one is;
+        and minus the logarithm of the sum over all forms that are known, or new.
+        """
+        weighted = [
+            part * torch.tensor(weights)[:, None, None]
+            for part, weights in ((scores.known, self.known), (scores.new, self.new))
+        ]
+        experts = torch.cat(weighted, -1).gather(2, forms.expand(len(EXPERTS), -1, -1))
+        novelty = torch.zeros_like(experts[0])
+        if scores.new.shape[-1]:
+            odds = (self.novelty + scores.evidence)[:, None]
+            novelty = logsigmoid(torch.where(forms >= scores.known.shape[-1], odds, -odds))
+        total = self.log_probabilities(scores).gather(1, forms)
+        others = total - novelty - experts.sum(0)
+        return torch.cat([experts, novelty[None], others[None]])
 
 
 def calibrate(scores: Scores, targets: Tensor) -> Decision:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from math import log
 from pathlib import Path
@@ -13,7 +13,7 @@ import torch
 
 from parser_service.neural.device import processor, threads
 from parser_service.neural.pretrained import load_encoder
-from parser_service.neural.ranker.calibration import Decision, calibrate
+from parser_service.neural.ranker.calibration import TERMS, Decision, Scores, calibrate
 from parser_service.neural.ranker.checkpoints import FILES, load_training, save_training
 from parser_service.neural.ranker.model import RankerModel
 from parser_service.neural.ranker.ranked_forms import RankedExample, RankedForms, collect
@@ -33,6 +33,7 @@ from parser_service.parsers.interface import (
     Observer,
     Pair,
     Parser,
+    ScoreKind,
     keep_going,
 )
 from parser_service.parsers.ranker_config import RankerConfig
@@ -41,6 +42,7 @@ from parser_service.parsers.storage import open_sealed, read_json, seal, write_j
 FORMS = "forms.json"
 SAVED = (FORMS, ENCODER, TOKENIZER, WEIGHTS)
 UNKNOWN = "UNKNOWN"
+REFUSAL = "refusal"  # the origin of UNKNOWN where no form is probable enough
 PREDICTION_BATCH = 64
 VALIDATIONS = 4  # in a training; each re-encodes all examples, which takes a while
 
@@ -58,6 +60,7 @@ class FormRanker(Parser):
     name = "ranker"
     version = 7
     protocols = (Protocol.STRICT, Protocol.DOMAIN, Protocol.GRAMMAR)
+    score_kind = ScoreKind.LOG_PROBABILITY
     Config = RankerConfig
 
     def __init__(
@@ -102,18 +105,33 @@ class FormRanker(Parser):
     ) -> list[list[Candidate]]:
         """Return the most probable forms; scores are log-probabilities in nats.
 
-        Where the best is below ``unknown_below``, the first answer is UNKNOWN, scored with that bound.
+        Their parts are the ``TERMS`` that are not 0. Where the best is below ``unknown_below``, the
+        first answer is UNKNOWN, scored with that bound.
         """
         answers: list[list[Candidate]] = []
         for begin in range(0, len(utterances), PREDICTION_BATCH):
             asked = utterances[begin : begin + PREDICTION_BATCH]
-            logs = self._decision.log_probabilities(self._model_or_refuse().scores(asked, check))
-            best = logs.topk(min(beam_width, logs.shape[1]), dim=-1)
-            for scores, numbers in zip(best.values.tolist(), best.indices.tolist(), strict=True):
-                ranked = zip(numbers, scores, strict=True)
-                candidates = [Candidate(self._ranked.forms[at], score) for at, score in ranked]
-                answers.append(self._refuse_improbable(candidates)[:beam_width])
+            scores = self._model_or_refuse().scores(asked, check)
+            for ranked in self._rank(scores, beam_width):
+                answers.append(self._refuse_improbable(ranked)[:beam_width])
         return answers
+
+    def _rank(self, scores: Scores, beam_width: int) -> Iterator[list[Candidate]]:
+        """Yield the most probable forms of each utterance."""
+        logs = self._decision.log_probabilities(scores)
+        best = logs.topk(min(beam_width, logs.shape[1]), dim=-1)
+        terms = self._decision.terms(scores, best.indices).permute(1, 2, 0)
+        rows = zip(best.indices.tolist(), best.values.tolist(), terms.tolist(), strict=True)
+        for numbers, probabilities, parts in rows:
+            yield [
+                Candidate(
+                    self._ranked.forms[number],
+                    score,
+                    self._ranked.origin(number),
+                    {name: value for name, value in zip(TERMS, part, strict=True) if value},
+                )
+                for number, score, part in zip(numbers, probabilities, parts, strict=True)
+            ]
 
     def save(self, folder: Path) -> None:
         self._write(folder)
@@ -206,7 +224,7 @@ class FormRanker(Parser):
         if not bound or ranked[0].score >= log(bound):
             return ranked
         others = [each for each in ranked if each.form != UNKNOWN]
-        return [Candidate(UNKNOWN, log(bound)), *others]
+        return [Candidate(UNKNOWN, log(bound), REFUSAL), *others]
 
     def _model_or_refuse(self) -> RankerModel:
         if self._model is None:

@@ -10,7 +10,7 @@ from annotations.language.grounding import Anonymizer
 from annotations.language.ontology import Ontology
 from parser_service.parsers.candidates.generation import generate_candidates
 from parser_service.parsers.candidates.glosses import glosses
-from parser_service.parsers.interface import Knowledge, Pair
+from parser_service.parsers.interface import TRAINING, Knowledge, Pair
 
 MOST_SUPPORT = 4  # kinds of step, above which more of them say no more
 
@@ -31,6 +31,8 @@ class RankedForms:
 
     ``support`` is, for each new form, the number of kinds of step that arrive at it. ``examples`` has
     for each example the number of its form: known forms have examples, and under *grammar* all have.
+    ``origins`` names for each new form the step that made it; a parser that was saved without them has
+    none.
     """
 
     forms: tuple[str, ...]
@@ -38,6 +40,7 @@ class RankedForms:
     known: int
     support: tuple[int, ...]
     examples: tuple[int, ...]
+    origins: tuple[str, ...] = ()
 
     @classmethod
     def read(cls, values: Mapping[str, Any]) -> Self:
@@ -48,7 +51,14 @@ class RankedForms:
             values["known"],
             tuple(values["support"]),
             tuple(values["examples"]),
+            tuple(values.get("origins", ())),
         )
+
+    def origin(self, number: int) -> str:
+        """Return where form ``number`` comes from; empty where it is not known."""
+        if number < self.known:
+            return TRAINING
+        return self.origins[number - self.known] if self.origins else ""
 
     def to_json(self) -> dict[str, Any]:
         """Return the same as a JSON-ready mapping."""
@@ -85,5 +95,6 @@ def collect(
         len(generated.training),
         tuple(min(each.support, MOST_SUPPORT) for each in generated.new),
         tuple(each.form for each in examples),
+        tuple(each.main_step for each in generated.new),
     )
     return ranked, examples, str(generated)

@@ -29,6 +29,7 @@ from parser_service.parsers.interface import (
     Observer,
     Pair,
     Parser,
+    ScoreKind,
     keep_going,
 )
 from parser_service.parsers.logical_forms import canonical_or_same
@@ -52,6 +53,7 @@ class Seq2Seq(Parser):
     name = "seq2seq"
     version = 1
     protocols = (Protocol.STRICT,)
+    score_kind = ScoreKind.LOG_PROBABILITY
     Config = Seq2SeqConfig
 
     def __init__(
@@ -86,7 +88,8 @@ class Seq2Seq(Parser):
     def predict(
         self, utterances: Sequence[str], beam_width: int = 1, check: Check = keep_going
     ) -> list[list[Candidate]]:
-        """Return the most probable forms by beam search; scores are log-probabilities in nats.
+        """Return the most probable forms by beam search; scores are log-probabilities in nats, whose part
+        ``tokens`` counts the tokens that were written.
 
         The beam is as wide as the configuration says, or as ``beam_width`` where that is more.
         """
@@ -199,11 +202,18 @@ class Seq2Seq(Parser):
 
     def _candidates(self, hypotheses: Sequence[Hypothesis]) -> list[Candidate]:
         """Return distinct canonical forms, each with the score of its best spelling."""
-        scores: dict[str, float] = {}
+        best: dict[str, Hypothesis] = {}
         for hypothesis in hypotheses:
             text = " ".join(self._target.sentence(hypothesis.tokens))
-            scores.setdefault(canonical_or_same(text), hypothesis.score)
-        return [Candidate(form, score) for form, score in scores.items()]
+            best.setdefault(canonical_or_same(text), hypothesis)
+        return [
+            Candidate(
+                form,
+                each.score,
+                parts={"log_probability": each.score, "tokens": len(each.tokens)},
+            )
+            for form, each in best.items()
+        ]
 
     def _write(self, folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)

@@ -39,6 +39,11 @@ class CandidateForm:
         return tuple(dict.fromkeys(way.step for way in self.ways))
 
     @property
+    def main_step(self) -> str:
+        """Return the step that counts most, the first of several."""
+        return max(self.ways, key=lambda way: way.weight).step
+
+    @property
     def support(self) -> int:
         """Count the kinds of step that arrive at it, by their weights.
 

@@ -125,3 +125,13 @@ def test_on_the_published_split_by_form_it_is_never_right(shared_data):
 
 def published(shared_data, name, part):
     return read_pairs(shared_data / "walker2019" / name / f"{part}.txt")
+
+
+def test_an_answer_tells_its_neighbours_and_where_its_form_is_from(parser):
+    [[best, *_]] = parser.predict(["find the cup"], 2)
+    assert best.origin == "training"
+    assert best.parts == {"similarity": 1.0, "neighbours": 1}
+    [[best]] = parser.for_test_part([Pair("stop it", "( stop )")]).predict(["stop it"])
+    assert (best.form, best.origin) == ("( stop )", "validation")
+    [[best]] = parser.for_test_part([Pair("find the cup", FIND)]).predict(["find the cup"])
+    assert (best.origin, best.parts["neighbours"]) == ("training", 2)

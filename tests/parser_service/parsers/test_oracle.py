@@ -125,3 +125,7 @@ def test_paraphrases_are_mostly_outside_the_grammar(shared_data):
         [pair.utterance for pair in pairs]
     )
     assert sum(map(bool, answers)) < 0.05 * len(pairs)
+
+
+def test_its_forms_are_from_the_grammar(oracle):
+    assert [each.origin for each in oracle.predict(["find the <object>"])[0]] == ["grammar"]

@@ -6,7 +6,7 @@ from dataclasses import FrozenInstanceError, is_dataclass
 import pytest
 
 from parser_service.parsers.conditions import Protocol
-from parser_service.parsers.interface import Parser
+from parser_service.parsers.interface import Parser, ScoreKind
 from parser_service.parsers.registry import (
     PARSERS,
     config_class,
@@ -67,3 +67,9 @@ def test_loading_a_class_leaves_the_garbage_collector_on():
     with pytest.raises(ValueError, match="No parser is called"):
         load_class("nobody")
     assert gc.isenabled()
+
+
+@pytest.mark.parametrize("name", PARSERS)
+def test_every_parser_says_what_its_scores_are(name):
+    kinds = {"grammar-oracle": None, "knn": ScoreKind.SIMILARITY}
+    assert load_class(name).score_kind == kinds.get(name, ScoreKind.LOG_PROBABILITY)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 import pytest
 
 from annotations.models import Example
 from parser_service.models import TrainingRun
-from tests.parser_service.made_up import make_split
+from tests.parser_service.made_up import TINY, make_split
 from tests.parser_service.runs.test_training import trained
 
 
@@ -79,3 +81,46 @@ def test_the_interval_holds_the_accuracy(split):
     for row in trained(split).evaluations.all():
         assert 0 <= row.interval_low <= row.accuracy <= row.interval_high <= 1
         assert row.accuracy == row.correct / row.count
+
+
+def test_predictions_say_how_often_training_had_their_forms(split):
+    run = trained(split, train_sources="gen+para")
+    counts = Counter(
+        split.examples.filter(part="train").order_by().values_list("logical_form", flat=True)
+    )
+    rows = list(run.predictions.select_related("example"))
+    assert max(row.answer_in_training for row in rows) > 1
+    for row in rows:
+        assert row.answer_in_training == counts[row.logical_form]
+        assert row.label_in_training == counts[row.example.logical_form]
+
+
+def test_only_the_sources_that_a_run_learned_from_are_counted(split):
+    run = trained(split, train_sources="gen")
+    row = run.predictions.best().first()
+    learned = split.examples.filter(part="train", source="generated", logical_form=row.logical_form)
+    assert row.answer_in_training == learned.count()
+
+
+def test_predictions_say_what_their_score_is_made_of_and_where_their_form_is_from(split):
+    run = trained(split)
+    assert run.score_kind == "similarity"
+    for row in run.predictions.all():
+        assert row.origin == ("training" if row.answer_in_training else "validation")
+        assert row.score_parts["similarity"] == pytest.approx(row.score, abs=1e-4)
+
+
+def test_a_form_of_unknown_origin_that_training_has_is_from_training(split):
+    run = trained(split, "seq2seq", config={**TINY, "epochs": 2, "patience": 2})
+    assert run.score_kind == "log_probability"
+    for row in run.predictions.all():
+        assert row.origin == ("training" if row.answer_in_training else "")
+        assert row.score_parts["tokens"] >= 0
+
+
+def test_no_answer_has_no_count(split):
+    split.examples.filter(part="validation").update(utterance="xyzzy")
+    run = trained(split, config={"least_overlap": 0.5})
+    rows = run.predictions.filter(example__part="validation")
+    for row in rows:
+        assert (row.answer_in_training, row.origin, row.score_parts) == (None, "", {})

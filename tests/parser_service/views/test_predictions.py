@@ -114,3 +114,42 @@ def test_an_example_without_an_answer_of_this_run_is_not_found(sample, anna):
     other = sample.split.examples.filter(part="train").first()
     answer = anna.get(f"/w/home/runs/{sample.run.pk}/predictions/{other.pk}/")
     assert answer.status_code == 404
+
+
+def seen(sample, **facts):
+    """Store facts about the first answer of the run and return the addresses of its list and its page."""
+    first = sample.run.predictions.best().order_by("example_id").first()
+    Prediction.objects.filter(pk=first.pk).update(**facts)
+    listed = f"/w/home/runs/{sample.run.pk}/predictions/"
+    return listed, f"{listed}{first.example_id}/"
+
+
+def test_a_form_tells_how_often_training_had_it_and_where_it_is_from(sample, anna):
+    listed, page = seen(sample, answer_in_training=1200, label_in_training=1, origin="training")
+    assert "1,200" in anna.get(listed).content.decode()
+    text = anna.get(page).content.decode()
+    assert "Seen 1,200 times in training" in text and "Seen once in training" in text
+    listed, page = seen(sample, answer_in_training=0, label_in_training=0, origin="substitution")
+    assert ">new</span>" in anna.get(listed).content.decode()
+    assert "Not seen in training; made by substitution" in anna.get(page).content.decode()
+
+
+def test_what_is_not_known_of_an_older_answer_is_not_made_up(sample, anna):
+    _, page = seen(sample)
+    text = anna.get(page).content.decode()
+    assert "in training" not in text and "What the scores are made of" not in text
+
+
+def test_the_parts_of_a_score_stand_in_a_table(sample, anna):
+    _, page = seen(sample, score_parts={"glosses": 3.25, "mystery": -0.5})
+    sample.world.runs.update(score_kind="log_probability")
+    text = anna.get(page).content.decode()
+    assert "Fits its English sentence" in text and "3.250" in text
+    assert "Mystery" in text and "-0.500" in text
+    assert "Score (log-probability)" in text
+
+
+def test_answers_are_filtered_by_whether_training_had_their_form(sample, anna):
+    seen(sample, answer_in_training=3, label_in_training=0)
+    assert totals(anna, sample, answer="seen") == totals(anna, sample, label="new") == 1
+    assert totals(anna, sample, answer="new") == totals(anna, sample, label="seen") == 0

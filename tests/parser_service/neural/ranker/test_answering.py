@@ -5,9 +5,10 @@ from math import exp, log
 
 import pytest
 
+from parser_service.neural.ranker.calibration import TERMS
 from parser_service.neural.ranker.parser import FormRanker
-from parser_service.parsers.interface import Cancelled
-from tests.parser_service.neural.ranker.sample_domain import UNSEEN, utterances
+from parser_service.parsers.interface import Cancelled, Knowledge
+from tests.parser_service.neural.ranker.sample_domain import UNSEEN, domain, utterances
 
 
 def accuracy(parser, pairs):
@@ -109,3 +110,30 @@ def test_new_forms_are_answered_where_validation_has_no_others(config, pairs):
     parser.fit(known, unseen)
     answers = parser.predict(utterances(unseen))
     assert not {ranked[0].form for ranked in answers} & {pair.form for pair in known}
+
+
+@pytest.mark.parametrize("knowledge", [Knowledge(), domain()], ids=["strict", "domain"])
+def test_the_parts_of_a_score_sum_to_it(knowledge, config, pairs):
+    parser = FormRanker(config, 1, knowledge)
+    parser.fit(pairs[:18], pairs[18:])
+    for candidates in parser.predict(utterances(pairs), 10_000):
+        for each in candidates:
+            assert sum(each.parts.values()) == pytest.approx(each.score, abs=1e-4)
+            assert set(each.parts) <= set(TERMS) and "glosses" in each.parts
+            assert ("examples" in each.parts) == (each.origin == "training")
+
+
+def test_an_answer_tells_which_step_made_its_form(learned, pairs):
+    known = {pair.form for pair in pairs} - {UNSEEN}
+    answers = learned.predict([pairs[0].utterance], 10_000)[0]
+    assert {each.form for each in answers if each.origin == "training"} == known
+    made = {each.form: each.origin for each in answers if each.form not in known}
+    assert UNSEEN in made
+    assert set(made.values()) <= {"geca", "exchange", "drop", "add", "transplant", "retype"}
+
+
+def test_a_refusal_says_so(learned):
+    hesitant = FormRanker(replace(learned.config, unknown_below=0.9999), seed=1)
+    hesitant._ranked, hesitant._decision = learned._ranked, learned._decision
+    hesitant._model = learned._model
+    assert hesitant.predict(["something else"])[0][0].origin == "refusal"

@@ -8,9 +8,10 @@ import pytest
 import torch
 from transformers import BertConfig, BertModel
 
-from parser_service.neural.ranker.parser import FormRanker
+from parser_service.neural.ranker.parser import FORMS, SAVED, FormRanker
 from parser_service.neural.sentence_encoder import SentenceEncoder
 from parser_service.parsers.interface import Knowledge
+from parser_service.parsers.storage import read_json, seal, write_json
 from tests.parser_service.neural.conftest import Recorder
 from tests.parser_service.neural.fake_device import CPU, FAKE, computing_on
 from tests.parser_service.neural.ranker.sample_domain import domain, utterances, weights
@@ -118,3 +119,14 @@ def test_a_loaded_ranker_encodes_the_utterance_and_nothing_else(learned, tmp_pat
     )
     FormRanker.load(tmp_path).predict(["bring the apple"])
     assert encoded == ["bring the apple"]
+
+
+def test_a_parser_saved_without_the_origins_of_its_forms_answers_alike(learned, pairs, tmp_path):
+    learned.save(tmp_path)
+    about = read_json(tmp_path / FORMS)
+    del about["ranked"]["origins"]
+    write_json(tmp_path / FORMS, about)
+    seal(tmp_path, learned, SAVED)
+    older = FormRanker.load(tmp_path).predict(utterances(pairs), 10_000)
+    assert older == learned.predict(utterances(pairs), 10_000)
+    assert {each.origin for each in older[0]} == {"training", ""}

@@ -235,3 +235,8 @@ def test_nothing_is_pickled(trained, pairs, tmp_path):
 def test_an_odd_hidden_size_is_refused():
     with pytest.raises(ValueError, match="hidden_size is 33, but it has to be even"):
         Seq2Seq.Config(hidden_size=33)
+
+
+def test_the_parts_of_a_score_are_its_log_probability_and_the_tokens_written(trained, pairs):
+    [[best, *_]] = trained.predict([pairs[0].utterance], 2)
+    assert best.parts == {"log_probability": best.score, "tokens": len(best.form.split())}

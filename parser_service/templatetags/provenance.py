@@ -1,0 +1,94 @@
+"""Template filters: where the form of an answer is from and what its score means, in plain words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from django import template
+
+from parser_service.models import Prediction, TrainingRun
+from parser_service.parsers.interface import TRAINING, ScoreKind
+
+register = template.Library()
+
+# How a form that is not a training pair's came about.
+ORIGINS = {
+    "validation": "taken from a validation pair",
+    "grammar": "taken from the annotated grammar",
+    "geca": "made by recombining training pairs",
+    "exchange": "made by exchanging a description",
+    "drop": "made by leaving out a description",
+    "add": "made by adding a description",
+    "transplant": "made with a description of another form",
+    "retype": "made by changing the kind of an argument",
+    "substitution": "made by substitution of a declared description",
+    "unseen": "made with a predicate that training lacks",
+    "refusal": "given because no form was probable enough",
+}
+PARTS = {
+    "similarity": "Share of common words",
+    "neighbours": "Neighbours with this form",
+    "log_probability": "Log-probability of its tokens",
+    "tokens": "Tokens written",
+    "examples": "Fits the nearest example",
+    "glosses": "Fits its English sentence",
+    "slots": "Slots and entities that do not match",
+    "support": "Ways in which it can be made",
+    "novelty": "Is a known form, or a new one",
+    "others": "How well other forms fit",
+}
+SCORE_KINDS = {
+    ScoreKind.PROBABILITY: "probability",
+    ScoreKind.LOG_PROBABILITY: "log-probability",
+    ScoreKind.SIMILARITY: "similarity",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """One part of the scores of several answers, None for an answer without it."""
+
+    name: str
+    values: tuple[float | None, ...]
+    is_count: bool
+
+
+@register.filter
+def seen_in_training(count: int | None) -> str:
+    """Say how often training had a form; nothing where that is not known."""
+    if count is None:
+        return ""
+    if count == 0:
+        return "not seen in training"
+    return "seen once in training" if count == 1 else f"seen {count:,} times in training"
+
+
+@register.filter
+def origin_in_words(prediction: Prediction) -> str:
+    """Say where the form of an answer is from; nothing for one of a training pair or of unknown origin."""
+    if prediction.origin in ("", TRAINING):
+        return ""
+    return ORIGINS.get(prediction.origin, f"made by {prediction.origin}")
+
+
+@register.filter
+def score_kind_in_words(run: TrainingRun) -> str:
+    """Say what the scores of a run are: ``log-probability``; ``only an order`` where they mean no more."""
+    kind = run.score_kind
+    return SCORE_KINDS[ScoreKind(kind)] if kind else "only an order"
+
+
+@register.filter
+def parts_of_scores(predictions: Sequence[Prediction]) -> list[Part]:
+    """Return the parts that the scores of ``predictions`` have, in the order of the parser."""
+    names = dict.fromkeys(name for each in predictions for name in each.score_parts)
+    ordered = [name for name in PARTS if name in names]
+    ordered += [name for name in names if name not in PARTS]
+    return [_part(name, [each.score_parts.get(name) for each in predictions]) for name in ordered]
+
+
+def _part(name: str, values: Sequence[float | None]) -> Part:
+    is_count = all(isinstance(value, int) for value in values if value is not None)
+    title = PARTS.get(name, name.replace("_", " ").capitalize())
+    return Part(title, tuple(values), is_count)
