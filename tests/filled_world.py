@@ -19,7 +19,8 @@ from annotations.models import (
     World,
 )
 from annotations.models.background import Status
-from annotations.queueing import answer, refill, set_share
+from annotations.queueing import answer, set_share
+from annotations.queueing.sources import refill
 from tests.annotations.auditing.conftest import found
 
 SAID = ["bring me the tea", "go to the kitchen now", "where is my milk"]

@@ -9,12 +9,11 @@ from annotations.auditing.correcting import correct_label
 from annotations.auditing.deciding import DecidedMeanwhile, decide, take_back
 from annotations.auditing.items import end_item
 from annotations.auditing.pairs import examples_before
-from annotations.auditing.storing import FoundPair, StoredAudit, store_findings
+from annotations.auditing.storing import FoundPair, store_findings
 
 __all__ = [
     "DecidedMeanwhile",
     "FoundPair",
-    "StoredAudit",
     "correct_label",
     "decide",
     "end_item",

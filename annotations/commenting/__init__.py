@@ -7,12 +7,11 @@ from annotations.commenting.changing import (
     restore_comment,
 )
 from annotations.commenting.comments import add_comment, comments_on, mark_read, people_of
-from annotations.commenting.subjects import SUBJECTS, Subject
+from annotations.commenting.subjects import SUBJECTS
 
 __all__ = [
     "SUBJECTS",
     "EditedElsewhere",
-    "Subject",
     "add_comment",
     "change_comment",
     "comments_on",

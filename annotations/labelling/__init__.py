@@ -6,14 +6,13 @@ name an entity; ``restore_utterance`` makes it again what it was.
 """
 
 from annotations.labelling.answers import AnsweredMeanwhile, accept, label, take_back
-from annotations.labelling.collecting import Collected, collect
+from annotations.labelling.collecting import collect
 from annotations.labelling.form_check import canonical_label, check_label
 from annotations.labelling.restoring import restore_utterance
 from annotations.labelling.spans import mend_span
 
 __all__ = [
     "AnsweredMeanwhile",
-    "Collected",
     "accept",
     "canonical_label",
     "check_label",

@@ -10,7 +10,7 @@ compares them. ``answer`` labels an utterance and ends the part in one transacti
 
 from annotations.queueing.answering import answer, part_in, take_answer_back
 from annotations.queueing.enqueuing import WantedItem, enqueue
-from annotations.queueing.finishing import Decision, finish, give_back, skip, take_back
+from annotations.queueing.finishing import finish, give_back, skip
 from annotations.queueing.giving import (
     NoLongerYours,
     NotForThem,
@@ -24,11 +24,9 @@ from annotations.queueing.giving import (
 from annotations.queueing.sending import Sent, send_examples
 from annotations.queueing.settling import settle, unsettle
 from annotations.queueing.shares import DOUBLE_KINDS, set_share, shares_of
-from annotations.queueing.sources import refill
 
 __all__ = [
     "DOUBLE_KINDS",
-    "Decision",
     "NoLongerYours",
     "NotForThem",
     "Sent",
@@ -42,7 +40,6 @@ __all__ = [
     "held_item",
     "next_item",
     "part_in",
-    "refill",
     "send_examples",
     "set_share",
     "settle",
@@ -50,7 +47,6 @@ __all__ = [
     "skip",
     "take",
     "take_answer_back",
-    "take_back",
     "unsettle",
     "withdraw",
 ]

@@ -4,6 +4,6 @@ The grammar and the neighbours answer in the web process, which never loads torc
 parser answers was computed by a worker (``proposing``) and stands in ``Proposal`` rows.
 """
 
-from parser_service.candidates.composing import MOST_CANDIDATES, candidates_for
+from parser_service.candidates.composing import candidates_for
 
-__all__ = ["MOST_CANDIDATES", "candidates_for"]
+__all__ = ["candidates_for"]

@@ -2,22 +2,10 @@
 
 from __future__ import annotations
 
-from annotations.language.agreement.estimates import (
-    Agreement,
-    Distances,
-    alpha,
-    exact_match,
-    gwet_ac1,
-    measure,
-)
-from annotations.language.agreement.ratings import read_ratings
+from annotations.language.agreement.estimates import Agreement, Distances, measure
 
 __all__ = [
     "Agreement",
     "Distances",
-    "alpha",
-    "exact_match",
-    "gwet_ac1",
     "measure",
-    "read_ratings",
 ]

@@ -8,14 +8,13 @@ from annotations.language.auditing.checks import (
     check_commands,
     check_words,
 )
-from annotations.language.auditing.findings import Finding, LabelledPair, Reason, Suspect, rank
+from annotations.language.auditing.findings import LabelledPair, Reason, Suspect, rank
 from annotations.language.auditing.folds import LEAST_FOLDS, MOST_FOLDS, assign_folds, source_key
 
 __all__ = [
     "LEAST_FOLDS",
     "MOST_FOLDS",
     "Answer",
-    "Finding",
     "LabelledPair",
     "Reason",
     "Suspect",

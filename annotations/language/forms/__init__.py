@@ -26,7 +26,7 @@ from annotations.language.forms.terms import (
     walk,
 )
 from annotations.language.forms.tree_distance import FormDistances
-from annotations.language.forms.unordered_difference import diff_unordered, order_like
+from annotations.language.forms.unordered_difference import diff_unordered
 
 __all__ = [
     "CLASS_TOKEN",
@@ -53,7 +53,6 @@ __all__ = [
     "free_variables",
     "head_of",
     "head_predicate",
-    "order_like",
     "order_of",
     "predicates",
     "read_form",

@@ -6,7 +6,8 @@ import pytest
 
 from annotations.labelling import collect
 from annotations.models import ApiToken, WorkKind
-from annotations.queueing import WantedItem, enqueue, refill
+from annotations.queueing import WantedItem, enqueue
+from annotations.queueing.sources import refill
 
 ALL = "/api/v1/worlds/home/work-items/"
 

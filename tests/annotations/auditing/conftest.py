@@ -6,7 +6,8 @@ import pytest
 
 from annotations.auditing import FoundPair, store_findings
 from annotations.labelling import collect, label
-from annotations.language.auditing import Finding, LabelledPair, Reason, Suspect
+from annotations.language.auditing import LabelledPair, Reason, Suspect
+from annotations.language.auditing.findings import Finding
 from annotations.models import AuditFinding, Paraphrase, Utterance, Verdict
 from annotations.models.worlds import Role
 from tests.conftest import member

@@ -5,7 +5,8 @@ import pytest
 from annotations.labelling import collect
 from annotations.models import Assignment, Utterance, Verdict
 from annotations.models.worlds import Role
-from annotations.queueing import answer, refill
+from annotations.queueing import answer
+from annotations.queueing.sources import refill
 from tests.conftest import member
 
 BRING = '( bring ( lambda $1 e ( is_a $1 " <object> " ) ) )'

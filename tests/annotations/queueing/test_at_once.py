@@ -11,7 +11,8 @@ from django.db import connections
 from annotations.models import Assignment, Utterance, Verdict, WorkKind, World
 from annotations.models.work_items import Outcome
 from annotations.models.worlds import Role
-from annotations.queueing import answer, next_item, refill, set_share
+from annotations.queueing import answer, next_item, set_share
+from annotations.queueing.sources import refill
 from tests.conftest import member
 
 pytestmark = pytest.mark.django_db(transaction=True)

@@ -23,13 +23,13 @@ from annotations.queueing import (
     finish,
     give_back,
     next_item,
-    refill,
     set_share,
     skip,
     take,
     take_answer_back,
     withdraw,
 )
+from annotations.queueing.sources import refill
 from tests.annotations.queueing.conftest import kinds, say
 
 

@@ -6,7 +6,8 @@ import pytest
 
 from annotations.background.progress import Unwatched
 from annotations.language.auditing import LabelledPair
-from parser_service.audit import AUDITORS, answer_out_of_fold
+from parser_service.audit import AUDITORS
+from parser_service.audit.out_of_fold import answer_out_of_fold
 from parser_service.parsers.interface import Cancelled, Pair
 
 FIND, GO = '( find " <object> " )', '( go " <room> " )'

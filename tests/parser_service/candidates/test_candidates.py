@@ -11,7 +11,8 @@ from annotations.labelling.proposals import request_proposals
 from annotations.language.forms import canonical_text, read_form
 from annotations.models import Job, Proposal, Verdict
 from annotations.splits.freezing import plan_split
-from parser_service.candidates import MOST_CANDIDATES, candidates_for
+from parser_service.candidates import candidates_for
+from parser_service.candidates.composing import MOST_CANDIDATES
 from parser_service.candidates.doubting import enqueue_doubts
 from parser_service.runs import lifecycle
 from parser_service.runs.training import train

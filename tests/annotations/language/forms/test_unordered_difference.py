@@ -16,9 +16,9 @@ from annotations.language.forms import (
     children,
     diff_unordered,
     equivalent,
-    order_like,
     read_form,
 )
+from annotations.language.forms.unordered_difference import order_like
 from tests.annotations.language.random_forms import forms, renamed
 
 

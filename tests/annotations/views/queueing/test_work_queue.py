@@ -8,7 +8,8 @@ from django.urls import reverse
 from annotations.labelling import collect
 from annotations.models import Utterance, Verdict, WorkItem, WorkKind
 from annotations.models.worlds import Role
-from annotations.queueing import WantedItem, answer, enqueue, next_item, refill, set_share
+from annotations.queueing import WantedItem, answer, enqueue, next_item, set_share
+from annotations.queueing.sources import refill
 from tests.conftest import member
 from tests.sample_world import paraphrase_in
 
