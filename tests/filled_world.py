@@ -21,7 +21,7 @@ from annotations.models import (
 from annotations.models.background import Status
 from annotations.queueing import answer, set_share
 from annotations.queueing.sources import refill
-from tests.annotations.auditing.conftest import found
+from tests.doubted_labels import doubt
 
 SAID = ["bring me the tea", "go to the kitchen now", "where is my milk"]
 
@@ -52,7 +52,7 @@ def leave_traces(world: World, annotator: User, admin: User) -> None:
     paraphrase, _ = Paraphrase.objects.get_or_create(
         world=world, position=0, defaults={**texts, **forms, **distances}
     )
-    store_findings(world, [found(paraphrase, '( go " <room> " )')])
+    store_findings(world, [doubt(paraphrase, '( go " <room> " )')])
     Job.objects.create(
         world=world,
         world_name=world.name,

@@ -8,7 +8,6 @@ from playwright.sync_api import Page, expect
 from annotations.auditing import store_findings
 from annotations.labelling import collect
 from annotations.models import SemanticTemplate
-from tests.annotations.auditing.conftest import found, say
 from tests.browser.faults import (
     COLOUR_AND_SIZE,
     OF_STRUCTURE,
@@ -21,6 +20,7 @@ from tests.browser.faults import (
 )
 from tests.browser.variants import NARROW_DARK, WIDE_LIGHT
 from tests.browser.writing import open_editor, write
+from tests.doubted_labels import doubt, say
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
@@ -108,7 +108,7 @@ def faults_in_place(page: Page) -> Faults:
 
 def test_what_opens_on_a_page_can_be_used_by_everybody(axe, sample, admin, page_of, live_server):
     collect(sample.world, ["bring me the tea"])
-    store_findings(sample.world, [found(say(sample.world, "how many girls"))])
+    store_findings(sample.world, [doubt(say(sample.world, "how many girls"))])
     page = page_of(admin, variant=WIDE_LIGHT)
     page.add_init_script(axe)
     reports = {}

@@ -7,7 +7,7 @@ from playwright.sync_api import Page, expect
 
 from annotations.auditing import store_findings
 from annotations.models import AuditFinding
-from tests.annotations.auditing.conftest import FEMALE, GO, MALE, found, say
+from tests.doubted_labels import FEMALE, GO, MALE, doubt, say
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
@@ -16,7 +16,7 @@ SAID = [f"how many girls are in room {number}" for number in range(5)]
 
 @pytest.fixture
 def audit_page(page_of, live_server, sample, annotator) -> Page:
-    store_findings(sample.world, [found(say(sample.world, text)) for text in SAID])
+    store_findings(sample.world, [doubt(say(sample.world, text)) for text in SAID])
     page = page_of(annotator)
     page.goto(f"{live_server.url}/w/home/audit/")
     expect(row_of(page, SAID[0])).to_be_focused()

@@ -14,6 +14,7 @@ from annotations.checking import (
     check_production,
     consequences_of_production,
 )
+from annotations.consequence_presentation import groups_of
 from annotations.editing.edits import Overtaken, add
 from annotations.forms import posted
 from annotations.models import Duty, Editable, Production, World
@@ -24,7 +25,6 @@ from annotations.views.description.entities import tell_saved
 from annotations.views.description.production_forms import ProductionForm, sources_of
 from annotations.views.editing.history import number_in
 from annotations.views.editing.merging import merge_page, save_edit
-from annotations.views.templates.template_consequences import groups_of
 from annotations.views.templates.templates import has_grammar
 
 

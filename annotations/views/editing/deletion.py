@@ -8,11 +8,11 @@ from django.shortcuts import redirect, render
 from django.urls import reverse
 
 from annotations.checking import check_deletion
+from annotations.consequence_presentation import groups_of
 from annotations.editing.edits import Overtaken, delete
 from annotations.models import Duty, World
 from annotations.people.access import READ_AND_WRITE, world_view
 from annotations.views.editing.history import kind_named, number_in
-from annotations.views.templates.template_consequences import groups_of
 
 
 @world_view(Duty.ANNOTATE, READ_AND_WRITE)

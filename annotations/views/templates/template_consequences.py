@@ -3,30 +3,18 @@
 from __future__ import annotations
 
 import copy
-from dataclasses import dataclass
 from typing import Any
 
 from django.http import Http404, HttpRequest, HttpResponse
 from django.shortcuts import get_object_or_404, render
 
+from annotations.consequence_presentation import groups_of
 from annotations.forms import TemplateForm
 from annotations.generation.consequences import TemplateChange, WorldConsequences, consequences
-from annotations.language.english import say_count
 from annotations.models import Duty, SemanticTemplate, TaskCategory, World
 from annotations.people.access import WRITE, world_view
 
-MOST_SHOWN = 8
 MOST_DIGITS = 18  # of a key
-
-
-@dataclass(frozen=True)
-class Group:
-    """Some of what is different in one way: a sentence, the first rows, and how many more there are."""
-
-    kind: str
-    sentence: str
-    rows: tuple[Any, ...]
-    left_out: int
 
 
 @world_view(Duty.ANNOTATE, WRITE)
@@ -35,7 +23,7 @@ def template_consequences(request: HttpRequest, world: World) -> HttpResponse:
     row = _find_row(world, request.GET.get("template", ""))
     expected = _consequences(world, TemplateForm(world, request.POST), row)
     context = {"expected": expected, "groups": groups_of(expected) if expected else []}
-    return render(request, "annotations/_template_consequences.html", context)
+    return render(request, "annotations/_change_consequences.html", context)
 
 
 def _find_row(world: World, key: str) -> SemanticTemplate | None:
@@ -72,44 +60,3 @@ def change_to(
     for name, value in values.items():
         setattr(after, name, value)
     return TemplateChange(row, after)
-
-
-def groups_of(expected: WorldConsequences) -> list[Group]:
-    """Return what is different by kind, with the first of each."""
-    changes, name = expected.changes, expected.templates.get
-    kinds = (
-        ("covered", "newly covered", changes.covered_in_grammar),
-        ("outside", "that the grammar does not make", changes.covered_outside),
-        ("changed", "with another form", changes.changed),
-        ("lost", "without a form from then on", changes.lost),
-        ("conflicts", "in conflict: the later template wins", changes.conflicts),
-        ("resolved", "no longer in conflict", changes.conflicts_gone),
-        (
-            "duplicates",
-            "that say the same as an earlier one",
-            [(name(each.template), name(each.earlier)) for each in changes.duplicates],
-        ),
-        (
-            "shadowed",
-            "whose commands are all taken by another",
-            [(name(each.template), name(each.by)) for each in changes.shadowed],
-        ),
-        ("left_out", "left out", changes.left_out),
-        ("splits", "whose pairs no longer agree with the world", expected.splits.splits),
-    )
-    nouns = {
-        "duplicates": "template",
-        "shadowed": "template",
-        "left_out": "template",
-        "splits": "split",
-    }
-    return [
-        Group(
-            kind,
-            f"{say_count(len(rows), nouns.get(kind, 'command'))} {rest}",
-            tuple(rows[:MOST_SHOWN]),
-            max(0, len(rows) - MOST_SHOWN),
-        )
-        for kind, rest, rows in kinds
-        if rows
-    ]

@@ -8,7 +8,7 @@ from annotations.auditing import decide, store_findings
 from annotations.language.auditing import Reason
 from annotations.models import ApiToken, FindingStatus
 from annotations.queueing import next_item
-from tests.annotations.auditing.conftest import FEMALE, MALE, found, say
+from tests.doubted_labels import FEMALE, MALE, doubt, say
 
 ALL = "/api/v1/worlds/home/audit-findings/"
 
@@ -16,7 +16,7 @@ ALL = "/api/v1/worlds/home/audit-findings/"
 @pytest.fixture
 def rows(tiny_world):
     rows = [say(tiny_world, f"how many girls {number}") for number in range(2)]
-    store_findings(tiny_world, [found(rows[1]), found(rows[0], FEMALE, Reason.WORD)], to_queue=2)
+    store_findings(tiny_world, [doubt(rows[1]), doubt(rows[0], FEMALE, Reason.WORD)], to_queue=2)
     return rows
 
 

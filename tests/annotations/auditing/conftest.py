@@ -4,42 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.auditing import FoundPair, store_findings
+from annotations.auditing import store_findings
 from annotations.labelling import collect, label
-from annotations.language.auditing import LabelledPair, Reason, Suspect
-from annotations.language.auditing.findings import Finding
 from annotations.models import AuditFinding, Paraphrase, Utterance, Verdict
 from annotations.models.worlds import Role
 from tests.conftest import member
-from tests.sample_world import make_paraphrase
-
-MALE = '( say ( count ( lambda $1 e ( person $1 ) ( male $1 ) ( at $1 " <room> " ) ) ) )'
-FEMALE = MALE.replace("male", "female")
-GO = '( go " <room> " )'
-
-
-def say(world, utterance: str, form: str = MALE, **columns) -> Paraphrase:
-    """Store a paraphrase that names the kitchen."""
-    return make_paraphrase(
-        world,
-        prompt="tell me how many people in the kitchen are girls",
-        utterance=utterance,
-        logical_form=form,
-        grounded_form=form.replace("<room>", "kitchen"),
-        **columns,
-    )
-
-
-def found(row: Paraphrase | Utterance, suggested: str = FEMALE, *reasons: Reason) -> FoundPair:
-    """What an audit says against the label of ``row``."""
-    name = "utterance" if isinstance(row, Utterance) else "paraphrase"
-    text = row.anonymized_text if name == "utterance" else row.utterance
-    pair = LabelledPair(f"{name}-{row.pk}", text, row.logical_form, "how many girls", suggested)
-    findings = [
-        Finding(pair, reason, f"The {reason} says so.", suggested, 1.0)
-        for reason in reasons or (Reason.COMMAND,)
-    ]
-    return FoundPair((name, row.pk), Suspect(pair, tuple(findings)))
+from tests.doubted_labels import MALE, doubt, say
 
 
 def finding_of(row: Paraphrase | Utterance) -> AuditFinding:
@@ -65,7 +35,7 @@ def women(world, annotator) -> Utterance:
 @pytest.fixture
 def findings(world, girls, women):
     """The findings of an audit that doubts both labels, the utterance's less; both are in the queue."""
-    store_findings(world, [found(girls), found(women)], to_queue=2)
+    store_findings(world, [doubt(girls), doubt(women)], to_queue=2)
     return world.audit_findings
 
 

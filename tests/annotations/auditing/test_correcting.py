@@ -10,7 +10,7 @@ from annotations.language.errors import LanguageError
 from annotations.models import WorkItem, WorkKind
 from annotations.queueing import NotForThem, WantedItem, enqueue
 from annotations.rows.history import entry_at
-from tests.annotations.auditing.conftest import found
+from tests.doubted_labels import doubt
 from tests.sample_world import make_paraphrase
 
 BEFORE, AFTER = '( go " <room> " )', '( find " <room> " )'
@@ -35,7 +35,7 @@ def test_what_the_queue_asks_about_it_is_done(row, annotator):
 
 
 def test_a_finding_of_an_audit_is_decided_by_it(row, reviewer):
-    store_findings(row.world, [found(row, "UNKNOWN")])
+    store_findings(row.world, [doubt(row, "UNKNOWN")])
     correct_label(row, AFTER, reviewer, row.version)
     finding = row.audit_findings.get()
     assert (finding.status, finding.decided_form) == ("corrected", AFTER)

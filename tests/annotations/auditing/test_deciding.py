@@ -11,7 +11,8 @@ from annotations.models import AuditDecision, FindingStatus, Label, Paraphrase, 
 from annotations.queueing import NotForThem, answer, next_item
 from annotations.rows.history import history_of
 from annotations.splits.freezing import freeze_split
-from tests.annotations.auditing.conftest import FEMALE, GO, MALE, finding_of, say
+from tests.annotations.auditing.conftest import finding_of
+from tests.doubted_labels import FEMALE, GO, MALE, say
 
 KEEP, CORRECT, EXCLUDE = FindingStatus.KEPT, FindingStatus.CORRECTED, FindingStatus.EXCLUDED
 EVERY = (KEEP, CORRECT, EXCLUDE)

@@ -22,7 +22,7 @@ from annotations.models import (
 from annotations.models.templates import Status
 from annotations.renaming import rename, touched_by
 from annotations.rows.history import history_of
-from tests.annotations.auditing.conftest import found
+from tests.doubted_labels import doubt
 from tests.sample_world import make_paraphrase
 
 GROUNDED = '( find ( lambda $1 e ( is_a $1 " tea " ) ) )'
@@ -79,7 +79,7 @@ def test_a_predicate_changes_in_templates_forms_and_paraphrases(home, admin):
 
 def test_a_predicate_changes_in_what_an_audit_found_too(home, admin):
     row = home.paraphrases.get()
-    store_findings(home, [found(row, CLASSES.replace("find", "bring"))])
+    store_findings(home, [doubt(row, CLASSES.replace("find", "bring"))])
     rename(Predicate.objects.get(name="find"), "find", "locate", admin, 1)
     finding = home.audit_findings.open().get()
     assert finding.form == CLASSES.replace("find", "locate")

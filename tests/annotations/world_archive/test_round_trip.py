@@ -34,7 +34,6 @@ from annotations.world_archive import import_world
 from annotations.world_archive.tables import TABLES
 from annotations.worlds.starter_world import STARTER_WORLD, load_starter_world
 from annotations.worlds.world_deletion import delete_world
-from tests.annotations.auditing.conftest import found, say
 from tests.annotations.conftest import TINY, as_bytes
 from tests.annotations.world_archive.packing import (
     everything_of,
@@ -42,6 +41,7 @@ from tests.annotations.world_archive.packing import (
     pack,
     pack_members,
 )
+from tests.doubted_labels import doubt, say
 
 
 def same_again(world: World) -> World:
@@ -109,7 +109,7 @@ def test_the_queue_keeps_who_answers_what_and_what_follows(tiny_world, annotator
 
 def test_findings_of_an_audit_keep_their_reasons_and_decisions(tiny_world, annotator):
     rows = [say(tiny_world, "how many girls"), say(tiny_world, "count the girls")]
-    store_findings(tiny_world, [found(row) for row in rows])
+    store_findings(tiny_world, [doubt(row) for row in rows])
     decide(rows[0].audit_findings.get(), FindingStatus.CORRECTED, annotator, reason="girls")
     again = same_again(tiny_world)
     finding = again.audit_findings.decided().get()

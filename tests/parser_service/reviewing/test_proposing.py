@@ -12,7 +12,7 @@ from parser_service.models import Prediction, Review
 from parser_service.reviewing import proposing
 from parser_service.reviewing.categories import ensure_categories
 from parser_service.reviewing.proposing import propose_for_run
-from tests.annotations.auditing.conftest import found
+from tests.doubted_labels import doubt
 from tests.sample_world import answer, make_paraphrase, scored_run
 
 GO = '( go " <room> " )'
@@ -121,7 +121,7 @@ def test_another_label_of_the_same_text_makes_it_ambiguous(run, say):
 
 def test_what_the_label_audit_suggests_is_a_wrong_gold_label(run, say):
     doubted = make_paraphrase(run.world, "go", "fetch it", logical_form=FIND, grounded_form=FIND)
-    store_findings(run.world, [found(doubted, BRING)])
+    store_findings(run.world, [doubt(doubted, BRING)])
     say("fetch it", FIND, BRING)
     code, reason = proposed(run)["fetch it"]
     assert code == "wrong_gold_label" and "The label audit doubts the label" in reason

@@ -12,7 +12,7 @@ from annotations.models import AuditFinding, FindingStatus, Job, JobKind, Paraph
 from annotations.queueing import next_item
 from annotations.splits.freezing import freeze_split
 from parser_service.audit.precision import precision_of
-from tests.annotations.auditing.conftest import FEMALE, GO, MALE, found, say
+from tests.doubted_labels import FEMALE, GO, MALE, doubt, say
 
 PAGE = "/w/home/audit/"
 HTMX = {"HX-Request": "true"}
@@ -24,7 +24,7 @@ def rows(world) -> list[Paraphrase]:
     """Three paraphrases whose labels are in doubt, the last because of a word; all are in the queue."""
     rows = [say(world, f"how many girls {number}") for number in range(3)]
     reasons = (Reason.COMMAND, Reason.COMMAND, Reason.WORD)
-    suspects = [found(row, FEMALE, reason) for row, reason in zip(rows, reasons, strict=True)]
+    suspects = [doubt(row, FEMALE, reason) for row, reason in zip(rows, reasons, strict=True)]
     store_findings(world, suspects, to_queue=3)
     return rows
 
