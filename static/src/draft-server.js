@@ -87,12 +87,12 @@ export class DraftServer {
       this.waiting ??= sent; // it was sent before the person was back
       return;
     }
-    this.isLoggedOut = isLogin(answer);
-    if (this.isLoggedOut) {
+    if (isLogin(answer)) {
       this.waiting ??= sent;
       this.isFailing = true;
       return this.showLoggedOut();
     }
+    this.isLoggedOut = false;
     if (answer.status >= 500) return this.fail(sent);
     const { saved_at, error } = await answer.json();
     this.retry = FIRST_RETRY;
@@ -100,7 +100,9 @@ export class DraftServer {
     else this.show(error ?? "");
   }
 
+  /** Said once: a button that is replaced while somebody presses it does nothing. */
   showLoggedOut() {
+    if (this.isLoggedOut) return;
     this.isLoggedOut = true;
     this.show("Your session has ended. The draft is kept in this browser.", {
       "Log in again": () => askToLogIn(() => this.continue()),
@@ -115,6 +117,7 @@ export class DraftServer {
 
   fail(sent) {
     this.isFailing = true;
+    this.isLoggedOut = false;
     this.waiting ??= sent;
     this.show("No connection. The draft is kept in this browser; trying again …");
     this.after(this.retry);
