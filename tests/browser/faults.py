@@ -12,10 +12,10 @@ AXE = Path(__file__).resolve().parents[2] / "node_modules" / "axe-core" / "axe.m
 # so that also what waits for the sizes of things is done.
 SETTLED = """async () => {
   const frame = () => new Promise(requestAnimationFrame);
-  const enhanced = "[data-chart], [data-tree], [data-editor], [data-label-page]";
+  const enhanced = "[data-chart], [data-tree], [data-editor], [data-label-page], [data-audit-page]";
   const isBusy = () =>
     [...document.querySelectorAll(enhanced)].some((element) => !("ready" in element.dataset)) ||
-    document.querySelector(".htmx-request") ||
+    document.querySelector(".htmx-request, .htmx-added") ||
     [...document.querySelectorAll("[aria-busy=true]")].some((each) => each.checkVisibility());
   do await frame(); while (isBusy());
   await frame();

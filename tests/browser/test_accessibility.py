@@ -36,6 +36,7 @@ def open_log_in(page: Page, url: str) -> None:
     page.context.clear_cookies(name="sessionid")
     write(page, "go home", "(go {room})")
     page.get_by_role("button", name="Log in again").click()
+    expect(page.locator("#log-in-again")).to_be_visible()
 
 
 def open_menus(page: Page, url: str) -> None:

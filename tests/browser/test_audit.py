@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from playwright.sync_api import Page, expect
 
 from annotations.auditing import store_findings
 from annotations.models import AuditFinding
+from tests.browser.arriving import wait_for_swap
 from tests.doubted_labels import FEMALE, GO, MALE, doubt, say
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
@@ -31,7 +34,7 @@ def expect_finding(page: Page, text: str) -> None:
     """The label is shown, and its row has the focus."""
     expect(page.locator(".audit-text")).to_have_text(text)
     expect(row_of(page, text)).to_be_focused()
-    expect(page.locator("#list .htmx-request")).to_have_count(0)
+    wait_for_swap(page)
 
 
 def status_of(text: str) -> str:
@@ -42,7 +45,8 @@ def test_labels_are_decided_without_a_mouse(audit_page):
     page, keys = audit_page, audit_page.keyboard
     keys.press("j")
     expect_finding(page, SAID[1])
-    assert f"finding={AuditFinding.objects.get(text=SAID[1]).pk}" in page.url
+    finding = AuditFinding.objects.get(text=SAID[1])
+    expect(page).to_have_url(re.compile(f"finding={finding.pk}$"))
     keys.press("c")
     expect_finding(page, SAID[2])
     assert AuditFinding.objects.get(text=SAID[1]).paraphrase.logical_form == FEMALE

@@ -6,6 +6,7 @@ import pytest
 from playwright.sync_api import expect
 
 from annotations.models import Entity, Predicate, Production, SemanticTemplate
+from tests.browser.arriving import arrive_at
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
@@ -17,6 +18,7 @@ def test_a_predicate_is_renamed_after_a_look_at_what_changes(
     row = Predicate.objects.get(name="find")
     page.goto(f"{live_server.url}/w/home/predicates/{row.pk}/")
     page.get_by_role("button", name="Rename").press("Enter")
+    arrive_at(page, page.get_by_label("New name"))
     page.get_by_label("New name").focus()
     page.keyboard.press("ControlOrMeta+a")
     page.keyboard.type("go")
@@ -36,6 +38,7 @@ def test_entities_are_pasted_and_a_production_says_what_saving_does(
     page = page_of(annotator)
     page.goto(f"{live_server.url}/w/home/ontology/")
     page.get_by_role("button", name="Paste many").press("Enter")
+    arrive_at(page, page.get_by_label("Entities"))
     page.get_by_label("Entities").focus()
     page.keyboard.insert_text("red mug | mug, cup\ntea\nlamp")
     page.get_by_role("button", name="Preview").press("Enter")

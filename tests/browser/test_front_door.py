@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from playwright.sync_api import Page, expect
 
 from annotations.models import TaskCategory
 from parser_service.models import Evaluation, TrainingRun
+from tests.browser.arriving import wait_for_swap
+from tests.browser.faults import SETTLED
 from tests.browser.screenshots import log_in
 from tests.browser.variants import NARROW_DARK
 from tests.parser_service.made_up import make_split
@@ -38,7 +42,9 @@ def test_choices_survive_a_change_of_parser(page_of, live_server, sample, admin)
     expect(page.locator("#id_train_sources")).to_have_value("gen+para")
     expect(page.locator("#id_seed")).to_have_value("42")
     expect(page.locator("#id_seeds")).to_have_value("2")
-    assert "csrf" not in page.url and "parser=knn" in page.url
+    expect(page).to_have_url(re.compile("parser=knn"))
+    assert "csrf" not in page.url
+    wait_for_swap(page)
     page.click("button:has-text('Start the run')")
     expect(page.locator("h1")).to_have_text("Runs")
     asked = TrainingRun.objects.filter(split=second).values_list("parser", "train_sources", "seed")
@@ -52,7 +58,7 @@ def test_parsers_are_chosen_by_keyboard(page_of, live_server, sample, admin):
     page.keyboard.press("ArrowDown")
     expect(page.locator("#chosen-title")).to_have_text("Nearest neighbour")
     expect(page.locator("#parser-knn")).to_be_focused()
-    expect(page.locator(".htmx-added")).to_have_count(0)  # until then no key is heard
+    wait_for_swap(page)
     page.keyboard.press("ArrowDown")
     expect(page.locator("#chosen-title")).to_have_text("Sequence to sequence")
 
@@ -104,6 +110,7 @@ def test_the_banner_covers_nothing_that_has_the_focus(page_of, live_server, samp
     for path in ("templates/new/", "queue/settings/"):
         page.goto(f"{live_server.url}/w/home/{path}")
         expect(page.locator("#banner")).to_contain_text("No worker is running.")
+        page.evaluate(SETTLED)
         assert page.evaluate(COVERED) == [], path
 
 

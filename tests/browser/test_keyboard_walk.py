@@ -12,6 +12,7 @@ from annotations.editing.edits import delete
 from annotations.labelling import collect
 from annotations.models import Entity, Label, SemanticTemplate, Utterance
 from annotations.models.worlds import World
+from tests.browser.arriving import arrive
 from tests.waiting import wait_for
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
@@ -30,12 +31,6 @@ def tab_to(page: Page, target: Locator, key: str = "Tab") -> None:
         if target.evaluate("target => target.contains(document.activeElement)"):
             return
     pytest.fail(f"{MOST_TABS} times {key} do not reach {target}")
-
-
-def arrive(page: Page, title: str) -> None:
-    """Wait for the page called ``title`` and for its scripts, which obey the keys."""
-    expect(page.locator("h1")).to_have_text(title)
-    page.wait_for_load_state("domcontentloaded")
 
 
 def skip_to_content(page: Page) -> None:

@@ -7,6 +7,7 @@ import re
 import pytest
 from playwright.sync_api import Page, expect
 
+from tests.browser.arriving import arrive, wait_for_swap
 from tests.browser.screenshots import log_in
 from tests.parser_service.made_up import TINY
 from tests.waiting import PATIENCE_SECONDS
@@ -18,9 +19,12 @@ def start_run(page: Page, url: str) -> None:
     """From the overview to a run of a tiny network."""
     page.goto(f"{url}/w/home/")
     page.click("nav.rail >> text=Runs")
+    arrive(page, "Runs")
     page.click("text=Start a run")
+    arrive(page, "Start a run")
     page.check("#parser-seq2seq")
     expect(page.locator("#chosen-title")).to_have_text("Sequence to sequence")
+    wait_for_swap(page)
     page.select_option("#id_train_sources", "gen")
     page.click("text=Advanced")
     for name, value in {**TINY, "epochs": 12, "patience": 12}.items():

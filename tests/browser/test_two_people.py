@@ -9,6 +9,7 @@ from playwright.sync_api import expect
 
 from annotations.models import SemanticTemplate
 from annotations.rows.kinds import KINDS, as_text
+from tests.browser.arriving import arrive
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
@@ -27,6 +28,7 @@ def test_two_browsers_on_one_template(logged_in, sample, live_server, annotator,
     annas.get_by_role("combobox", name="Status").select_option("draft")
     annas.get_by_role("button", name="Save").click()
     expect(annas.get_by_role("alert").first).to_contain_text("adam has saved version 2")
+    arrive(annas, "Merge two changes")
     pattern = annas.get_by_role("textbox", name="Pattern")
     expect(pattern).to_have_text("$vbfind my $object")
     expect(annas.get_by_role("combobox", name="Status")).to_have_value("draft")

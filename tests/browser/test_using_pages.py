@@ -8,6 +8,7 @@ import pytest
 from playwright.sync_api import expect
 
 from tests.annotations.views.test_lists import many_commands
+from tests.browser.arriving import arrive_at, wait_for_swap
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
@@ -47,6 +48,7 @@ def test_lists_are_turned_by_keys(page_of, live_server, annotator, sample):
     expect(first).to_have_text("1")
     page.keyboard.press("n")
     expect(first).to_have_text("51")
+    wait_for_swap(page)
     page.keyboard.press("p")
     expect(first).to_have_text("1")
 
@@ -55,6 +57,7 @@ def test_the_keys_dialog_promises_what_works(page_of, live_server, annotator):
     page = page_of(annotator)
     page.goto(f"{live_server.url}/w/home/commands/")
     page.keyboard.press("?")
+    expect(page.locator("#keys")).to_be_visible()
     keys = set(page.locator("#keys kbd").all_inner_texts())
     of_lists, of_editors = (
         {"/", "j", "k", "n", "p", "c", "Enter", "?"},
@@ -77,6 +80,7 @@ def test_a_list_follows_what_one_types_and_so_does_the_address(page_of, live_ser
     page.fill("main input[type=search]", "locate")
     expect(page.locator("#list tbody tr")).to_have_count(1)
     expect(page).to_have_url(re.compile("q=locate"))
+    wait_for_swap(page)
     page.locator(".filter-chip").click()
     expect(page.locator("#list tbody tr")).to_have_count(3)
 
@@ -118,8 +122,10 @@ def test_one_reads_prediction_after_prediction_by_key(page_of, live_server, samp
     page.goto(f"{live_server.url}/w/home/runs/{sample.run.pk}/predictions/?outcome=wrong")
     page.keyboard.press("j")
     page.keyboard.press("Enter")
+    arrive_at(page, page.get_by_role("heading", name="Annotated and predicted"))
     first = page.locator("h1").inner_text()
     page.keyboard.press("n")
     expect(page.locator("h1")).not_to_have_text(first)
+    page.wait_for_load_state("domcontentloaded")
     page.keyboard.press("p")
     expect(page.locator("h1")).to_have_text(first)

@@ -9,6 +9,7 @@ from annotations.labelling import collect
 from annotations.models import Utterance, WorkKind
 from annotations.models.worlds import Role
 from annotations.queueing import set_share
+from tests.browser.arriving import arrive_at
 from tests.conftest import member
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
@@ -32,7 +33,7 @@ def test_two_blind_labels_and_a_third_person(page_of, live_server, sample, annot
     page = page_of(reviewer)
     page.goto(queue)
     page.get_by_role("button", name="Take the next item").press("Enter")
-    expect(page.get_by_text("anna and berta gave different answers")).to_be_visible()
+    arrive_at(page, page.get_by_text("anna and berta gave different answers"))
     page.get_by_label("What anna says").press("Space")
     page.get_by_role("button", name="Settle it").press("Enter")
     expect(page.get_by_text("Settled: find the tea please")).to_be_visible()

@@ -6,6 +6,7 @@ import pytest
 from playwright.sync_api import expect
 
 from annotations.models import Draft, SemanticTemplate, TaskCategory
+from tests.browser.arriving import wait_for_swap
 from tests.browser.conftest import give_window
 from tests.browser.writing import open_editor, write
 
@@ -35,7 +36,7 @@ def test_another_task_category_is_checked_anew(page_of, live_server, annotator, 
     expect(report).to_contain_text("matches nothing in the grammar")
     productions = report.get_by_role("link", name="see the productions of task category empty")
     expect(productions).to_have_attribute("href", "/w/home/grammar/?task_category=empty")
-    page.get_by_label("Task category").select_option("1")
+    page.get_by_label("Task category").select_option(label="1")
     expect(report).not_to_contain_text("matches nothing")
     page.get_by_label("Task category").select_option("empty")
     expect(report).to_contain_text("matches nothing in the grammar")
@@ -148,6 +149,7 @@ def test_a_draft_is_offered_on_another_device(logged_in, sample, live_server, an
     expect(second.get_by_text("from another device")).to_be_visible()
     second.get_by_role("button", name="Restore", exact=True).click()
     expect(second.locator(".cm-content").first).to_have_text("find my $object")
+    expect(second.get_by_text("Draft saved")).to_be_visible()  # none is on its way any more
     second.get_by_role("button", name="Save").click()
     expect(second.locator(".message")).to_contain_text("Saved as version 2")
     assert not Draft.objects.exists()
@@ -190,6 +192,7 @@ def test_an_expired_session_is_renewed_in_place(page_of, live_server, annotator)
     page.evaluate(HOLD_ANSWERS)
     write(page, "go to the {room}", "(go {beacon})")
     page.locator("html[data-held]").wait_for()  # sent without a session, answered after the log-in
+    wait_for_swap(page)
     log_in_again.click()
     password = page.get_by_label(f"Password of {annotator}")
     password.fill("wrong")
