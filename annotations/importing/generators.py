@@ -61,12 +61,14 @@ def import_generator(
     report = replace(report, removals=apart.removals, left_out=apart.left_out)
     if apart.removals and not may_remove:
         return replace(report, is_waiting=True)
-    return _store(world, generator, report, by, progress, brings_back)
+    prepared = PreparedProductions(world, generator, apart.productions, brings_back)
+    return _store(world, generator, prepared, report, by, progress, brings_back)
 
 
 def _store(
     world: World | None,
     generator: Generator,
+    prepared: PreparedProductions,
     report: ImportReport,
     by: User | None,
     progress: Progress,
@@ -76,7 +78,6 @@ def _store(
     progress.report(0.6, "counting the commands of the grammar")
     coverage = count_coverage(generator.texts.categories(), _commands_of(world))
     progress.report(0.8, "writing")
-    prepared = PreparedProductions(world, generator, brings_back)
     with prepared as productions, progress.writing():
         world = locked_world(report.world, by)
         changes = store(world, generator, productions, by, brings_back)

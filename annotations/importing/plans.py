@@ -35,9 +35,11 @@ class Differences:
     """What the files and a world have apart.
 
     ``removals`` are rows that the files lack. ``left_out`` are lines that are not stored because people
-    have deleted, moved or renamed the row: each with its file, and who did what.
+    have deleted, moved or renamed the row: each with its file, and who did what. ``productions`` says what
+    it takes to store them.
     """
 
+    productions: Plan[models.Production]
     removals: Texts = field(default_factory=Texts)
     left_out: Texts = field(default_factory=Texts)
 
@@ -47,19 +49,19 @@ def differences_of(
 ) -> Differences:
     """Compare the files of ``generator`` with ``world``. Nothing is written."""
     if world is None:
-        return Differences()
+        return Differences(plan_productions(models.Grammar(), generator, brings_back))
     grammar = models.Grammar.objects.select_related("world").filter(world=world).first()
     ontology = models.Ontology.objects.select_related("world").filter(world=world).first()
-    plans: dict[str, Plan] = {}
+    productions = plan_productions(grammar or models.Grammar(), generator, brings_back)
+    plans: dict[str, Plan] = {"productions": productions}
     if grammar:
         plans["templates"] = plan_templates(grammar, generator, brings_back)
-        plans["productions"] = plan_productions(grammar, generator, brings_back)
     if ontology:
         plans["entities"] = plan_entities(ontology, generator, brings_back)
     removals = {name: _list_removed(planned) for name, planned in plans.items()}
     plans["predicates"] = plan_predicates(world, generator, brings_back)
     left_out = {name: _list_left_out(planned) for name, planned in plans.items()}
-    return Differences(Texts(**removals), Texts(**left_out))
+    return Differences(productions, Texts(**removals), Texts(**left_out))
 
 
 def _list_removed(changes: Plan) -> tuple[str, ...]:

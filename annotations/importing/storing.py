@@ -16,24 +16,29 @@ from annotations.models.problems import Subject
 from annotations.rows.composition import rule_sources, template_sources
 from annotations.rows.problems import store_problems
 from annotations.rows.staging import Staging
-from annotations.rows.synchronise import Changes, synchronise
+from annotations.rows.synchronise import Changes, Plan, synchronise
 from annotations.rows.template_problems import store_problems_of_import
 
 
 class PreparedProductions:
-    """The productions of ``generator``, compared and collected, so that writing many is quick."""
+    """The productions of ``generator``, collected before the transaction, so that writing many is quick.
+
+    ``planned`` is what it takes to store them in ``world`` as it was read.
+    """
 
     COLUMNS = ("source", "line", "nonterminal", "expansion", "task_category", "position", "version")
 
     def __init__(
-        self, world: models.World | None, generator: Generator, brings_back: bool = False
+        self,
+        world: models.World | None,
+        generator: Generator,
+        planned: Plan[models.Production],
+        brings_back: bool,
     ) -> None:
-        of_world = models.Grammar.objects.select_related("world").filter(world=world)
-        grammar = of_world.first() if world else None
         self._generator = generator
         self._brings_back = brings_back
         self._revision = world.revision if world else 0
-        self._plan = plan_productions(grammar or models.Grammar(), generator, brings_back)
+        self._plan = planned
         self._staging = Staging(models.Production, self.COLUMNS)
 
     def __enter__(self) -> Self:
