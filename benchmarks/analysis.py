@@ -1,6 +1,6 @@
 """Seconds that each analysis takes for a million generated predictions.
 
-    python benchmarks/analysis.py [--predictions 1000000] [--only attractors]
+    python -m benchmarks.analysis [--predictions 1000000] [--only attractors]
 
 Commands and forms are those of the starter world. Every command gets a word of its own, so that texts differ;
 four answers of five are right, some are a default form, and the rest are forms of other commands.
@@ -10,33 +10,29 @@ from __future__ import annotations
 
 import argparse
 import resource
-import sys
 import time
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT))
-
-from annotations.language.forms import read_form  # noqa: E402
-from annotations.language.ontology import Ontology  # noqa: E402
-from annotations.language.predicates import infer_signatures  # noqa: E402
-from annotations.language.templates import generate, read_generator_folder  # noqa: E402
-from parser_service.analysis.attractors import find_attractors  # noqa: E402
-from parser_service.analysis.categories import RunEvidence, propose_categories  # noqa: E402
-from parser_service.analysis.comparing import compare_runs  # noqa: E402
-from parser_service.analysis.confusions import confuse_heads, confuse_slots  # noqa: E402
-from parser_service.analysis.edits import gather_facts, generate_edits, mine_pairs  # noqa: E402
-from parser_service.analysis.probing import make_probes  # noqa: E402
-from parser_service.analysis.risk_coverage import risk_coverage  # noqa: E402
-from parser_service.analysis.sensitivity import (  # noqa: E402
+from annotations.language.forms import read_form
+from annotations.language.ontology import Ontology
+from annotations.language.predicates import infer_signatures
+from annotations.language.templates import generate, read_generator_folder
+from benchmarks.fresh_site import ROOT
+from parser_service.analysis.attractors import find_attractors
+from parser_service.analysis.categories import RunEvidence, propose_categories
+from parser_service.analysis.comparing import compare_runs
+from parser_service.analysis.confusions import confuse_heads, confuse_slots
+from parser_service.analysis.edits import gather_facts, generate_edits, mine_pairs
+from parser_service.analysis.probing import make_probes
+from parser_service.analysis.risk_coverage import risk_coverage
+from parser_service.analysis.sensitivity import (
     EditAnswers,
     find_deciding_words,
     measure_sensitivity,
 )
-from parser_service.analysis.slicing import (  # noqa: E402
+from parser_service.analysis.slicing import (
     accuracy_by,
     are_seen,
     form_depths,

@@ -63,7 +63,6 @@ class Site:
         """Make this process one of the installation, so that it can read its world."""
         os.environ.pop("DATABASE_URL", None)
         os.environ.update(self.environment, DJANGO_SETTINGS_MODULE="gpsr_site.settings")
-        sys.path.insert(0, str(ROOT))
         django.setup()
 
     def import_world(self) -> None:

@@ -48,7 +48,7 @@ class CandidateForm:
         """Count the kinds of step that arrive at it, by their weights.
 
         Of forms with a support of 1, one in 1,000 is real, that is held out of the published pairs;
-        of those with 2 one in 50, with 3 one in 10, with 4 one in 4 (``benchmarks/candidates.py``).
+        of those with 2 one in 50, with 3 one in 10, with 4 one in 4 (``benchmarks/parsing/candidates.py``).
         """
         weights = {way.step: way.weight for way in self.ways}
         for way in self.ways:

@@ -1,6 +1,6 @@
 """Label audit of the published paraphrases: what it costs, how many labels are in doubt, and the first of them.
 
-    GPSR_SHARED_DATA=… .venv/bin/python benchmarks/audit.py [--folds 5] [--most 50]
+    GPSR_SHARED_DATA=… .venv/bin/python -m benchmarks.annotation.audit [--folds 5] [--most 50]
 
 Takes the paraphrases that are published with their commands (``paraphrasings.txt``) and the generated commands of
 2018. Somebody has to read the list to say how many of these labels are wrong. Last come the labels that say "male"
@@ -15,7 +15,7 @@ import time
 from collections import Counter
 from pathlib import Path
 
-from fresh_site import DATA, WORLD, Site
+from benchmarks.fresh_site import DATA, WORLD, Site
 
 GENDERS = {"male", "female"}
 

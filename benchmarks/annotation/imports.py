@@ -1,6 +1,6 @@
 """What importing, generating and refusing cost: processor time of whole commands, database included.
 
-    GPSR_SHARED_DATA=… .venv/bin/python benchmarks/imports.py
+    GPSR_SHARED_DATA=… .venv/bin/python -m benchmarks.annotation.imports
 
 Each command runs as a process of its own on a fresh SQLite database. The bound beside a figure is the
 one the project promises.
@@ -11,7 +11,7 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
-from fresh_site import DATA, Site
+from benchmarks.fresh_site import DATA, Site
 
 # What is refused, as files of one folder.
 FAULTS: dict[str, dict[str, bytes]] = {

@@ -1,6 +1,6 @@
 """How long an annotator waits for the consequences of an edit, and for saving it.
 
-    GPSR_SHARED_DATA=… .venv/bin/python benchmarks/consequences.py [--repeat 30] [--large N]
+    GPSR_SHARED_DATA=… .venv/bin/python -m benchmarks.annotation.consequences [--repeat 30] [--large N]
 
 Makes a fresh SQLite installation with two worlds: the published 2018 generator with its templates (1,211
 commands), and the 2019 grammar (14,520 commands) with templates made from its own productions, since none
@@ -24,7 +24,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from fresh_site import DATA, Site
+from benchmarks.fresh_site import DATA, Site
 
 TEMPLATES_2019 = 150
 

@@ -1,7 +1,7 @@
 """How fast parsers answer: single commands on one thread, and batches on all cores.
 
-    GPSR_SHARED_DATA=… .venv/bin/python benchmarks/latency.py --parsers knn,seq2seq
-    … benchmarks/latency.py --parsers knn --saved FOLDER      # a saved parser
+    GPSR_SHARED_DATA=… .venv/bin/python -m benchmarks.parsing.latency --parsers knn,seq2seq
+    … benchmarks/parsing/latency.py --parsers knn --saved FOLDER      # a saved parser
 
 Trains each parser on the generated and paraphrased commands of the published corpus, then parses its
 validation utterances one by one on one thread, and in batches of 64 on as many threads as there are cores,
@@ -25,7 +25,8 @@ for name in ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ[name] = "1"
 
 import numpy as np  # noqa: E402
-from fresh_site import DATA, WORLD, Site  # noqa: E402
+
+from benchmarks.fresh_site import DATA, WORLD, Site  # noqa: E402
 
 MOST_MILLISECONDS = 15.0
 LEAST_A_SECOND = 300.0

@@ -1,6 +1,6 @@
 """Labels published paraphrases in one sitting by keyboard alone, in a headless Chromium.
 
-    .venv/bin/python benchmarks/labelling.py PAIRS --url http://127.0.0.1:8000 --world WORLD [--count 50]
+    .venv/bin/python -m benchmarks.annotation.labelling PAIRS --url http://127.0.0.1:8000 --world WORLD [--count 50]
 
 PAIRS is a pair file such as ``para/train.txt``; its forms say which candidate is right. The password of
 ``--user`` is read from GPSR_PASSWORD. The world should hold the generated commands and no paraphrases. Printed:
@@ -15,16 +15,12 @@ import argparse
 import os
 import random
 import statistics
-import sys
 import time
 from pathlib import Path
 
 from playwright.sync_api import Page, sync_playwright
 
-ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT))
-
-from tests.browser.screenshots import CHROMIUM, log_in  # noqa: E402
+from tests.browser.screenshots import CHROMIUM, log_in
 
 
 def read_pairs(path: Path, count: int, seed: int) -> dict[str, str]:

@@ -1,6 +1,6 @@
 """How often a repair takes back a mistake in a published template, and what finding repairs costs.
 
-    python -m benchmarks.repairs FOLDER [--most 12] [--seed 0]
+    python -m benchmarks.annotation.repairs FOLDER [--most 12] [--seed 0]
 
 FOLDER holds the files of a generator. Mistakes are those of tests/annotations/language/writing/mistakes.py.
 A mistake counts as taken back if the repaired template has the pattern and the canonical form of the

@@ -3,7 +3,7 @@
 Starts a site with its worker for short work on a fresh SQLite database, sends both files, and asks for
 pages and saves drafts meanwhile. Prints percentiles in milliseconds, and what became of the jobs.
 
-    python benchmarks/heavy_uploads.py [--port 8765]
+    python -m benchmarks.annotation.heavy_uploads [--port 8765]
 """
 
 from __future__ import annotations
@@ -26,8 +26,6 @@ import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 from benchmarks.fresh_site import ROOT, Site
 

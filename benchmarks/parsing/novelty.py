@@ -1,6 +1,6 @@
 """The threshold by which new forms have to fit better than known ones: accuracy for several values.
 
-    GPSR_SHARED_DATA=… .venv/bin/python benchmarks/novelty.py [--splits 1,2,4,5] [--setting para-para]
+    GPSR_SHARED_DATA=… .venv/bin/python -m benchmarks.parsing.novelty [--splits 1,2,4,5] [--setting para-para]
 
 Trains the ranker (domain, seed 0) on new splits by source command, a few minutes each, and parses the
 paraphrases of the test parts. Then raises the threshold by some nats, or lowers it (below 0). Prints for each
@@ -12,7 +12,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 
-from new_splits import Trained, table_of
+from benchmarks.parsing.new_splits import Trained, table_of
 
 MOVES = [step / 2 for step in range(-6, 7)]  # nats
 EVERY_FORM = sys.maxsize  # answers to an utterance

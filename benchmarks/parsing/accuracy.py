@@ -1,6 +1,6 @@
 """The paper's accuracy table, from the cells of ``manage.py benchmark``.
 
-    .venv/bin/python benchmarks/accuracy.py cells.json [--markdown | --latex] [--part validation]
+    .venv/bin/python -m benchmarks.parsing.accuracy cells.json [--markdown | --latex] [--part validation]
 
 One table per protocol, with a row for each parser and a column for each setting and criterion. A figure is
 exact match in percent, the mean over seeds and over new splits where there are any; ± is their standard
@@ -23,8 +23,6 @@ from typing import Any
 import django
 import pandas as pd
 
-ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT))
 os.environ.setdefault("DJANGO_SETTINGS_MODULE", "gpsr_site.settings")
 django.setup()
 

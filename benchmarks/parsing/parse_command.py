@@ -1,6 +1,6 @@
 """What one ``manage.py parse`` costs, from the start of Python to the answer.
 
-    .venv/bin/python benchmarks/parse_command.py [--parser ranker] [--times 5]
+    .venv/bin/python -m benchmarks.parsing.parse_command [--parser ranker] [--times 5]
 
 Loads the starter world into a fresh SQLite database, trains the parser there for a few steps (the
 cost of loading does not depend on how well it has learned, but on how many forms it has), and then
@@ -15,7 +15,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from fresh_site import Site
+from benchmarks.fresh_site import Site
 
 MOST_SECONDS = 6.0
 STARTER = (

@@ -1,4 +1,4 @@
-"""benchmarks/accuracy.py: the paper's table from cells."""
+"""benchmarks/parsing/accuracy.py: the paper's table from cells."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from benchmarks.accuracy import main, read_figures, tables
+from benchmarks.parsing.accuracy import main, read_figures, tables
 
 
 def cell(parser="knn", accuracy=0.5, **changes):

@@ -1,6 +1,6 @@
 """Label noise: identical paraphrases of different source commands, and how often their forms agree.
 
-    GPSR_SHARED_DATA=… .venv/bin/python benchmarks/label_noise.py
+    GPSR_SHARED_DATA=… .venv/bin/python -m benchmarks.annotation.label_noise
 
 Takes the anonymized train and validation paraphrases of the published corpus by command. Of those whose text is
 also a paraphrase of another source command, counts how many have the form that most of the others have. No
@@ -14,7 +14,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
-from fresh_site import DATA, WORLD, Site
+from benchmarks.fresh_site import DATA, WORLD, Site
 
 Said = tuple[str, str]  # source command and form
 

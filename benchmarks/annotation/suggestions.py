@@ -1,6 +1,7 @@
 """Leave-one-out over the templates of a generator folder: is the suggested form the one that was written?
 
-    GPSR_SHARED_DATA=… .venv/bin/python benchmarks/suggestions.py [--folder …] [--declared] [--apart] [--show]
+    GPSR_SHARED_DATA=… .venv/bin/python -m benchmarks.annotation.suggestions [--folder F]
+        [--declared] [--apart] [--show]
 
 Each template line is left out in turn, together with every other line of the same pattern in any task
 category, and a form is suggested for its pattern. Then the same from a command alone: the first command that is
@@ -13,23 +14,18 @@ one that only begins with ``$polite`` or has another name for its slot.
 from __future__ import annotations
 
 import argparse
-import os
-import sys
 import time
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import median
 
-ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT))
-
-from annotations.language.errors import Position  # noqa: E402
-from annotations.language.forms import canonical_text, equivalent, to_template  # noqa: E402
-from annotations.language.predicates import Predicate  # noqa: E402
-from annotations.language.suggesting import FormSuggester, PatternMaker, Suggestion  # noqa: E402
-from annotations.language.symbols import Symbols, print_sequence  # noqa: E402
-from annotations.language.templates import (  # noqa: E402
+from annotations.language.errors import Position
+from annotations.language.forms import canonical_text, equivalent, to_template
+from annotations.language.predicates import Predicate
+from annotations.language.suggesting import FormSuggester, PatternMaker, Suggestion
+from annotations.language.symbols import Symbols, print_sequence
+from annotations.language.templates import (
     SemanticTemplate,
     TaskCategory,
     TemplateExpander,
@@ -38,8 +34,7 @@ from annotations.language.templates import (  # noqa: E402
     read_generator_folder,
     template_checker,
 )
-
-DATA = Path(os.environ.get("GPSR_SHARED_DATA", ROOT.parent / "shared" / "data"))
+from benchmarks.fresh_site import DATA
 
 
 @dataclass(frozen=True)

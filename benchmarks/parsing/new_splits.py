@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pandas as pd
-from fresh_site import DATA, WORLD, Site
+
+from benchmarks.fresh_site import DATA, WORLD, Site
 
 if TYPE_CHECKING:  # the project can be imported only after a site was entered
     from parser_service.parsers.interface import Pair, Parser

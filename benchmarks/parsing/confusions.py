@@ -1,6 +1,6 @@
 """How many of the ranker's errors by source command are distinctions that paraphrases rarely keep.
 
-    GPSR_SHARED_DATA=… .venv/bin/python benchmarks/confusions.py [--splits 1,5] [--setting para-para]
+    GPSR_SHARED_DATA=… .venv/bin/python -m benchmarks.parsing.confusions [--splits 1,5] [--setting para-para]
 
 Trains the ranker (domain, seed 0) on new splits by source command, a few minutes each, and parses the
 paraphrases of the other two parts. Prints for each part exact match, and exact match without three
@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from new_splits import Trained, table_of
+from benchmarks.parsing.new_splits import Trained, table_of
 
 CATEGORY = re.compile(r'\( is_a \$\d " <category> " \)')
 

@@ -1,6 +1,6 @@
 """The share of held-out forms that are among the candidates made from the training part.
 
-    GPSR_SHARED_DATA=… .venv/bin/python benchmarks/candidates.py [--splits 8]
+    GPSR_SHARED_DATA=… .venv/bin/python -m benchmarks.parsing.candidates [--splits 8]
 
 Makes several new splits by form of the published train and validation pairs, and the candidates from each
 training part. Prints for each protocol: the number of candidates per split; the share of the held-out
@@ -17,7 +17,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pandas as pd
-from fresh_site import DATA, WORLD, Site
+
+from benchmarks.fresh_site import DATA, WORLD, Site
 
 HELD_OUT = ("validation", "test")
 

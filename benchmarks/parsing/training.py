@@ -1,6 +1,6 @@
 """What training costs: wall time and peak memory, each training in a process of its own.
 
-    GPSR_SHARED_DATA=… .venv/bin/python benchmarks/training.py --parsers knn,seq2seq
+    GPSR_SHARED_DATA=… .venv/bin/python -m benchmarks.parsing.training --parsers knn,seq2seq
 
 Each parser is trained on the published corpus by ``manage.py benchmark`` on a fresh SQLite database,
 under every protocol that it supports. The seconds are those of the training alone; the memory is that of the
@@ -17,10 +17,7 @@ import tempfile
 from itertools import product
 from pathlib import Path
 
-from fresh_site import DATA, ROOT, WORLD, Site
-
-sys.path.insert(0, str(ROOT))
-
+from benchmarks.fresh_site import DATA, WORLD, Site
 from parser_service.parsers.registry import PARSERS, entry
 
 MOST_SECONDS = 360.0

@@ -2,7 +2,7 @@
 
 The forms are those of ``walker2019``, filled with names until there are as many as asked for:
 
-    python benchmarks/tree_distance.py ../shared/data/walker2019 --forms 1000
+    python -m benchmarks.language.tree_distance ../shared/data/walker2019 --forms 1000
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Where a training of the ranker spends its time: milliseconds per step, and the most expensive operations.
 
-    GPSR_SHARED_DATA=… .venv/bin/python benchmarks/training_step.py --threads 1
+    GPSR_SHARED_DATA=… .venv/bin/python -m benchmarks.parsing.training_step --threads 1
 
 Trains on a third of the generated and paraphrased commands of the published corpus, under *strict*, for a
 few passes. The fastest pass counts: the first includes compilation by torch, and some include encoding all
@@ -10,14 +10,10 @@ examples. A second training runs under torch's profiler, which makes it slower.
 from __future__ import annotations
 
 import argparse
-import sys
-
-from fresh_site import DATA, ROOT
-
-sys.path.insert(0, str(ROOT))
 
 from torch.profiler import ProfilerActivity, profile
 
+from benchmarks.fresh_site import DATA
 from parser_service.benchmarking.corpus import read_corpus
 from parser_service.neural.ranker.parser import FormRanker
 from parser_service.parsers.interface import EpochReport, Observer, Pair

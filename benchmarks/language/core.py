@@ -1,6 +1,6 @@
 """How long the language core takes, in seconds of processor time.
 
-    GPSR_SHARED_DATA=… .venv/bin/python benchmarks/language.py
+    GPSR_SHARED_DATA=… .venv/bin/python -m benchmarks.language.core
 
 Reads and expands the published 2018 generator, parses its commands with the chart, expands the 2019
 generator, reads the published forms, and asks a grammar of 10^12 commands for its size and a parse.
@@ -9,26 +9,20 @@ The bound beside a figure is the one the project promises; a figure without one 
 
 from __future__ import annotations
 
-import os
-import sys
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import TypeVar
 
-ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT))
-
-from annotations.language.corpus import read_pairs  # noqa: E402
-from annotations.language.forms import read_form  # noqa: E402
-from annotations.language.grammar import Grammar, Recognizer, read_productions  # noqa: E402
-from annotations.language.templates import (  # noqa: E402
+from annotations.language.corpus import read_pairs
+from annotations.language.forms import read_form
+from annotations.language.grammar import Grammar, Recognizer, read_productions
+from annotations.language.templates import (
     TemplateChart,
     generate,
     read_generator_folder,
 )
+from benchmarks.fresh_site import DATA
 
-DATA = Path(os.environ.get("GPSR_SHARED_DATA", ROOT.parent / "shared" / "data"))
 T = TypeVar("T")
 
 
