@@ -21,7 +21,6 @@ from lark import Lark, Token, Transformer, UnexpectedInput, v_args
 
 from annotations.language.errors import LanguageError, Offsets, Position
 from annotations.language.forms.errors import explain
-from annotations.language.forms.printing import letter, to_corpus, to_reading, to_template, tokens
 from annotations.language.forms.terms import (
     UNKNOWN,
     Application,
@@ -31,11 +30,6 @@ from annotations.language.forms.terms import (
     Unknown,
     Variable,
     children,
-    depth,
-    free_variables,
-    head_predicate,
-    predicates,
-    walk,
 )
 from annotations.language.limits import (
     MAX_FORM,
@@ -47,28 +41,6 @@ from annotations.language.limits import (
     require_writable,
 )
 from annotations.language.symbols import Nonterminal, Wildcard, read_wildcard
-
-__all__ = [
-    "UNKNOWN",
-    "Application",
-    "Constant",
-    "Form",
-    "Lambda",
-    "Unknown",
-    "Variable",
-    "children",
-    "depth",
-    "free_variables",
-    "head_predicate",
-    "letter",
-    "predicates",
-    "read_form",
-    "to_corpus",
-    "to_reading",
-    "to_template",
-    "tokens",
-    "walk",
-]
 
 _SHIELDED = r'"[^"]*"|\{[^{}]*\}'  # parentheses in here do not count
 _NESTING = re.compile(
