@@ -30,21 +30,6 @@ def expect_utterance(page: Page, text: str) -> None:
     )
 
 
-def send_a_broken_form_and_correct_it(page: Page) -> None:
-    keys = page.keyboard
-    keys.press("e")
-    expect(page.locator(".cm-editor")).to_have_count(1)  # until then the plain field is there
-    editor = page.get_by_role("textbox", name="Logical form")
-    expect(editor).to_be_focused()
-    editor.fill("(go")
-    expect(page.locator(".editor-report")).to_contain_text("ends too early")
-    keys.press("Control+Enter")  # refused, and what was written stays
-    expect(page.get_by_role("alert")).to_contain_text("ends too early")
-    expect(editor).to_contain_text("(go")
-    editor.fill('(go "<room>")')
-    keys.press("Control+Enter")
-
-
 def test_an_answer_to_what_somebody_else_has_answered(label_page, admin):
     page = label_page
     expect_utterance(page, SAID[0])
