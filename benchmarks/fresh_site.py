@@ -30,14 +30,19 @@ class Spent:
 
 
 class Site:
-    """A SQLite database in ``folder``. Encoders are looked for where the environment says."""
+    """A SQLite database in ``folder``, or the one that ``database`` names by its address. Encoders are looked for
+    where the environment says."""
 
-    def __init__(self, folder: Path):
+    def __init__(self, folder: Path, database: str = ""):
         self.environment = {**os.environ, "GPSR_VAR_DIR": str(folder)}
         var = os.environ.get("GPSR_VAR_DIR", str(ROOT / "var"))
         self.environment.setdefault("GPSR_ENCODERS_DIR", str(Path(var).resolve() / "encoders"))
         self.environment.pop("DATABASE_URL", None)
-        self.run("migrate", "-v0")
+        if database:
+            self.environment["DATABASE_URL"] = database
+        made = self.run("migrate", "-v0")
+        if made.status:
+            sys.exit(made.errors)
 
     def run(self, *arguments: str) -> Spent:
         """Run ``manage.py`` in a process of its own. This process has to stay small: the peak that the
@@ -61,7 +66,8 @@ class Site:
 
     def enter(self) -> None:
         """Make this process one of the installation, so that it can read its world."""
-        os.environ.pop("DATABASE_URL", None)
+        if "DATABASE_URL" not in self.environment:
+            os.environ.pop("DATABASE_URL", None)
         os.environ.update(self.environment, DJANGO_SETTINGS_MODULE="gpsr_site.settings")
         django.setup()
 

@@ -125,6 +125,7 @@ PLACES = (
         below=("run", "run_new"),
     ),
     Place("Results", "results", "evaluated", below=("predictions", "prediction")),
+    Place("Compare", "compare", below=("slices",)),
 )
 
 

@@ -4,6 +4,7 @@ from django.urls import path
 
 from parser_service.views import (
     audit,
+    compare,
     labelling,
     predictions,
     reports,
@@ -12,6 +13,7 @@ from parser_service.views import (
     run_new,
     runs,
     sending,
+    slices,
     suggestions,
 )
 
@@ -46,5 +48,9 @@ urlpatterns = [
     path("runs/<int:pk>/predictions/<int:example>/", predictions.prediction, name="prediction"),
     path("results/", results.results, name="results"),
     path("results/table/", results.results_table, name="results_table"),
+    path("compare/", compare.compare, name="compare"),
+    path("slices/", slices.slices, name="slices"),
+    path("slices/<int:pk>/rename/", slices.slice_rename, name="slice_rename"),
+    path("slices/<int:pk>/delete/", slices.slice_delete, name="slice_delete"),
     path("results.csv", results.results_csv, name="results_csv"),
 ]

@@ -10,7 +10,7 @@ from annotations.models import Duty, World
 from annotations.people.access import world_view
 from annotations.rows.occurrences import command_of_example
 from parser_service.models import TrainingRun
-from parser_service.slices import PredictionFilters
+from parser_service.slices import PredictionFilters, slice_query
 
 SORTS = {
     "position": Sort("No.", "example_id", is_number=True),
@@ -28,6 +28,7 @@ def predictions(request: HttpRequest, world: World, pk: int) -> HttpResponse:
         "run": run,
         "aside": aside,
         "listing": listing_of(request, run),
+        "slice_query": slice_query(world, request.GET),
     }
     return render(request, "parser_service/predictions.html", context)
 

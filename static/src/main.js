@@ -7,6 +7,7 @@ import "./drafts.js";
 import "./merge.js";
 import "./mentions.js";
 import "./suggestions.js";
+import "./row-search.js";
 import { onContent } from "./content.js";
 import { enhanceForms } from "./forms.js";
 import { enhanceBy } from "./modules.js";

@@ -106,6 +106,7 @@ def test_every_page_of_a_world_belongs_to_one_entry():
     parts |= {name for name in ROUTES_OF_WORLDS if name.startswith("api:")}
     parts |= {"audit_start", "audit_item", "audit_decide", "audit_check", "audit_take_back"}
     parts |= {"label_send"}
+    parts |= {"slice_rename", "slice_delete"}
     parts |= {"results_csv", "download", "search", "member"}
     parts |= {"example_send", "predictions_send", "paraphrase_label", "paraphrase_check"}
     parts |= {"split_changes", "split_renew", "split_runs", "run_retrain", "run_report"}

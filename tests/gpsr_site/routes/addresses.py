@@ -20,6 +20,7 @@ from annotations.models import (
     WorkItem,
 )
 from annotations.models.worlds import Role
+from parser_service.models import Slice
 from tests.sample_world import SampleWorld, comment_in, paraphrase_in
 
 RouteKeys: TypeAlias = Callable[[SampleWorld], dict[str, object]]
@@ -102,6 +103,12 @@ def decision_of_nobody(sample: SampleWorld) -> AuditDecision:
     return AuditDecision.objects.get_or_create(finding=finding(sample), decision="kept")[0]
 
 
+def saved_slice(sample: SampleWorld) -> Slice:
+    return Slice.objects.get_or_create(
+        world=sample.world, name="wrong ones", query="outcome=wrong"
+    )[0]
+
+
 def predicate(sample: SampleWorld) -> Model:
     return sample.world.predicates.first()
 
@@ -180,4 +187,5 @@ KEYS: dict[str, RouteKeys] = {
     ),
     "audit_take_back": pk_of(decision_of_nobody),
     "queue_ask": pk_of(utterance, kind="utterance"),
+    **dict.fromkeys(("slice_rename", "slice_delete"), pk_of(saved_slice)),
 }

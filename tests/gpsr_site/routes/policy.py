@@ -97,6 +97,8 @@ POLICY = [
             "results",
             "results_table",
             "results_csv",
+            "compare",
+            "slices",
             "history",
             "deleted",
             "queue",
@@ -178,6 +180,11 @@ POLICY = [
     Rule("audit_decide", LOG_IN, NOWHERE, GONE_ON, GONE_ON, GONE_ON, method="post"),
     Rule("audit_take_back", LOG_IN, NOWHERE, GONE_ON, GONE_ON, GONE_ON, method="post"),
     Rule("audit_start", LOG_IN, NOWHERE, NO, GONE_ON, GONE_ON, method="post"),
+    # Reviewers save slices
+    *(
+        Rule(name, LOG_IN, NOWHERE, NO, GONE_ON, GONE_ON, method="post")
+        for name in ("slices", "slice_rename", "slice_delete")
+    ),
     # What admins decide
     Rule("queue_assign", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("queue_settings", *ADMINS),
@@ -226,6 +233,7 @@ ONLY_POSTED = {
     *("split_renew", "run_retrain"),
     *("comment_delete", "comment_restore"),
     *("audit_decide", "audit_check", "audit_take_back"),
+    *("slice_rename", "slice_delete"),
 }
 # Routes of rows that take a POST at the address where they are read.
 READ_AND_POSTED = {

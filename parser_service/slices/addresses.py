@@ -1,0 +1,99 @@
+"""Where the answers behind a number of a comparison are listed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from django.urls import reverse
+from django.utils.http import urlencode
+
+from annotations.models import World
+from parser_service.models import TrainingRun
+
+# Filters that say something of answers rather than of examples.
+OF_ANSWERS = {
+    *("outcome", "category", "category_by", "answer", "label", "answer_head", "slot", "slice"),
+}
+Parameters = Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class Addresses:
+    """``query`` are the filters of the comparison, without ``part``.
+
+    A filter of answers means those of the first run, so that the list of another run's answers would show others:
+    there such a number leads to the first run's answers where the other run is right or wrong.
+    """
+
+    world: World
+    runs: tuple[TrainingRun, ...]
+    part: str
+    query: Parameters = field(default_factory=dict)
+
+    def of_base(self, chosen: Parameters) -> str:
+        """Return the address of all answers of the first run in a slice; empty where no list shows just these."""
+        return self._list(self.runs[0], chosen)
+
+    def of_run(self, run: int, chosen: Parameters, outcome: str = "") -> str:
+        """Return the address of a run's answers in a slice, of one outcome or all; empty where no list shows
+        just these."""
+        if run == 0 or not OF_ANSWERS & {*self.query, *chosen}:
+            return self._list(self.runs[run], chosen, {"outcome": outcome} if outcome else {})
+        versus = {"versus": str(self.runs[run].pk), "versus_outcome": outcome}
+        return self._list(self.runs[0], chosen, versus if outcome else {})
+
+    def of_win(self, winner: int, loser: int) -> str:
+        """Return the address of the answers where one run is right and another is wrong; empty where no list shows
+        just these."""
+        if not OF_ANSWERS & set(self.query):
+            first, second, outcomes = loser, winner, ("wrong", "correct")
+        elif 0 in (winner, loser) and "outcome" not in self.query:
+            first, second = 0, winner or loser
+            outcomes = ("correct", "wrong") if winner == 0 else ("wrong", "correct")
+        else:
+            return ""
+        chosen = {
+            "outcome": outcomes[0],
+            "versus": str(self.runs[second].pk),
+            "versus_outcome": outcomes[1],
+        }
+        return self._list(self.runs[first], chosen)
+
+    def of_confusion(self, run: int, label: str, answer: str) -> str:
+        """Return the address of a run's answers with one head predicate for labels with another; empty where
+        the list would show others."""
+        if run and OF_ANSWERS & set(self.query):
+            return ""
+        return self._list(self.runs[run], {"head": label, "answer_head": answer})
+
+    def compare(self, chosen: Parameters) -> str:
+        """Return the address of the same comparison on a smaller slice."""
+        keys = [("run", str(run.pk)) for run in self.runs]
+        given = {"part": self.part, **(join(self.query, chosen) or chosen)}
+        path = reverse("compare", kwargs={"world": self.world.name})
+        return f"{path}?{urlencode([*keys, *given.items()])}"
+
+    def _list(self, run: TrainingRun, chosen: Parameters, more: Parameters | None = None) -> str:
+        joined = join(self.query, chosen)
+        joined = None if joined is None else join(joined, more or {})
+        if joined is None:
+            return ""
+        path = reverse("predictions", kwargs={"world": self.world.name, "pk": run.pk})
+        return f"{path}?{urlencode({'part': self.part, **joined})}"
+
+
+def join(first: Parameters, second: Parameters) -> dict[str, str] | None:
+    """Return filters that choose what both choose; None where one filter would need two values."""
+    joined = dict(first)
+    for name, value in second.items():
+        other = joined.setdefault(name, value)
+        if other == value:
+            continue
+        if name.startswith("min_"):
+            joined[name] = str(max(int(other), int(value)))
+        elif name.startswith("max_"):
+            joined[name] = str(min(int(other), int(value)))
+        else:
+            return None
+    return joined

@@ -1,0 +1,127 @@
+"""Which runs a comparison is of: those that its address names, of one split, and those it could take too."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from django.http import QueryDict
+
+from annotations.language.english import say_count
+from annotations.models import Split, World
+from annotations.models.splits import Part
+from parser_service.models import Evaluation, TrainingRun
+from parser_service.parsers.registry import PARSERS
+
+PARTS = (Part.VALIDATION, Part.TEST)
+MOST_RUNS = 12  # at once
+MOST_SUGGESTED = 5
+LETTERS = "ABCDEFGHIJKL"
+
+
+@dataclass(frozen=True, slots=True)
+class OfferedRun:
+    """A run that has answers on the part. ``scores`` are by test source; ``is_chosen`` where it is compared."""
+
+    run: TrainingRun
+    scores: Mapping[str, Evaluation]
+    is_chosen: bool
+
+    @property
+    def title(self) -> str:
+        return title_of(self.run)
+
+    @property
+    def accuracy(self) -> float:
+        """The one to rank by: of both sources together where there are both."""
+        best = [self.scores[source] for source in ("mixed", "para", "gen") if source in self.scores]
+        return best[0].accuracy if best else 0.0
+
+
+@dataclass(frozen=True)
+class RunChoice:
+    """``runs`` are compared; ``offered`` are all that could be, of ``split``. ``notes`` say what was left out."""
+
+    part: str
+    split: Split | None
+    splits: Sequence[Split]
+    runs: tuple[TrainingRun, ...]
+    offered: Sequence[OfferedRun]
+    notes: list[str] = field(default_factory=list)
+
+    @cached_property
+    def suggested(self) -> list[TrainingRun]:
+        """The best run of each parser, the best first; fewer than two are no suggestion."""
+        best: dict[str, OfferedRun] = {}
+        for each in sorted(self.offered, key=lambda each: -each.accuracy):
+            best.setdefault(each.run.parser, each)
+        runs = [each.run for each in best.values()][:MOST_SUGGESTED]
+        return runs if len(runs) > 1 else []
+
+    @property
+    def names(self) -> list[str]:
+        """What sentences call the runs."""
+        return [f"{title_of(run)} (run {run.pk})" for run in self.runs]
+
+
+def title_of(run: TrainingRun) -> str:
+    return PARSERS[run.parser].title if run.parser in PARSERS else run.parser
+
+
+def choose_runs(world: World, query: QueryDict, part: str) -> RunChoice:
+    """Return the runs that ``query`` names by ``run``, in its order, as far as they can be compared on ``part``.
+
+    They have to be of the split of the first one, and to have answers there. Without any, the split is the one that
+    ``split`` names, or the newest.
+    """
+    keys = list(dict.fromkeys(filter(_is_key, query.getlist("run"))))
+    scored = Evaluation.objects.filter(run__world=world, part=part).order_by()
+    found = world.runs.succeeded().select_related("split").in_bulk([int(key) for key in keys])
+    named = [found[int(key)] for key in keys if int(key) in found]
+    splits = list(world.splits.filter(runs__evaluations__in=scored).distinct())
+    split = named[0].split if named else _split_of(splits, query.get("split", ""))
+    scores: dict[int, dict[str, Evaluation]] = {}
+    for score in scored.filter(run__split=split) if split else ():
+        scores.setdefault(score.run_id, {})[score.test_source] = score
+    fitting = [run for run in named if run.pk in scores]
+    chosen = tuple(fitting[:MOST_RUNS])
+    rows = world.runs.succeeded().filter(pk__in=scores).order_by("-pk")
+    offered = [OfferedRun(run, scores[run.pk], run in chosen) for run in rows]
+    return RunChoice(
+        part, split, splits, chosen, offered, _notes(keys, named, fitting, split, part)
+    )
+
+
+def _is_key(text: str) -> bool:
+    return text.isascii() and text.isdecimal() and len(text) < 19
+
+
+def _split_of(splits: Sequence[Split], name: str) -> Split | None:
+    return next((split for split in splits if split.name == name), splits[0] if splits else None)
+
+
+def _notes(
+    keys: Sequence[str],
+    named: Sequence[TrainingRun],
+    fitting: Sequence[TrainingRun],
+    split: Split | None,
+    part: str,
+) -> list[str]:
+    notes = []
+    if len(named) < len(keys):
+        missing = len(keys) - len(named)
+        notes.append(
+            f"{say_count(missing, 'run')} of this address {'is' if missing == 1 else 'are'} not in this world "
+            "or did not succeed."
+        )
+    for run in named:
+        if run.split != split:
+            notes.append(
+                f"Run {run.pk} was trained on another split ({run.split.name}): its examples are others."
+            )
+        elif run not in fitting:
+            notes.append(f"Run {run.pk} has no answers on the {part} part.")
+    if len(fitting) > MOST_RUNS:
+        notes.append(f"{MOST_RUNS} runs are compared at once, the first ones.")
+    return notes

@@ -1,0 +1,125 @@
+"""Runs of one split beside each other, on the examples of a part that a slice chooses."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from annotations.models import World
+from parser_service.analysis.arrays import Bools
+from parser_service.analysis.comparing import Comparison, compare_runs, count_wins
+from parser_service.analysis.confusions import HeadConfusion, confuse_labels
+from parser_service.analysis.labels import Labels
+from parser_service.analysis.reading import NO_FORM
+from parser_service.analysis.slicing import SliceAccuracies, accuracy_where
+from parser_service.models import TrainingRun
+from parser_service.slices.columns import Examples, answers_of, examples_of
+from parser_service.slices.conditions import Condition, NoColumn
+from parser_service.slices.filters import PredictionFilters
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """``runs`` share a split. ``answers`` are their columns, and ``chosen`` [examples] says which examples are
+    counted: those of the slice that every run has an answer stored for.
+
+    What a filter says of answers (outcome, category, form in training) is meant of the first run.
+    """
+
+    world: World
+    runs: tuple[TrainingRun, ...]
+    part: str
+    examples: Examples
+    answers: tuple[Mapping[str, Any], ...]
+    chosen: Bools
+
+    @property
+    def base(self) -> TrainingRun:
+        return self.runs[0]
+
+    @cached_property
+    def count(self) -> int:
+        return int(np.count_nonzero(self.chosen))
+
+    @cached_property
+    def correct(self) -> Bools:
+        """Whether each run is right on each chosen example, [runs, chosen]."""
+        return np.array([columns["is_exact_match"][self.chosen] for columns in self.answers])
+
+    @cached_property
+    def accuracies(self) -> SliceAccuracies:
+        """The accuracy of each run on the chosen examples: one slice."""
+        return accuracy_where(self.correct, np.ones(self.count, dtype=bool))
+
+    @cached_property
+    def wins(self) -> list[list[int]]:
+        """On how many examples one run (row) is right and another (column) is wrong."""
+        return count_wins(self.correct).tolist()
+
+    @cached_property
+    def comparisons(self) -> tuple[Comparison, ...]:
+        """Every pair of runs; none without an example."""
+        return compare_runs(self.correct) if self.count else ()
+
+    def column(self, name: str, run: int = 0) -> Any:
+        """Return a column of the examples, or of a run's answers, for the chosen examples."""
+        values = self.examples.columns.get(name)
+        values = self.answers[run][name] if values is None else values
+        if isinstance(values, Labels):
+            return Labels(values.values, values.codes[self.chosen])
+        return values[self.chosen]
+
+    def confusion(self, run: int) -> HeadConfusion:
+        """Count the head predicates of the labels against those of a run's answers."""
+        gold = self.column("head_predicate")
+        named = Labels(tuple(value or NO_FORM for value in gold.values), gold.codes)
+        return confuse_labels(named, self.column("answer_head", run))
+
+    def mask(self, conditions: Sequence[Condition]) -> Bools:
+        """Return which chosen examples fulfil conditions, [chosen]."""
+        mask = _mask(conditions, self.base, self.part, self.examples, self.answers[0])
+        return mask[self.chosen]
+
+
+def compare_on(
+    world: World, runs: Sequence[TrainingRun], part: str, filters: PredictionFilters
+) -> Compared:
+    """Compare runs of one split on a part, where ``filters`` (of which ``part`` is ignored) choose its examples."""
+    examples = examples_of(runs[0].split, part)
+    answers = tuple(answers_of(run, part, examples) for run in runs)
+    chosen = np.logical_and.reduce([columns["is_there"] for columns in answers])
+    chosen = chosen & _mask(filters.conditions(but=["part"]), runs[0], part, examples, answers[0])
+    return Compared(world, tuple(runs), part, examples, answers, chosen)
+
+
+def are_in_columns(conditions: Sequence[Condition], compared: Compared) -> bool:
+    """Return whether columns alone tell which examples fulfil conditions, which takes no query."""
+    columns = {**compared.examples.columns, **compared.answers[0]}
+    try:
+        for condition in conditions:
+            condition.mask(columns)
+    except NoColumn:
+        return False
+    return True
+
+
+def _mask(
+    conditions: Sequence[Condition],
+    run: TrainingRun,
+    part: str,
+    examples: Examples,
+    answers: Mapping[str, Any],
+) -> Bools:
+    columns = {**examples.columns, **answers}
+    mask = np.ones(len(examples.keys), dtype=bool)
+    for condition in conditions:
+        try:
+            mask &= condition.mask(columns)
+        except NoColumn:
+            rows = run.predictions.best().filter(condition.rows, example__part=part).order_by()
+            mask &= examples.mask_of_keys(list(rows.values_list("example_id", flat=True)))
+    return mask

@@ -1,0 +1,117 @@
+"""Compare runs: is the difference real, and where is it?"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from django.http import HttpRequest, HttpResponse
+from django.shortcuts import render
+
+from annotations.lists.listing import FilteredList
+from annotations.models import Duty, World
+from annotations.people.access import world_view
+from parser_service.models import Prediction, TrainingRun
+from parser_service.slices import PredictionFilters, slice_query
+from parser_service.slices.addresses import Addresses
+from parser_service.slices.breakdown import accuracies_of, break_down, break_down_by_slices
+from parser_service.slices.choosing import LETTERS, PARTS, RunChoice, choose_runs
+from parser_service.slices.compared import compare_on
+from parser_service.slices.heat import confusion_table
+from parser_service.slices.pairs import pair_rows, win_matrix
+from parser_service.slices.slots import slot_rows
+from parser_service.views.results import default_part
+
+OF_THE_PAGE = ("part", "versus", "versus_outcome", "slot")
+
+
+class ComparedFilters(FilteredList):
+    """The filters of a comparison; the part, which has buttons of its own, is none of them."""
+
+    further = PredictionFilters.further
+
+    def __init__(self, request: HttpRequest) -> None:
+        self.query = request.GET
+        self.filters = PredictionFilters(request.GET, Prediction.objects.none(), request=request)
+        self.form = self.filters.form
+
+    @property
+    def first_fields(self) -> list[Any]:
+        return [field for field in super().first_fields if field.name not in OF_THE_PAGE]
+
+    @property
+    def chips(self) -> list[Any]:
+        part = str(self.form.fields["part"].label)
+        return [chip for chip in super().chips if chip.label != part]
+
+    @property
+    def chosen(self) -> dict[str, str]:
+        """The filters that are set, as a URL has them."""
+        given = self.filters.given
+        return {name: str(value) for name, value in given.items() if name not in OF_THE_PAGE}
+
+    @property
+    def clear_url(self) -> str:
+        return self.url(**dict.fromkeys(self.chosen, ""))
+
+
+@world_view(Duty.VIEW)
+def compare(request: HttpRequest, world: World) -> HttpResponse:
+    """Compare the runs that the URL names on the slice that it chooses, or offer runs to choose from."""
+    part = request.GET.get("part", "")
+    part = part if part in PARTS else default_part(world)
+    choice = choose_runs(world, request.GET, part)
+    filters = ComparedFilters(request)
+    context = {
+        "choice": choice,
+        "parts": PARTS,
+        "filters": filters,
+        "lettered": list(zip(LETTERS, choice.runs, strict=False)),
+        "part_urls": [(each, filters.url(part=each)) for each in PARTS],
+        "suggestion_url": url_with_runs(request, choice.suggested),
+        "slice_query": slice_query(world, request.GET),
+    }
+    if len(choice.runs) > 1:
+        context |= comparison_of(request, world, choice, filters)
+    return render(request, "parser_service/compare.html", context)
+
+
+def comparison_of(
+    request: HttpRequest, world: World, choice: RunChoice, filters: ComparedFilters
+) -> dict[str, Any]:
+    """Return what the page says about the runs."""
+    compared = compare_on(world, choice.runs, choice.part, filters.filters)
+    addresses = Addresses(world, choice.runs, choice.part, filters.chosen)
+    if not compared.count:
+        return {"compared": compared}
+    place = confused_run(request, choice.runs)
+    return {
+        "compared": compared,
+        "accuracies": list(
+            zip(LETTERS, choice.runs, accuracies_of(compared, addresses), strict=False)
+        ),
+        "matrix": win_matrix(compared, addresses),
+        "pairs": pair_rows(compared, choice.names),
+        "breakdowns": break_down(compared, addresses),
+        "saved": break_down_by_slices(compared, addresses),
+        "heat": confusion_table(compared, place, addresses),
+        "confused": choice.runs[place],
+        "confusion_urls": [
+            (letter, run, filters.url(confusion=str(run.pk)))
+            for letter, run in zip(LETTERS, choice.runs, strict=False)
+        ],
+        "slots": slot_rows(world, choice.runs[place], choice.part),
+    }
+
+
+def confused_run(request: HttpRequest, runs: Sequence[TrainingRun]) -> int:
+    """Return the place of the run whose confusions are shown."""
+    key = request.GET.get("confusion", "")
+    return next((place for place, run in enumerate(runs) if str(run.pk) == key), 0)
+
+
+def url_with_runs(request: HttpRequest, runs: Sequence[TrainingRun]) -> str:
+    """Return the address of this page with other runs."""
+    query = request.GET.copy()
+    query.setlist("run", [str(run.pk) for run in runs])
+    return f"?{query.urlencode()}"
