@@ -16,12 +16,11 @@ SHADES = (0.0, 0.02, 0.05, 0.1, 0.25)  # shares of a row from which a shade begi
 
 @dataclass(frozen=True, slots=True)
 class HeatCell:
-    """``count`` answers; ``shade`` from 0 (none) to 5, and ``is_right`` on the diagonal."""
+    """``count`` answers, ``share`` percent of the row; ``shade`` from 1 to 5, 0 for the diagonal and for none."""
 
     count: int
     share: float
     shade: int
-    is_right: bool
     url: str
 
 
@@ -67,8 +66,7 @@ def confusion_table(compared: Compared, run: int, addresses: Addresses) -> HeatT
                 HeatCell(
                     count=count,
                     share=100 * share,
-                    shade=bisect_right(SHADES, share) if count else 0,
-                    is_right=row == column,
+                    shade=bisect_right(SHADES, share) if count and row != column else 0,
                     url=addresses.of_confusion(run, label, answer) if count else "",
                 )
             )
