@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import pytest
+from django.http.response import HttpResponseBase
 from django.test import Client
 from django.urls import resolve
 from playwright.sync_api import Page
@@ -60,7 +61,12 @@ def addresses(sample: SampleWorld, client: Client) -> list[str]:
     names = {resolve(path.partition("?")[0]).url_name for path in chosen}
     readable = {rule.name for rule in POLICY if (rule.method, rule.admin) == ("get", YES)}
     others = [address(name, sample) for name in sorted(readable - names)]
-    return chosen + [path for path in others if b"<h1" in b"".join(client.get(path))]
+    return chosen + [path for path in others if is_page(client.get(path))]
+
+
+def is_page(answer: HttpResponseBase) -> bool:
+    """Whether a browser shows ``answer`` as a page; it saves others as files."""
+    return not answer.has_header("Content-Disposition") and b"<h1" in b"".join(answer)
 
 
 @dataclass(frozen=True)
