@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from django.contrib import messages
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpRequest, HttpResponse, HttpResponseRedirect
 from django.shortcuts import get_object_or_404, redirect
 from django.utils.http import url_has_allowed_host_and_scheme
 
@@ -42,6 +42,7 @@ def send(request: HttpRequest, world: World, examples: Iterable[Example]) -> Non
 def go_back(request: HttpRequest, to: str, **keys: object) -> HttpResponse:
     """Go to the page of this site that the form names as ``next``, or to a route."""
     address = request.POST.get("next", "")
-    if url_has_allowed_host_and_scheme(address, {request.get_host()}, request.is_secure()):
-        return redirect(address)
+    is_ours = url_has_allowed_host_and_scheme(address, {request.get_host()}, request.is_secure())
+    if is_ours and address.startswith("/"):
+        return HttpResponseRedirect(address)
     return redirect(to, **keys)

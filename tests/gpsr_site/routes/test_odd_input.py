@@ -18,13 +18,12 @@ from tests.gpsr_site.routes.policy import POLICY
 from tests.sample_world import SampleWorld
 
 SURROGATE = b"\xed\xa0\x80"
+# One of each kind; a kind is what one reader of a value may fail on.
 ODD_VALUES = [
     "",
     "[null,1]",
     "1e400",
-    "-1e400",
     "NaN",
-    "\0",
     "a\0b",
     SURROGATE,
     b"\xff\xfe",
@@ -32,22 +31,14 @@ ODD_VALUES = [
     "(" * 1500,
     "{" * 1500,
     "²",
-    "٣",
     "9" * 5000,
-    str(2**31),
     str(2**63),
     str(-(2**63) - 1),
-    "0",
     "-1",
     "1.5",
-    "true",
-    "[]",
     "{}",
     "a" * 20_000,
-    "\u202e💩",
-    "%",
-    "' OR 1=1 --",
-    "../../etc/passwd",
+    "\u202e💩 % ' OR 1=1 -- ../../etc/passwd",
 ]
 # Tried in each field of a form by itself, while the others hold what they should.
 WORST_VALUES = ["a\0b", SURROGATE, "²", str(2**63), "[" * 1500, "1e400"]
@@ -218,11 +209,19 @@ def test_odd_files(name, sample: SampleWorld, root):
             check(root.post(address(route, sample), body, content_type=kind), (route, name, data))
 
 
-@pytest.mark.parametrize("body", [b"{", b"[" * 2000, b"\xff", json.dumps({"a": "\ud800"}).encode()])
-def test_odd_bodies_of_any_kind(body, sample: SampleWorld, root):
+JSON_BODIES = [b"{", b"[" * 2000, b"\xff", json.dumps({"a": "\ud800"}).encode()]
+BODIES = [
+    *(("application/json", body) for body in JSON_BODIES),
+    ("multipart/form-data; boundary=x", b"\xff"),
+    ("text/plain", b"{"),
+    ("a\0/b", b"{"),
+]
+
+
+@pytest.mark.parametrize(("kind", "body"), BODIES, ids=range(len(BODIES)))
+def test_odd_bodies_of_any_kind(kind, body, sample: SampleWorld, root):
     for name in POST_ROUTES:
-        for kind in ("application/json", "multipart/form-data; boundary=x", "text/plain", "a\0/b"):
-            check(root.post(address(name, sample), body, content_type=kind), (name, kind, body))
+        check(root.post(address(name, sample), body, content_type=kind), (name, kind, body))
 
 
 @pytest.mark.parametrize(
