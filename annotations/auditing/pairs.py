@@ -61,6 +61,8 @@ def _values(row: Paraphrase, made: AuditDecision) -> dict[str, str]:
 def values_with_label(row: Paraphrase, label: str) -> dict[str, str]:
     """Return the columns of a paraphrase that get another label, canonical text: its grounded form has the
     entities of the old one where they are certain."""
+    if not row.grounded_form:
+        return {"logical_form": label}
     forms = map(read_form, (label, row.logical_form, row.grounded_form))
     return {"logical_form": label, "grounded_form": canonical_text(ground_like(*forms))}
 

@@ -170,8 +170,11 @@ def _require_split_name(name: str) -> None:
         raise LanguageError(f"“{name}” cannot be the name of a split: {sentences}") from error
 
 
-def candidates(world: World) -> Iterator[Example]:
-    """Yield every command, accepted paraphrase and labelled utterance; a pair that occurs twice is taken once."""
+def candidates(world: World, only_edited: bool = False) -> Iterator[Example]:
+    """Yield every command, accepted paraphrase and labelled utterance; a pair that occurs twice is taken once.
+
+    With ``only_edited`` those paraphrases alone that people have changed since their import.
+    """
     for command in world.commands.select_related("logical_form"):
         yield Example(
             source=Source.GENERATED,
@@ -181,7 +184,8 @@ def candidates(world: World) -> Iterator[Example]:
             logical_form=command.logical_form.text,
         )
     seen: set[tuple[str, str]] = set()
-    for said in world.paraphrases.accepted().select_related("command"):
+    paraphrases = world.paraphrases.accepted().select_related("command")
+    for said in paraphrases.filter(version__gt=1) if only_edited else paraphrases:
         if (said.utterance, said.logical_form) in seen:
             continue
         seen.add((said.utterance, said.logical_form))

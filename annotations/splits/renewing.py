@@ -1,7 +1,7 @@
 """Verb: freeze a split anew from the corpus of today; what that changes can be seen before.
 
 Examples keep their parts wherever the criterion allows it, so that runs on both splits can be compared.
-Pairs of an imported split that were never rows of the world stay as they are.
+Pairs of an imported split stay as they were published unless people have decided otherwise here.
 """
 
 from __future__ import annotations
@@ -96,7 +96,10 @@ def plan_anew(old: Split) -> list[Example]:
     examples = _examples_of_today(old)
     items = as_items(examples)
     kept = _parts_to_keep(old, items, criterion)
-    assign_parts(examples, split(items, criterion, proportions_of(old), old.seed or 0, kept))
+    parts = split(items, criterion, proportions_of(old), old.seed or 0, kept)
+    # A published part may share something with another one; it stays as it was published.
+    as_published = (Part(each.part) if each.part else None for each in examples)
+    assign_parts(examples, [was or part for was, part in zip(as_published, parts, strict=True)])
     return examples
 
 
@@ -205,11 +208,15 @@ def _count_changes(
 
 
 def _examples_of_today(old: Split) -> list[Example]:
-    """Return what is to be split, without parts: the rows of the world, and for an import also those of
-    its pairs that no row of the world has said anything about."""
-    today = list(candidates(old.world))
+    """Return what is to be split: the rows of the world, without parts.
+
+    For an import, its pairs as they were published, with their parts, but where people have decided otherwise here;
+    new are the utterances and paraphrases that people have labelled here. Generated commands that it lacks
+    are not: they may be those of a part that was not published.
+    """
     if not is_from_import(old):
-        return today
+        return list(candidates(old.world))
+    today = candidates(old.world, only_edited=True)
     by_said: dict[Said, list[Example]] = defaultdict(list)
     for example in today:
         by_said[example.source, example.utterance].append(example)
@@ -226,11 +233,12 @@ def _examples_of_today(old: Split) -> list[Example]:
             examples += map(_copy, rows)
         else:
             examples += now
-    return [*examples, *(each for rows in by_said.values() for each in rows)]
+    left = (each for rows in by_said.values() for each in rows)
+    return [*examples, *(each for each in left if each.source != Source.GENERATED)]
 
 
 def _copy(example: Example) -> Example:
-    columns = (name for name in PreparedSplit.COLUMNS if name not in ("part", "position"))
+    columns = (name for name in PreparedSplit.COLUMNS if name != "position")
     return Example(**{name: getattr(example, name) for name in columns})
 
 

@@ -5,15 +5,18 @@ A split is frozen and the answers of a run that succeeded do not change, so a co
 
 from __future__ import annotations
 
+import array
 import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from django.db.models import QuerySet
 from numpy.typing import NDArray
 
 from annotations.models import Split
+from annotations.rows.synchronise import batches
 from parser_service.analysis.arrays import Bools, Ints
 from parser_service.analysis.labels import Labels, encode
 from parser_service.analysis.slicing import NO_FORM, head_predicates
@@ -85,42 +88,57 @@ def _with_emptiness(arrays: dict[str, Any]) -> dict[str, Any]:
 
 
 def _read_examples(split: Split, part: str) -> dict[str, Any]:
-    fields = ("pk", "source", "task_category", "head_predicate", "depth", "word_count")
-    rows = split.examples.filter(part=part).order_by("pk").values_list(*fields)
-    keys, *texts, depths, words = _transpose(rows, len(fields))
+    numbers, texts = ("pk", "depth", "word_count"), ("source", "task_category", "head_predicate")
+    rows = split.examples.filter(part=part).order_by("pk")
+    keys, depths, words, *labels = _read_columns(rows, numbers, texts)
     return {
-        "keys": np.array(keys, dtype=np.int64),
-        **dict(zip(fields[1:4], map(encode, texts), strict=True)),
-        "depth": np.array(depths, dtype=np.int64),
-        "word_count": np.array(words, dtype=np.int64),
+        "keys": keys,
+        **dict(zip(texts, labels, strict=True)),
+        "depth": depths,
+        "word_count": words,
     }
 
 
 def _read_answers(run: TrainingRun, part: str, keys: Ints) -> dict[str, Any]:
     flags = ("is_exact_match", "is_equivalent", "is_well_formed")
     counts = ("answer_in_training", "label_in_training")
-    fields = ("example_id", "logical_form", *counts, *flags)
     best = run.predictions.best().filter(example__part=part, example__split=run.split_id)
-    read = _transpose(best.order_by().values_list(*fields), len(fields))
-    examples, forms, seen, outcomes = read[0], read[1], read[2:4], read[4:]
-    places = np.searchsorted(keys, np.array(examples, dtype=np.int64))
+    numbers = ("example_id", *counts, *flags)
+    examples, *values, forms = _read_columns(best.order_by(), numbers, ("logical_form",))
+    places = np.searchsorted(keys, examples)
     arrays: dict[str, Any] = {"is_there": _scatter(places, len(keys), True)}
-    for name, values in zip(flags, outcomes, strict=True):
-        arrays[name] = _scatter(places, len(keys), np.array(values, dtype=bool))
-    empty = np.fromiter((not form for form in forms), dtype=bool, count=len(forms))
-    arrays["is_empty"] = _scatter(places, len(keys), empty)
-    for name, values in zip(counts, seen, strict=True):
+    for name, outcomes in zip(flags, values[len(counts) :], strict=True):
+        arrays[name] = _scatter(places, len(keys), outcomes.astype(bool))
+    is_empty = np.array([not form for form in forms.values], dtype=bool)
+    arrays["is_empty"] = _scatter(places, len(keys), is_empty[forms.codes])
+    for name, seen in zip(counts, values, strict=False):
         arrays[name] = np.full(len(keys), UNKNOWN_COUNT, dtype=np.int64)
-        arrays[name][places] = [UNKNOWN_COUNT if each is None else each for each in values]
-    heads = encode(head_predicates(forms), (NO_FORM,))
+        arrays[name][places] = seen
+    heads = encode(head_predicates(forms.values), (NO_FORM,))
     codes = np.zeros(len(keys), dtype=np.int64)
-    codes[places] = heads.codes
+    codes[places] = heads.codes[forms.codes]
     arrays["answer_head"] = Labels(heads.values, codes)
     return arrays
 
 
-def _transpose(rows: Any, width: int) -> list[Sequence[Any]]:
-    return list(zip(*rows.iterator(chunk_size=AT_ONCE), strict=True)) or [()] * width
+def _read_columns(rows: QuerySet[Any], numbers: Sequence[str], texts: Sequence[str]) -> list[Any]:
+    """Return whole numbers (``UNKNOWN_COUNT`` for None) as arrays, then texts as labels.
+
+    A million rows are never in memory at once as Python objects, only the distinct texts.
+    """
+    columns = [array.array("q") for _ in (*numbers, *texts)]
+    places: list[dict[str, int]] = [{} for _ in texts]
+    for some in batches(rows.values_list(*numbers, *texts).iterator(chunk_size=AT_ONCE), AT_ONCE):
+        values = list(zip(*some, strict=True))
+        for column, those in zip(columns, values[: len(numbers)], strict=False):
+            column.extend(UNKNOWN_COUNT if each is None else each for each in those)
+        for column, known, those in zip(
+            columns[len(numbers) :], places, values[len(numbers) :], strict=True
+        ):
+            column.extend(known.setdefault(each, len(known)) for each in those)
+    arrays = [np.frombuffer(column, dtype=np.int64) for column in columns]
+    labels = zip(places, arrays[len(numbers) :], strict=True)
+    return [*arrays[: len(numbers)], *(Labels(tuple(known), codes) for known, codes in labels)]
 
 
 def _scatter(places: Ints, length: int, values: Any) -> Bools:
@@ -154,10 +172,10 @@ def _unpack(data: bytes) -> dict[str, Any]:
     with np.load(io.BytesIO(bytes(data)), allow_pickle=False) as archive:
         arrays = {name: archive[name] for name in archive.files}
     columns: dict[str, Any] = {}
-    for name, array in arrays.items():
+    for name, stored in arrays.items():
         if name.endswith(TEXTS):
             continue
-        wide = array if array.dtype == bool else array.astype(np.int64)
+        wide = stored if stored.dtype == bool else stored.astype(np.int64)
         texts = arrays.get(name + TEXTS)
         columns[name] = wide if texts is None else Labels(tuple(texts.tolist()), wide)
     return columns

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from annotations.auditing import correct_label
 from annotations.importing import import_pairs
 from annotations.language.errors import LanguageError
 from annotations.models import Command, Paraphrase, Split, Utterance
@@ -131,20 +132,28 @@ def test_a_world_without_pairs_cannot_be_frozen_anew(split):
 
 @pytest.fixture
 def imported(world, tmp_path) -> Split:
-    """A published split of three paraphrases, of which two are rows of the world, one with another label."""
+    """A published split of three paraphrases, of which one is a row of the world too, and another row."""
     for part, said in (("train", ["go there now"]), ("val", ["walk there", "run there"])):
         path = tmp_path / "para" / f"{part}.txt"
         path.parent.mkdir(exist_ok=True)
         path.write_text("".join(f'{text}\n( go " <room> " )\n' for text in said), encoding="utf-8")
     assert not import_pairs(world.name, "published", tmp_path).problems
-    make_paraphrase(world, utterance="walk there", logical_form='( go " <room> " )')
+    make_paraphrase(world, utterance="walk there", logical_form="UNKNOWN")
+    make_paraphrase(world, utterance="jump there", logical_form="UNKNOWN")
     return world.splits.get()
 
 
-def test_pairs_of_an_import_stay_where_no_row_says_otherwise(imported):
+def say(world, text: str) -> None:
+    Utterance.objects.create(
+        world=world, text=text, anonymized_text=text, status="labelled", logical_form=NEW_FORM
+    )
+
+
+def test_pairs_of_an_import_stay_where_nobody_has_decided_otherwise(imported, annotator):
     assert changes_since(imported).is_none
-    Paraphrase.objects.update(logical_form=NEW_FORM)
-    make_paraphrase(imported.world, utterance="hop there", logical_form=NEW_FORM)
+    row = Paraphrase.objects.get(utterance="walk there")
+    correct_label(row, NEW_FORM, annotator, row.version)
+    say(imported.world, "hop there")
     assert totals(imported) == {"added": 1, "removed": 0, "relabelled": 1, "moved": 0}
     renewed = freeze_anew(imported)
     labels = dict(renewed.examples.values_list("utterance", "logical_form"))
@@ -163,6 +172,6 @@ def test_pairs_of_an_import_go_where_people_have_withdrawn_them(imported):
 
 
 def test_what_follows_an_import_keeps_its_pairs_too(imported):
-    make_paraphrase(imported.world, utterance="hop there", logical_form=NEW_FORM)
+    say(imported.world, "hop there")
     second = freeze_anew(imported)
     assert changes_since(second).is_none
