@@ -131,6 +131,22 @@ def compare(old: str, new: str, is_form: bool = False) -> tuple[Pieces, Pieces]:
     )
 
 
+def merge_words(old: str, new: str) -> Pieces:
+    """Return one text with what is removed from ``old`` and added in ``new`` marked, word by word."""
+    left, right = WORDS.findall(old), WORDS.findall(new)
+    if len(left) + len(right) > MOST_WORDS:
+        return [(str(Change.REMOVED), old), (str(Change.ADDED), new)]
+    pieces: Pieces = []
+    steps = SequenceMatcher(None, left, right, autojunk=False).get_opcodes()
+    for step, start, end, new_start, new_end in steps:
+        if step == "equal":
+            pieces.append((str(Change.SAME), "".join(left[start:end])))
+            continue
+        pieces.append((str(Change.REMOVED), "".join(left[start:end])))
+        pieces.append((str(Change.ADDED), "".join(right[new_start:new_end])))
+    return [piece for piece in pieces if piece[1]]
+
+
 def _pieces(change: Change, parts: Iterable[tuple[str, Sequence[str]]]) -> Pieces:
     return [
         (str(Change.SAME if step == "equal" else change), "".join(words))

@@ -24,6 +24,8 @@ TEMPLATES = {
     JobKind.GENERATE: "annotations/_generation_result.html",
     JobKind.PROPOSE: "annotations/_proposals_result.html",
     JobKind.AUDIT: "annotations/_audit_result.html",
+    JobKind.ANALYSE: "annotations/_analysis_result.html",
+    JobKind.ANSWER: "annotations/_answers_result.html",
     JobKind.DELETE_WORLD: "annotations/_deletion_result.html",
 }
 

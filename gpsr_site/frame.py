@@ -124,7 +124,12 @@ PLACES = (
         "queued or running",
         below=("run", "run_new"),
     ),
-    Place("Results", "results", "evaluated", below=("predictions", "prediction")),
+    Place(
+        "Results",
+        "results",
+        "evaluated",
+        below=("predictions", "prediction", "defaults", "sensitivity", "probes", "tryout"),
+    ),
     Place("Compare", "compare", below=("slices",)),
 )
 

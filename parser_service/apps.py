@@ -19,6 +19,8 @@ class ParserServiceConfig(AppConfig):
         register(TrainingRun, "parser_service.runs.training.train")
         register_verb(JobKind.AUDIT, "parser_service.audit.carrying_out.audit")
         register_verb(JobKind.PROPOSE, "parser_service.candidates.proposing.propose")
+        register_verb(JobKind.ANALYSE, "parser_service.analysing.carrying_out.analyse")
+        register_verb(JobKind.ANSWER, "parser_service.analysing.answering.answer")
         register_results("run", lambda keys: TrainingRun.objects.filter(split__in=keys).count())
         keep_encoders_in(
             settings.ENCODERS_DIR, settings.VAR_DIR / "vectors", settings.ENCODER_PACKAGES

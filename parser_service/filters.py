@@ -6,13 +6,14 @@ from decimal import Decimal
 
 import django_filters
 from django import forms
-from django.db.models import Q, QuerySet
+from django.db.models import F, Q, QuerySet
 from django.http import HttpRequest
 
 from annotations.lists.choices import Choices
 from annotations.lists.filtering import PageFilters, Search
 from annotations.models import Split
-from parser_service.models import TrainingRun
+from parser_service.analysing.probe_kinds import PROBE_KINDS
+from parser_service.models import Probe, TrainingRun
 from parser_service.models.runs import TrainingRunQuerySet, status_choices
 from parser_service.parsers.registry import PARSERS
 
@@ -68,3 +69,25 @@ class RunFilters(PageFilters):
         """Return a run of this world and those that differ from it only by the seed."""
         run = self.request.world.runs.filter(pk=value).first()
         return rows.seeds_of(run) if run else rows.none()
+
+
+class ProbeFilters(PageFilters):
+    """``word`` is one that was taken out of an utterance."""
+
+    q = Search("utterance", "base__utterance")
+    kind = django_filters.ChoiceFilter(label="Kind", choices=list(PROBE_KINDS.items()))
+    outcome = django_filters.ChoiceFilter(
+        label="Answer",
+        choices=[
+            ("expected", "as expected"),
+            ("unexpected", "not as expected"),
+            ("changed", "another than before"),
+        ],
+        method="by_outcome",
+    )
+    word = django_filters.CharFilter("old", label="Word", widget=forms.HiddenInput)
+
+    def by_outcome(self, rows: QuerySet[Probe], name: str, value: str) -> QuerySet[Probe]:
+        if value == "changed":
+            return rows.filter(base__isnull=False).exclude(answer__logical_form=F("before"))
+        return rows.filter(answer__is_expected=value == "expected")

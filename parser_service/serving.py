@@ -70,19 +70,24 @@ def best_run(world: World) -> TrainingRun:
 
 
 def parse(run: TrainingRun, utterance: str, beam_width: int = 5) -> Parse:
-    """Return the answers of ``run`` to ``utterance``, best first. Raises ValueError where it cannot answer.
-
-    A parser that was trained on generated commands alone has only ever seen class tokens, so it is
-    given the utterance with its entities replaced.
-    """
+    """Return the answers of ``run`` to ``utterance``, best first. Raises ValueError where it cannot answer."""
     parser = load_parser(run)
     ontology, predicates = ontology_of(run.world), predicates_of(run.world)
     anonymized = Anonymizer(ontology).anonymize(utterance)
-    is_anonymous = run.train_sources == TrainSources.GENERATED
-    text = anonymized.command if is_anonymous else utterance
+    text = text_for(run, anonymized)
     candidates = parser.predict([text], beam_width)[0]
     answers = (_answer(each, anonymized, ontology, predicates) for each in candidates)
     return Parse(utterance, text, tuple(answers), tuple(_unknown_tokens(utterance, ontology)))
+
+
+def text_for(run: TrainingRun, anonymized: Anonymized) -> str:
+    """Return what the parser of ``run`` is given for an utterance that somebody typed.
+
+    One that was trained on generated commands alone has only ever seen class tokens, so it gets them in
+    place of the entities.
+    """
+    is_anonymous = run.train_sources == TrainSources.GENERATED
+    return anonymized.command if is_anonymous else anonymized.original
 
 
 def load_parser(run: TrainingRun) -> Parser:

@@ -3,18 +3,23 @@
 from django.urls import path
 
 from parser_service.views import (
+    analysis,
     audit,
     compare,
+    defaults,
     labelling,
     predictions,
+    probes,
     reports,
     results,
     retraining,
     run_new,
     runs,
     sending,
+    sensitivity,
     slices,
     suggestions,
+    tryout,
 )
 
 urlpatterns = [
@@ -43,9 +48,17 @@ urlpatterns = [
     path("runs/<int:pk>/retrain/", retraining.run_retrain, name="run_retrain"),
     path("runs/<int:pk>/report.html", reports.run_report, name="run_report"),
     path("splits/<int:pk>/runs/", retraining.split_runs, name="split_runs"),
+    path("runs/<int:pk>/analysis/", analysis.analysis_state, name="analysis_state"),
+    path("runs/<int:pk>/analysis/start/", analysis.analysis_start, name="analysis_start"),
+    path("runs/<int:pk>/analysis/cancel/", analysis.analysis_cancel, name="analysis_cancel"),
     path("runs/<int:pk>/predictions/", predictions.predictions, name="predictions"),
     path("runs/<int:pk>/predictions/send/", sending.predictions_send, name="predictions_send"),
     path("runs/<int:pk>/predictions/<int:example>/", predictions.prediction, name="prediction"),
+    path("runs/<int:pk>/defaults/", defaults.defaults, name="defaults"),
+    path("runs/<int:pk>/sensitivity/", sensitivity.sensitivity, name="sensitivity"),
+    path("runs/<int:pk>/probes/", probes.probes, name="probes"),
+    path("try/", tryout.tryout, name="tryout"),
+    path("try/ask/", tryout.tryout_ask, name="tryout_ask"),
     path("results/", results.results, name="results"),
     path("results/table/", results.results_table, name="results_table"),
     path("compare/", compare.compare, name="compare"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from annotations.auditing import store_findings
+from annotations.background.progress import UNWATCHED
 from annotations.commenting import SUBJECTS, add_comment
 from annotations.editing.edits import add, change, delete
 from annotations.labelling import collect
@@ -19,8 +20,15 @@ from annotations.models import (
     World,
 )
 from annotations.models.background import Status
+from annotations.models.splits import Part
 from annotations.queueing import answer, set_share
 from annotations.queueing.sources import refill
+from parser_service.analysing.carrying_out import analyse
+from parser_service.analysing.trying import ask
+from parser_service.models import TrainingRun
+from parser_service.runs.checkpoints import model_folder, write_folder
+from parser_service.runs.examples import pairs_of
+from parser_service.runs.training import make_parser
 from tests.doubted_labels import doubt
 
 SAID = ["bring me the tea", "go to the kitchen now", "where is my milk"]
@@ -53,6 +61,7 @@ def leave_traces(world: World, annotator: User, admin: User) -> None:
         world=world, position=0, defaults={**texts, **forms, **distances}
     )
     store_findings(world, [doubt(paraphrase, '( go " <room> " )')])
+    _analyse(world, annotator)
     Job.objects.create(
         world=world,
         world_name=world.name,
@@ -61,6 +70,16 @@ def leave_traces(world: World, annotator: User, admin: User) -> None:
         status=Status.FAILED,
         failure="The worker was stopped.",
     )
+
+
+def _analyse(world: World, annotator: User) -> None:
+    """Let the errors of a run be analysed by a parser that is saved, and somebody try a text on it."""
+    run = TrainingRun.objects.succeeded().filter(world=world).first()
+    parser = make_parser(run)
+    parser.fit(pairs_of(run.split, Part.TRAIN, run.train_sources))
+    write_folder(model_folder(run.pk), parser.save)
+    analyse(Job(world=world, kind=JobKind.ANALYSE, arguments={"run": run.pk}), UNWATCHED)
+    ask(world, annotator, "Bring an umbrella", [run])
 
 
 def _edit(world: World, annotator: User, admin: User) -> None:

@@ -21,10 +21,12 @@ def request_job(
     by: User | None,
     arguments: Mapping[str, Any] | None = None,
     uploads: Sequence[Any] = (),
+    queue: str = Queue.QUICK,
 ) -> Job:
-    """Queue a job for the world called ``world_name``, with its files, and wake a worker."""
+    """Queue a job for the world called ``world_name``, with its files, and wake a worker of ``queue``."""
     folder = keep_uploads(uploads) if uploads else None
     job = _new_job(kind, world_name, by, arguments, uploads)
+    job.queue = queue
     with transaction.atomic():
         job.save()
         _take_folder(job, folder)

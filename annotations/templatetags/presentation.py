@@ -24,6 +24,7 @@ from annotations.presentation import (
     difference,
     form_of,
     gloss_of,
+    merge_words,
     merged_difference,
     pieces_of,
     shown,
@@ -224,6 +225,13 @@ def marked_text(pieces: list[tuple[str, str]]) -> SafeString:
     """Show a text with what was added and removed marked (``annotations.presentation.compare``)."""
     marked = format_html_join("", "{}", ((_mark_piece(*piece),) for piece in pieces))
     return format_html('<figure class="lf"><code>{}</code></figure>', marked)
+
+
+@register.simple_tag
+def edited_text(old: str, new: str) -> SafeString:
+    """Show ``new`` with the words that it has beyond ``old`` marked, and those that it lacks struck out."""
+    marked = format_html_join("", "{}", ((_mark_piece(*piece),) for piece in merge_words(old, new)))
+    return format_html('<span class="edited">{}</span>', marked)
 
 
 def _form_with_marks(pieces: list[tuple[str, str]]) -> SafeString:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from annotations.language.errors import LanguageError
-from annotations.language.forms import Form, read_form
+from annotations.language.forms import Form, equivalent, read_form
 
 NO_FORM = "not a form"  # stands for what cannot be read where forms are counted
 
@@ -14,3 +14,11 @@ def read_or_none(text: str) -> Form | None:
         return read_form(text)
     except LanguageError:
         return None
+
+
+def is_same_answer(first: str, second: str) -> bool:
+    """Return whether two answers are equivalent forms, or the very same text."""
+    if first == second:
+        return True
+    left, right = read_or_none(first), read_or_none(second)
+    return left is not None and right is not None and equivalent(left, right)

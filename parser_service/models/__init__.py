@@ -4,6 +4,7 @@ from parser_service.models.folders import RunFolder
 from parser_service.models.predictions import Evaluation, Prediction
 from parser_service.models.reviews import ErrorCategory, Review, Slice
 from parser_service.models.runs import Checkpoint, EpochMetric, RunEvent, TrainingRun
+from parser_service.models.tryouts import Tryout
 from parser_service.models.workers import Worker
 
 __all__ = [
@@ -23,5 +24,6 @@ __all__ = [
     "RunFolder",
     "Slice",
     "TrainingRun",
+    "Tryout",
     "Worker",
 ]

@@ -18,6 +18,7 @@ from parser_service.models import TrainingRun
 from parser_service.parsers import registry
 from parser_service.parsers.interface import Cancelled, Parser
 from parser_service.runs import lifecycle
+from parser_service.runs.analysis_requests import request_analysis
 from parser_service.runs.checkpoints import model_folder, write_folder
 from parser_service.runs.evaluating import evaluate
 from parser_service.runs.examples import pairs_of
@@ -60,6 +61,7 @@ def _fit_and_evaluate(run: TrainingRun, observe: RunObserver) -> None:
     epochs = sum(run.epochs.values_list("seconds", flat=True))
     lifecycle.finish(run, parser.parameters(), epochs or time.monotonic() - began)
     request_proposals(run.world)  # it may be the best parser now
+    request_analysis(run)
 
 
 def make_parser(run: TrainingRun) -> Parser:

@@ -16,6 +16,7 @@ from parser_service.models import Prediction
 from parser_service.slices.conditions import Condition
 from parser_service.slices.kinds import (
     NO_CATEGORY,
+    AnswerForm,
     AnswerHead,
     CategoryFilter,
     Choice,
@@ -81,6 +82,7 @@ class PredictionFilters(PageFilters):
     answer = Seen("answer_in_training", label="Answer", choices=SEEN)
     label = Seen("label_in_training", label="Annotated form", choices=SEEN)
     answer_head = AnswerHead(label="Head predicate of the answer")
+    answer_form = AnswerForm(label="Answer is", widget=forms.HiddenInput)
     slot = SlotFilter(label="Slot", widget=forms.HiddenInput)
     versus = VersusRun(label="Other run", widget=forms.HiddenInput)
     versus_outcome = Choice(

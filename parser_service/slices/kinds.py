@@ -118,6 +118,13 @@ class AnswerHead(OpenChoice):
         return found & Q(is_well_formed=True)
 
 
+class AnswerForm(django_filters.CharFilter):
+    """The answer is exactly this form. No column holds the forms."""
+
+    def demand(self, value: str, given: Given) -> Condition:
+        return Condition(Q(logical_form=value), columns=Q(answer_form=value))
+
+
 class CategoryFilter(OpenChoice):
     """The error category that people put the answer into, or the machine where nobody has.
 

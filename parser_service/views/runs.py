@@ -12,6 +12,7 @@ from django.views.decorators.cache import never_cache
 from annotations.lists.listing import Listing, Sort
 from annotations.models import Duty, World
 from annotations.people.access import WRITE, world_view
+from parser_service.analysing.state import analysis_of
 from parser_service.filters import RunFilters
 from parser_service.models import TrainingRun
 from parser_service.models.runs import Status
@@ -84,6 +85,7 @@ def state_of(world: World, pk: int) -> dict[str, Any]:
         "waiting": waiting_of(run) if run.status == Status.QUEUED else None,
         "events": list(run.events.order_by("-id")[:200])[::-1],
         "checkpoints": run.checkpoints.all(),
+        "analysis": analysis_of(run) if run.is_ended else None,
     }
 
 

@@ -74,6 +74,19 @@ function lineOf(one, colour) {
   };
 }
 
+// A line across the chart at one value of x.
+function markOf(mark, palette) {
+  if (mark == null) return undefined;
+  return {
+    silent: true,
+    symbol: "none",
+    animation: false,
+    label: { show: false },
+    lineStyle: { color: palette.ink, type: "solid", width: 1 },
+    data: [{ xAxis: mark }],
+  };
+}
+
 function tooltipOf(palette) {
   return {
     trigger: "axis",
@@ -103,6 +116,9 @@ export function optionOf(data, element) {
     tooltip: tooltipOf(palette),
     xAxis: categoryAxis(data.x, palette),
     yAxis: valueAxis(data.y, palette),
-    series: data.series.map((one, at) => lineOf(one, palette.series[at])),
+    series: data.series.map((one, at) => ({
+      ...lineOf(one, palette.series[at]),
+      markLine: at === 0 ? markOf(data.mark, palette) : undefined,
+    })),
   };
 }

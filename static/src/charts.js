@@ -1,14 +1,15 @@
 // Charts from data that the page or the server gives (see templates/_chart.html):
-// {x: {label, values}, y: {label, max, unit}, series: [{name, values}], done}
+// {x: {label, values}, y: {label, max, unit}, series: [{name, values}], mark, done}
+// A mark is the place of a value of x; the figure's data-chart-mark, with the event chart:mark, moves it.
 import { LineChart } from "echarts/charts";
-import { AriaComponent, GridComponent, TooltipComponent } from "echarts/components";
+import { AriaComponent, GridComponent, MarkLineComponent, TooltipComponent } from "echarts/components";
 import { init, use } from "echarts/core";
 import { LabelLayout } from "echarts/features";
 import { CanvasRenderer } from "echarts/renderers";
 import { optionOf } from "./chart-options.js";
 import { showTable } from "./chart-table.js";
 
-use([LineChart, AriaComponent, GridComponent, TooltipComponent, LabelLayout, CanvasRenderer]);
+use([LineChart, AriaComponent, GridComponent, MarkLineComponent, TooltipComponent, LabelLayout, CanvasRenderer]);
 
 const EVERY = 5000;
 const reduced = matchMedia("(prefers-reduced-motion: reduce)");
@@ -35,6 +36,7 @@ class Chart {
     this.resizing.observe(this.canvas);
     this.redraw = () => this.draw();
     document.documentElement.addEventListener("theme:change", this.redraw);
+    figure.addEventListener("chart:mark", this.redraw);
   }
 
   show(data) {
@@ -48,8 +50,10 @@ class Chart {
 
   draw() {
     if (!this.data) return;
+    const { chartMark } = this.figure.dataset;
+    const data = chartMark === undefined ? this.data : { ...this.data, mark: Number(chartMark) };
     const motion = { animation: !reduced.matches, animationDuration: 120 };
-    this.drawn.setOption({ ...optionOf(this.data, this.canvas), ...motion }, { notMerge: true });
+    this.drawn.setOption({ ...optionOf(data, this.canvas), ...motion }, { notMerge: true });
   }
 
   // A chart that htmx took away is let go.

@@ -24,6 +24,7 @@ onContent((root) => {
     ["[data-editor]", "editor"],
     ["[data-label-page]", "label"],
     ["[data-audit-page]", "audit"],
+    ["[data-refusal]", "refusal"],
   ]) {
     within(selector).forEach((element) => enhanceBy(name, element));
   }

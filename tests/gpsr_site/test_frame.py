@@ -107,6 +107,7 @@ def test_every_page_of_a_world_belongs_to_one_entry():
     parts |= {"audit_start", "audit_item", "audit_decide", "audit_check", "audit_take_back"}
     parts |= {"label_send"}
     parts |= {"slice_rename", "slice_delete"}
+    parts |= {"analysis_state", "analysis_start", "analysis_cancel", "tryout_ask"}
     parts |= {"results_csv", "download", "search", "member"}
     parts |= {"example_send", "predictions_send", "paraphrase_label", "paraphrase_check"}
     parts |= {"split_changes", "split_renew", "split_runs", "run_retrain", "run_report"}

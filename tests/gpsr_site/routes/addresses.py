@@ -168,6 +168,8 @@ KEYS: dict[str, RouteKeys] = {
         ),
         pk_of(run),
     ),
+    **dict.fromkeys(("analysis_state", "analysis_start", "analysis_cancel"), pk_of(run)),
+    **dict.fromkeys(("defaults", "sensitivity", "probes"), pk_of(run)),
     "prediction": lambda sample: {"pk": sample.run.pk, "example": sample.example.pk},
     **dict.fromkeys(("job", "job_state", "job_cancel", "job_answer"), pk_of(waiting_job)),
     **dict.fromkeys(

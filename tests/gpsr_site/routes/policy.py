@@ -92,6 +92,11 @@ POLICY = [
             "run_charts",
             "run_curves",
             "run_report",
+            "analysis_state",
+            "defaults",
+            "sensitivity",
+            "probes",
+            "tryout",
             "predictions",
             "prediction",
             "results",
@@ -185,6 +190,9 @@ POLICY = [
         Rule(name, LOG_IN, NOWHERE, NO, GONE_ON, GONE_ON, method="post")
         for name in ("slices", "slice_rename", "slice_delete")
     ),
+    Rule("tryout_ask", *MEMBERS, method="post"),
+    Rule("analysis_start", LOG_IN, NOWHERE, NO, GONE_ON, GONE_ON, method="post"),
+    Rule("analysis_cancel", LOG_IN, NOWHERE, NO, GONE_ON, GONE_ON, method="post"),
     # What admins decide
     Rule("queue_assign", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("queue_settings", *ADMINS),
@@ -234,6 +242,7 @@ ONLY_POSTED = {
     *("comment_delete", "comment_restore"),
     *("audit_decide", "audit_check", "audit_take_back"),
     *("slice_rename", "slice_delete"),
+    *("analysis_start", "analysis_cancel"),
 }
 # Routes of rows that take a POST at the address where they are read.
 READ_AND_POSTED = {

@@ -9,7 +9,7 @@ from annotations.jobs.carrying_out import carry_out
 from annotations.labelling import collect, label
 from annotations.labelling.proposals import request_proposals
 from annotations.language.forms import canonical_text, read_form
-from annotations.models import Job, Proposal, Verdict
+from annotations.models import Job, JobKind, Proposal, Verdict
 from annotations.splits.freezing import plan_split
 from parser_service.candidates import candidates_for
 from parser_service.candidates.composing import MOST_CANDIDATES
@@ -86,7 +86,8 @@ def claim_of(split):
 
 
 def carry_out_next() -> Job:
-    job = background.claim("a worker", "quick", Job)
+    waiting = Job.objects.queued().filter(kind=JobKind.PROPOSE).last()
+    job = background.claim("a worker", "quick", Job, waiting)
     carry_out(job)
     job.refresh_from_db()
     return job

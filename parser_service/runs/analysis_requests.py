@@ -1,0 +1,24 @@
+"""Asks a worker to analyse the errors of a run."""
+
+from __future__ import annotations
+
+from annotations.jobs import request_job
+from annotations.models import Job, JobKind, User
+from annotations.models.jobs import JobQuerySet
+from parser_service.models import TrainingRun
+
+
+def analysis_jobs(run: TrainingRun) -> JobQuerySet:
+    """Return the jobs that analyse ``run``, the newest first."""
+    return run.world.jobs.filter(kind=JobKind.ANALYSE, arguments__run=run.pk).order_by("-pk")
+
+
+def request_analysis(run: TrainingRun, by: User | None = None) -> Job:
+    """Queue the job where the run was trained, unless one waits or works already; return it.
+
+    What an earlier job has found is kept, so that this one goes on where that stopped.
+    """
+    active = analysis_jobs(run).active().first()
+    if active is not None:
+        return active
+    return request_job(JobKind.ANALYSE, run.world.name, by, {"run": run.pk}, queue=run.queue)

@@ -1,0 +1,67 @@
+"""Unexpected defaults of a run: forms that attract unlike inputs, probes, and what refusing to answer saves."""
+
+from __future__ import annotations
+
+from typing import Any
+from urllib.parse import urlencode
+
+from django.http import HttpRequest, HttpResponse
+from django.shortcuts import get_object_or_404, render
+
+from annotations.models import Duty, World
+from annotations.people.access import world_view
+from parser_service.analysing.findings import findings_of
+from parser_service.analysing.probe_summaries import paper_probes, summaries_of
+from parser_service.analysing.refusal_points import FACTS, curve_chart, place_of, points_of
+from parser_service.analysing.state import analysis_of
+from parser_service.analysing.target import SOURCES, parts_of
+from parser_service.models import TrainingRun
+
+
+@world_view(Duty.VIEW)
+def defaults(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """Show what is known of one part and source; ``bound`` is where the slider stands."""
+    run = get_object_or_404(TrainingRun.objects.for_table(), world=world, pk=pk)
+    parts = parts_of(run)
+    part = _choose(request.GET.get("part", ""), parts)
+    findings = findings_of(run, part)
+    attractors = findings.get("attractors", {})
+    source = _choose(request.GET.get("source", ""), list(attractors))
+    context = {
+        "run": run,
+        "aside": f"{run.parser}, run {run.pk}",
+        "analysis": analysis_of(run),
+        "parts": parts,
+        "part": part,
+        "sources": list(attractors),
+        "source": source,
+        "of_part": urlencode({"part": part, "source": str(SOURCES.get(source, ""))}),
+        "attractors": attractors.get(source),
+        "paper_probes": paper_probes(run),
+        "summaries": summaries_of(run),
+        **_refusal(findings.get("risk_coverage", {}).get(source), request.GET.get("bound", "")),
+    }
+    return render(request, "parser_service/defaults.html", context)
+
+
+def _choose(wanted: str, names: list[str]) -> str:
+    """Return the name that is asked for, or the first; empty where there is none."""
+    return wanted if wanted in names else next(iter(names), "")
+
+
+def _refusal(curve: dict[str, Any] | None, bound: str) -> dict[str, Any]:
+    """Return what the slider and its chart are drawn from; nothing without a curve."""
+    if curve is None:
+        return {}
+    points = points_of(curve)
+    place = place_of(points, bound)
+    chosen = points[place]
+    return {
+        "curve": curve,
+        "place": place,
+        "last_place": len(points) - 1,
+        "chosen": chosen,
+        "facts": list(zip(FACTS, chosen.facts, strict=True)),
+        "points": [[point.bound, point.sentence, *point.facts] for point in points],
+        "chart": curve_chart(points, place),
+    }
