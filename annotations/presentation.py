@@ -111,6 +111,7 @@ def difference(
 # A text in pieces: what happened to each (a ``Change``), and its words.
 Pieces = list[tuple[str, str]]
 WORDS = re.compile(r"\s+|\w+|[^\w\s]")
+TOKENS = re.compile(r"\s+|<\w+>|\w+|[^\w\s]")  # a class token is a word
 MOST_WORDS = 4_000  # of two texts together whose words are compared
 
 
@@ -133,7 +134,7 @@ def compare(old: str, new: str, is_form: bool = False) -> tuple[Pieces, Pieces]:
 
 def merge_words(old: str, new: str) -> Pieces:
     """Return one text with what is removed from ``old`` and added in ``new`` marked, word by word."""
-    left, right = WORDS.findall(old), WORDS.findall(new)
+    left, right = TOKENS.findall(old), TOKENS.findall(new)
     if len(left) + len(right) > MOST_WORDS:
         return [(str(Change.REMOVED), old), (str(Change.ADDED), new)]
     pieces: Pieces = []

@@ -72,12 +72,17 @@ def leave_traces(world: World, annotator: User, admin: User) -> None:
     )
 
 
-def _analyse(world: World, annotator: User) -> None:
-    """Let the errors of a run be analysed by a parser that is saved, and somebody try a text on it."""
-    run = TrainingRun.objects.succeeded().filter(world=world).first()
+def save_parser(run: TrainingRun) -> None:
+    """Store the parser of a run that was only written down as succeeded."""
     parser = make_parser(run)
     parser.fit(pairs_of(run.split, Part.TRAIN, run.train_sources))
     write_folder(model_folder(run.pk), parser.save)
+
+
+def _analyse(world: World, annotator: User) -> None:
+    """Let the errors of a run be analysed by its parser, and somebody try a text on it."""
+    run = TrainingRun.objects.succeeded().filter(world=world).first()
+    save_parser(run)
     analyse(Job(world=world, kind=JobKind.ANALYSE, arguments={"run": run.pk}), UNWATCHED)
     ask(world, annotator, "Bring an umbrella", [run])
 

@@ -229,8 +229,9 @@ def marked_text(pieces: list[tuple[str, str]]) -> SafeString:
 
 @register.simple_tag
 def edited_text(old: str, new: str) -> SafeString:
-    """Show ``new`` with the words that it has beyond ``old`` marked, and those that it lacks struck out."""
-    marked = format_html_join("", "{}", ((_mark_piece(*piece),) for piece in merge_words(old, new)))
+    """Show a command with the words that it has beyond ``old`` marked, and those that it lacks struck out."""
+    pieces = ((change, chips(text)) for change, text in merge_words(old, new))
+    marked = format_html_join("", "{}", ((_mark_piece(*piece),) for piece in pieces))
     return format_html('<span class="edited">{}</span>', marked)
 
 

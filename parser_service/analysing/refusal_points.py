@@ -26,9 +26,9 @@ class RefusalPoint:
 
 FACTS = (
     "Still answered",
-    "Wrong among these",
-    "Saved: wrong answers that are withheld",
-    "Lost: right answers that are withheld",
+    "Wrong among them",
+    "Saved: wrong ones withheld",
+    "Lost: right ones withheld",
     "Right as UNKNOWN",
     "Exact match",
 )

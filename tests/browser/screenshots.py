@@ -55,6 +55,7 @@ PAGES = {
     "runs": "runs/",
     "run-new": "runs/new/?parser=seq2seq",
     "results": "results/",
+    "tryout": "try/?text=Bring+an+umbrella",
     "search": "search/?q=the",
 }
 # The cells of one run; those of several seeds lead to their runs.
