@@ -17,24 +17,8 @@ from annotations.language.grammar.problems import (
     find_too_large,
     place_of,
 )
-from annotations.language.grammar.productions import (
-    GrammarFile,
-    Production,
-    print_production,
-    read_production,
-    read_productions,
-)
+from annotations.language.grammar.productions import Production
 from annotations.language.symbols import Choice, Nonterminal, Symbols, Text, Wildcard, walk
-
-__all__ = [
-    "ROOT",
-    "Grammar",
-    "GrammarFile",
-    "Production",
-    "print_production",
-    "read_production",
-    "read_productions",
-]
 
 ROOT = "Main"
 

@@ -17,26 +17,9 @@ from annotations.language.limits import MAX_GLOSS
 from annotations.language.predicates.gloss_patterns import default_pattern
 from annotations.language.predicates.glossing import sentence
 from annotations.language.predicates.signatures import (
-    ArgumentKind,
     Signature,
-    argument_kind,
     signature_of,
 )
-
-__all__ = [
-    "ArgumentKind",
-    "Misuse",
-    "Predicate",
-    "PredicateKind",
-    "Signature",
-    "argument_kind",
-    "check_form",
-    "find_misuses",
-    "gloss",
-    "infer_signatures",
-    "signature_of",
-]
-
 
 ALIKE = 0.6  # the share of common letters from which on one name is offered for another
 

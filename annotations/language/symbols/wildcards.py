@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 from annotations.language.errors import Position
-from annotations.language.symbols.printing import print_wildcard
 from annotations.language.symbols.reader import SymbolReader
 from annotations.language.symbols.symbols import Wildcard
-
-__all__ = ["print_wildcard", "read_wildcard"]
 
 
 def read_wildcard(text: str, position: Position | None = None) -> Wildcard:

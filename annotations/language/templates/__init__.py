@@ -9,7 +9,6 @@ from annotations.language.templates.consequences import (
     consequences_of,
 )
 from annotations.language.templates.expansion import (
-    DEFAULT_LIMIT,
     Conflict,
     Expansion,
     Generated,
@@ -23,7 +22,7 @@ from annotations.language.templates.generator_folder import (
     read_generator_files,
     read_generator_folder,
 )
-from annotations.language.templates.grammar_expansions import GrammarExpansions
+from annotations.language.templates.grammar_expansions import DEFAULT_LIMIT, GrammarExpansions
 from annotations.language.templates.keeping import Kept
 from annotations.language.templates.problems import TemplateChecker, template_checker
 from annotations.language.templates.sets import set_problems, shared_problems

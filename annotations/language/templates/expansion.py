@@ -13,20 +13,7 @@ from annotations.language.templates.grammar_expansions import (
     GrammarExpansions,
     too_many_commands,
 )
-from annotations.language.templates.synchronous import Derivation, TemplateExpander
 from annotations.language.templates.templates import SemanticTemplate
-
-__all__ = [
-    "DEFAULT_LIMIT",
-    "Conflict",
-    "Derivation",
-    "Expansion",
-    "Generated",
-    "TaskCategory",
-    "TemplateExpander",
-    "generate",
-    "generation_size",
-]
 
 # A command of the 2019 grammar takes 40; discarded combinations count too.
 STEPS_PER_COMMAND = 200
