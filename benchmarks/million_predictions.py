@@ -1,6 +1,6 @@
 """How long the pages of the error analysis take with a million predictions.
 
-    .venv/bin/python benchmarks/million_predictions.py [--examples 200000] [--requests 50] [--keep FOLDER]
+    .venv/bin/python -m benchmarks.million_predictions [--examples 200000] [--requests 50] [--keep FOLDER]
         [--database postgres://postgres@127.0.0.1:5432/million] [--only compare]
 
 Makes a world in a fresh installation: five runs of one split with 200,000 test examples, whose utterances and forms
@@ -29,7 +29,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from fresh_site import DATA, ROOT, WORLD, Site
+from benchmarks.fresh_site import DATA, ROOT, WORLD, Site
 
 RUNS = 5
 PARSERS_OF_RUNS = ("knn", "seq2seq", "ranker", "seq2seq", "ranker")
@@ -358,7 +358,7 @@ def prepare(site: Site, examples: int) -> None:
         sys.exit(f"needs the published files (GPSR_SHARED_DATA), and {DATA} does not hold them")
     site.import_world()
     site.run("createcachetable")
-    command = [sys.executable, __file__, "--fill", f"--examples={examples}"]
+    command = [sys.executable, "-m", __spec__.name, "--fill", f"--examples={examples}"]
     began = time.perf_counter()
     if subprocess.run(command, cwd=ROOT, env=site.environment, check=False).returncode:
         sys.exit("The database could not be filled.")

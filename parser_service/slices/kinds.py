@@ -176,8 +176,8 @@ class SlotFilter(django_filters.CharFilter):
         examples: list[int] = []
         if run.isdecimal() and len(run) < 19:
             rows = RunAnalysis.objects.filter(run__world=self.parent.request.world, run=run)
-            for findings in rows.values_list("findings__slots", flat=True):
-                examples += ((findings or {}).get("examples") or {}).get(confusion, [])
+            for lists in rows.values_list("findings__confusions__examples", flat=True):
+                examples += (lists or {}).get(confusion, [])
         return Condition(Q(example__in=examples))
 
 

@@ -27,13 +27,13 @@ class SlotRow:
 
 def slot_rows(world: World, run: TrainingRun, part: str) -> list[SlotRow] | None:
     """Return the most frequent confusions of a run's answers on a part; None where they are not analysed yet."""
-    row = run.analyses.filter(part=part).first()
-    findings = row.findings.get("slots") if row else None
-    if findings is None:
+    stored = run.analyses.filter(part=part).values_list("findings__confusions__rows", flat=True)
+    confusions = stored.first()
+    if confusions is None:
         return None
     path = reverse("predictions", kwargs={"world": world.name, "pk": run.pk})
     rows = []
-    for predicate, place, gold, predicted, count in findings["rows"][:MOST_ROWS]:
+    for predicate, place, gold, predicted, count in confusions[:MOST_ROWS]:
         confusion = f"{run.pk}:{predicate}:{place}:{gold}:{predicted}"
         url = f"{path}?{urlencode({'part': part, 'slot': confusion})}"
         rows.append(SlotRow(predicate, place, gold, predicted, count, url))
