@@ -46,6 +46,7 @@ urlpatterns = [
     path("runs/<int:pk>/curves/", runs.run_curves, name="run_curves"),
     path("runs/<int:pk>/cancel/", runs.run_cancel, name="run_cancel"),
     path("runs/<int:pk>/retrain/", retraining.run_retrain, name="run_retrain"),
+    path("compare/report.html", reports.compare_report, name="compare_report"),
     path("runs/<int:pk>/report.html", reports.run_report, name="run_report"),
     path("splits/<int:pk>/runs/", retraining.split_runs, name="split_runs"),
     path("runs/<int:pk>/analysis/", analysis.analysis_state, name="analysis_state"),

@@ -8,15 +8,24 @@ from typing import Any
 
 from annotations.models.splits import Part
 from annotations.splits.split_statistics import counts_of
-from parser_service.analysis.confusions import confuse_heads, confuse_slots
 from parser_service.models import TrainingRun
 from parser_service.parsers.registry import PARSERS
-from parser_service.reporting.answers import Answers
+from parser_service.reporting.categories import count_reviews, examples_by_category
 from parser_service.reporting.charts import Bar, Line, draw_bars, draw_lines
 from parser_service.reporting.document import Section, write_document
-from parser_service.reporting.slices import slice_tables
+from parser_service.reporting.findings import (
+    attractor_tables,
+    edit_rows,
+    findings_of,
+    refusal_curves,
+)
 from parser_service.reporting.wrong_answers import MOST_WRONG, count_wrong, wrong_answers
 from parser_service.results.reports import order_of
+from parser_service.slices import filters_of
+from parser_service.slices.addresses import Addresses
+from parser_service.slices.breakdown import break_down, break_down_by_slices
+from parser_service.slices.compared import Compared, compare_on
+from parser_service.slices.slots import slot_rows
 
 MOST_CONFUSIONS = 15
 
@@ -42,11 +51,17 @@ class _RunReport:
         self.run, self.part = run, part
 
     @cached_property
-    def answers(self) -> Answers:
-        return Answers(self.run, self.part)
+    def findings(self) -> dict[str, Any]:
+        """What a worker has found out about the answers, as far as it is."""
+        return findings_of(self.run, self.part)
+
+    @cached_property
+    def compared(self) -> Compared:
+        return compare_on(self.run.world, [self.run], self.part, filters_of(self.run.world, ""))
 
     @property
     def sections(self) -> list[Section]:
+        """The sections for which there is something to say."""
         sections = [
             Section("configuration", "Configuration", "configuration", self._configuration),
             Section("accuracy", "Accuracy", "accuracy", self._accuracy),
@@ -56,15 +71,29 @@ class _RunReport:
         sections += [
             Section("slices", f"Slices of the {self.part} part", "slices", self._slices),
             Section("confusions", "Confusions", "confusions", self._confusions),
-            Section(
-                "wrong",
-                "Wrong answers",
-                "wrong_answers",
-                self._wrong,
-                rows=lambda: wrong_answers(self.run, self.part),
-            ),
         ]
-        return sections
+        if self.run.reviews.exists():
+            sections.append(
+                Section("categories", "Kinds of errors", "categories", self._categories)
+            )
+        sections += [section for name, section in self._of_findings() if name in self.findings]
+        wrong = Section("wrong", "Wrong answers", "wrong_answers", self._wrong, self._wrong_rows)
+        return [*sections, wrong]
+
+    def _of_findings(self) -> Iterator[tuple[str, Section]]:
+        """Yield the name of each finding with its section."""
+        yield (
+            "attractors",
+            Section("attractors", "Unexpected defaults", "attractors", self._attractors),
+        )
+        yield (
+            "risk_coverage",
+            Section("refusing", "Refusing to answer", "refusing", self._refusing),
+        )
+        yield (
+            "sensitivity",
+            Section("sensitivity", "Changes of the utterance", "sensitivity", self._sensitivity),
+        )
 
     def _configuration(self) -> dict[str, Any]:
         entry = PARSERS.get(self.run.parser)
@@ -111,19 +140,50 @@ class _RunReport:
         }
 
     def _slices(self) -> dict[str, Any]:
-        return {"tables": slice_tables([self.answers]), "names": ["Exact match"]}
+        addresses = Addresses(self.run.world, (self.run,), self.part)
+        tables = break_down(self.compared, addresses)
+        saved = break_down_by_slices(self.compared, addresses)
+        return {
+            "tables": [*tables, saved] if saved.rows else tables,
+            "names": ["Exact match"],
+            "count": self.compared.count,
+        }
 
     def _confusions(self) -> dict[str, Any]:
-        labels, answers = self.answers.labels, self.answers.answers
-        slots = [row for row in confuse_slots(labels, answers) if row.is_error]
-        heads = confuse_heads(labels, answers).errors()
+        heads = self.compared.confusion(0).errors() if self.compared.count else []
+        slots = slot_rows(self.run.world, self.run, self.part)
         return {
             "heads": heads[:MOST_CONFUSIONS],
             "n_heads": len(heads),
-            "slots": slots[:MOST_CONFUSIONS],
-            "n_slots": len(slots),
+            "slots": None if slots is None else slots[:MOST_CONFUSIONS],
+            "n_slots": len(slots or ()),
+        }
+
+    def _categories(self) -> dict[str, Any]:
+        counts = count_reviews(self.run, self.part)
+        categories = [each.category for each in counts]
+        return {
+            "counts": counts,
+            "examples": examples_by_category(self.run, self.part, categories),
+        }
+
+    def _attractors(self) -> dict[str, Any]:
+        return {"tables": attractor_tables(self.findings["attractors"])}
+
+    def _refusing(self) -> dict[str, Any]:
+        curves = self.findings["risk_coverage"]
+        return {"curves": curves, "chart": refusal_curves(curves)}
+
+    def _sensitivity(self) -> dict[str, Any]:
+        return {
+            "rows": edit_rows(self.findings["sensitivity"]),
+            "words": self.findings.get("deciding_words"),
+            "pairs": self.findings.get("pairs"),
         }
 
     def _wrong(self) -> dict[str, Any]:
         count = count_wrong(self.run, self.part)
         return {"count": count, "shown": min(count, MOST_WRONG)}
+
+    def _wrong_rows(self) -> Iterator[Any]:
+        return wrong_answers(self.run, self.part)

@@ -7,13 +7,19 @@ from collections.abc import Iterator
 from django.contrib import messages
 from django.http import HttpRequest, HttpResponse, HttpResponseBase, StreamingHttpResponse
 from django.shortcuts import get_object_or_404, redirect
+from django.urls import reverse
 from django.views.decorators.cache import never_cache
 
 from annotations.models import Duty, World
 from annotations.people.access import world_view
 from parser_service.models import TrainingRun
+from parser_service.reporting.comparison_report import comparison_report
 from parser_service.reporting.run_report import part_of
 from parser_service.reporting.run_report import run_report as write_run_report
+from parser_service.slices.choosing import PARTS, choose_runs
+from parser_service.slices.compared import compare_on
+from parser_service.views.compare import ComparedFilters
+from parser_service.views.results import default_part
 
 
 @never_cache
@@ -36,3 +42,24 @@ def as_download(pieces: Iterator[str], name: str) -> HttpResponse | StreamingHtt
         content_type="text/html; charset=utf-8",
         headers={"Content-Disposition": f'attachment; filename="{name}"'},
     )
+
+
+@never_cache
+@world_view(Duty.VIEW)
+def compare_report(request: HttpRequest, world: World) -> HttpResponseBase:
+    """Download the comparison that the compare page shows at the same address."""
+    part = request.GET.get("part", "")
+    part = part if part in PARTS else default_part(world)
+    choice = choose_runs(world, request.GET, part)
+    filters = ComparedFilters(request)
+    page = f"{reverse('compare', kwargs={'world': world.name})}?{request.GET.urlencode()}"
+    if len(choice.runs) < 2:
+        messages.info(request, "Choose two runs or more to report how they compare.")
+        return redirect(page)
+    compared = compare_on(world, choice.runs, choice.part, filters.filters)
+    if not compared.count:
+        messages.info(request, "There is no example in this slice to report about.")
+        return redirect(page)
+    chosen = [(chip.label, chip.value) for chip in filters.chips]
+    name = f"{world.name}-runs-{'-'.join(str(run.pk) for run in choice.runs)}-{part}.html"
+    return as_download(comparison_report(compared, choice.names, chosen), name)

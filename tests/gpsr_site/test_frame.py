@@ -111,6 +111,7 @@ def test_every_page_of_a_world_belongs_to_one_entry():
     parts |= {"results_csv", "download", "search", "member"}
     parts |= {"example_send", "predictions_send", "paraphrase_label", "paraphrase_check"}
     parts |= {"split_changes", "split_renew", "split_runs", "run_retrain", "run_report"}
+    parts |= {"compare_report"}
     names = [name for place in PLACES for name in (place.name, *place.below)]
     assert len(names) == len(set(names))
     assert set(names) - {"job"} == ROUTES_OF_WORLDS - parts

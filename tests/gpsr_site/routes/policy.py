@@ -174,6 +174,8 @@ POLICY = [
         for name in ("queue_next", "queue_act", "queue_settle")
     ),
     Rule("queue_ask", LOG_IN, NOWHERE, NO, GONE_ON, GONE_ON, method="post"),
+    # Without two runs there is nothing to report, and one goes on to the page that offers some
+    Rule("compare_report", LOG_IN, NOWHERE, GONE_ON, GONE_ON, GONE_ON),
     # Reviewers send errors back to work; everybody with a role corrects a label
     Rule("example_send", LOG_IN, NOWHERE, NO, GONE_ON, GONE_ON, method="post"),
     Rule("predictions_send", LOG_IN, NOWHERE, NO, GONE_ON, GONE_ON, method="post"),

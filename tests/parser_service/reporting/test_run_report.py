@@ -8,12 +8,47 @@ import numpy as np
 import pytest
 
 from parser_service.analysis.slicing import accuracy_by
-from parser_service.models import Prediction
+from parser_service.models import ErrorCategory, Prediction, Review, RunAnalysis
 from parser_service.reporting import wrong_answers
 from parser_service.reporting.run_report import part_of
 from tests.parser_service.reporting.conftest import EVIL
 from tests.parser_service.reporting.reading import addresses, parse, table, texts
 from tests.parser_service.reporting.validating import validate
+
+EDIT = {
+    "kind": "article",
+    "edits": 10,
+    "flip_rate": 0.2,
+    "flip_interval": [0.1, 0.3],
+    "distance": 0.1,
+}
+FINDINGS = {
+    "attractors": {
+        "para": [
+            {
+                **{"form": '( go " <room> " )', "predicted": 7, "missed": 1, "annotated": 2},
+                **{"q_value": 0.0004, "dispersion": 0.9, "own_dispersion": None},
+                **{"is_attractor": True, "inputs": ["bring & tea"]},
+            }
+        ],
+        "gen": [],
+    },
+    "risk_coverage": {
+        "para": {
+            **{"count": 4, "correct": 3, "unanswered": 1, "area": 0.2, "best_area": 0.1},
+            **{"bounds": [None, 0.9, 0.1], "answered": [0, 2, 4], "wrong": [0, 0, 1]},
+        }
+    },
+    "sensitivity": [
+        {**EDIT, "label_distance": 0, "consistency": 0.5, "consistency_interval": [0.4, 0.6]}
+    ],
+    "deciding_words": {
+        **{"trials": 8, "changes": 4, "single": "bring"},
+        "words": [{"word": "bring", "trials": 4, "changes": 4, "rate": 1.0}],
+    },
+    "pairs": {"pairs": 5, "flips": 1, "rows": []},
+    "slots": {"rows": [["bring", 2, "location", "room", 3]], "examples": {}},
+}
 
 
 def test_the_file_is_valid(report, tmp_path):
@@ -62,7 +97,9 @@ def test_slices_are_those_of_the_analysis(report, run):
     rows = run.predictions.best().filter(example__part="validation").select_related("example")
     correct = np.array([[row.is_exact_match for row in rows]])
     expected = accuracy_by(correct, [row.example.source for row in rows])
-    shown = {row[0]: row[1:] for row in table(parse(report()), "slices")}
+    document = parse(report())
+    titles = texts(document, "#slices h3")
+    shown = {row[0]: row[1:] for row in table(document, "slices", titles.index("Source"))}
     assert set(shown) == set(expected.values) == {"generated", "paraphrased"}
     for place, source in enumerate(expected.values):
         low, high = 100 * expected.low[0, place], 100 * expected.high[0, place]
@@ -75,8 +112,50 @@ def test_slices_are_those_of_the_analysis(report, run):
 
 def test_every_kind_of_slice_counts_all_examples(report):
     document = parse(report())
-    for number in range(len(document.query("#slices table"))):
+    tables = document.query("#slices table")
+    assert tables
+    for number in range(len(tables)):
         assert sum(int(row[1]) for row in table(document, "slices", number)) == 12
+
+
+def test_reviews_are_counted_with_examples(report, run, reviewer):
+    category = ErrorCategory.objects.create(
+        world=run.world, code="wrong_place", name="Wrong <place>", position=0
+    )
+    wrong = run.predictions.filter(is_exact_match=False)[:5]
+    for row in wrong:
+        Review.objects.create(
+            run=run,
+            example=row.example,
+            category=category,
+            is_proposed=True,
+            answer=row.logical_form,
+        )
+    Review.objects.create(
+        run=run, example=wrong[0].example, category=category, reviewer=reviewer, note="<b>no</b>"
+    )
+    document = parse(report())
+    assert table(document, "categories") == [["Wrong <place>", "5", "1"]]
+    assert len(table(document, "categories", 1)) == 3
+    assert "<b>no</b>" in texts(document, "#categories")[0]
+
+
+def test_what_a_worker_found_out_is_shown(report, run, tmp_path):
+    RunAnalysis.objects.create(run=run, part="validation", version=1, findings=FINDINGS)
+    html = report()
+    assert validate(html, tmp_path) == []
+    document = parse(html)
+    assert table(document, "attractors")[0][:4] == ['( go " <room> " )', "bring & tea", "7", "1"]
+    assert table(document, "refusing") == [["para", "4", "3", "1", "0.200", "0.100"]]
+    assert len(document.query("#refusing polyline")) == 1
+    assert table(document, "sensitivity")[0][:3] == ["article", "10", "20.0 10.0–30.0"]
+    assert "bring" in texts(document, "#sensitivity p strong")
+    assert table(document, "confusions", 1) == [["bring", "2", "location", "room", "3"]]
+
+
+def test_without_findings_their_sections_are_left_out(report):
+    anchors = [each.attrs["id"] for each in parse(report()).query("main > section")]
+    assert not {"attractors", "refusing", "sensitivity", "categories"} & set(anchors)
 
 
 def test_wrong_answers_are_listed_with_their_differences(report, run):
