@@ -7,17 +7,12 @@ from typing import Any
 
 from django.utils.safestring import SafeString
 
-from parser_service.models import TrainingRun
+from parser_service.analysing.probe_kinds import PROBE_KINDS
+from parser_service.analysis.sensitivity import ALL_KINDS
 from parser_service.reporting.charts import Line, draw_lines
 
 MOST_ATTRACTORS = 15
 SOURCES = {"para": "paraphrases", "gen": "generated commands"}
-
-
-def findings_of(run: TrainingRun, part: str) -> dict[str, Any]:
-    """Return name → plain values of what has been found out about the answers to a part."""
-    row = run.analyses.filter(part=part).first()
-    return row.findings if row else {}
 
 
 def attractor_tables(
@@ -54,8 +49,5 @@ def edit_rows(
     findings: Sequence[Mapping[str, Any]],
 ) -> list[tuple[str, Mapping[str, Any]]]:
     """Return each kind of edit in words, with its row; all of them together come last."""
-    return [(_in_words(row["kind"]), row) for row in findings]
-
-
-def _in_words(kind: str) -> str:
-    return "all edits" if kind == "all" else str(kind).replace("_", " ")
+    names = {**{str(kind): name for kind, name in PROBE_KINDS.items()}, ALL_KINDS: "all edits"}
+    return [(names.get(row["kind"], row["kind"]), row) for row in findings]

@@ -8,17 +8,13 @@ from typing import Any
 
 from annotations.models.splits import Part
 from annotations.splits.split_statistics import counts_of
+from parser_service.analysing.findings import findings_of
 from parser_service.models import TrainingRun
 from parser_service.parsers.registry import PARSERS
 from parser_service.reporting.categories import count_reviews, examples_by_category
 from parser_service.reporting.charts import Bar, Line, draw_bars, draw_lines
 from parser_service.reporting.document import Section, write_document
-from parser_service.reporting.findings import (
-    attractor_tables,
-    edit_rows,
-    findings_of,
-    refusal_curves,
-)
+from parser_service.reporting.findings import attractor_tables, edit_rows, refusal_curves
 from parser_service.reporting.wrong_answers import MOST_WRONG, count_wrong, wrong_answers
 from parser_service.results.reports import order_of
 from parser_service.slices import filters_of

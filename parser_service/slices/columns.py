@@ -103,15 +103,15 @@ def _read_answers(run: TrainingRun, part: str, keys: Ints) -> dict[str, Any]:
     flags = ("is_exact_match", "is_equivalent", "is_well_formed")
     counts = ("answer_in_training", "label_in_training")
     best = run.predictions.best().filter(example__part=part, example__split=run.split_id)
-    numbers = ("example_id", *counts, *flags)
-    examples, *values, forms = _read_columns(best.order_by(), numbers, ("logical_form",))
+    read = _read_columns(best.order_by(), ("example_id", *counts), ("logical_form",), flags)
+    examples, values, forms, outcomes = read[0], read[1:3], read[3], read[4:]
     places = np.searchsorted(keys, examples)
     arrays: dict[str, Any] = {"is_there": _scatter(places, len(keys), True)}
-    for name, outcomes in zip(flags, values[len(counts) :], strict=True):
-        arrays[name] = _scatter(places, len(keys), outcomes.astype(bool))
+    for name, outcome in zip(flags, outcomes, strict=True):
+        arrays[name] = _scatter(places, len(keys), outcome)
     is_empty = np.array([not form for form in forms.values], dtype=bool)
     arrays["is_empty"] = _scatter(places, len(keys), is_empty[forms.codes])
-    for name, seen in zip(counts, values, strict=False):
+    for name, seen in zip(counts, values, strict=True):
         arrays[name] = np.full(len(keys), UNKNOWN_COUNT, dtype=np.int64)
         arrays[name][places] = seen
     heads = encode(head_predicates(forms.values), (NO_FORM,))
@@ -121,24 +121,35 @@ def _read_answers(run: TrainingRun, part: str, keys: Ints) -> dict[str, Any]:
     return arrays
 
 
-def _read_columns(rows: QuerySet[Any], numbers: Sequence[str], texts: Sequence[str]) -> list[Any]:
-    """Return whole numbers (``UNKNOWN_COUNT`` for None) as arrays, then texts as labels.
+def _read_columns(
+    rows: QuerySet[Any],
+    numbers: Sequence[str],
+    texts: Sequence[str],
+    flags: Sequence[str] = (),
+) -> list[Any]:
+    """Return whole numbers (``UNKNOWN_COUNT`` for None) as arrays, then texts as labels, then truths as arrays.
 
     A million rows are never in memory at once as Python objects, only the distinct texts.
     """
-    columns = [array.array("q") for _ in (*numbers, *texts)]
-    places: list[dict[str, int]] = [{} for _ in texts]
-    for some in batches(rows.values_list(*numbers, *texts).iterator(chunk_size=AT_ONCE), AT_ONCE):
-        values = list(zip(*some, strict=True))
-        for column, those in zip(columns, values[: len(numbers)], strict=False):
-            column.extend(UNKNOWN_COUNT if each is None else each for each in those)
-        for column, known, those in zip(
-            columns[len(numbers) :], places, values[len(numbers) :], strict=True
-        ):
-            column.extend(known.setdefault(each, len(known)) for each in those)
-    arrays = [np.frombuffer(column, dtype=np.int64) for column in columns]
-    labels = zip(places, arrays[len(numbers) :], strict=True)
-    return [*arrays[: len(numbers)], *(Labels(tuple(known), codes) for known, codes in labels)]
+    stored = [array.array("q") for _ in (*numbers, *texts)]
+    stored += [array.array("b") for _ in flags]
+    known: list[dict[str, int]] = [{} for _ in texts]
+    read = rows.values_list(*numbers, *texts, *flags).iterator(chunk_size=AT_ONCE)
+    for some in batches(read, AT_ONCE):
+        for place, values in enumerate(zip(*some, strict=True)):
+            text = place - len(numbers)
+            if 0 <= text < len(texts):
+                codes = known[text]
+                stored[place].extend(codes.setdefault(each, len(codes)) for each in values)
+            else:
+                stored[place].extend(UNKNOWN_COUNT if each is None else each for each in values)
+    columns: list[Any] = [np.frombuffer(each, dtype=each.typecode) for each in stored]
+    for place, codes in enumerate(known, start=len(numbers)):
+        columns[place] = Labels(tuple(codes), columns[place])
+    return [
+        each.astype(bool) if place >= len(numbers) + len(texts) else each
+        for place, each in enumerate(columns)
+    ]
 
 
 def _scatter(places: Ints, length: int, values: Any) -> Bools:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 
@@ -83,16 +84,18 @@ def _by_error(compared: Compared) -> Labels[str]:
     machine proposes, and the newest word of people most."""
     categories = list(compared.world.error_categories.values_list("pk", "code"))
     places = {key: place for place, (key, _) in enumerate(categories)}
-    codes = np.full(len(compared.examples.keys), len(places))
+    keys = compared.examples.keys
+    codes = np.full(len(keys), len(places))
     codes[compared.answers[0]["is_exact_match"]] = len(places) + 1
     reviews = Review.objects.filter(run=compared.base, category__in=places).order_by()
     proposed, said = reviews.filter(is_proposed=True), reviews.filter(is_proposed=False)
     for rows in (proposed, said.order_by("changed_at")):
-        known = [*rows.values_list("example_id", "category_id").iterator(chunk_size=AT_ONCE)]
-        at = np.searchsorted(compared.examples.keys, [example for example, _ in known])
-        for place, (example, category) in zip(at.tolist(), known, strict=True):
-            if place < len(codes) and compared.examples.keys[place] == example:
-                codes[place] = places[category]
+        pairs = rows.values_list("example_id", "category_id").iterator(chunk_size=AT_ONCE)
+        known = np.fromiter(chain.from_iterable(pairs), dtype=np.int64).reshape(-1, 2)
+        at = np.searchsorted(keys, known[:, 0])
+        is_there = np.take(keys, at, mode="clip") == known[:, 0] if len(keys) else at < 0
+        said_codes = np.array([places[key] for key in known[:, 1].tolist()], dtype=np.int64)
+        codes[at[is_there]] = said_codes[is_there]  # of two for one example, the later one
     return Labels((*(code for _, code in categories), NO_CATEGORY, RIGHT), codes[compared.chosen])
 
 
