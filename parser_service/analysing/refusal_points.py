@@ -72,7 +72,7 @@ def _point(curve: Mapping[str, Any], place: int) -> RefusalPoint:
     risk = 100 * wrong / answered if answered else None
     before, after = curve["correct"], curve["correct"] - lost + gained
     return RefusalPoint(
-        bound="" if bound is None else f"{bound:.6g}",
+        bound="" if bound is None else f"{bound:.4g}",
         sentence=_sentence(bound, answered == count, lost, gained, spared),
         facts=(
             f"{answered:,} of {count:,} ({100 * answered / count:.1f} %)",
