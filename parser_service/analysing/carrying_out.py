@@ -45,7 +45,7 @@ def _find_confusions(target: Target, progress: Progress) -> dict[str, Any]:
 OF_PARTS = (
     Step("attractors", "looking for forms that attract unlike inputs", attractor_findings),
     Step("risk_coverage", "drawing the risk–coverage curve", refusal_findings),
-    Step("slots", "counting confusions of slots", _find_confusions),
+    Step("confusions", "counting confusions of slots", _find_confusions),
 )
 OF_FIRST_PART = (
     Step("proposals", "proposing error categories", proposal_findings, 4),
