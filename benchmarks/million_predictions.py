@@ -59,6 +59,9 @@ PAGES = {
     "compare, on a saved slice": f"compare/?{ASKED}&slice={{slice}}",
     "compare, on an error category": f"compare/?{ASKED}&category={{category}}",
     "slices": "slices/",
+    "defaults": "runs/{run}/defaults/?part=test",
+    "sensitivity": "runs/{run}/sensitivity/?part=test",
+    "probes": "runs/{run}/probes/",
 }
 
 
@@ -79,7 +82,7 @@ def fill(examples: int) -> None:
     import django
 
     django.setup()
-    from django.db import transaction
+    from django.db import connection, transaction
 
     from annotations.generation.generating import generate_pairs
     from annotations.models import Split, User, World
@@ -102,6 +105,26 @@ def fill(examples: int) -> None:
         with transaction.atomic():
             store_run(split, number, keys, forms)
         print(f"run {number + 1} is stored", flush=True)
+    analyse(split)
+    with connection.cursor() as cursor:
+        if connection.vendor == "postgresql":
+            cursor.execute("VACUUM ANALYZE")  # what autovacuum does within minutes
+
+
+def analyse(split: Any) -> None:
+    """Let the analyses of a whole part be stored, as a worker does."""
+    from annotations.background.progress import UNWATCHED
+    from parser_service.analysing.carrying_out import OF_PARTS
+    from parser_service.analysing.findings import keep_finding
+    from parser_service.analysing.target import Target
+
+    for run in split.runs.all():
+        target = Target(run, "test")
+        for step in OF_PARTS:
+            began = time.process_time()
+            keep_finding(run, "test", step.name, step.find(target, UNWATCHED), UNWATCHED)
+            used = time.process_time() - began
+            print(f"{step.name} of run {run.pk}: {used:.1f} s of processor time", flush=True)
 
 
 def store_examples(split: Any, commands: list[Any], count: int) -> None:

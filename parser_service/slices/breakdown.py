@@ -92,7 +92,9 @@ def _by_group(compared: Compared, grouping: Grouping, addresses: Addresses) -> B
 
 def _slice_rows(compared: Compared, addresses: Addresses) -> Iterator[Row]:
     for saved in Slice.objects.filter(world=compared.world):
-        conditions = filters_of(compared.world, saved.query).conditions(but=["part"])
+        conditions = filters_of(compared.world, saved.query, of_run=compared.base).conditions(
+            but=["part"]
+        )
         chosen = {"slice": str(saved.pk)}
         is_quick = len(compared.examples.keys) <= MOST_ASKED
         if not is_quick and not are_in_columns(conditions, compared):

@@ -89,6 +89,7 @@ def compare_on(
     world: World, runs: Sequence[TrainingRun], part: str, filters: PredictionFilters
 ) -> Compared:
     """Compare runs of one split on a part, where ``filters`` (of which ``part`` is ignored) choose its examples."""
+    filters.of_run = runs[0]
     examples = examples_of(runs[0].split, part)
     answers = tuple(answers_of(run, part, examples) for run in runs)
     chosen = np.logical_and.reduce([columns["is_there"] for columns in answers])

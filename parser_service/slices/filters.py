@@ -12,7 +12,7 @@ from django.http import HttpRequest
 from annotations.lists.choices import Choices, predicate_choices, task_category_choices
 from annotations.lists.filtering import PageFilters
 from annotations.models.splits import part_choices, source_choices
-from parser_service.models import Prediction
+from parser_service.models import Prediction, TrainingRun
 from parser_service.slices.conditions import Condition
 from parser_service.slices.kinds import (
     NO_CATEGORY,
@@ -59,6 +59,7 @@ class PredictionFilters(PageFilters):
     """Chooses first answers by their example, by what they are, and by what reviews say of them.
 
     ``category_by`` refines ``category``, and ``versus_outcome`` what the run ``versus`` made of the same example.
+    ``of_run`` is the run of all rows where they are of one, which makes some filters quick.
     A page may add filters of its own; those without ``demand`` filter its rows, and are in no slice.
     """
 
@@ -102,6 +103,10 @@ class PredictionFilters(PageFilters):
         *("category_by", "min_words", "max_words", "min_depth", "max_depth"),
         *("answer", "label", "answer_head"),
     )
+
+    def __init__(self, *args: Any, of_run: TrainingRun | None = None, **kwargs: Any):
+        super().__init__(*args, **kwargs)
+        self.of_run = of_run
 
     def conditions(self, but: Collection[str] = ()) -> list[Condition]:
         """Return what the given filters demand, except for those called ``but``. Values that a filter does

@@ -11,7 +11,7 @@ from typing import Any
 
 import django_filters
 from django import forms
-from django.db.models import Exists, OuterRef, Q
+from django.db.models import Exists, OuterRef, Q, QuerySet
 from django.http import QueryDict
 from django_filters.fields import ChoiceField
 
@@ -132,19 +132,29 @@ class CategoryFilter(OpenChoice):
     """
 
     def demand(self, value: str, given: Given) -> Condition:
-        reviews = Review.objects.filter(
-            run=OuterRef("run"), example=OuterRef("example"), category__isnull=False
-        )
+        categories = self.parent.request.world.error_categories
+        reviews = Review.objects.filter(category__isnull=False)
         by_people, proposed = reviews.filter(is_proposed=False), reviews.filter(is_proposed=True)
         by = given.get("category_by")
         if value == NO_CATEGORY:
             asked = {"people": by_people, "machine": proposed}.get(by, reviews)
-            return Condition(Q(is_exact_match=False) & ~Q(Exists(asked)))
-        people_say = Q(Exists(by_people.filter(category__code=value)))
-        machine_says = Q(Exists(proposed.filter(category__code=value)))
+            return Condition(Q(is_exact_match=False) & ~self._have(asked))
+        category = categories.filter(code=value).first()
+        if category is None:
+            return Condition(Q(pk__in=()))
+        people_say = self._have(by_people.filter(category=category))
+        machine_says = self._have(proposed.filter(category=category))
         if by:
             return Condition(people_say if by == "people" else machine_says)
-        return Condition(people_say | (machine_says & ~Q(Exists(by_people))))
+        return Condition(people_say | (machine_says & ~self._have(by_people)))
+
+    def _have(self, reviews: QuerySet[Review]) -> Q:
+        """Return the condition to be an answer with one of these reviews. Where all answers are of one run, a
+        database looks its reviews up once instead of once for each answer."""
+        run = self.parent.of_run
+        if run is not None:
+            return Q(example__in=reviews.filter(run=run).values("example"))
+        return Q(Exists(reviews.filter(run=OuterRef("run"), example=OuterRef("example"))))
 
 
 class SavedSlice(Choice):
@@ -176,7 +186,7 @@ class SlotFilter(django_filters.CharFilter):
         examples: list[int] = []
         if run.isdecimal() and len(run) < 19:
             rows = RunAnalysis.objects.filter(run__world=self.parent.request.world, run=run)
-            for lists in rows.values_list("findings__confusions__examples", flat=True):
+            for lists in rows.values_list("findings__slots__examples", flat=True):
                 examples += (lists or {}).get(confusion, [])
         return Condition(Q(example__in=examples))
 

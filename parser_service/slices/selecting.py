@@ -32,7 +32,7 @@ def select(
         ValueError: there are predictions but no world.
     """
     if isinstance(rows, TrainingRun):
-        world, rows = world or rows.world, rows.predictions.best()
+        return filters_of(world or rows.world, query, rows.predictions.best(), rows).qs
     if world is None:
         raise ValueError("Predictions alone do not tell which world a query is about.")
     return filters_of(world, query, rows).qs
@@ -42,11 +42,12 @@ def filters_of(
     world: World,
     query: str | Mapping[str, object],
     rows: QuerySet[Prediction] | None = None,
+    of_run: TrainingRun | None = None,
 ) -> PredictionFilters:
-    """Return the filters that a query sets, over ``rows``."""
+    """Return the filters that a query sets, over ``rows``, which are ``of_run`` where they are of one."""
     data = QueryDict(query) if isinstance(query, str) else query
     rows = Prediction.objects.none() if rows is None else rows
-    return PredictionFilters(data, rows, request=SimpleNamespace(world=world))
+    return PredictionFilters(data, rows, request=SimpleNamespace(world=world), of_run=of_run)
 
 
 def slice_query(world: World, query: str | Mapping[str, object]) -> str:

@@ -27,7 +27,7 @@ class SlotRow:
 
 def slot_rows(world: World, run: TrainingRun, part: str) -> list[SlotRow] | None:
     """Return the most frequent confusions of a run's answers on a part; None where they are not analysed yet."""
-    stored = run.analyses.filter(part=part).values_list("findings__confusions__rows", flat=True)
+    stored = run.analyses.filter(part=part).values_list("findings__slots__rows", flat=True)
     confusions = stored.first()
     if confusions is None:
         return None

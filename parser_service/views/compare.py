@@ -11,6 +11,7 @@ from django.shortcuts import render
 from annotations.lists.listing import FilteredList
 from annotations.models import Duty, World
 from annotations.people.access import world_view
+from parser_service.analysing.state import analysis_of
 from parser_service.models import Prediction, TrainingRun
 from parser_service.slices import PredictionFilters, slice_query
 from parser_service.slices.addresses import Addresses
@@ -85,7 +86,10 @@ def comparison_of(
     if not compared.count:
         return {"compared": compared}
     place = confused_run(request, choice.runs)
+    slots = slot_rows(world, choice.runs[place], choice.part)
     return {
+        "slots": slots,
+        "analysis": analysis_of(choice.runs[place]) if slots is None else None,
         "compared": compared,
         "accuracies": list(
             zip(LETTERS, choice.runs, accuracies_of(compared, addresses), strict=False)
@@ -100,7 +104,6 @@ def comparison_of(
             (letter, run, filters.url(confusion=str(run.pk)))
             for letter, run in zip(LETTERS, choice.runs, strict=False)
         ],
-        "slots": slot_rows(world, choice.runs[place], choice.part),
     }
 
 

@@ -55,7 +55,7 @@ def prediction(request: HttpRequest, world: World, pk: int, example: int) -> Htt
 
 def listing_of(request: HttpRequest, run: TrainingRun) -> Listing:
     rows = run.predictions.best().select_related("example")
-    return Listing(request, PredictionFilters, rows, SORTS)
+    return Listing(request, PredictionFilters, rows, SORTS, of_run=run)
 
 
 def neighbours_of(listing: Listing, example: int) -> dict[str, int | None]:

@@ -42,7 +42,7 @@ def test_a_confusion_leads_to_its_answers(sample, anna):
     assert "are not analysed yet" in anna.get(PAGE, query).content.decode()
     findings = confusion_findings(sample.run, "validation")
     RunAnalysis.objects.create(
-        run=sample.run, part="validation", version=1, findings={"confusions": findings}
+        run=sample.run, part="validation", version=1, findings={"slots": findings}
     )
     slots = anna.get(PAGE, query).context["slots"]
     assert [row.count for row in slots] == [row[-1] for row in findings["rows"]]
@@ -50,7 +50,7 @@ def test_a_confusion_leads_to_its_answers(sample, anna):
         key = f"{row.predicate}:{row.place}:{row.gold}:{row.predicted}"
         chosen = anna.get(row.url).context["listing"]
         assert {each.example_id for each in chosen.rows} == set(findings["examples"][key])
-    RunAnalysis.objects.update(findings={"confusions": {"rows": [], "examples": {}}})
+    RunAnalysis.objects.update(findings={"slots": {"rows": [], "examples": {}}})
     assert "of the same kind" in anna.get(PAGE, query).content.decode()
 
 
