@@ -128,7 +128,15 @@ PLACES = (
         "Results",
         "results",
         "evaluated",
-        below=("predictions", "prediction", "defaults", "sensitivity", "probes", "tryout"),
+        below=(
+            "predictions",
+            "prediction",
+            "learning_curves",
+            "defaults",
+            "sensitivity",
+            "probes",
+            "tryout",
+        ),
     ),
     Place("Compare", "compare", below=("slices",)),
 )

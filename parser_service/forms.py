@@ -11,7 +11,7 @@ from parser_service.parsers.conditions import Protocol, TrainSources
 from parser_service.parsers.config_fields import ConfigField
 from parser_service.parsers.registry import config_fields, entry, make_config
 from parser_service.parsers.weight_files import missing_weights
-from parser_service.runs.requesting import LARGEST_SEED, MOST_SEEDS, seeds_from
+from parser_service.runs.requesting import LARGEST_SEED, LEAST_SHARE, MOST_SEEDS, seeds_from
 
 SOURCE_LABELS = {
     TrainSources.GENERATED: "generated",
@@ -23,7 +23,8 @@ PROTOCOL_LABELS = {
     Protocol.DOMAIN: "domain: also predicates and ontology",
     Protocol.GRAMMAR: "grammar: also the annotated grammar",
 }
-GENERAL = ("split", "train_sources", "protocol", "seed", "seeds")  # the fields of every parser
+# The fields of every parser.
+GENERAL = ("split", "train_sources", "protocol", "seed", "seeds", "share")
 PREFIX = "config-"  # before the names of hyperparameters
 LABELS = {"least_overlap": "Minimum overlap"}  # of hyperparameters whose name says less
 
@@ -41,6 +42,15 @@ class RunForm(forms.Form):
         max_value=MOST_SEEDS,
         initial=1,
         help_text="One run per seed, counting up. Results show mean and spread.",
+    )
+    share = forms.FloatField(
+        label="Share of the training pairs, %",
+        required=False,
+        min_value=100 * LEAST_SHARE,
+        max_value=100,
+        initial=100,
+        widget=forms.NumberInput(attrs={"step": "any"}),
+        help_text="Below 100 for learning curves; such runs are left out of the results table.",
     )
 
     def __init__(self, world: World, parser: str, *args: Any, **kwargs: Any):
@@ -88,6 +98,11 @@ class RunForm(forms.Form):
             if (named := str(self[PREFIX + each.name].value() or "").strip())
         }
         return missing_weights(make_config(self.parser, names), anywhere=False)
+
+    def clean_share(self) -> float:
+        """Return the percentage; all pairs where the field is empty."""
+        share = self.cleaned_data["share"]
+        return 100.0 if share is None else share
 
     def clean(self) -> dict[str, Any]:
         cleaned = super().clean()

@@ -72,7 +72,12 @@ def _group(options: list[ParserOption]) -> Iterator[ParserGroup]:
 def _seconds(world: World) -> dict[str, float]:
     """Return the median seconds of training of the newest finished runs, by parser."""
     times: dict[str, list[float]] = defaultdict(list)
-    runs = world.runs.succeeded().order_by("-id").values_list("parser", "seconds_trained")
+    runs = (
+        world.runs.succeeded()
+        .on_all_pairs()
+        .order_by("-id")
+        .values_list("parser", "seconds_trained")
+    )
     for parser, seconds in runs[:MOST_RUNS]:
         times[parser].append(seconds)
     return {parser: median(each) for parser, each in times.items()}
@@ -85,6 +90,7 @@ def _scores(world: World, split: Split | None) -> dict[str, dict[str, float]]:
         run__world=world,
         run__split=split,
         run__status=Status.SUCCEEDED,
+        run__train_share=1,
         part="validation",
         test_source__in=SOURCES,
     ).order_by("test_source")

@@ -49,6 +49,7 @@ def values_of(run: TrainingRun, parser: str) -> dict[str, Any]:
         "train_sources": run.train_sources,
         "protocol": run.protocol,
         "seed": run.seed,
+        "share": float(f"{100 * run.train_share:g}"),
     }
     config = run.config if parser == run.parser else {}
     return {**general, **{PREFIX + name: value for name, value in config.items()}}

@@ -56,11 +56,12 @@ class Parse:
 def best_run(world: World) -> TrainingRun:
     """Return the succeeded run of ``world`` that is most often right on validation paraphrases.
 
-    Of equally good ones the newest; where nothing was tested on paraphrases, generated commands
-    decide. Raises ValueError, a sentence, where no run has succeeded.
+    Runs on a share of the training pairs do not count. Of equally good ones the newest; where nothing
+    was tested on paraphrases, generated commands decide. Raises ValueError, a sentence, where no run has
+    succeeded.
     """
     tested = Evaluation.objects.filter(
-        run__world=world, run__status=Status.SUCCEEDED, part="validation"
+        run__world=world, run__status=Status.SUCCEEDED, run__train_share=1, part="validation"
     )
     for source in EVIDENCE:
         best = tested.filter(test_source=source).order_by("-accuracy", "-run_id").first()

@@ -8,6 +8,7 @@ from parser_service.views import (
     compare,
     defaults,
     labelling,
+    learning_curves,
     predictions,
     probes,
     reports,
@@ -67,4 +68,16 @@ urlpatterns = [
     path("slices/<int:pk>/rename/", slices.slice_rename, name="slice_rename"),
     path("slices/<int:pk>/delete/", slices.slice_delete, name="slice_delete"),
     path("results.csv", results.results_csv, name="results_csv"),
+    path("results.tex", results.results_latex, name="results_latex"),
+    path("results.json", results.results_json, name="results_json"),
+    path("results/curves/", learning_curves.learning_curves_page, name="learning_curves"),
+    path(
+        "results/curves/table/", learning_curves.learning_curves_table, name="learning_curves_table"
+    ),
+    path("results/curves/data/", learning_curves.learning_curves_data, name="learning_curves_data"),
+    path(
+        "runs/<int:pk>/learning-curve/",
+        learning_curves.learning_curve_start,
+        name="learning_curve_start",
+    ),
 ]

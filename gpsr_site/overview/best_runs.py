@@ -74,7 +74,11 @@ def best_runs(world: World) -> BestRuns | None:
     where nothing has been scored.
     """
     scores = Evaluation.objects.filter(
-        run__world=world, run__status=Status.SUCCEEDED, part=PART, count__gt=0
+        run__world=world,
+        run__status=Status.SUCCEEDED,
+        run__train_share=1,
+        part=PART,
+        count__gt=0,
     )
     is_by_form = Q(run__split__criterion=Criterion.LOGICAL_FORM)
     order = (ExpressionWrapper(is_by_form, BooleanField()), "-run_id")

@@ -20,7 +20,10 @@ if TYPE_CHECKING:
 
 
 # What runs that differ by their seed have in common, beside the configuration.
-SHARED_BY_SEEDS = ("world_id", "split_id", "parser", "parser_version", "protocol", "train_sources")
+SHARED_BY_SEEDS = (
+    *("world_id", "split_id", "parser", "parser_version", "protocol"),
+    *("train_sources", "train_share"),
+)
 
 
 def protocol_choices() -> list[tuple[str, str]]:
@@ -36,6 +39,10 @@ class TrainingRunQuerySet(WorkQuerySet):
         """Return the runs that an accuracy table shows or will show."""
         return self.exclude(status__in=[Status.FAILED, Status.CANCELLED, Status.LOST])
 
+    def on_all_pairs(self) -> TrainingRunQuerySet:
+        """Return the runs that learned from all training pairs, not from a share of them."""
+        return self.filter(train_share=1)
+
     def succeeded_since(self) -> TrainingRunQuerySet:
         """Return the runs after which one of the same parser on the same split has succeeded."""
         return self.filter(models.Exists(self._later_successes()))
@@ -45,7 +52,7 @@ class TrainingRunQuerySet(WorkQuerySet):
         return self.exclude(models.Exists(self._later_successes()))
 
     def _later_successes(self) -> TrainingRunQuerySet:
-        same = {name: models.OuterRef(name) for name in ("world", "split", "parser")}
+        same = {name: models.OuterRef(name) for name in ("world", "split", "parser", "train_share")}
         return TrainingRun.objects.succeeded().filter(pk__gt=models.OuterRef("pk"), **same)
 
     def seeds_of(self, run: TrainingRun) -> TrainingRunQuerySet:
@@ -67,9 +74,10 @@ class TrainingRunQuerySet(WorkQuerySet):
 class TrainingRun(BackgroundWork):
     """One parser trained once.
 
-    ``train_sources`` is ``gen``, ``para`` or ``gen+para``. ``content_key`` hashes all that decides the
-    result; a second request for the same is answered with this row. ``score_kind`` is empty where the
-    scores of its answers only order them.
+    ``train_sources`` is ``gen``, ``para`` or ``gen+para``. ``train_share`` is the share of their training
+    pairs that the seed draws, above 0 and up to 1, and ``train_pairs`` how many that are, None before
+    the run is scored. ``content_key`` hashes all that decides the result; a second request for the same
+    is answered with this row. ``score_kind`` is empty where the scores of its answers only order them.
     """
 
     noun: ClassVar[str] = "run"
@@ -82,6 +90,8 @@ class TrainingRun(BackgroundWork):
     config = models.JSONField(default=dict)
     protocol = models.CharField(max_length=12, choices=protocol_choices)
     train_sources = models.CharField(max_length=12)
+    train_share = models.FloatField(default=1.0)
+    train_pairs = models.PositiveIntegerField(null=True, blank=True)
     seed = models.PositiveBigIntegerField(default=0)
     content_key = models.CharField(max_length=64)
 
@@ -107,6 +117,11 @@ class TrainingRun(BackgroundWork):
 
     def __str__(self) -> str:
         return f"run {self.pk}: {self.parser} on {self.train_sources}"
+
+    @property
+    def share_in_words(self) -> str:
+        """``25 %`` of the training pairs; empty where the run learns from all."""
+        return "" if self.train_share == 1 else f"{100 * self.train_share:g} %"
 
     def note(self, message: str) -> None:
         """Add a line to the run's log."""

@@ -20,7 +20,8 @@ from annotations.models.splits import Criterion
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.parsers.conditions import SETTINGS, Protocol, only_source
 from parser_service.parsers.registry import PARSERS
-from parser_service.results.cells import Cell, newest_of_each_seed
+from parser_service.results.cells import Cell, Figure, figure_of, newest_of_each_seed
+from parser_service.results.measures import Measure
 from parser_service.results.published import published_accuracy, published_criteria
 
 # What distinguishes the splits of one corpus, in a word.
@@ -72,6 +73,11 @@ class Column:
         apart = APART[Criterion(self.split.criterion)]
         return f"Split {self.split.name}: no two parts share {apart}"
 
+    @property
+    def query(self) -> str:
+        """The address of its learning curves, without part and protocol."""
+        return urlencode({"split": self.split.name, "setting": "-".join(self.setting)})
+
     def shows(self, run: TrainingRun) -> bool:
         """Tell whether a score of ``run`` belongs here."""
         return run.split_id == self.split.pk and run.train_sources == self.train_sources
@@ -90,16 +96,17 @@ class Row:
 
     @property
     def title(self) -> str:
-        return PARSERS[self.parser].title if self.parser in PARSERS else self.parser
+        return title_of(self.parser)
 
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """All rows of one protocol. The best of a column is the best among them."""
+    """All rows of one protocol, by one or more measures. The best of a column is the best among them."""
 
     protocol: str
     columns: tuple[Column, ...]
     rows: tuple[Row, ...]
+    measures: tuple[Measure, ...] = (Measure.EXACT,)
 
     @property
     def sentence(self) -> str:
@@ -143,23 +150,36 @@ class Table:
         return [(row, list(zip(self.columns, row.cells, strict=True))) for row in self.rows]
 
 
-def accuracy_tables(world: World, part: str, splits: Iterable[Split]) -> list[Table]:
-    """Return the tables of ``world`` over ``splits`` for one ``part``. Three queries."""
+def accuracy_tables(
+    world: World,
+    part: str,
+    splits: Iterable[Split],
+    measures: tuple[Measure, ...] = (Measure.EXACT,),
+    with_published: bool = False,
+) -> list[Table]:
+    """Return the tables of ``world`` over ``splits`` for one ``part``. Three queries.
+
+    Runs on a share of the training pairs are left out (``learning_curves``).
+    """
     splits = sorted(splits, key=lambda split: split.pk)
-    runs = list(world.runs.filter(split__in=splits).scored_or_active().order_by("-id"))
+    runs = list(
+        world.runs.filter(split__in=splits).scored_or_active().on_all_pairs().order_by("-id")
+    )
     scores = Evaluation.objects.filter(run__in=runs, part=part)
-    maker = _Maker(
+    maker = TableMaker(
         world=world,
         part=part,
-        columns=tuple(_columns(runs, splits)),
+        columns=tuple(columns_of(runs, splits)),
         scores={(score.run_id, score.test_source): score for score in scores},
         published=published_criteria(splits),
+        measures=measures,
+        with_published=with_published,
     )
     tables = (maker.table(protocol, runs) for protocol in Protocol)
     return [table for table in tables if table.rows]
 
 
-def _columns(runs: list[TrainingRun], splits: list[Split]) -> Iterator[Column]:
+def columns_of(runs: Iterable[TrainingRun], splits: list[Split]) -> Iterator[Column]:
     """Yield a column for each setting and split with a run, in the order of the paper."""
     trained = {(run.train_sources, run.split_id) for run in runs}
     labels = _labels(splits)
@@ -178,10 +198,11 @@ def _labels(splits: list[Split]) -> dict[int, str]:
 
 
 @dataclass(frozen=True, slots=True)
-class _Maker:
+class TableMaker:
     """Sorts runs, newest first, into tables.
 
     ``scores`` are by run and test source, ``published`` says which split is which published one.
+    Figures are by ``measures``; that of exact match has the published one beside it where it is wanted.
     """
 
     world: World
@@ -189,15 +210,17 @@ class _Maker:
     columns: tuple[Column, ...]
     scores: dict[tuple[int, str], Evaluation]
     published: dict[int, str]
+    measures: tuple[Measure, ...] = (Measure.EXACT,)
+    with_published: bool = False
 
     def table(self, protocol: str, runs: list[TrainingRun]) -> Table:
         grouped = defaultdict(list)
         for run in runs:
             if run.protocol == protocol:
                 grouped[run.parser, run.changed_hyperparameters()].append(run)
-        ranked = sorted(grouped.items(), key=lambda item: _rank(*item[0]))
+        ranked = sorted(grouped.items(), key=lambda item: rank_of(*item[0]))
         rows = [self.row(parser, changes, mine) for (parser, changes), mine in ranked]
-        return Table(protocol, self.columns, tuple(_mark_best(rows)))
+        return Table(protocol, self.columns, tuple(_mark_best(rows)), self.measures)
 
     def row(self, parser: str, changes: Changes, runs: list[TrainingRun]) -> Row:
         cells = tuple(self.cell(parser, column, runs) for column in self.columns)
@@ -210,12 +233,17 @@ class _Maker:
         active = tuple(run for run in mine if not run.is_ended)
         if not counted and not active:
             return None
-        return Cell(
-            scores=tuple(self.scores[run.pk, column.test_source] for run in counted),
-            active=active,
-            published=self.published_figure(parser, column),
-            url=self.cell_url(counted, active, column),
-        )
+        scores = tuple(self.scores[run.pk, column.test_source] for run in counted)
+        published = self.published_figure(parser, column)
+        figures = self.figures(scores, published) if scores else ()
+        return Cell(scores, active, published, self.cell_url(counted, active, column), figures)
+
+    def figures(
+        self, scores: tuple[Evaluation, ...], published: float | None
+    ) -> tuple[Figure, ...]:
+        """Return the figures over ``scores``, one by each measure."""
+        beside = {Measure.EXACT: published} if self.with_published else {}
+        return tuple(figure_of(scores, each, beside.get(each)) for each in self.measures)
 
     def cell_url(
         self, counted: list[TrainingRun], active: tuple[TrainingRun, ...], column: Column
@@ -253,7 +281,12 @@ def seeds_url(world: World, run: TrainingRun) -> str:
     return f"{reverse('runs', kwargs={'world': world.name})}?seeds_of={run.pk}"
 
 
-def _rank(parser: str, changes: Changes) -> tuple[int, int, str]:
+def title_of(parser: str) -> str:
+    """Return what pages call a parser; its name where the registry no longer has it."""
+    return PARSERS[parser].title if parser in PARSERS else parser
+
+
+def rank_of(parser: str, changes: Changes) -> tuple[int, int, str]:
     """Return a sort key: the order of the registry, defaults before changed hyperparameters."""
     names = list(PARSERS)
     place = names.index(parser) if parser in names else len(names)
@@ -261,14 +294,15 @@ def _rank(parser: str, changes: Changes) -> tuple[int, int, str]:
 
 
 def _mark_best(rows: list[Row]) -> Iterator[Row]:
-    best = [max(map(_accuracy, cells)) for cells in zip(*(row.cells for row in rows), strict=True)]
+    best = [_best(cells) for cells in zip(*(row.cells for row in rows), strict=True)]
     for row in rows:
-        marked = (
-            replace(cell, is_best=_accuracy(cell) == top > 0) if cell and cell.score else cell
-            for cell, top in zip(row.cells, best, strict=True)
-        )
+        marked = (cell and cell.mark_best(top) for cell, top in zip(row.cells, best, strict=True))
         yield replace(row, cells=tuple(marked))
 
 
-def _accuracy(cell: Cell | None) -> float:
-    return cell.over_seeds.mean if cell and cell.over_seeds else -1.0
+def _best(cells: Iterable[Cell | None]) -> list[float]:
+    """Return the highest mean of a column by each measure; none where nothing is scored."""
+    means = [
+        [each.over_seeds.mean for each in cell.figures] for cell in cells if cell and cell.figures
+    ]
+    return [max(column) for column in zip(*means, strict=True)]

@@ -1,4 +1,4 @@
-"""The accuracy tables as rows of a plain table."""
+"""The accuracy tables as rows of a plain table and as JSON: what the page shows, one figure a row."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ import json
 from collections.abc import Iterable, Iterator
 from typing import Any
 
+from annotations.models import World
 from parser_service.results.accuracy import Column, Row, Table
-from parser_service.results.cells import Cell
+from parser_service.results.cells import Cell, Figure
+from parser_service.results.choices import ResultsChoices
 
 # Of the newest run of a cell.
 SCORE_FIELDS = (
@@ -21,8 +23,10 @@ SCORE_FIELDS = (
     "equivalent",
     "well_formed",
 )
-# Over all seeds of a cell.
+# Exact match over all seeds of a cell.
 SEED_FIELDS = ("mean", "spread", "n_seeds")
+# The figure that the page shows, in percent.
+FIGURE_FIELDS = ("measure", "percent", "plus_minus", "low", "high", "is_best", "published")
 # The columns, in this order in every release.
 HEADER = (
     "parser",
@@ -34,20 +38,34 @@ HEADER = (
     "criterion",
     *SCORE_FIELDS,
     *SEED_FIELDS,
+    *FIGURE_FIELDS,
 )
 
 
 def rows_of(tables: Iterable[Table]) -> Iterator[tuple[Any, ...]]:
-    """Yield one row per scored cell; accuracies are fractions of 1.
+    """Yield one row per figure of a scored cell; accuracies are fractions of 1.
 
-    The figures of the newest run come first, then mean and spread (the sample standard deviation,
-    empty for one run) over all seeds.
+    What the newest run scored comes first, then mean and spread of exact match (the sample standard
+    deviation, empty for one run) over all seeds, then the figure as the page shows it, in percent.
     """
     for table in tables:
         for row, cells in table.filled:
             for column, cell in cells:
                 if cell and cell.score:
-                    yield (*_about(table, row, column), *_figures(cell))
+                    about = (*_about(table, row, column), *_scores(cell))
+                    yield from ((*about, *_shown(figure)) for figure in cell.figures)
+
+
+def as_json(world: World, choices: ResultsChoices, tables: Iterable[Table]) -> dict[str, Any]:
+    """Return the choices of the page and the rows of ``rows_of``, each with its names."""
+    return {
+        "world": world.name,
+        "part": choices.part,
+        "splits": [split.name for split in choices.splits],
+        "measures": list(choices.measures),
+        "published": choices.published,
+        "figures": [dict(zip(HEADER, row, strict=True)) for row in rows_of(tables)],
+    }
 
 
 def _about(table: Table, row: Row, column: Column) -> tuple[Any, ...]:
@@ -56,6 +74,18 @@ def _about(table: Table, row: Row, column: Column) -> tuple[Any, ...]:
     return (row.parser, configuration, table.protocol, *column.setting, split.name, split.criterion)
 
 
-def _figures(cell: Cell) -> tuple[Any, ...]:
+def _scores(cell: Cell) -> tuple[Any, ...]:
     newest = tuple(getattr(cell.score, name) for name in SCORE_FIELDS)
     return newest + tuple(getattr(cell.over_seeds, name) for name in SEED_FIELDS)
+
+
+def _shown(figure: Figure) -> tuple[Any, ...]:
+    return (
+        figure.measure,
+        figure.percent,
+        figure.spread,
+        figure.low,
+        figure.high,
+        figure.is_best,
+        figure.published,
+    )

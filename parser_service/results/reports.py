@@ -30,6 +30,8 @@ def report_run(run: TrainingRun) -> dict[str, Any]:
         "split": run.split.name,
         "criterion": run.split.criterion,
         "train_sources": run.train_sources,
+        "train_share": run.train_share,
+        "train_pairs": run.train_pairs,
         "seed": run.seed,
         "attempts": run.attempt,
         "parameters": run.parameters,

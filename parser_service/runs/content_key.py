@@ -19,8 +19,14 @@ def content_key(
     protocol: str,
     train_sources: str,
     seed: int,
+    train_share: float = 1.0,
 ) -> str:
-    """Hash the split, the parser and its version, its configuration and protocol, and the seed (SHA-256)."""
+    """Hash the split, the parser and its version, its configuration and protocol, and the seed (SHA-256).
+
+    The share of the training pairs counts where it is not all of them: runs on all pairs keep the keys
+    that they had before there were shares.
+    """
+    share = {} if train_share == 1 else {"train_share": train_share}
     return _hash(
         {
             "split": split.content_hash,
@@ -31,6 +37,7 @@ def content_key(
             "protocol": protocol,
             "knowledge": knowledge_hash(split.world, protocol),
             "seed": seed,
+            **share,
         }
     )
 

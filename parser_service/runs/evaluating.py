@@ -46,14 +46,15 @@ def evaluate(
             observe.evaluation_progress(len(predicted) / total, f"predicting the {part} part")
     counts = Counter(pair.form for pair in train)
     ranked = [_rank_answers(run, example, answers, counts) for example, answers in predicted]
-    _store(run, ranked, parser.score_kind or "")
+    _store(run, ranked, score_kind=parser.score_kind or "", train_pairs=len(train))
 
 
 @outlasting
-def _store(run: TrainingRun, ranked: Sequence[Sequence[Prediction]], score_kind: str) -> None:
-    """Replace the run's predictions, one list for each example, and its evaluations."""
+def _store(run: TrainingRun, ranked: Sequence[Sequence[Prediction]], **about: str | int) -> None:
+    """Replace the run's predictions, one list for each example, and its evaluations, and store in the
+    run what is ``about`` them."""
     with lifecycle.held(run):
-        TrainingRun.objects.filter(pk=run.pk).update(score_kind=score_kind)
+        TrainingRun.objects.filter(pk=run.pk).update(**about)
         run.predictions.all().delete()
         run.evaluations.all().delete()
         rows = [row for rows in ranked for row in rows]

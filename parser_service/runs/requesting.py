@@ -17,6 +17,7 @@ from parser_service.parsers.weight_files import refuse_missing_weights
 from parser_service.runs.content_key import content_key
 
 LARGEST_SEED = 2**32 - 1
+LEAST_SHARE = 0.01  # of the training pairs
 MOST_SEEDS = 10  # of one request
 
 
@@ -31,18 +32,21 @@ def request(
     by: User | None = None,
     send: bool = True,
     anywhere: bool = False,
+    train_share: float = 1.0,
 ) -> tuple[TrainingRun, bool]:
     """Return a new queued run and True, or the run that has or will have the same result and False.
 
+    ``train_share`` is the share of the training pairs to learn from, at least ``LEAST_SHARE``.
     With ``send`` a worker is woken once the transaction is over. Pretrained weights may be named by
     any path where ``anywhere`` is set, for who has the command line; else as in ``missing_weights``.
     Raises ValueError, a sentence, where the request cannot be trained.
     """
     values = _whole_config(parser, config, anywhere)
     _refuse_what_cannot_be_trained(world, split, parser, protocol, train_sources, seed)
+    _refuse_share(train_share)
     run, created = TrainingRun.objects.get_or_create(
         world=world,
-        content_key=content_key(split, parser, values, protocol, train_sources, seed),
+        content_key=content_key(split, parser, values, protocol, train_sources, seed, train_share),
         status__in=[Status.QUEUED, Status.RUNNING, Status.SUCCEEDED],
         defaults={
             "split": split,
@@ -51,6 +55,7 @@ def request(
             "config": values,
             "protocol": protocol,
             "train_sources": train_sources,
+            "train_share": train_share,
             "seed": seed,
             "queue": registry.entry(parser).queue,
             "created_by": by,
@@ -76,6 +81,7 @@ def retrain(run: TrainingRun, split: Split, by: User | None = None) -> tuple[Tra
         run.seed,
         by,
         anywhere=True,  # its weights were admitted when it was started
+        train_share=run.train_share,
     )
 
 
@@ -105,6 +111,13 @@ def _whole_config(parser: str, config: Mapping[str, Any] | None, anywhere: bool)
     made = registry.make_config(parser, config)
     refuse_missing_weights(made, anywhere)
     return registry.config_values(made)
+
+
+def _refuse_share(share: float) -> None:
+    if not LEAST_SHARE <= share <= 1:
+        raise ValueError(
+            f"The share {share:g} of the training pairs has to lie between {LEAST_SHARE:g} and 1."
+        )
 
 
 def _refuse_what_cannot_be_trained(

@@ -25,7 +25,9 @@ def retrainable(split: Split) -> list[Retrainable]:
     """Return the newest succeeded run of each configuration on the split that ``split`` follows."""
     if split.follows_id is None:
         return []
-    before = TrainingRun.objects.succeeded().filter(split=split.follows_id).for_table()
+    before = (
+        TrainingRun.objects.succeeded().on_all_pairs().filter(split=split.follows_id).for_table()
+    )
     newest: dict[str, TrainingRun] = {}
     for run in before.order_by("-pk")[:MOST_RUNS]:
         newest.setdefault(_configuration(run), run)
@@ -52,5 +54,5 @@ def _by_configuration(runs: TrainingRunQuerySet) -> dict[str, TrainingRun]:
 
 
 def _configuration(run: TrainingRun) -> str:
-    values = run.parser, run.protocol, run.train_sources, run.seed, run.config
+    values = run.parser, run.protocol, run.train_sources, run.train_share, run.seed, run.config
     return json.dumps(values, sort_keys=True)

@@ -21,7 +21,7 @@ from parser_service.runs import lifecycle
 from parser_service.runs.analysis_requests import request_analysis
 from parser_service.runs.checkpoints import model_folder, write_folder
 from parser_service.runs.evaluating import evaluate
-from parser_service.runs.examples import pairs_of
+from parser_service.runs.examples import pairs_of, training_pairs
 from parser_service.runs.folders import keep_track_of
 from parser_service.runs.knowledge import knowledge_of
 from parser_service.runs.observing import TRAINING_SHARE, RunObserver, tell_nobody
@@ -50,7 +50,7 @@ def train(
 def _fit_and_evaluate(run: TrainingRun, observe: RunObserver) -> None:
     began = time.monotonic()
     keep_track_of(run)
-    train_pairs = pairs_of(run.split, Part.TRAIN, run.train_sources)
+    train_pairs = training_pairs(run.split, run.train_sources, run.train_share, run.seed)
     validation = pairs_of(run.split, Part.VALIDATION, run.train_sources)
     parser = make_parser(run)
     observe.log(f"{len(train_pairs)} pairs to train on, {len(validation)} to choose by.")

@@ -70,9 +70,12 @@ def waiting_of(run: TrainingRun) -> Waiting:
 def usual_seconds(run: TrainingRun) -> float | None:
     """Return the median time of the newest uninterrupted runs like ``run``, evaluation included.
 
-    These are runs of the same parser, with the same hyperparameters if there are any such.
+    These are runs of the same parser on the same share of the training pairs, with the same
+    hyperparameters if there are any such.
     """
-    of_parser = TrainingRun.objects.succeeded().filter(parser=run.parser, attempt=1)
+    of_parser = TrainingRun.objects.succeeded().filter(
+        parser=run.parser, train_share=run.train_share, attempt=1
+    )
     for ended in (of_parser.filter(config=run.config), of_parser):
         times = ended.order_by("-id").values_list("started_at", "finished_at")[:COUNTED]
         seconds = [(finished - started).total_seconds() for started, finished in times if started]

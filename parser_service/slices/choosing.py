@@ -66,7 +66,10 @@ class RunChoice:
 
 
 def title_of(run: TrainingRun) -> str:
-    return PARSERS[run.parser].title if run.parser in PARSERS else run.parser
+    """Return what pages call the parser of a run, and the share of the training pairs that it learned from
+    where that is not all."""
+    title = PARSERS[run.parser].title if run.parser in PARSERS else run.parser
+    return f"{title}, {run.share_in_words} of the pairs" if run.share_in_words else title
 
 
 def choose_runs(world: World, query: QueryDict, part: str) -> RunChoice:

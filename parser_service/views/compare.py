@@ -13,6 +13,7 @@ from annotations.models import Duty, World
 from annotations.people.access import world_view
 from parser_service.analysing.state import analysis_of
 from parser_service.models import Prediction, TrainingRun
+from parser_service.results.choices import default_part
 from parser_service.slices import PredictionFilters, slice_query
 from parser_service.slices.addresses import Addresses
 from parser_service.slices.breakdown import accuracies_of, break_down, break_down_by_slices
@@ -21,7 +22,6 @@ from parser_service.slices.compared import compare_on
 from parser_service.slices.heat import confusion_table
 from parser_service.slices.pairs import pair_rows, win_matrix
 from parser_service.slices.slots import slot_rows
-from parser_service.views.results import default_part
 
 OF_THE_PAGE = ("part", "versus", "versus_outcome", "slot")
 

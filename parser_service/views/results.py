@@ -4,19 +4,16 @@ from __future__ import annotations
 
 import csv
 
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpRequest, HttpResponse, JsonResponse
 from django.shortcuts import render
 from django.views.decorators.cache import never_cache
 
 from annotations.exporting.split_export import formula_safe
 from annotations.models import Duty, World
-from annotations.models.splits import Part
 from annotations.people.access import world_view
-from parser_service.results.accuracy import accuracy_tables
-from parser_service.results.export import HEADER, rows_of
-
-PARTS = (Part.VALIDATION, Part.TEST)
-MOST_SPLITS = 4  # side by side without a choice
+from parser_service.results.choices import read_choices, scored_splits
+from parser_service.results.export import HEADER, as_json, rows_of
+from parser_service.results.latex import as_latex
 
 
 @world_view(Duty.VIEW)
@@ -34,40 +31,56 @@ def results_table(request: HttpRequest, world: World) -> HttpResponse:
 
 @world_view(Duty.VIEW)
 def results_csv(request: HttpRequest, world: World) -> HttpResponse:
-    """Download what the tables show, one cell per line, as fractions of 1."""
-    disposition = f'attachment; filename="{world.name}-results.csv"'
+    """Download what the tables show, one figure per line."""
+    choices = read_choices(request.GET, world, scored_splits(world))
     response = HttpResponse(
-        content_type="text/csv; charset=utf-8", headers={"Content-Disposition": disposition}
+        content_type="text/csv; charset=utf-8", headers=as_attachment(world, "csv")
     )
     writer = csv.writer(response)
     writer.writerow(HEADER)
-    rows = rows_of(results_of(request, world)["tables"])
+    rows = rows_of(choices.tables(world))
     writer.writerows([formula_safe(cell) for cell in row] for row in rows)
     return response
 
 
+@world_view(Duty.VIEW)
+def results_latex(request: HttpRequest, world: World) -> HttpResponse:
+    """Download the tables for a paper."""
+    choices = read_choices(request.GET, world, scored_splits(world))
+    return HttpResponse(
+        as_latex(choices, choices.tables(world)),
+        content_type="application/x-tex; charset=utf-8",
+        headers=as_attachment(world, "tex"),
+    )
+
+
+@world_view(Duty.VIEW)
+def results_json(request: HttpRequest, world: World) -> HttpResponse:
+    """Download the choices of the page and what its tables show."""
+    choices = read_choices(request.GET, world, scored_splits(world))
+    shown = as_json(world, choices, choices.tables(world))
+    options = {"indent": 1, "ensure_ascii": False}
+    return JsonResponse(shown, json_dumps_params=options, headers=as_attachment(world, "json"))
+
+
+def as_attachment(world: World, ending: str) -> dict[str, str]:
+    """Return the header with which a browser stores an answer as a file."""
+    return {"Content-Disposition": f'attachment; filename="{world.name}-results.{ending}"'}
+
+
 def results_of(request: HttpRequest, world: World) -> dict[str, object]:
-    """Return the tables for the part and splits named in the URL, by default the newest splits."""
-    splits = list(world.splits.filter(runs__isnull=False).distinct())
-    names = request.GET.getlist("split")
-    chosen = [split for split in splits if split.name in names] or splits[:MOST_SPLITS]
-    part = request.GET.get("part", "")
-    part = part if part in PARTS else default_part(world)
-    tables = accuracy_tables(world, part, chosen)
+    """Return the tables that the address chooses, and its choices."""
+    splits = scored_splits(world)
+    choices = read_choices(request.GET, world, splits)
+    tables = choices.tables(world)
     return {
         "tables": tables,
         "is_active": any(table.is_active for table in tables),
         "is_scored": any(table.is_scored for table in tables),
         "is_by_criterion": any(table.is_by_criterion for table in tables),
         "is_published": any(table.is_published for table in tables),
-        "parts": PARTS,
-        "part": part,
+        "choices": choices,
+        "part": choices.part,
         "splits": splits,
-        "chosen": chosen,
+        "chosen": choices.splits,
     }
-
-
-def default_part(world: World) -> str:
-    """Return the test part, unless nothing has been scored on one."""
-    is_tested = world.runs.filter(evaluations__part=Part.TEST).exists()
-    return Part.TEST if is_tested else Part.VALIDATION

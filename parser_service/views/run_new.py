@@ -67,6 +67,7 @@ def start(request: HttpRequest, world: World, form: RunForm) -> list[TrainingRun
             config=form.config,
             by=request.user,
             seeds=form.asked_seeds,
+            train_share=form.cleaned_data["share"] / 100,
             **asked,
         )
     except ValueError as error:

@@ -17,6 +17,7 @@ from parser_service.filters import RunFilters
 from parser_service.models import TrainingRun
 from parser_service.models.runs import Status
 from parser_service.parsers.registry import PARSERS
+from parser_service.results.learning_curves import curves_url
 from parser_service.results.reports import order_of
 from parser_service.runs import lifecycle
 from parser_service.runs.curves import CURVES, loss_curves, will_have_curves
@@ -78,6 +79,7 @@ def state_of(world: World, pk: int) -> dict[str, Any]:
         "run": run,
         "title": entry.title if entry else run.parser,
         "aside": f"run {run.pk}",
+        "curves_url": curves_url(world, run),
         "loss_title": f"Loss by epoch, {entry.loss_unit if entry else 'nats'}",
         "evaluations": sorted(run.evaluations.all(), key=order_of),
         "epochs": list(run.epochs.all()),

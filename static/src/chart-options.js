@@ -87,6 +87,43 @@ function markOf(mark, palette) {
   };
 }
 
+// Points [x, y, low, high] as a line, and each interval as a bar with ends. The name, at most `width` wide, stands at the end.
+function pointsOf(one, colour, width) {
+  return [
+    {
+      type: "line",
+      name: one.name,
+      data: one.points.map(([x, y]) => [x, y]),
+      symbol: "circle",
+      symbolSize: 7,
+      lineStyle: { width: 2, color: colour },
+      itemStyle: { color: colour },
+      endLabel: { show: true, formatter: "{a}", color: colour, fontSize: 12, lineHeight: 16, width, overflow: "break" },
+      labelLayout: { moveOverlap: "shiftY" },
+      emphasis: { disabled: true },
+    },
+    {
+      type: "custom",
+      name: one.name,
+      data: one.points,
+      encode: { x: 0, y: [2, 3] },
+      tooltip: { show: false },
+      silent: true,
+      renderItem: (_, api) => barWithEnds(api, colour),
+    },
+  ];
+}
+
+function barWithEnds(api, colour) {
+  const [x, low] = api.coord([api.value(0), api.value(2)]);
+  const [, high] = api.coord([api.value(0), api.value(3)]);
+  const line = (x1, y1, x2, y2) => ({ type: "line", shape: { x1, y1, x2, y2 }, style: { stroke: colour, lineWidth: 1, opacity: 0.6 } });
+  return {
+    type: "group",
+    children: [line(x, low, x, high), line(x - 4, low, x + 4, low), line(x - 4, high, x + 4, high)],
+  };
+}
+
 function tooltipOf(palette) {
   return {
     trigger: "axis",
@@ -99,26 +136,39 @@ function tooltipOf(palette) {
   };
 }
 
+function numberAxis(axis, palette) {
+  return {
+    ...categoryAxis({ ...axis, values: [] }, palette),
+    type: "value",
+    data: undefined,
+    min: 0,
+    splitLine: { show: false },
+  };
+}
+
 /** ECharts' options for our `data`, drawn into `element`. */
 export function optionOf(data, element) {
   const palette = paletteOf(element, data.series);
-  const longest = Math.max(...data.series.map((one) => one.name.length));
+  const isPoints = data.kind === "points";
+  const longest = Math.max(...data.series.map((one) => one.name.length)) * 6.5;
+  const nameWidth = isPoints ? Math.min(longest, 0.35 * element.clientWidth) : longest;
   return {
     textStyle: { fontFamily: palette.font, color: palette.ink },
     aria: { enabled: true },
     grid: {
       left: 8,
-      right: longest * 6.5 + 12,
+      right: nameWidth + 12,
       top: 32,
       bottom: data.x.label ? 32 : 8,
       containLabel: true,
     },
     tooltip: tooltipOf(palette),
-    xAxis: categoryAxis(data.x, palette),
+    xAxis: isPoints ? numberAxis(data.x, palette) : categoryAxis(data.x, palette),
     yAxis: valueAxis(data.y, palette),
-    series: data.series.map((one, at) => ({
-      ...lineOf(one, palette.series[at]),
-      markLine: at === 0 ? markOf(data.mark, palette) : undefined,
-    })),
+    series: data.series.flatMap((one, at) =>
+      isPoints
+        ? pointsOf(one, palette.series[at], nameWidth + 12)
+        : { ...lineOf(one, palette.series[at]), markLine: at === 0 ? markOf(data.mark, palette) : undefined },
+    ),
   };
 }

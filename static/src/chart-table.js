@@ -17,17 +17,35 @@ function row(...cells) {
   return made;
 }
 
+// A row for each x, a column for each line.
+function lineRows(data) {
+  return [
+    row(cell("th", data.x.label || ""), ...data.series.map((one) => cell("th", one.name, "number"))),
+    ...data.x.values.map((x, at) =>
+      row(cell("th", x), ...data.series.map((one) => cell("td", figure(one.values[at]), "number"))),
+    ),
+  ];
+}
+
+// A row for each point.
+function pointRows(data) {
+  const heads = [data.x.label, data.y.label, "from", "to"];
+  return [
+    row(cell("th", ""), ...heads.map((head) => cell("th", head, "number"))),
+    ...data.series.flatMap((one) =>
+      one.points.map((point) => row(cell("th", one.name), ...point.map((value) => cell("td", figure(value), "number")))),
+    ),
+  ];
+}
+
 export function showTable(chart, data) {
   const details = chart.querySelector("details");
   if (!details) return;
+  const [first, ...others] = data.kind === "points" ? pointRows(data) : lineRows(data);
   const head = document.createElement("thead");
-  head.append(
-    row(cell("th", data.x.label || ""), ...data.series.map((one) => cell("th", one.name, "number"))),
-  );
+  head.append(first);
   const body = document.createElement("tbody");
-  data.x.values.forEach((x, at) => {
-    body.append(row(cell("th", x), ...data.series.map((one) => cell("td", figure(one.values[at]), "number"))));
-  });
+  body.append(...others);
   const table = document.createElement("table");
   table.append(head, body);
   const wrap = document.createElement("div");

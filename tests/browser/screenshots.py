@@ -55,6 +55,7 @@ PAGES = {
     "runs": "runs/",
     "run-new": "runs/new/?parser=seq2seq",
     "results": "results/",
+    "learning-curves": "results/curves/",
     "tryout": "try/?text=Bring+an+umbrella",
     "search": "search/?q=the",
 }

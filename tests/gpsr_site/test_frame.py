@@ -108,10 +108,11 @@ def test_every_page_of_a_world_belongs_to_one_entry():
     parts |= {"label_send"}
     parts |= {"slice_rename", "slice_delete"}
     parts |= {"analysis_state", "analysis_start", "analysis_cancel", "tryout_ask"}
-    parts |= {"results_csv", "download", "search", "member"}
+    parts |= {"results_csv", "results_latex", "results_json", "download", "search", "member"}
     parts |= {"example_send", "predictions_send", "paraphrase_label", "paraphrase_check"}
     parts |= {"split_changes", "split_renew", "split_runs", "run_retrain", "run_report"}
     parts |= {"compare_report"}
+    parts |= {"learning_curves_table", "learning_curves_data", "learning_curve_start"}
     names = [name for place in PLACES for name in (place.name, *place.below)]
     assert len(names) == len(set(names))
     assert set(names) - {"job"} == ROUTES_OF_WORLDS - parts

@@ -24,6 +24,7 @@ from annotations.language.corpus.pairs import (
     read_triples,
     write_pairs,
 )
+from annotations.language.corpus.shares import draw_share
 from annotations.language.corpus.splitting import (
     DEFAULT_PROPORTIONS,
     Criterion,
@@ -54,6 +55,7 @@ __all__ = [
     "comparisons",
     "content_hash",
     "distance",
+    "draw_share",
     "near_duplicates",
     "read_pairs",
     "read_triples",

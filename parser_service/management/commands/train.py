@@ -47,6 +47,13 @@ class Command(ReportingCommand):
             choices=list(Protocol),
             help="default: the one that knows least of those the parser has",
         )
+        parser.add_argument(
+            "--share",
+            type=float,
+            default=1.0,
+            help="share of the training pairs to learn from, such as 0.25. The seed draws them; a smaller "
+            "share is part of a larger one (default: 1, all of them)",
+        )
         parser.add_argument("--seed", type=int, default=0)
         parser.add_argument(
             "--seeds",
@@ -69,6 +76,7 @@ class Command(ReportingCommand):
             "config": read_hyperparameters(parser, options["config"]),
             "protocol": options["protocol"] or PARSERS[parser].protocols[0],
             "train_sources": read_sources(options["sources"]),
+            "train_share": options["share"],
         }
         # Each is requested when its turn comes: nothing stays in the queue where this is interrupted.
         runs = [self._train(home, seed, asked) for seed in seeds]

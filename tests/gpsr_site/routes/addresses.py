@@ -165,6 +165,7 @@ KEYS: dict[str, RouteKeys] = {
         (
             *("run", "run_state", "run_charts", "run_curves", "run_cancel", "run_retrain"),
             *("run_report", "predictions", "predictions_send"),
+            "learning_curve_start",
         ),
         pk_of(run),
     ),

@@ -158,3 +158,15 @@ def test_a_run_whose_worker_is_gone_is_finished_here(split):
     lifecycle.claim("cpu-1@elsewhere", run.queue, run)
     TrainingRun.objects.update(lease_until=timezone.now())
     assert call("knn", *HERE)["attempts"] == 2
+
+
+def test_a_share_of_the_pairs_is_enough(split):
+    report = call("knn", *HERE, "--share", "0.25")
+    whole = call("knn", *HERE)
+    assert (report["train_share"], whole["train_share"]) == (0.25, 1.0)
+    assert 0 < report["train_pairs"] < whole["train_pairs"] == 48
+
+
+def test_a_share_of_nothing_is_refused(split):
+    with pytest.raises(CommandError, match=r"between 0\.01 and 1"):
+        call("knn", *HERE, "--share", "0")

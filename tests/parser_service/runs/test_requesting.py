@@ -26,6 +26,7 @@ def test_what_decides_the_result_is_trained_once(split):
         {"train_sources": "gen+para"},
         {"config": {"least_overlap": 0.5}},
         {"parser": "grammar-oracle", "protocol": "grammar"},
+        {"train_share": 0.25},
     ],
 )
 def test_anything_that_decides_the_result_makes_another_run(split, changes):
@@ -123,3 +124,16 @@ def test_of_many_who_ask_for_the_same_all_get_one_run(split):
     asked = at_once(lambda _: requesting.request(split.world, split, "knn", send=False))
     assert len({run.pk for run, _ in asked}) == 1
     assert sum(is_new for _, is_new in asked) == 1
+
+
+def test_runs_on_all_pairs_keep_the_keys_that_they_had_before_there_were_shares(split):
+    run, _ = requesting.request(split.world, split, "knn", train_share=1.0)
+    before = "ead3fd28369b9aab7f55ac7cff7a781547656caa91e6362886dfe6261eca3184"
+    assert run.content_key == before
+    assert ask(split) == run
+
+
+@pytest.mark.parametrize("share", [0, 0.001, -1, 1.01])
+def test_a_share_that_there_is_not_is_refused(share, split):
+    with pytest.raises(ValueError, match=r"between 0\.01 and 1"):
+        requesting.request(split.world, split, "knn", train_share=share)

@@ -1,0 +1,116 @@
+"""The accuracy tables in LaTeX, with booktabs: what the page shows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import accumulate, pairwise
+
+from parser_service.results.accuracy import Column, Row, Table
+from parser_service.results.cells import Cell, Figure
+from parser_service.results.choices import ResultsChoices
+
+ESCAPES = {
+    "\\": r"\textbackslash{}",
+    "{": r"\{",
+    "}": r"\}",
+    "$": r"\$",
+    "&": r"\&",
+    "#": r"\#",
+    "%": r"\%",
+    "_": r"\_",
+    "~": r"\textasciitilde{}",
+    "^": r"\textasciicircum{}",
+    "<": r"\textless{}",
+    ">": r"\textgreater{}",
+    "|": r"\textbar{}",
+    '"': "''",
+}
+PREAMBLE = r"% Needs \usepackage{booktabs} in the preamble."
+
+
+def escape(text: str) -> str:
+    """Return ``text`` as LaTeX prints it; line breaks and other control characters become spaces."""
+    return "".join(ESCAPES.get(sign, sign if sign.isprintable() else " ") for sign in str(text))
+
+
+def as_latex(choices: ResultsChoices, tables: Iterable[Table]) -> str:
+    """Return one table per protocol, to be read by ``\\input``."""
+    return "\n\n".join([PREAMBLE, *(_table(choices, table) for table in tables)]) + "\n"
+
+
+def _table(choices: ResultsChoices, table: Table) -> str:
+    width = len(table.columns) * len(table.measures)
+    return "\n".join(
+        [
+            r"\begin{table}",
+            r"\centering",
+            rf"\caption{{{_caption(choices, table)}}}",
+            rf"\begin{{tabular}}{{l{'r' * width}}}",
+            r"\toprule",
+            *_heads(table),
+            r"\midrule",
+            *(_line(_row_name(row), _figures(cells, table)) for row, cells in table.filled),
+            r"\bottomrule",
+            r"\end{tabular}",
+            r"\end{table}",
+        ]
+    )
+
+
+def _caption(choices: ResultsChoices, table: Table) -> str:
+    measures = " and ".join(measure.in_words for measure in table.measures)
+    sentences = [
+        f"{measures[0].upper()}{measures[1:]} in percent on the {choices.part} part, "
+        f"{table.protocol} protocol.",
+        "Of one run with its 95 % interval, of several seeds as mean ± standard deviation.",
+    ]
+    if table.is_published and choices.published:
+        sentences.append("In parentheses: Walker, Peng and Cakmak (2019).")
+    return escape(" ".join(sentences)).replace("±", r"$\pm$")
+
+
+def _heads(table: Table) -> Iterator[str]:
+    """Yield the lines of the head: settings, splits and, if there are several, measures."""
+    each = len(table.measures)
+    spans = [each * columns for _, _, columns in table.settings]
+    titles = [escape(head).replace("→", r"$\rightarrow$") for head, _, _ in table.settings]
+    yield _line("Parser", map(_across, spans, titles))
+    ends = list(accumulate(spans, initial=1))
+    yield " ".join(rf"\cmidrule(lr){{{before + 1}-{end}}}" for before, end in pairwise(ends))
+    yield _line("", (_across(each, escape(column.label)) for column in table.columns))
+    if each > 1:
+        names = [escape(measure.in_words) for measure in table.measures]
+        yield _line("", names * len(table.columns))
+
+
+def _across(columns: int, text: str) -> str:
+    return rf"\multicolumn{{{columns}}}{{c}}{{{text}}}"
+
+
+def _line(first: str, others: Iterable[str]) -> str:
+    return rf"{' & '.join([first, *others])} \\"
+
+
+def _row_name(row: Row) -> str:
+    changes = ", ".join(f"{name} {value}" for name, value in row.changes)
+    return escape(f"{row.title} ({changes})" if changes else row.title)
+
+
+def _figures(cells: Iterable[tuple[Column, Cell | None]], table: Table) -> Iterator[str]:
+    for _, cell in cells:
+        if cell and cell.figures:
+            yield from map(_figure, cell.figures)
+        else:
+            yield from [cell.status if cell else "--"] * len(table.measures)
+
+
+def _figure(figure: Figure) -> str:
+    percent = f"{figure.percent:.1f}"
+    parts = [rf"\textbf{{{percent}}}" if figure.is_best else percent]
+    if figure.spread is None:
+        parts.append(rf"{{\scriptsize {figure.low:.1f}--{figure.high:.1f}}}")
+    else:
+        parts.append(rf"{{\scriptsize $\pm$ {figure.spread:.1f}}}")
+    if figure.published is not None:
+        parts.append(rf"{{\scriptsize ({figure.published:.1f})}}")
+    return " ".join(parts)

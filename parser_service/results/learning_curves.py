@@ -1,0 +1,173 @@
+"""Accuracy by the number of training pairs: one curve for each parser of a column of the accuracy table."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from statistics import fmean
+from typing import Any
+
+from django.urls import reverse
+from django.utils.http import urlencode
+
+from annotations.models import Split, World
+from parser_service.models import Evaluation, TrainingRun
+from parser_service.parsers.conditions import SETTINGS, Setting
+from parser_service.results.accuracy import Changes, Column, TableMaker, rank_of, title_of
+from parser_service.results.cells import Cell
+from parser_service.results.measures import Measure
+from parser_service.runs.learning_curve import SHARES
+
+
+@dataclass(frozen=True, slots=True)
+class CurvePoint:
+    """The runs on one share of the training pairs. ``pairs`` is their number, None before one is scored."""
+
+    share: float
+    pairs: int | None
+    cell: Cell | None
+
+
+@dataclass(frozen=True, slots=True)
+class LearningCurve:
+    """A parser with one configuration; ``points`` by share, the ``SHARES`` at least. ``run`` is the one that
+    missing runs are asked for like."""
+
+    parser: str
+    changes: Changes
+    points: tuple[CurvePoint, ...]
+    run: TrainingRun
+
+    @property
+    def title(self) -> str:
+        return title_of(self.parser)
+
+    @property
+    def label(self) -> str:
+        """The title, with what tells it apart from other configurations of the parser."""
+        changes = ", ".join(f"{name} {value}" for name, value in self.changes)
+        return f"{self.title} ({changes})" if changes else self.title
+
+    @property
+    def missing(self) -> int:
+        """The number of ``SHARES`` without a run."""
+        return sum(point.cell is None for point in self.points)
+
+    @property
+    def is_active(self) -> bool:
+        return any(point.cell and point.cell.active for point in self.points)
+
+
+@dataclass(frozen=True, slots=True)
+class LearningCurves:
+    """All curves of one column under one protocol, by one measure, on one part."""
+
+    column: Column
+    protocol: str
+    part: str
+    measure: Measure
+    curves: tuple[LearningCurve, ...] = field(default=())
+
+    @property
+    def shares(self) -> list[float]:
+        return sorted({point.share for curve in self.curves for point in curve.points})
+
+    @property
+    def filled(self) -> list[tuple[LearningCurve, list[CurvePoint]]]:
+        """Each curve with a point for each of ``shares``, an empty one where it has none."""
+        return [
+            (curve, [points.get(share, CurvePoint(share, None, None)) for share in self.shares])
+            for curve in self.curves
+            for points in ({point.share: point for point in curve.points},)
+        ]
+
+    @property
+    def is_active(self) -> bool:
+        return any(curve.is_active for curve in self.curves)
+
+    @property
+    def chart(self) -> dict[str, Any]:
+        """The data of the chart: for each curve points [pairs, percent, low, high]."""
+        return {
+            "kind": "points",
+            "x": {"label": "training pairs"},
+            "y": {"label": self.measure.in_words, "max": 100, "unit": "%"},
+            "series": [
+                {"name": curve.label, "points": list(_drawn(curve))} for curve in self.curves
+            ],
+            "done": not self.is_active,
+        }
+
+
+def learning_curves(
+    world: World, split: Split, setting: Setting, protocol: str, part: str, measure: Measure
+) -> LearningCurves:
+    """Return the curves of every parser that was trained for ``setting`` on ``split``. Two queries.
+
+    A curve has runs of one version of its parser, the newest.
+    """
+    column = Column(*setting, split, split.name)
+    runs = world.runs.filter(
+        split=split, train_sources=setting.train_sources, protocol=protocol
+    ).scored_or_active()
+    newest_first = list(runs.order_by("-id"))
+    scores = Evaluation.objects.filter(
+        run__in=newest_first, part=part, test_source=setting.test_source
+    )
+    maker = TableMaker(
+        world=world,
+        part=part,
+        columns=(column,),
+        scores={(score.run_id, score.test_source): score for score in scores},
+        published={},
+        measures=(measure,),
+    )
+    grouped: dict[tuple[str, Changes], list[TrainingRun]] = defaultdict(list)
+    for run in newest_first:
+        grouped[run.parser, run.changed_hyperparameters()].append(run)
+    ranked = sorted(grouped.items(), key=lambda item: rank_of(*item[0]))
+    curves = (_curve(maker, parser, changes, mine) for (parser, changes), mine in ranked)
+    return LearningCurves(column, protocol, part, measure, tuple(curves))
+
+
+def curves_url(world: World, run: TrainingRun, test_source: str = "", part: str = "") -> str:
+    """Return the address of the curves that ``run`` belongs to, by default as tested on what it is first
+    tested on in the accuracy table."""
+    setting = next(
+        each
+        for each in SETTINGS
+        if each.train_sources == run.train_sources and test_source in ("", each.test_source)
+    )
+    chosen = {"split": run.split.name, "setting": str(setting), "protocol": run.protocol}
+    if part:
+        chosen["part"] = part
+    return f"{reverse('learning_curves', kwargs={'world': world.name})}?{urlencode(chosen)}"
+
+
+def _curve(
+    maker: TableMaker, parser: str, changes: Changes, runs: list[TrainingRun]
+) -> LearningCurve:
+    version = max(run.parser_version for run in runs)
+    alike = [run for run in runs if run.parser_version == version]
+    shares = sorted({*SHARES, *(run.train_share for run in alike)})
+    points = (
+        _point(maker, parser, share, [run for run in alike if run.train_share == share])
+        for share in shares
+    )
+    whole = (run for run in alike if run.train_share == 1)
+    return LearningCurve(parser, changes, tuple(points), next(whole, alike[0]))
+
+
+def _point(maker: TableMaker, parser: str, share: float, runs: list[TrainingRun]) -> CurvePoint:
+    cell = maker.cell(parser, maker.columns[0], runs)
+    counted = {score.run_id for score in cell.scores} if cell else set()
+    pairs = [run.train_pairs for run in runs if run.pk in counted and run.train_pairs is not None]
+    return CurvePoint(share, round(fmean(pairs)) if pairs else None, cell)
+
+
+def _drawn(curve: LearningCurve) -> Iterable[list[float]]:
+    for point in curve.points:
+        if point.pairs is not None and point.cell and point.cell.figures:
+            figure = point.cell.figures[0]
+            yield [point.pairs, figure.percent, figure.low, figure.high]

@@ -1,0 +1,57 @@
+"""What a figure of the results counts as right."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+from parser_service.analysis.proportions import wilson_interval
+from parser_service.models import Evaluation
+
+
+class Measure(StrEnum):
+    """``EXACT`` counts forms that are the annotated one, ``EQUIVALENT`` also those that differ only in the
+    order of their conjuncts, ``WELL_FORMED`` all that are forms."""
+
+    EXACT = "exact"
+    EQUIVALENT = "equivalent"
+    WELL_FORMED = "well_formed"
+
+    @property
+    def in_words(self) -> str:
+        return WORDS[self]
+
+    @property
+    def sign(self) -> str:
+        return SIGNS[self]
+
+
+WORDS = {
+    Measure.EXACT: "exact match",
+    Measure.EQUIVALENT: "equivalent",
+    Measure.WELL_FORMED: "well-formed",
+}
+SIGNS = {Measure.EXACT: "✓", Measure.EQUIVALENT: "≈", Measure.WELL_FORMED: "( )"}
+FIELDS = {
+    Measure.EXACT: "accuracy",
+    Measure.EQUIVALENT: "equivalent",
+    Measure.WELL_FORMED: "well_formed",
+}
+
+
+def share_of(score: Evaluation, measure: Measure) -> float:
+    """Return the share of answers that ``measure`` counts, as a fraction of 1."""
+    return float(getattr(score, FIELDS[measure]))
+
+
+def count_of(score: Evaluation, measure: Measure) -> int:
+    """Return the number of answers that ``measure`` counts."""
+    return (
+        score.correct if measure is Measure.EXACT else round(share_of(score, measure) * score.count)
+    )
+
+
+def interval_of(score: Evaluation, measure: Measure) -> tuple[float, float]:
+    """Return Wilson's interval of the share at 95 %, as fractions of 1."""
+    if measure is Measure.EXACT:
+        return score.interval_low, score.interval_high
+    return wilson_interval(count_of(score, measure), score.count)
