@@ -7,13 +7,21 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 from functools import lru_cache
+from typing import Any
 
 from annotations.language.errors import LanguageError
 from annotations.language.forms import (
+    Application,
     Change,
+    Constant,
+    Difference,
     Form,
+    Lambda,
+    Variable,
     canonicalize,
+    children,
     diff,
+    diff_unordered,
     read_form,
     to_corpus,
     to_reading,
@@ -105,6 +113,60 @@ def difference(
     return (
         [(str(span.change), span.text) for span in changes.left_spans()],
         [(str(span.change), span.text) for span in changes.right_spans()],
+    )
+
+
+@lru_cache(maxsize=8192)
+def answer_difference(annotated: str, answer: str) -> Difference | None:
+    """Return what an answer has wrong, whatever the order of conjuncts; None where one of them is no form."""
+    left, right = form_of(annotated), form_of(answer)
+    return None if left is None or right is None else diff_unordered(left, right)
+
+
+def answer_pieces(
+    annotated: str, answer: str
+) -> tuple[list[tuple[str, str]], list[tuple[str, str]]]:
+    """Return what ``difference`` does, whatever the order of conjuncts: those of the answer stand in the order
+    of the annotated form."""
+    compared = answer_difference(annotated, answer)
+    if compared is None:
+        return unmarked(annotated), unmarked(answer)
+    return (
+        [(str(span.change), span.text) for span in compared.left_spans()],
+        [(str(span.change), span.text) for span in compared.right_spans()],
+    )
+
+
+def tree_of(node: Difference) -> dict[str, Any]:
+    """Return two forms as one tree of plain values: label, kind and change of each node, its children.
+
+    A node that is replaced shows both labels; a subtree that only one form has is marked whole.
+    """
+    form = node.left if node.right is None else node.right
+    label, kind = _node(form)
+    if node.change is Change.CHANGED and node.left is not None and node.right is not None:
+        label = f"{_node(node.left)[0]} → {label}"
+    below = node.children or tuple(
+        Difference(node.change, None, child, 0) for child in children(form)
+    )
+    return {
+        "label": label,
+        "kind": kind,
+        "change": str(node.change),
+        "children": [tree_of(child) for child in below],
+    }
+
+
+def _node(form: Form) -> tuple[str, str]:
+    """Return what a node of a tree is labelled with, and what it is."""
+    if isinstance(form, Lambda):
+        return f"λ${form.variable}", "lambda"
+    if isinstance(form, Application):
+        return str(form.predicate), "predicate"
+    if isinstance(form, Variable):
+        return f"${form.index}", "variable"
+    return (
+        (str(form.value), "constant") if isinstance(form, Constant) else (to_corpus(form), "name")
     )
 
 

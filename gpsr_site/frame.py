@@ -130,7 +130,6 @@ PLACES = (
         "evaluated",
         below=(
             "predictions",
-            "prediction",
             "learning_curves",
             "defaults",
             "sensitivity",
@@ -139,6 +138,7 @@ PLACES = (
         ),
     ),
     Place("Compare", "compare", below=("slices",)),
+    Place("Errors", "review", below=("error_categories", "error_category")),
 )
 
 

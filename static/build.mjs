@@ -23,7 +23,9 @@ const builds = [
   {
     ...common,
     format: "esm",
-    entryPoints: ["main", "charts", "tree", "editor", "label", "audit", "refusal"].map((name) => here(`src/${name}.js`)),
+    entryPoints: ["main", "charts", "tree", "editor", "label", "audit", "refusal", "review"].map((name) =>
+      here(`src/${name}.js`),
+    ),
   },
   { ...common, entryPoints: [here("css/main.css")] },
   { ...common, loader: { ".svg": "copy" }, entryPoints: [here("favicon.svg")] },

@@ -25,7 +25,10 @@ from annotations.queueing import answer, set_share
 from annotations.queueing.sources import refill
 from parser_service.analysing.carrying_out import analyse
 from parser_service.analysing.trying import ask
-from parser_service.models import TrainingRun
+from parser_service.models import Slice, TrainingRun
+from parser_service.reviewing.categories import ensure_categories
+from parser_service.reviewing.proposing import propose_for_run
+from parser_service.reviewing.tagging import tag, write_note
 from parser_service.runs.checkpoints import model_folder, write_folder
 from parser_service.runs.examples import pairs_of
 from parser_service.runs.training import make_parser
@@ -62,6 +65,7 @@ def leave_traces(world: World, annotator: User, admin: User) -> None:
     )
     store_findings(world, [doubt(paraphrase, '( go " <room> " )')])
     _analyse(world, annotator)
+    _review(world, annotator, admin)
     Job.objects.create(
         world=world,
         world_name=world.name,
@@ -85,6 +89,22 @@ def _analyse(world: World, annotator: User) -> None:
     save_parser(run)
     analyse(Job(world=world, kind=JobKind.ANALYSE, arguments={"run": run.pk}), UNWATCHED)
     ask(world, annotator, "Bring an umbrella", [run])
+
+
+def _review(world: World, *reviewers: User) -> None:
+    """Let people differ about why the answers of the world's runs are wrong."""
+    saved, _ = Slice.objects.get_or_create(world=world, name="short", query="max_words=5")
+    categories = ensure_categories(world)
+    categories["overly_sensitive"].slice = saved
+    categories["overly_sensitive"].save()
+    for run in TrainingRun.objects.filter(world=world):
+        propose_for_run(run, frozenset(), UNWATCHED)
+        wrong = run.predictions.best().filter(is_exact_match=False).select_related("example")
+        for number, row in enumerate(wrong):
+            for place, person in enumerate(reviewers):
+                code = "wrong_structure" if number % 3 == place else "wrong_predicate"
+                tag(run, row.example, categories[code], person)
+            write_note(run, row.example, "Nobody says this to a robot.", reviewers[0])
 
 
 def _edit(world: World, annotator: User, admin: User) -> None:

@@ -17,6 +17,7 @@ from annotations.models import (
     WorkKind,
     World,
 )
+from annotations.models.audit import REVIEWER
 from annotations.queueing import WantedItem, enqueue
 from annotations.queueing.enqueuing import Subject
 from annotations.queueing.giving import close_item
@@ -60,6 +61,7 @@ def store_findings(
     """Store what an audit found, inside a transaction, in place of what the one before had found.
 
     What people have decided about stays as it is, and comes back only where its label has changed since.
+    What reviewers doubt stays open.
     The first ``to_queue`` open findings go into the work queue, asked for by ``by``.
     """
     subjects = _subjects(world, found)
@@ -71,7 +73,10 @@ def store_findings(
     rows = {each.subject: old.get(each.subject) or _make(world, each) for each in left}
     for each in left:
         _fill(rows[each.subject], each, ranks[each.subject], subjects[each.subject])
-    gone = [row.pk for subject, row in old.items() if subject not in rows]
+    of_people = set(world.audit_findings.by_reviewers().values_list("pk", flat=True))
+    gone = [
+        row.pk for subject, row in old.items() if subject not in rows and row.pk not in of_people
+    ]
     for keys in batches(gone, BATCH):
         AuditFinding.objects.filter(pk__in=keys).delete()
     new = [row for row in rows.values() if row.pk is None]
@@ -134,9 +139,10 @@ def _save(rows: Sequence[AuditFinding], new: Sequence[AuditFinding]) -> None:
 
 
 def _save_reasons(rows: Sequence[tuple[AuditFinding, Suspect]]) -> None:
-    """Replace the reasons of these findings."""
+    """Replace the reasons of these findings that an audit gave."""
     for some in batches(rows, BATCH):
-        AuditReason.objects.filter(finding__in=[row for row, _ in some]).delete()
+        before = AuditReason.objects.filter(finding__in=[row for row, _ in some])
+        before.exclude(reason=REVIEWER).delete()
         AuditReason.objects.bulk_create(
             AuditReason(
                 finding=row,

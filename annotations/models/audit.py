@@ -23,7 +23,9 @@ class FindingStatus(models.TextChoices):
     EXCLUDED = "excluded"
 
 
+REVIEWER = "reviewer"  # a reason that a person gives; an audit neither makes nor removes it
 REASON_LABELS = {
+    REVIEWER: "a reviewer",
     Reason.COMMAND: "its command",
     Reason.WORD: "a word",
     Reason.PARSER: "a parser",
@@ -63,6 +65,10 @@ class AuditFindingQuerySet(models.QuerySet["AuditFinding"]):
     def with_status(self, status: str) -> AuditFindingQuerySet:
         """Return those of one status; open ones only while they wait for somebody."""
         return self.open() if status == FindingStatus.OPEN else self.filter(status=status)
+
+    def by_reviewers(self) -> AuditFindingQuerySet:
+        """Return those that a person has made, or agrees with."""
+        return self.with_reason(REVIEWER)
 
     def with_reason(self, reason: str) -> AuditFindingQuerySet:
         reasons = AuditReason.objects.filter(finding=models.OuterRef("pk"), reason=reason)
@@ -128,7 +134,7 @@ class AuditFinding(models.Model):
     def doubts(self) -> list[str]:
         """What speaks against the label, each kind of reason once, as lists show it."""
         kinds = dict.fromkeys(each.reason for each in self.reasons.all())
-        return [REASON_LABELS[Reason(kind)] for kind in kinds]
+        return [REASON_LABELS[kind] for kind in kinds]
 
     @property
     def offers_form(self) -> bool:
@@ -142,7 +148,10 @@ class AuditFinding(models.Model):
 
 
 class AuditReason(models.Model):
-    """One thing that speaks against a label: ``score`` is how strongly, above 0 and up to 1."""
+    """One thing that speaks against a label: ``score`` is how strongly, above 0 and up to 1.
+
+    ``suggested_form`` is UNKNOWN where a reviewer does not say what the label should be.
+    """
 
     finding = models.ForeignKey(AuditFinding, on_delete=models.CASCADE, related_name="reasons")
     reason = models.CharField(max_length=12, choices=audit_reason_choices)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from dataclasses import replace
 from typing import Any
@@ -21,13 +22,15 @@ from annotations.models import Predicate
 from annotations.models.drafts import NEW
 from annotations.presentation import (
     Piece,
-    difference,
+    answer_difference,
+    answer_pieces,
     form_of,
     gloss_of,
     merge_words,
     merged_difference,
     pieces_of,
     shown,
+    tree_of,
     wildcard_class,
 )
 
@@ -206,14 +209,25 @@ def _mark(token: str, grammar_url: str = "") -> str:
 
 @register.simple_tag
 def expected_form(expected: str, predicted: str) -> SafeString:
-    """Show the annotated form, with what the prediction lacks marked."""
-    return _form_with_marks(difference(expected, predicted)[0])
+    """Show the annotated form, with what the prediction lacks marked, whatever the order of conjuncts."""
+    return _form_with_marks(answer_pieces(expected, predicted)[0])
 
 
 @register.simple_tag
 def predicted_form(expected: str, predicted: str) -> SafeString:
-    """Show the predicted form, with what it has beyond the annotated one marked."""
-    return _form_with_marks(difference(expected, predicted)[1])
+    """Show the predicted form, with what it has beyond the annotated one marked; its conjuncts stand in the
+    order of those of the annotated form."""
+    return _form_with_marks(answer_pieces(expected, predicted)[1])
+
+
+@register.simple_tag
+def difference_tree(expected: str, predicted: str) -> SafeString:
+    """Show both forms as one tree, with what was added, removed and changed marked; nothing for no form."""
+    compared = answer_difference(expected, predicted)
+    if compared is None:
+        return mark_safe("")
+    nodes = json.dumps(tree_of(compared))
+    return format_html('<div class="tree" data-tree data-tree-nodes="{}"></div>', nodes)
 
 
 # The element that marks a piece of a form; one without a change stands as it is.

@@ -43,11 +43,12 @@ class BestRun:
 
     @property
     def wrong_url(self) -> str:
-        """The list of exactly these examples."""
-        chosen = {"part": self.score.part, "outcome": "wrong"}
+        """The page that shows exactly these examples, one by one."""
+        chosen = {"run": self.score.run_id, "part": self.score.part, "outcome": "wrong"}
         if source := only_source(self.score.test_source):
             chosen["source"] = source
-        return f"{self._address('predictions')}?{urlencode(chosen)}"
+        address = reverse("review", kwargs={"world": self.world.name})
+        return f"{address}?{urlencode(chosen)}"
 
     @property
     def run_url(self) -> str:

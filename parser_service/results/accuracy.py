@@ -264,12 +264,16 @@ class TableMaker:
         return published_accuracy(parser, column.setting, criterion)
 
     def predictions_url(self, run: TrainingRun, column: Column, outcome: str) -> str:
-        """Return the address of the predictions that a score of ``run`` counts, of one outcome or all."""
+        """Return the address of the predictions that a score of ``run`` counts: the wrong ones one by one
+        for review, or the list of all."""
         chosen = {"part": self.part}
         if outcome:
             chosen["outcome"] = outcome
         if source := only_source(column.test_source):
             chosen["source"] = source
+        if outcome:
+            address = reverse("review", kwargs={"world": self.world.name})
+            return f"{address}?{urlencode({'run': run.pk, **chosen})}"
         return f"{self.url('predictions', run.pk)}?{urlencode(chosen)}"
 
     def url(self, name: str, key: int) -> str:

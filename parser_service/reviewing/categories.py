@@ -27,4 +27,4 @@ def ensure_categories(world: World) -> dict[str, ErrorCategory]:
         ]
         # Whoever does the same at this moment makes the same rows.
         ErrorCategory.objects.bulk_create(made, ignore_conflicts=True)
-    return {row.code: row for row in rows.all()}
+    return {row.code: row for row in rows.select_related("slice")}

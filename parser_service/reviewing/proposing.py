@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from annotations.background.progress import Progress
 from annotations.language.forms import read_form
 from annotations.rows.synchronise import batches
 from parser_service.analysis.categories import (
     NOTHING_MORE,
+    OF_DIFFERENCES,
     ErrorEvidence,
-    Proposal,
     Proposals,
     RunEvidence,
     propose_category,
 )
 from parser_service.analysis.reading import read_or_none
-from parser_service.models import Review, TrainingRun
+from parser_service.models import ErrorCategory, Review, Slice, TrainingRun
 from parser_service.reviewing.answers import Answered, read_answers, read_earlier_errors
 from parser_service.reviewing.categories import ensure_categories
 from parser_service.reviewing.evidence import ErrorEvidences, evidence_of_run
+from parser_service.slices import select
 
 BATCH = 500
 
@@ -72,6 +73,7 @@ class _Maker:
         self._categories = ensure_categories(run.world)
         self._of_run: RunEvidence = evidence_of_run(run, attractors)
         self._of_errors = ErrorEvidences(run, answers)
+        self._slices = _read_slices(run, self._categories)
         self._earlier = read_earlier_errors(run)
         self._known: dict[tuple[str, str], Proposals] = {}
 
@@ -79,15 +81,15 @@ class _Maker:
         """Yield an unsaved proposal for each of the answers with these numbers."""
         for at in errors:
             answered = self._answers[at]
-            proposal = self._choose(self._propose(answered, self._of_errors.of(at)))
+            code, reason = self._choose(answered, self._propose(answered, self._of_errors.of(at)))
             yield Review(
                 run=self._run,
                 example_id=answered.example,
-                category=self._categories.get(proposal.category),
+                category=self._categories.get(code),
                 is_proposed=True,
                 is_new=self._is_new(answered),
                 answer=answered.answer,
-                reason=proposal.reason,
+                reason=reason,
             )
 
     def _is_new(self, answered: Answered) -> bool | None:
@@ -106,8 +108,32 @@ class _Maker:
     def _propose_for(self, label: str, answer: str, evidence: ErrorEvidence) -> Proposals:
         return propose_category(read_form(label), read_or_none(answer), self._of_run, evidence)
 
-    def _choose(self, proposals: Proposals) -> Proposal:
-        """Return the first proposal whose category the world has; the first one where it has none of them."""
+    def _choose(self, answered: Answered, proposals: Proposals) -> tuple[str, str]:
+        """Return code and reason of the first proposal whose category the world has, or of the first one.
+
+        A category's slice that has the error counts more than the difference of the forms alone.
+        """
         each_in_turn = (proposals.first, *proposals.runners_up)
         known = (each for each in each_in_turn if each.category in self._categories)
-        return next(known, proposals.first)
+        chosen = next(known, proposals.first)
+        if chosen.category in OF_DIFFERENCES:
+            for code, name, examples in self._slices:
+                if answered.example in examples:
+                    return code, f"It is in the slice “{name}”. {chosen.reason}"
+        return chosen.category, chosen.reason
+
+
+def _read_slices(
+    run: TrainingRun, categories: Mapping[str, ErrorCategory]
+) -> list[tuple[str, str, frozenset[int]]]:
+    """Return code and slice of each category that has one, with the keys of the examples of its errors."""
+    return [
+        (code, each.slice.name, _errors_in(run, each.slice))
+        for code, each in categories.items()
+        if each.slice is not None
+    ]
+
+
+def _errors_in(run: TrainingRun, of: Slice) -> frozenset[int]:
+    rows = select(run, of.query).filter(is_exact_match=False).order_by()
+    return frozenset(rows.values_list("example_id", flat=True))

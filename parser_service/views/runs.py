@@ -19,6 +19,7 @@ from parser_service.models.runs import Status
 from parser_service.parsers.registry import PARSERS
 from parser_service.results.learning_curves import curves_url
 from parser_service.results.reports import order_of
+from parser_service.reviewing.earlier import history_of_errors
 from parser_service.runs import lifecycle
 from parser_service.runs.curves import CURVES, loss_curves, will_have_curves
 from parser_service.runs.retraining import retrained
@@ -82,6 +83,7 @@ def state_of(world: World, pk: int) -> dict[str, Any]:
         "curves_url": curves_url(world, run),
         "loss_title": f"Loss by epoch, {entry.loss_unit if entry else 'nats'}",
         "evaluations": sorted(run.evaluations.all(), key=order_of),
+        "history": history_of_errors(run) if run.is_ended else None,
         "epochs": list(run.epochs.all()),
         "will_have_curves": will_have_curves(run),
         "waiting": waiting_of(run) if run.status == Status.QUEUED else None,

@@ -25,6 +25,7 @@ onContent((root) => {
     ["[data-label-page]", "label"],
     ["[data-audit-page]", "audit"],
     ["[data-refusal]", "refusal"],
+    ["[data-case]", "review"],
   ]) {
     within(selector).forEach((element) => enhanceBy(name, element));
   }

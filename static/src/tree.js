@@ -71,6 +71,7 @@ function drawNode(node) {
   const width = widthOf(node);
   const attributes = { class: `node node--${node.data.kind}`, transform: `translate(${node.x},${node.y})` };
   if (node.data.entityClass) attributes["data-class"] = node.data.entityClass;
+  if (node.data.change) attributes["data-change"] = node.data.change;
   return element(
     "g",
     attributes,
@@ -96,6 +97,13 @@ function draw(root) {
   );
 }
 
+// Nodes that the server has compared already: each says what happened to it.
+function readNodes(node) {
+  const isToken = node.kind === "constant" && node.label.startsWith("<");
+  return { ...node, entityClass: isToken ? classOf(node.label) : "", children: node.children.map(readNodes) };
+}
+
 export function enhance(figure) {
-  figure.append(draw(hierarchy(readTree(figure.dataset.tree))));
+  const { tree, treeNodes } = figure.dataset;
+  figure.append(draw(hierarchy(treeNodes ? readNodes(JSON.parse(treeNodes)) : readTree(tree))));
 }

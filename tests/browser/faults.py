@@ -12,7 +12,8 @@ AXE = Path(__file__).resolve().parents[2] / "node_modules" / "axe-core" / "axe.m
 # so that also what waits for the sizes of things is done.
 SETTLED = """async () => {
   const frame = () => new Promise(requestAnimationFrame);
-  const enhanced = "[data-chart], [data-tree], [data-editor], [data-label-page], [data-audit-page]";
+  const enhanced =
+    "[data-chart], [data-tree], [data-editor], [data-label-page], [data-audit-page], [data-case]";
   const isBusy = () =>
     [...document.querySelectorAll(enhanced)].some((element) => !("ready" in element.dataset)) ||
     document.querySelector(".htmx-request, .htmx-added") ||

@@ -57,10 +57,12 @@ PAGES = {
     "results": "results/",
     "learning-curves": "results/curves/",
     "tryout": "try/?text=Bring+an+umbrella",
+    "review": "review/?outcome=wrong",
+    "error-categories": "error-categories/",
     "search": "search/?q=the",
 }
 # The cells of one run; those of several seeds lead to their runs.
-TO_PREDICTIONS = "a.accuracy[href*=predictions]"
+TO_REVIEW = "a.accuracy[href*=review]"
 # Name of the picture → the page and the link on it that leads there.
 DETAILS = {
     "template": ("templates/", "#list a.row-link"),
@@ -72,7 +74,9 @@ DETAILS = {
     "paraphrase": ("paraphrases/", "#list a.row-link"),
     "split": ("splits/", "a.row-link"),
     "run": ("runs/?status=succeeded&parser=seq2seq", "#runs-table a.row-link"),
-    "predictions": ("results/", TO_PREDICTIONS),
+    "predictions": ("review/", "a[href*=predictions]"),
+    "review-errors": ("results/", TO_REVIEW),
+    "error-category": ("error-categories/", "a.row-link"),
     "seeds": ("results/", "a.accuracy[href*=seeds_of]"),
 }
 
@@ -97,11 +101,6 @@ def addresses(page: Page, url: str, world: str) -> Iterator[tuple[str, str]]:
         page.goto(base + path)
         if link := page.query_selector(selector):
             yield name, url + link.get_attribute("href")
-    page.goto(base + "results/")
-    if link := page.query_selector(TO_PREDICTIONS):
-        page.goto(url + link.get_attribute("href") + "&outcome=wrong")
-        if link := page.query_selector("#list a.row-link"):
-            yield "prediction", url + link.get_attribute("href")
 
 
 def shoot(browser: Browser, variant: Variant, args: argparse.Namespace) -> None:

@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import expect
 
 from tests.annotations.views.test_lists import many_commands
-from tests.browser.arriving import arrive_at, wait_for_swap
+from tests.browser.arriving import wait_for_swap
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
@@ -122,10 +122,10 @@ def test_one_reads_prediction_after_prediction_by_key(page_of, live_server, samp
     page.goto(f"{live_server.url}/w/home/runs/{sample.run.pk}/predictions/?outcome=wrong")
     page.keyboard.press("j")
     page.keyboard.press("Enter")
-    arrive_at(page, page.get_by_role("heading", name="Annotated and predicted"))
-    first = page.locator("h1").inner_text()
-    page.keyboard.press("n")
-    expect(page.locator("h1")).not_to_have_text(first)
-    page.wait_for_load_state("domcontentloaded")
-    page.keyboard.press("p")
-    expect(page.locator("h1")).to_have_text(first)
+    expect(page.locator("[data-answer]")).to_be_focused()
+    first = page.locator("#case h2").inner_text()
+    page.keyboard.press("j")
+    expect(page.locator("#case h2")).not_to_have_text(first)
+    wait_for_swap(page)
+    page.keyboard.press("k")
+    expect(page.locator("#case h2")).to_have_text(first)

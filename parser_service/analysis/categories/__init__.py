@@ -15,12 +15,13 @@ from parser_service.analysis.categories.proposing import (
     propose_categories,
     propose_category,
 )
-from parser_service.analysis.categories.structure import Proposal
+from parser_service.analysis.categories.structure import OF_DIFFERENCES, Proposal
 
 __all__ = [
     "DESCRIPTIONS",
     "NAMES",
     "NOTHING_MORE",
+    "OF_DIFFERENCES",
     "Audit",
     "ErrorCategory",
     "ErrorEvidence",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 from annotations.language.forms import Form, FormDistances
 from parser_service.analysis.categories.evidence import Neighbour
@@ -13,13 +14,17 @@ def furthest(gold: Form, predicted: Form, neighbours: Sequence[Neighbour]) -> Ne
     from ``gold``; the first of equals, None where no answer differs more than the labels do."""
     if not neighbours:
         return None
-    distances = FormDistances()
 
     def excess(neighbour: Neighbour) -> float:
         answers = 1.0
         if neighbour.answer is not None:
-            answers = distances.distance(predicted, neighbour.answer)
-        return answers - distances.distance(gold, neighbour.gold)
+            answers = _distance(predicted, neighbour.answer)
+        return answers - _distance(gold, neighbour.gold)
 
     best = max(neighbours, key=excess)
     return best if excess(best) > 0 else None
+
+
+@lru_cache(maxsize=1 << 16)
+def _distance(first: Form, second: Form) -> float:
+    return FormDistances().distance(first, second)

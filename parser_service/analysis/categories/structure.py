@@ -56,7 +56,9 @@ def read_structure(gold: Form, predicted: Form) -> tuple[Proposal, ...]:
     by_category: defaultdict[ErrorCategory, list[str]] = defaultdict(list)
     for each in _changes(diff_unordered(left, right), None):
         by_category[each.category].append(each.reason)
-    ranked = sorted(by_category, key=lambda kind: (-len(by_category[kind]), _ORDER.index(kind)))
+    ranked = sorted(
+        by_category, key=lambda kind: (-len(by_category[kind]), OF_DIFFERENCES.index(kind))
+    )
     proposals = {kind: Proposal(kind, " ".join(by_category[kind])) for kind in ranked}
     if len(proposals) >= _KINDS_OF_A_WRONG_STRUCTURE:
         reason = f"{len(proposals)} kinds of things differ between the label and the answer."
@@ -67,7 +69,8 @@ def read_structure(gold: Form, predicted: Form) -> tuple[Proposal, ...]:
     return tuple(proposals.values())
 
 
-_ORDER = (
+# What the difference of two forms suggests by itself, in the order of equal counts.
+OF_DIFFERENCES = (
     ErrorCategory.WRONG_PREDICATE,
     ErrorCategory.MISSING_CONSTRAINT,
     ErrorCategory.EXTRA_CONSTRAINT,

@@ -21,6 +21,7 @@ from annotations.models import (
 )
 from annotations.models.worlds import Role
 from parser_service.models import Slice
+from parser_service.reviewing.categories import ensure_categories
 from tests.sample_world import SampleWorld, comment_in, paraphrase_in
 
 RouteKeys: TypeAlias = Callable[[SampleWorld], dict[str, object]]
@@ -109,6 +110,10 @@ def saved_slice(sample: SampleWorld) -> Slice:
     )[0]
 
 
+def error_category(sample: SampleWorld) -> Model:
+    return ensure_categories(sample.world)["ill_formed"]
+
+
 def predicate(sample: SampleWorld) -> Model:
     return sample.world.predicates.first()
 
@@ -171,7 +176,12 @@ KEYS: dict[str, RouteKeys] = {
     ),
     **dict.fromkeys(("analysis_state", "analysis_start", "analysis_cancel"), pk_of(run)),
     **dict.fromkeys(("defaults", "sensitivity", "probes"), pk_of(run)),
-    "prediction": lambda sample: {"pk": sample.run.pk, "example": sample.example.pk},
+    **dict.fromkeys(
+        ("review_tag", "review_note", "review_doubt"), pk_of(lambda sample: sample.example)
+    ),
+    **dict.fromkeys(
+        ("error_category", "error_category_move", "error_category_delete"), pk_of(error_category)
+    ),
     **dict.fromkeys(("job", "job_state", "job_cancel", "job_answer"), pk_of(waiting_job)),
     **dict.fromkeys(
         ("utterance", "label_answer", "label_check", "label_mend", "api:utterance"),

@@ -98,7 +98,9 @@ POLICY = [
             "probes",
             "tryout",
             "predictions",
-            "prediction",
+            "review",
+            "error_categories",
+            "error_category",
             "results",
             "results_table",
             "results_csv",
@@ -200,7 +202,18 @@ POLICY = [
     Rule("tryout_ask", *MEMBERS, method="post"),
     Rule("analysis_start", LOG_IN, NOWHERE, NO, GONE_ON, GONE_ON, method="post"),
     Rule("analysis_cancel", LOG_IN, NOWHERE, NO, GONE_ON, GONE_ON, method="post"),
+    # Reviewers say why answers are wrong
+    *(
+        Rule(name, LOG_IN, NOWHERE, NO, GONE_ON, GONE_ON, method="post")
+        for name in ("review_tag", "review_note", "review_doubt")
+    ),
     # What admins decide
+    Rule("error_categories", LOG_IN, NOWHERE, NO, NO, 422, method="post"),
+    Rule("error_category", LOG_IN, NOWHERE, NO, NO, 422, method="post"),
+    *(
+        Rule(name, LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post")
+        for name in ("error_category_move", "error_category_delete")
+    ),
     Rule("queue_assign", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("queue_settings", *ADMINS),
     Rule("queue_settings", *ADMINS, method="post"),
@@ -251,6 +264,8 @@ ONLY_POSTED = {
     *("audit_decide", "audit_check", "audit_take_back"),
     *("slice_rename", "slice_delete"),
     *("analysis_start", "analysis_cancel"),
+    *("review_tag", "review_note", "review_doubt"),
+    *("error_category_move", "error_category_delete"),
 }
 # Routes of rows that take a POST at the address where they are read.
 READ_AND_POSTED = {
@@ -262,4 +277,5 @@ READ_AND_POSTED = {
     "comment",
     "rename",
     "delete_row",
+    "error_category",
 }

@@ -76,6 +76,7 @@ OTHER_PARAMETERS = (
     "without",
     "page",
     "command",
+    *("run", "example", "from", "focus"),
 )
 LARGE_KEYS = [2**31, 2**63 - 1, 2**63, 2**64, int("9" * 400)]
 

@@ -8,7 +8,7 @@ from annotations.auditing import store_findings
 from annotations.background import Stopped
 from annotations.background.progress import UNWATCHED, Unwatched
 from annotations.models import Example, FindingStatus
-from parser_service.models import Prediction, Review
+from parser_service.models import Prediction, Review, Slice
 from parser_service.reviewing import proposing
 from parser_service.reviewing.categories import ensure_categories
 from parser_service.reviewing.proposing import propose_for_run
@@ -192,3 +192,18 @@ def test_an_error_that_no_earlier_run_of_the_parser_made_is_new(sample):
     assert not other.reviews.exclude(is_new=None).exists()
     assert later.reviews.filter(is_new=False).count() == 9
     assert later.reviews.filter(is_new=True).count() == 3
+
+
+def test_a_slice_proposes_its_category_where_there_is_no_stronger_evidence(run, say):
+    saved = Slice.objects.create(world=run.world, name="tea", query="q=tea")
+    categories = ensure_categories(run.world)
+    categories["overly_sensitive"].slice = saved
+    categories["overly_sensitive"].save()
+    say("bring the tea", BRING, GO)
+    say("fetch some milk", BRING, GO)
+    say("serve black tea now", BRING, "( go (")
+    found = proposed(run)
+    code, reason = found["bring the tea"]
+    assert code == "overly_sensitive" and reason.startswith("It is in the slice “tea”. The answer")
+    assert found["fetch some milk"][0] == "wrong_predicate"
+    assert found["serve black tea now"][0] == "ill_formed"

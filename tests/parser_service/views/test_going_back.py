@@ -18,7 +18,7 @@ def example(sample):
 
 
 def prediction_url(sample, example) -> str:
-    return f"{BASE}/runs/{sample.run.pk}/predictions/{example.pk}/"
+    return f"{BASE}/review/?run={sample.run.pk}&example={example.pk}"
 
 
 def example_url(example) -> str:

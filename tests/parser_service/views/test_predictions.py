@@ -1,4 +1,4 @@
-"""Reading what a run says: filters, the difference of two forms, the neighbours in the list."""
+"""Reading what a run says: filters, the difference of two forms, the way to the review page."""
 
 from __future__ import annotations
 
@@ -54,14 +54,6 @@ def test_a_wrong_answer_shows_the_difference(sample, anna):
     assert "✗ wrong" in page
 
 
-def test_a_paraphrase_leads_to_the_command_that_it_rewrites(sample, anna):
-    example = sample.example
-    command = sample.world.commands.first()
-    sample.split.examples.filter(pk=example.pk).update(source_command=command.anonymized_text)
-    page = anna.get(f"/w/home/runs/{sample.run.pk}/predictions/{example.pk}/").content.decode()
-    assert f'href="/w/home/commands/{command.pk}/"' in page
-
-
 def test_no_answer_is_told_as_such(sample, anna):
     Prediction.objects.filter(is_exact_match=False).update(logical_form="", is_well_formed=False)
     assert "no answer" in predictions(anna, sample, outcome="none").content.decode()
@@ -81,39 +73,15 @@ def test_the_list_costs_no_query_a_row(sample, anna, django_assert_max_num_queri
         predictions(anna, sample)
 
 
-def test_one_goes_on_to_the_next_that_passes_the_filters(sample, anna):
-    wrong = list(Prediction.objects.filter(is_exact_match=False).order_by("example_id"))
-    base = f"/w/home/runs/{sample.run.pk}/predictions"
-    page = anna.get(f"{base}/{wrong[1].example_id}/?outcome=wrong")
-    assert page.context["neighbours"] == {
-        "before": wrong[0].example_id,
-        "after": wrong[2].example_id,
-    }
-    first = anna.get(f"{base}/{wrong[0].example_id}/?outcome=wrong")
-    assert first.context["neighbours"]["before"] is None
-
-
-def test_all_candidates_are_shown_in_order(sample, anna):
-    best = sample.run.predictions.first()
-    Prediction.objects.create(
-        run=sample.run,
-        example=best.example,
-        rank=2,
-        logical_form="( follow UNKNOWN )",
-        score=0.25,
-        is_exact_match=False,
-        is_equivalent=False,
-        is_well_formed=True,
+def test_each_prediction_leads_to_the_review_page_with_the_same_filters(sample, anna):
+    page = predictions(anna, sample, outcome="wrong", sort="score").content.decode()
+    wrong = sample.run.predictions.filter(is_exact_match=False).first()
+    address = (
+        f"/w/home/review/?run={sample.run.pk}&amp;outcome=wrong&amp;example={wrong.example_id}"
     )
-    page = anna.get(f"/w/home/runs/{sample.run.pk}/predictions/{best.example_id}/")
-    assert [each.rank for each in page.context["candidates"]] == [1, 2]
-    assert "0.250" in page.content.decode()
-
-
-def test_an_example_without_an_answer_of_this_run_is_not_found(sample, anna):
-    other = sample.split.examples.filter(part="train").first()
-    answer = anna.get(f"/w/home/runs/{sample.run.pk}/predictions/{other.pk}/")
-    assert answer.status_code == 404
+    assert f'href="{address}"' in page
+    answer = anna.get(address.replace("&amp;", "&"))
+    assert answer.context["case"].example == wrong.example
 
 
 def seen(sample, **facts):
@@ -121,7 +89,7 @@ def seen(sample, **facts):
     first = sample.run.predictions.best().order_by("example_id").first()
     Prediction.objects.filter(pk=first.pk).update(**facts)
     listed = f"/w/home/runs/{sample.run.pk}/predictions/"
-    return listed, f"{listed}{first.example_id}/"
+    return listed, f"/w/home/review/?run={sample.run.pk}&example={first.example_id}"
 
 
 def test_a_form_tells_how_often_training_had_it_and_where_it_is_from(sample, anna):
@@ -137,7 +105,8 @@ def test_a_form_tells_how_often_training_had_it_and_where_it_is_from(sample, ann
 def test_what_is_not_known_of_an_older_answer_is_not_made_up(sample, anna):
     _, page = seen(sample)
     text = anna.get(page).content.decode()
-    assert "in training" not in text and "What the scores are made of" not in text
+    assert "Seen " not in text and "Not seen" not in text
+    assert "What the scores are made of" not in text
 
 
 def test_the_parts_of_a_score_stand_in_a_table(sample, anna):

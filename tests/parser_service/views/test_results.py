@@ -32,10 +32,11 @@ def test_a_cell_shows_percent_and_interval_and_leads_to_its_wrong_answers(sample
     cell = table.rows[0].cells[0]
     assert (cell.percent, cell.low, cell.high, cell.spread) == (25.0, 10.0, 60.0, None)
     assert cell.url == (
-        f"/w/home/runs/{sample.run.pk}/predictions/?part=validation&outcome=wrong&source=generated"
+        f"/w/home/review/?run={sample.run.pk}&part=validation&outcome=wrong&source=generated"
     )
-    listing = anna.get(cell.url).context["listing"]
-    assert not any(row.is_exact_match for row in listing.rows)
+    page = anna.get(cell.url)
+    assert not any(row.is_exact_match for row in page.context["listing"].rows)
+    assert page.context["case"].answers[0].is_wrong
 
 
 def test_where_all_answers_are_right_all_are_shown(sample):

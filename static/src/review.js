@@ -1,0 +1,161 @@
+// The review page by keyboard: one answer of the example has the focus, and one key says why it is wrong.
+const TYPING = "input, textarea, select, [contenteditable], .cm-editor";
+const FOLDS = { t: "tree", b: "beam" };
+
+let isListening = false;
+let focused = ""; // the run whose answer has the focus, from example to example
+const open = new Set(); // the folds that stay open
+let waiting = []; // keys that came while an answer was on its way to the server
+
+const current = () => document.getElementById("case");
+const answers = () => [...document.querySelectorAll("[data-answer]")];
+const answerOf = (run) => answers().find((each) => each.dataset.answer === run);
+const shown = () => answerOf(focused) ?? answers()[0];
+const busy = () => document.querySelector("#list .htmx-request, #list.htmx-request");
+const isStepping = () => Boolean(document.querySelector("#list a.htmx-request"));
+
+/** Called for the page's example and again for each that replaces the one before. */
+export function enhance(place) {
+  if (!isListening) {
+    isListening = true;
+    focused = place.dataset.focus;
+    document.addEventListener("keydown", onKey, true); // before the keys of all pages
+    document.addEventListener("focusin", onFocus);
+    document.addEventListener("htmx:afterSettle", goOn);
+    for (const failure of ["htmx:responseError", "htmx:sendError"]) {
+      document.addEventListener(failure, () => (waiting = []));
+    }
+  }
+  if (!answerOf(focused)) focused = place.dataset.focus;
+  place.querySelectorAll("details[data-fold]").forEach((fold) => {
+    fold.open = open.has(fold.dataset.fold);
+    fold.addEventListener("toggle", () => remember(fold));
+  });
+  mark();
+  if (!document.activeElement?.closest(TYPING)) focus();
+}
+
+function remember(fold) {
+  if (fold.open) open.add(fold.dataset.fold);
+  else open.delete(fold.dataset.fold);
+}
+
+function focus() {
+  shown()?.focus({ preventScroll: true });
+}
+
+// The answer that has the focus is the one that keys and the error categories below are about.
+function mark() {
+  const answer = shown();
+  if (!answer) return;
+  answers().forEach((each) => each.toggleAttribute("aria-current", each === answer));
+  answer.setAttribute("aria-current", "true");
+  const address = new URL(location.href);
+  if (address.searchParams.get("focus") !== answer.dataset.answer && answers().length > 1) {
+    address.searchParams.set("focus", answer.dataset.answer);
+    history.replaceState(history.state, "", address);
+  }
+  document.querySelectorAll("[data-review-palette] [name=run], [data-review-doubt] [name=run]").forEach((field) => {
+    field.value = answer.dataset.answer;
+  });
+  const palette = document.querySelector("[data-review-palette]");
+  if (!palette) return;
+  const isWrong = "wrong" in answer.dataset;
+  palette.querySelector("[data-palette-title]").textContent = isWrong
+    ? `Why is the answer of ${answer.dataset.title} wrong?`
+    : `The answer of ${answer.dataset.title} has no error to tag.`;
+  palette.querySelectorAll("button").forEach((button) => {
+    button.disabled = !isWrong;
+    button.setAttribute("aria-pressed", String(button.value === answer.dataset.own));
+  });
+}
+
+function onFocus(event) {
+  const answer = event.target.closest?.("[data-answer]");
+  if (!answer || answer.dataset.answer === focused) return;
+  focused = answer.dataset.answer;
+  mark();
+}
+
+function moveBy(step) {
+  const all = answers();
+  const to = all[all.indexOf(shown()) + step];
+  if (!to) return;
+  to.focus({ preventScroll: true });
+  to.scrollIntoView({ block: "nearest", inline: "nearest" });
+}
+
+const press = (key, place = document.getElementById("list")) =>
+  place?.querySelector(`[data-key="${key}"]:not([disabled])`)?.click();
+
+function unfold(name) {
+  const fold = shown()?.querySelector(`[data-fold="${name}"]`);
+  if (!fold) return;
+  const isOpen = !fold.open;
+  document.querySelectorAll(`[data-fold="${name}"]`).forEach((each) => (each.open = isOpen));
+}
+
+function openDoubt() {
+  const panel = document.querySelector("[data-review-doubt]");
+  if (!panel) return;
+  panel.open = true;
+  panel.querySelector("[name=reason]").focus();
+}
+
+const actions = {
+  j: () => press("j"),
+  k: () => press("k"),
+  w: () => press("w"),
+  h: () => moveBy(-1),
+  l: () => moveBy(1),
+  ArrowLeft: () => moveBy(-1),
+  ArrowRight: () => moveBy(1),
+  n: () => shown()?.querySelector("[data-note]")?.focus(),
+  g: openDoubt,
+  u: () => press("u", shown()),
+  z: () => press("u", shown()),
+  Enter: () => press("Enter", shown()),
+  t: () => unfold(FOLDS.t),
+  b: () => unfold(FOLDS.b),
+};
+
+function actionOf(event) {
+  const isOnControl = event.target.closest("a, button, summary");
+  if (event.key === "Enter" && isOnControl) return null;
+  if (Object.hasOwn(actions, event.key)) return actions[event.key];
+  const palette = document.querySelector("[data-review-palette]");
+  const hasKey = /^[0-9=-]$/.test(event.key) && palette?.querySelector(`[data-key="${event.key}"]`);
+  return hasKey ? () => press(event.key, palette) : null;
+}
+
+function leaveField(event) {
+  const isNote = event.target.matches("[data-note]");
+  if (event.key === "Enter" && isNote) {
+    event.target.form.requestSubmit();
+  } else if (event.key !== "Escape" || !event.target.closest("#case")) {
+    return;
+  }
+  event.preventDefault();
+  document.querySelector("[data-review-doubt]")?.removeAttribute("open");
+  focus();
+}
+
+function onKey(event) {
+  if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
+  if (!current()) return;
+  if (event.target.closest(TYPING)) {
+    if (event.key === "Enter" || event.key === "Escape") leaveField(event);
+    return;
+  }
+  const action = actionOf(event);
+  if (!action) return;
+  event.preventDefault();
+  if (event.repeat && !"jk".includes(event.key)) return;
+  if (!busy()) action();
+  // A tag that comes while the next example is on its way is not for that one: nobody has read it yet.
+  else if (!isStepping() || "jk".includes(event.key)) waiting.push(action);
+}
+
+function goOn() {
+  if (!busy()) waiting.splice(0, 1).forEach((action) => action());
+}
