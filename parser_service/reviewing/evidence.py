@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from django.db.models import Count
 
+from annotations.language.auditing import LabelledPair, check_words
 from annotations.language.forms import CLASS_TOKEN, read_form
 from annotations.models import AuditFinding, Entity, Example, FindingStatus, Split, World
 from parser_service.analysis.categories import Audit, ErrorEvidence, Neighbour, RunEvidence
@@ -57,7 +58,7 @@ class ErrorEvidences:
 
     def __init__(self, run: TrainingRun, answers: Sequence[Answered]) -> None:
         self._answers = answers
-        self._audits = dict(_read_audits(run.world))
+        self._audits: dict[tuple[str, str], Audit | None] = dict(_read_audits(run.world))
         self._labels = _ambiguous_labels(run.split)
         self._neighbours = _Neighbours(answers)
 
@@ -68,18 +69,26 @@ class ErrorEvidences:
         return ErrorEvidence(
             neighbours=tuple(self._neighbours.of(at)),
             other_golds=tuple(read_form(text) for text in labels if text != answered.label),
-            audit=self._audits.get((answered.utterance, answered.label)),
+            audit=self._doubt_about(answered),
         )
 
+    def _doubt_about(self, answered: Answered) -> Audit | None:
+        """Return what an audit or a person says against the label, otherwise what its own words say."""
+        pair = answered.utterance, answered.label
+        if pair not in self._audits:
+            self._audits[pair] = _read_words(*pair)
+        return self._audits[pair]
 
-def _read_audits(world: World) -> Iterator[tuple[tuple[str, str], Audit]]:
-    """Yield text and label of each pair in doubt, and the doubt; what people have decided comes last.
+
+def _read_audits(world: World) -> Iterator[tuple[tuple[str, str], Audit | None]]:
+    """Yield text and label of each audited pair, and the doubt: None where somebody has kept the label. What
+    people have decided comes last.
 
     A pair stands in a split as it was said, or with class tokens.
     """
     findings = world.audit_findings.prefetch_related("reasons")
     of_machine = ((row, _doubt(row)) for row in findings.open().iterator(ROWS_AT_ONCE))
-    of_people = ((row, _decision(row)) for row in findings.confirmed().iterator(ROWS_AT_ONCE))
+    of_people = ((row, _decision(row)) for row in findings.decided().iterator(ROWS_AT_ONCE))
     for rows in (of_machine, of_people):
         for row, audit in rows:
             for text in {row.text, row.anonymized_text}:
@@ -92,9 +101,21 @@ def _doubt(finding: AuditFinding) -> Audit:
     return Audit(f"The label audit doubts the label: {sentences}", suggested)
 
 
-def _decision(finding: AuditFinding) -> Audit:
+def _decision(finding: AuditFinding) -> Audit | None:
+    if finding.status == FindingStatus.KEPT:
+        return None
     decided = read_or_none(finding.decided_form)
     return Audit(DECIDED[FindingStatus(finding.status)], decided)
+
+
+def _read_words(utterance: str, label: str) -> Audit | None:
+    """Return the doubt about a label that a word of its utterance contradicts, whether it was audited or not."""
+    finding = next(check_words([LabelledPair("", utterance, label)]), None)
+    if finding is None:
+        return None
+    return Audit(
+        f"The label may be wrong. {finding.sentence}", read_or_none(finding.suggested_form)
+    )
 
 
 def _ambiguous_labels(split: Split) -> dict[str, list[str]]:

@@ -17,6 +17,8 @@ from tests.sample_world import answer, make_paraphrase, scored_run
 
 GO = '( go " <room> " )'
 BRING = '( bring ( lambda $1 e ( is_a $1 " <object> " ) ) )'
+BIGGEST = "( bring ( lambda $1 e ( biggest $1 ) ) )"
+LARGEST = "( bring ( lambda $1 e ( largest $1 ) ) )"
 FIND = '( find ( lambda $1 e ( is_a $1 " <object> " ) ) )'
 
 
@@ -129,6 +131,18 @@ def test_what_the_label_audit_suggests_is_a_wrong_gold_label(run, say):
     assert "has corrected this label" in proposed(run)["fetch it"][1]
     run.world.audit_findings.update(status=FindingStatus.KEPT, decided_form=FIND)
     assert proposed(run)["fetch it"][0] == "wrong_predicate"
+
+
+def test_a_label_that_its_own_words_contradict_is_a_wrong_gold_label(run, say):
+    text = "bring the largest one"
+    say(text, BIGGEST, LARGEST)
+    code, reason = proposed(run)[text]
+    assert code == "wrong_gold_label"
+    assert "It says “largest”, the form says “biggest”." in reason
+    kept = make_paraphrase(run.world, "go", text, logical_form=BIGGEST, grounded_form=BIGGEST)
+    store_findings(run.world, [doubt(kept, LARGEST)])
+    run.world.audit_findings.update(status=FindingStatus.KEPT, decided_form=BIGGEST)
+    assert proposed(run)[text][0] != "wrong_gold_label"
 
 
 def test_proposals_replace_earlier_ones_and_leave_people_alone(run, say, reviewer):
