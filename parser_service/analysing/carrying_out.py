@@ -24,6 +24,7 @@ from parser_service.analysing.sensing import (
 from parser_service.analysing.target import Target, parts_of
 from parser_service.models import TrainingRun
 from parser_service.models.runs import Status
+from parser_service.slices.slots import SLOTS
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +46,7 @@ def _find_confusions(target: Target, progress: Progress) -> dict[str, Any]:
 OF_PARTS = (
     Step("attractors", "looking for forms that attract unlike inputs", attractor_findings),
     Step("risk_coverage", "drawing the risk–coverage curve", refusal_findings),
-    Step("confusions", "counting confusions of slots", _find_confusions),
+    Step(SLOTS, "counting confusions of slots", _find_confusions),
 )
 OF_FIRST_PART = (
     Step("proposals", "proposing error categories", proposal_findings, 4),

@@ -20,6 +20,7 @@ from annotations.lists.paging import LONE_SURROGATE
 from parser_service.models import Prediction, Review, RunAnalysis
 from parser_service.models.predictions import OUTCOMES
 from parser_service.slices.conditions import Condition
+from parser_service.slices.slots import SLOTS
 
 LARGEST = 10**6
 LONGEST_TEXT = 200
@@ -186,7 +187,7 @@ class SlotFilter(django_filters.CharFilter):
         examples: list[int] = []
         if run.isdecimal() and len(run) < 19:
             rows = RunAnalysis.objects.filter(run__world=self.parent.request.world, run=run)
-            for lists in rows.values_list("findings__slots__examples", flat=True):
+            for lists in rows.values_list(f"findings__{SLOTS}__examples", flat=True):
                 examples += (lists or {}).get(confusion, [])
         return Condition(Q(example__in=examples))
 

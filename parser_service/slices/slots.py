@@ -10,6 +10,7 @@ from django.utils.http import urlencode
 from annotations.models import World
 from parser_service.models import TrainingRun
 
+SLOTS = "slots"  # the name of this analysis among the findings of a run
 MOST_ROWS = 40
 
 
@@ -27,7 +28,7 @@ class SlotRow:
 
 def slot_rows(world: World, run: TrainingRun, part: str) -> list[SlotRow] | None:
     """Return the most frequent confusions of a run's answers on a part; None where they are not analysed yet."""
-    stored = run.analyses.filter(part=part).values_list("findings__slots__rows", flat=True)
+    stored = run.analyses.filter(part=part).values_list(f"findings__{SLOTS}__rows", flat=True)
     confusions = stored.first()
     if confusions is None:
         return None

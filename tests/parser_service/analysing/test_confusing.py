@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from parser_service.analysing.carrying_out import names_of_steps
 from parser_service.analysing.confusing import confusion_findings
 from parser_service.analysis.confusions import confuse_slots
 from parser_service.models import Prediction, RunAnalysis
+from parser_service.slices.slots import SLOTS
 
 PAGE = "/w/home/compare/"
 
@@ -42,7 +44,7 @@ def test_a_confusion_leads_to_its_answers(sample, anna):
     assert "are not analysed yet" in anna.get(PAGE, query).content.decode()
     findings = confusion_findings(sample.run, "validation")
     RunAnalysis.objects.create(
-        run=sample.run, part="validation", version=1, findings={"slots": findings}
+        run=sample.run, part="validation", version=1, findings={SLOTS: findings}
     )
     slots = anna.get(PAGE, query).context["slots"]
     assert [row.count for row in slots] == [row[-1] for row in findings["rows"]]
@@ -50,8 +52,12 @@ def test_a_confusion_leads_to_its_answers(sample, anna):
         key = f"{row.predicate}:{row.place}:{row.gold}:{row.predicted}"
         chosen = anna.get(row.url).context["listing"]
         assert {each.example_id for each in chosen.rows} == set(findings["examples"][key])
-    RunAnalysis.objects.update(findings={"slots": {"rows": [], "examples": {}}})
+    RunAnalysis.objects.update(findings={SLOTS: {"rows": [], "examples": {}}})
     assert "of the same kind" in anna.get(PAGE, query).content.decode()
+
+
+def test_a_worker_stores_them_where_pages_read_them():
+    assert SLOTS in names_of_steps()
 
 
 def test_a_confusion_that_nobody_knows_chooses_nothing(sample, anna):
