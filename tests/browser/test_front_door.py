@@ -24,8 +24,8 @@ def test_wrong_answers_are_two_clicks_from_the_log_in(page: Page, live_server, s
     page.click("main a:has-text('home')")
     expect(page.locator("h1")).to_have_text("home")
     page.click("text=its 9 wrong answers")
-    expect(page.locator("h1")).to_contain_text("Predictions")
-    expect(page.locator("#list tbody tr")).to_have_count(9)
+    expect(page.locator("h1")).to_have_text("Review")
+    expect(page.locator("[data-review-place]")).to_have_text("No. 1 of 9")
 
 
 def test_choices_survive_a_change_of_parser(page_of, live_server, sample, admin):

@@ -45,8 +45,8 @@ def test_log_in_start_a_run_watch_it_finish_open_a_prediction(
     page.click("#run-state >> text=gen >> nth=0")
     expect(page.locator("h1")).to_contain_text("Predictions")
     page.click("#list a.row-link >> nth=0")
-    expect(page.locator("h2").first).to_have_text("Annotated and predicted")
-    expect(page.locator(".lf-pair code").first).not_to_be_empty()
+    expect(page.locator("h1")).to_have_text("Review")
+    expect(page.locator("[data-answer] code").first).not_to_be_empty()
 
 
 def test_the_banner_comes_and_goes_with_the_worker(page_of, live_server, annotator, worker):
