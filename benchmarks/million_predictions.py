@@ -52,7 +52,12 @@ PAGES = {
     "predictions, by error category": "runs/{run}/predictions/?part=test&category={category}",
     "predictions, win of a run": "runs/{run}/predictions/?outcome=wrong&versus={other}"
     "&versus_outcome=correct&part=test",
-    "prediction": "runs/{run}/predictions/{example}/?part=test&outcome=wrong",
+    "review": "review/?run={run}&part=test&outcome=wrong&example={example}",
+    "review, two runs": "review/?run={run}&run={other}&part=test&outcome=wrong&example={example}",
+    "review, where runs differ": "review/?run={run}&run={other}&differ=1&from={example}",
+    "review, by error category": "review/?run={run}&category={category}&example={example}",
+    "review, tagged before": "review/?run={run}&outcome=wrong&earlier=tagged&example={example}",
+    "error categories": "error-categories/?run={run}",
     "compare": f"compare/?{ASKED}",
     "compare, five runs": "compare/?{runs}&part=test&confusion={run}",
     "compare, on a slice": f"compare/?{ASKED}&head={{head}}&min_words={{words}}",
