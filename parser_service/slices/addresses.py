@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from django.urls import reverse
@@ -15,6 +15,7 @@ from parser_service.models import TrainingRun
 OF_ANSWERS = {
     *("outcome", "category", "category_by", "answer", "label", "answer_head", "slot", "slice"),
 }
+MOST_REVIEWED = 6  # runs beside each other on the review page
 Parameters = Mapping[str, str]
 
 
@@ -33,15 +34,15 @@ class Addresses:
 
     def of_base(self, chosen: Parameters) -> str:
         """Return the address of all answers of the first run in a slice; empty where no list shows just these."""
-        return self._list(self.runs[0], chosen)
+        return self._list(0, chosen)
 
     def of_run(self, run: int, chosen: Parameters, outcome: str = "") -> str:
         """Return the address of a run's answers in a slice, of one outcome or all; empty where no list shows
         just these."""
         if run == 0 or not OF_ANSWERS & {*self.query, *chosen}:
-            return self._list(self.runs[run], chosen, {"outcome": outcome} if outcome else {})
+            return self._list(run, chosen, {"outcome": outcome} if outcome else {})
         versus = {"versus": str(self.runs[run].pk), "versus_outcome": outcome}
-        return self._list(self.runs[0], chosen, versus if outcome else {})
+        return self._list(0, chosen, versus if outcome else {})
 
     def of_win(self, winner: int, loser: int) -> str:
         """Return the address of the answers where one run is right and another is wrong; empty where no list shows
@@ -53,19 +54,16 @@ class Addresses:
             outcomes = ("correct", "wrong") if winner == 0 else ("wrong", "correct")
         else:
             return ""
-        chosen = {
-            "outcome": outcomes[0],
-            "versus": str(self.runs[second].pk),
-            "versus_outcome": outcomes[1],
-        }
-        return self._list(self.runs[first], chosen)
+        versus = {"versus": str(self.runs[second].pk), "versus_outcome": outcomes[1]}
+        return self._list(first, {}, {"outcome": outcomes[0], **versus}, beside=(second,))
 
     def of_confusion(self, run: int, label: str, answer: str) -> str:
         """Return the address of a run's answers with one head predicate for labels with another; empty where
         the list would show others."""
         if run and OF_ANSWERS & set(self.query):
             return ""
-        return self._list(self.runs[run], {"head": label, "answer_head": answer})
+        confused = {"head": label, "answer_head": answer}
+        return self._list(run, {}, confused) if label != answer else self._list(run, confused)
 
     def compare(self, chosen: Parameters) -> str:
         """Return the address of the same comparison on a smaller slice."""
@@ -74,13 +72,27 @@ class Addresses:
         path = reverse("compare", kwargs={"world": self.world.name})
         return f"{path}?{urlencode([*keys, *given.items()])}"
 
-    def _list(self, run: TrainingRun, chosen: Parameters, more: Parameters | None = None) -> str:
+    def _list(
+        self,
+        run: int,
+        chosen: Parameters,
+        asked: Parameters | None = None,
+        beside: Sequence[int] | None = None,
+    ) -> str:
+        """Return the address of a run's answers: the review page, with other runs ``beside`` it (all of them unless
+        given), where something is ``asked`` of the answers, else the list."""
         joined = join(self.query, chosen)
-        joined = None if joined is None else join(joined, more or {})
+        joined = None if joined is None else join(joined, asked or {})
         if joined is None:
             return ""
-        path = reverse("predictions", kwargs={"world": self.world.name, "pk": run.pk})
-        return f"{path}?{urlencode({'part': self.part, **joined})}"
+        given = urlencode({"part": self.part, **joined})
+        of_world = {"world": self.world.name}
+        if not asked:
+            return f"{reverse('predictions', kwargs={**of_world, 'pk': self.runs[run].pk})}?{given}"
+        others = range(len(self.runs)) if beside is None else beside
+        shown = [run, *(other for other in others if other != run)][:MOST_REVIEWED]
+        runs = urlencode([("run", self.runs[each].pk) for each in shown])
+        return f"{reverse('review', kwargs=of_world)}?{runs}&{given}"
 
 
 def join(first: Parameters, second: Parameters) -> dict[str, str] | None:

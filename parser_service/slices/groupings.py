@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import chain
 
 import numpy as np
 
@@ -91,11 +90,14 @@ def _by_error(compared: Compared) -> Labels[str]:
     proposed, said = reviews.filter(is_proposed=True), reviews.filter(is_proposed=False)
     for rows in (proposed, said.order_by("changed_at")):
         pairs = rows.values_list("example_id", "category_id").iterator(chunk_size=AT_ONCE)
-        known = np.fromiter(chain.from_iterable(pairs), dtype=np.int64).reshape(-1, 2)
-        at = np.searchsorted(keys, known[:, 0])
-        is_there = np.take(keys, at, mode="clip") == known[:, 0] if len(keys) else at < 0
-        said_codes = np.array([places[key] for key in known[:, 1].tolist()], dtype=np.int64)
-        codes[at[is_there]] = said_codes[is_there]  # of two for one example, the later one
+        table = np.array(list(pairs), dtype=np.int64).reshape(-1, 2)  # [reviews, 2]
+        at = np.searchsorted(keys, table[:, 0])
+        is_there = at < len(codes)
+        is_there[is_there] = keys[at[is_there]] == table[is_there, 0]
+        found = np.array([places[category] for category in table[:, 1].tolist()], dtype=np.int64)
+        codes[at[is_there]] = found[
+            is_there
+        ]  # where an example is named twice, the last one counts
     return Labels((*(code for _, code in categories), NO_CATEGORY, RIGHT), codes[compared.chosen])
 
 
