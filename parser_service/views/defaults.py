@@ -26,14 +26,15 @@ def defaults(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     part = _choose(request.GET.get("part", ""), parts)
     findings = findings_of(run, part)
     attractors = findings.get("attractors", {})
-    source = _choose(request.GET.get("source", ""), list(attractors))
+    sources = [name for name in SOURCES if name in attractors]  # a database may sort its JSON
+    source = _choose(request.GET.get("source", ""), sources)
     context = {
         "run": run,
         "aside": f"{run.parser}, run {run.pk}",
         "analysis": analysis_of(run),
         "parts": parts,
         "part": part,
-        "sources": list(attractors),
+        "sources": sources,
         "source": source,
         "of_part": urlencode({"part": part, "source": str(SOURCES.get(source, ""))}),
         "attractors": attractors.get(source),
