@@ -5,10 +5,10 @@
     WEB_PROCESSES=2 python -m tests.load.work_queue --people 200 --rate 200 --database postgres://…
 
 Starts ``manage.py serve`` on a database of its own (SQLite in a temporary folder unless one is named),
-gives every person an item, then saves ``--rate`` labels a second in total, each followed by a request for
-the next item, all over the REST API. Says how long each took, how much processor time the server needed
-(which other programs on the machine change little), and whether an item was given twice. Exits with 1
-where it was, or where an answer was an error.
+gives every person an item (all at once, or over ``--arrive`` seconds), then saves ``--rate`` labels a
+second in total, each followed by a request for the next item, all over the REST API. Says how long each
+took, how much processor time the server needed (which other programs on the machine change little), and
+whether an item was given twice. Exits with 1 where it was, or where an answer was an error.
 """
 
 from __future__ import annotations
@@ -78,9 +78,20 @@ class Caller:
         return int(head.split()[1]), answer
 
 
-async def work(callers: list[Caller], rate: float, seconds: float) -> Counter[int]:
-    """Give everybody an item, then save at ``rate``. Returns how often each item was given."""
-    given: Counter[int] = Counter(await asyncio.gather(*(caller.next() for caller in callers)))
+async def work(
+    callers: list[Caller], rate: float, seconds: float, arrive: float = 0.0
+) -> Counter[int]:
+    """Give everybody an item, then save at ``rate``. Returns how often each item was given.
+
+    People ask for their first item evenly over ``arrive`` seconds.
+    """
+
+    async def begin(number: int, caller: Caller) -> int | None:
+        await asyncio.sleep(arrive * number / len(callers))
+        return await caller.next()
+
+    first = await asyncio.gather(*(begin(*each) for each in enumerate(callers)))
+    given: Counter[int | None] = Counter(first)
     free: asyncio.Queue[Caller] = asyncio.Queue()
     for caller in callers:
         free.put_nowait(caller)
@@ -168,6 +179,9 @@ def main() -> None:
     parser.add_argument("--people", type=int, default=30)
     parser.add_argument("--rate", type=float, default=1.0, help="labels a second, of all together")
     parser.add_argument("--seconds", type=float, default=60.0)
+    parser.add_argument(
+        "--arrive", type=float, default=0.0, help="seconds over which the first items are asked for"
+    )
     parser.add_argument("--database", default="", help="a URL; its database has to be empty")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="gpsr-load-") as folder:
@@ -181,9 +195,9 @@ def main() -> None:
         before = children_seconds()
         with server() as port:
             callers = [Caller(port, key, times) for key in keys]
-            given = asyncio.run(work(callers, arguments.rate, arguments.seconds))
+            given = asyncio.run(work(callers, arguments.rate, arguments.seconds, arguments.arrive))
     first, later = times["next"][: arguments.people], times["next"][arguments.people :]
-    say("first items, all at once", first)
+    say(f"first items, asked over {arguments.arrive:g} s", first)
     say("saves", times["save"])
     say("next items", later)
     requests = sum(map(len, times.values()))
