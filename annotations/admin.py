@@ -49,8 +49,8 @@ class WorldAdmin(admin.ModelAdmin):
 class ApiTokenAdmin(admin.ModelAdmin):
     """Tokens are seen and ended here, not made: a secret is shown to its owner alone."""
 
-    list_display = ("name", "user", "created_at", "expires_at")
-    readonly_fields = ("user", "name", "digest", "created_at")
+    list_display = ("name", "user", "scope", "created_at", "expires_at")
+    readonly_fields = ("user", "name", "scope", "digest", "created_at")
 
     def has_add_permission(self, request: HttpRequest) -> bool:
         return False

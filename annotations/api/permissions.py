@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from django.http import Http404
-from rest_framework.permissions import BasePermission
+from rest_framework.exceptions import PermissionDenied
+from rest_framework.permissions import SAFE_METHODS, BasePermission
 from rest_framework.request import Request
 
-from annotations.models import Duty, World
+from annotations.models import ApiToken, Duty, Scope, World
 
 if TYPE_CHECKING:  # rest_framework.views imports the default permission, which stands here
     from rest_framework.views import APIView
@@ -23,11 +24,53 @@ class DenyByDefault(BasePermission):
         return False
 
 
-class HasDuty(BasePermission):
+# The scope that a token needs for a duty. The one place for this rule.
+SCOPE_FOR = {
+    Duty.VIEW: Scope.READ,
+    Duty.ANNOTATE: Scope.ANNOTATE,
+    Duty.REVIEW: Scope.ANNOTATE,
+    Duty.MANAGE: Scope.ADMIN,
+}
+
+
+def scope_needed(view: APIView, method: str) -> Scope:
+    """Return the scope that a token needs for ``method`` of ``view``.
+
+    ``view.scopes`` says it per method where it is not what duty and method say: a POST that stores
+    nothing needs ``Scope.READ``, one that starts a run ``Scope.TRAIN``.
+    """
+    named: Scope | None = getattr(view, "scopes", {}).get(method)
+    if named is not None:
+        return named
+    for_duty = SCOPE_FOR[getattr(view, "duty", Duty.VIEW)]
+    stores = method not in SAFE_METHODS and for_duty == Scope.READ
+    return Scope.ANNOTATE if stores else for_duty
+
+
+class HasScope(BasePermission):
+    """Checks that somebody calls, and that a token allows the method. For routes outside of worlds.
+
+    A caller without a valid token gets a 401; a token of too narrow a scope is a 403. Somebody who is
+    logged in on the pages needs no token.
+    """
+
+    def has_permission(self, request: Request, view: APIView) -> bool:
+        if not request.user.is_authenticated:
+            return False
+        token, needed = request.auth, scope_needed(view, request.method)
+        if isinstance(token, ApiToken) and not Scope(token.scope).includes(needed):
+            raise PermissionDenied(
+                f"This token has the scope “{token.scope}”, and this needs “{needed}”. "
+                "Make another token on the page of your account."
+            )
+        return True
+
+
+class HasDuty(HasScope):
     """Checks that the caller has ``view.duty`` in the world of the URL, and sets ``view.world``.
 
     A world that the caller is not a member of is a 404, as if it did not exist. A duty that their
-    role does not include is a 403. A caller without a valid token gets a 401.
+    role does not include is a 403, and so is a token whose scope does not include it.
     """
 
     message = "Your role in this world does not allow this."
@@ -40,4 +83,4 @@ class HasDuty(BasePermission):
             raise Http404("There is no such world.")
         view.world, duties = seen
         duty: Duty = view.duty
-        return duty in duties
+        return duty in duties and super().has_permission(request, view)

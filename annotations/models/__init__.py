@@ -6,7 +6,7 @@ from annotations.models.editable import Editable
 from annotations.models.grammar import Grammar, Production, TaskCategory
 from annotations.models.jobs import Job, JobKind
 from annotations.models.ontology import Entity, Ontology
-from annotations.models.people import ApiToken, User
+from annotations.models.people import ApiToken, Scope, User
 from annotations.models.predicates import Predicate
 from annotations.models.problems import StoredProblem
 from annotations.models.proposals import CommandProposal, Proposal
@@ -51,6 +51,7 @@ __all__ = [
     "Predicate",
     "Production",
     "Proposal",
+    "Scope",
     "SemanticTemplate",
     "Split",
     "StoredProblem",

@@ -24,6 +24,24 @@ class User(AbstractUser):
                 self.api_tokens.all().delete()
 
 
+class Scope(models.TextChoices):
+    """What a token may be used for, within what its owner may do. Each includes those before it."""
+
+    READ = "read"
+    ANNOTATE = "annotate"
+    TRAIN = "train"
+    ADMIN = "admin"
+
+    def includes(self, other: Scope) -> bool:
+        """Return whether a token of this scope may do what ``other`` allows."""
+        order = list(Scope)
+        return order.index(other) <= order.index(self)
+
+
+def scope_choices() -> list[tuple[str, str]]:
+    return Scope.choices
+
+
 class ApiTokenQuerySet(models.QuerySet["ApiToken"]):
     def valid(self) -> ApiTokenQuerySet:
         return self.filter(expires_at__gt=timezone.now(), user__is_active=True)
@@ -38,6 +56,7 @@ class ApiToken(models.Model):
 
     user = models.ForeignKey(User, on_delete=models.CASCADE, related_name="api_tokens")
     name = models.CharField(max_length=80)
+    scope = models.CharField(max_length=10, choices=scope_choices)
     digest = models.CharField(max_length=64, unique=True)
     created_at = models.DateTimeField(auto_now_add=True)
     expires_at = models.DateTimeField()
@@ -48,12 +67,14 @@ class ApiToken(models.Model):
         return f"{self.name} of {self.user}"
 
     @classmethod
-    def issue(cls, user: User, name: str, days: int = 90) -> tuple[ApiToken, str]:
+    def issue(
+        cls, user: User, name: str, days: int = 90, scope: Scope = Scope.ADMIN
+    ) -> tuple[ApiToken, str]:
         """Issue a token and return it with its secret, which cannot be retrieved later."""
         key = secrets.token_urlsafe(32)
         expires_at = timezone.now() + timedelta(days=days)
         token = cls.objects.create(
-            user=user, name=name, digest=digest_of(key), expires_at=expires_at
+            user=user, name=name, scope=scope, digest=digest_of(key), expires_at=expires_at
         )
         return token, key
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 
-from annotations.models import ApiToken, User
+from annotations.models import ApiToken, Scope, User
 
 
 class Command(BaseCommand):
@@ -16,15 +16,16 @@ class Command(BaseCommand):
         parser.add_argument("username")
         parser.add_argument("--name", default="command line", help="what the token is for")
         parser.add_argument("--days", type=int, default=90, help="days until it expires")
+        parser.add_argument("--scope", choices=Scope.values, default=Scope.READ)
 
     def handle(self, *args: Any, **options: Any) -> None:
         user = User.objects.filter(username=options["username"], is_active=True).first()
         if user is None:
             raise CommandError(
                 f"There is no active account {options['username']!r}. "
-                "Make one on the people page or with: manage.py createsuperuser"
+                "Invite somebody on the people page of a world, or run: manage.py createsuperuser"
             )
         if options["days"] < 1:
             raise CommandError(f"--days is {options['days']}; a token lasts at least one day.")
-        _, key = ApiToken.issue(user, options["name"], options["days"])
+        _, key = ApiToken.issue(user, options["name"], options["days"], options["scope"])
         self.stdout.write(key)
