@@ -2,28 +2,11 @@
 
 from django.urls import path
 
-from parser_service.views import (
-    analysis,
-    audit,
-    compare,
-    defaults,
-    labelling,
-    learning_curves,
-    predictions,
-    probes,
-    reports,
-    results,
-    retraining,
-    review,
-    review_categories,
-    run_new,
-    runs,
-    sending,
-    sensitivity,
-    slices,
-    suggestions,
-    tryout,
-)
+from parser_service.views.analysis import analysis, defaults, probes, sensitivity, tryout
+from parser_service.views.labelling import audit, labelling, suggestions
+from parser_service.views.results import compare, reports, results, slices
+from parser_service.views.reviewing import predictions, review, review_categories, sending
+from parser_service.views.runs import learning_curves, retraining, run_new, runs
 
 urlpatterns = [
     path("label/", labelling.label_page, name="label"),

@@ -14,7 +14,7 @@ from annotations.splits.renewing import last_of
 from parser_service.models import TrainingRun
 from parser_service.runs.requesting import retrain
 from parser_service.runs.retraining import retrainable
-from parser_service.views.run_new import in_words, too_many
+from parser_service.views.runs.run_new import in_words, too_many
 
 
 @never_cache

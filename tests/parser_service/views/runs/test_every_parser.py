@@ -15,7 +15,7 @@ from parser_service.parsers.registry import PARSERS, config_fields, config_value
 from parser_service.parsers.weight_files import missing_weights
 from parser_service.runs.worker import work_next
 from tests.parser_service.made_up import TINY, VERBS, made_up_pairs
-from tests.parser_service.views.forms_of_pages import PageForm
+from tests.parser_service.views.runs.forms_of_pages import PageForm
 
 NEW = "/w/home/runs/new/"
 # Of these, each parser is given what it has.

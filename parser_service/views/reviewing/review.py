@@ -19,7 +19,7 @@ from parser_service.reviewing.cases import read_case
 from parser_service.reviewing.categories import ensure_categories
 from parser_service.reviewing.doubting import doubt_label
 from parser_service.reviewing.tagging import LONGEST_NOTE, accept, tag, take_back, write_note
-from parser_service.views.review_listing import (
+from parser_service.views.reviewing.review_listing import (
     ReviewListing,
     example_asked,
     number_of,

@@ -11,7 +11,6 @@ from django.shortcuts import get_object_or_404, redirect, render
 from annotations.forms import posted
 from annotations.models import Duty, World
 from annotations.people.access import READ_AND_WRITE, WRITE, world_view
-from parser_service.category_forms import CategoryForm, DeletionForm
 from parser_service.models import ErrorCategory, Review
 from parser_service.reviewing.agreement import agreement_of_reviewers
 from parser_service.reviewing.categories import ensure_categories
@@ -22,7 +21,8 @@ from parser_service.reviewing.category_editing import (
     move_category,
 )
 from parser_service.reviewing.counting import count_categories
-from parser_service.views.review_listing import number_of
+from parser_service.views.reviewing.category_forms import CategoryForm, DeletionForm
+from parser_service.views.reviewing.review_listing import number_of
 
 STEPS = {"up": -1, "down": 1}
 

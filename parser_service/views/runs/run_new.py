@@ -10,13 +10,13 @@ from annotations.forms import posted
 from annotations.models import Duty, World
 from annotations.people.access import READ_AND_WRITE, world_view
 from annotations.people.rate_limits import STARTED_RUNS
-from parser_service.forms import RunForm
 from parser_service.models import TrainingRun
-from parser_service.parser_picker import parser_groups
 from parser_service.parsers.registry import PARSERS
 from parser_service.results.accuracy import seeds_url
-from parser_service.run_choices import RunChoices, choices_in, query_of
 from parser_service.runs import requesting
+from parser_service.views.runs.parser_picker import parser_groups
+from parser_service.views.runs.run_choices import RunChoices, choices_in, query_of
+from parser_service.views.runs.run_forms import RunForm
 
 
 @world_view(Duty.MANAGE, READ_AND_WRITE)

@@ -19,7 +19,7 @@ from parser_service.analysing.target import parts_of
 from parser_service.analysis.edits import EditKind
 from parser_service.analysis.sensitivity import ALL_KINDS
 from parser_service.models import TrainingRun
-from parser_service.views.asked_runs import asked_runs, runs_to_choose
+from parser_service.views.analysis.asked_runs import asked_runs, runs_to_choose
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from annotations.lists.listing import Listing, Sort
 from annotations.models import Example, World
 from parser_service.models import Prediction, TrainingRun
 from parser_service.parsers.registry import PARSERS
-from parser_service.review_filters import ReviewFilters
+from parser_service.reviewing.filters import ReviewFilters
 
 MOST_RUNS = 6
 PLACES = ("example", "from", "focus")

@@ -19,7 +19,7 @@ from parser_service.reporting.run_report import run_report as write_run_report
 from parser_service.results.choices import default_part
 from parser_service.slices.choosing import PARTS, choose_runs
 from parser_service.slices.compared import compare_on
-from parser_service.views.compare import ComparedFilters
+from parser_service.views.results.compare import ComparedFilters
 
 
 @never_cache

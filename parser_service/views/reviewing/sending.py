@@ -9,7 +9,7 @@ from annotations.models import Duty, World
 from annotations.people.access import WRITE, world_view
 from annotations.views.queueing.sending import go_back, send
 from parser_service.models import TrainingRun
-from parser_service.views.predictions import listing_of
+from parser_service.views.reviewing.predictions import listing_of
 
 
 @world_view(Duty.REVIEW, WRITE)

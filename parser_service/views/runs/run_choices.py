@@ -11,9 +11,9 @@ from django.http import QueryDict
 from django.utils.http import urlencode
 
 from annotations.models import World
-from parser_service.forms import GENERAL, PREFIX
 from parser_service.models import TrainingRun
 from parser_service.parsers.registry import PARSERS, config_fields
+from parser_service.views.runs.run_forms import GENERAL, PREFIX
 
 DEFAULT_PARSER = next(iter(PARSERS))
 
