@@ -14,7 +14,7 @@ from annotations.queueing.giving import kinds_for
 
 
 def correct_label(row: Paraphrase, form: str, by: User, version: int) -> Paraphrase:
-    """Give ``row``, which was at ``version`` when ``by`` saw it, the label ``form``, in any notation.
+    """Give ``row``, which was at ``version`` when ``by`` saw it, the label ``form``, in any notation or UNKNOWN.
 
     Its history keeps the old one. Where an audit doubts the label, this decides about it; what a reviewer
     has asked about the row is done.
@@ -29,7 +29,7 @@ def correct_label(row: Paraphrase, form: str, by: User, version: int) -> Paraphr
     """
     if WorkKind.AUDIT not in kinds_for(by, row.world):
         raise NotForThem(f"{by} has no role in this world that decides about labels.")
-    label = canonical_label(form)
+    label = canonical_label(form, may_be_unknown=True)
     if label == row.logical_form:
         return row
     with transaction.atomic():

@@ -26,7 +26,7 @@ def decide(
     The item about it in the work queue is done.
 
     Args:
-        form: the right label in any notation, for a correction; the offered one where it is empty.
+        form: the right label in any notation or UNKNOWN, for a correction; the offered one where it is empty.
         reason: why, if the person says so.
 
     Raises:
@@ -108,7 +108,7 @@ def _label_after(finding: AuditFinding, decision: str, form: str) -> str:
         return finding.form
     if not form and not finding.offers_form:
         raise ValueError("No form is offered here. Write one, or exclude the pair.")
-    corrected = canonical_label(form or finding.suggested_form)
+    corrected = canonical_label(form or finding.suggested_form, may_be_unknown=True)
     if corrected == finding.form:
         raise ValueError("This is the label already. Keep it, or write another form.")
     return corrected

@@ -6,7 +6,7 @@ from django.db.models import Exists, OuterRef, QuerySet
 
 from annotations import labelling
 from annotations.editing.edits import change, restore
-from annotations.language.forms import canonical_text, read_form
+from annotations.language.forms import UNKNOWN, canonical_text, read_form
 from annotations.language.grounding import ground_like
 from annotations.models import (
     AuditDecision,
@@ -21,8 +21,6 @@ from annotations.models import (
 from annotations.models.corpus import ParaphraseStatus
 from annotations.rows.history import entry_at
 
-VERDICTS = {FindingStatus.CORRECTED: Verdict.FORM, FindingStatus.EXCLUDED: Verdict.EXCLUDE}
-
 
 def change_pair(finding: AuditFinding, made: AuditDecision, by: User) -> None:
     """Give the pair the label that ``made``, an unsaved decision, says, and note in it what that made."""
@@ -31,8 +29,16 @@ def change_pair(finding: AuditFinding, made: AuditDecision, by: User) -> None:
         made.version = change(row, _values(row, made), by, row.version).version
     else:
         row = finding.utterance
-        verdict = VERDICTS[FindingStatus(made.decision)]
-        made.label = labelling.label(row, verdict, made.form, by, row.version, reason=made.reason)
+        verdict = _verdict(made)
+        form = made.form if verdict == Verdict.FORM else ""
+        made.label = labelling.label(row, verdict, form, by, row.version, reason=made.reason)
+
+
+def _verdict(made: AuditDecision) -> Verdict:
+    """Return the answer to an utterance that a decision against its label is."""
+    if made.decision == FindingStatus.EXCLUDED:
+        return Verdict.EXCLUDE
+    return Verdict.UNKNOWN if made.form == canonical_text(UNKNOWN) else Verdict.FORM
 
 
 def change_back(finding: AuditFinding, made: AuditDecision, by: User) -> None:

@@ -70,7 +70,8 @@ def store(
 
     What a person has changed keeps what it says; a template that a person wrote stays, behind those of
     the files. What a person has deleted stays away unless ``brings_back``. To be called inside a
-    transaction.
+    transaction, where all but the productions is compared once more: edits of entities, predicates and
+    drafts do not change the world's revision.
     """
     grammar, _ = models.Grammar.objects.select_related("world").get_or_create(world=world)
     ontology, _ = models.Ontology.objects.select_related("world").get_or_create(world=world)

@@ -31,15 +31,18 @@ PLACE = Position("form")
 STAND_IN = "do it"  # the pattern of a template whose form alone is looked at
 
 
-def canonical_label(text: str) -> str:
+def canonical_label(text: str, may_be_unknown: bool = False) -> str:
     """Return a form in any notation as canonical corpus text.
 
-    Raises LanguageError where it cannot be read, is too long, or is a template's.
+    Raises LanguageError where it cannot be read, is too long, is a template's, or is UNKNOWN and that is
+    not ``may_be_unknown``.
     """
-    return canonical_text(_read(text))
+    return canonical_text(_read(text, may_be_unknown))
 
 
-def check_label(world: World, anonymized_text: str, text: str) -> dict[str, Any]:
+def check_label(
+    world: World, anonymized_text: str, text: str, may_be_unknown: bool = False
+) -> dict[str, Any]:
     """Check a form in any notation for an utterance, against the predicates of its world.
 
     Returns JSON as ``annotations.checking.assistance.assist`` does, without slots.
@@ -48,14 +51,14 @@ def check_label(world: World, anonymized_text: str, text: str) -> dict[str, Any]
     sides, checker = Sides(STAND_IN, text), template_checker(Grammar(()), declared)
     reading = sentence = ""
     if len(text) > MAX_FORM:
-        problems: tuple[Problem, ...] = (_refusal(text),)
+        problems: tuple[Problem, ...] = (_refusal(text, may_be_unknown),)
     else:
         template, unread = read_sides(STAND_IN, text)
         remarks = checker.problems(template) if template else unread
         problems = tuple(each for each in remarks if each.position.source == PLACE.source)
         problems = with_repairs(problems, sides, checker)
         if template and not any(problem.is_error for problem in problems):
-            problems += tuple(_check_as_label(text, anonymized_text))
+            problems += tuple(_check_as_label(text, anonymized_text, may_be_unknown))
             reading, sentence = to_reading(template.form), gloss(template.form, declared)
     return {
         "problems": [shown_problem(each, sides) for each in problems],
@@ -65,26 +68,26 @@ def check_label(world: World, anonymized_text: str, text: str) -> dict[str, Any]
     }
 
 
-def _refusal(text: str) -> Problem:
+def _refusal(text: str, may_be_unknown: bool) -> Problem:
     """Return why ``text`` cannot be a label."""
     try:
-        _read(text)
+        _read(text, may_be_unknown)
     except LanguageError as error:
         return error.problem
     raise ValueError("this is a label")
 
 
-def _check_as_label(text: str, anonymized_text: str) -> Iterator[Problem]:
+def _check_as_label(text: str, anonymized_text: str, may_be_unknown: bool) -> Iterator[Problem]:
     """Yield what is wrong with a form that can be read."""
     try:
-        yield from _check_slots(_read(text), text, anonymized_text)
+        yield from _check_slots(_read(text, may_be_unknown), text, anonymized_text)
     except LanguageError as error:
         yield error.problem
 
 
-def _read(text: str) -> Form:
+def _read(text: str, may_be_unknown: bool) -> Form:
     form = read_form(text.strip(), PLACE)
-    if isinstance(form, Unknown):
+    if isinstance(form, Unknown) and not may_be_unknown:
         raise LanguageError("UNKNOWN is an answer of its own", PLACE, "press u")
     for part in walk(form):
         for symbol in (part, getattr(part, "predicate", None)):

@@ -21,7 +21,7 @@ from annotations.queueing.giving import (
     take,
     withdraw,
 )
-from annotations.queueing.sending import Sent, send_examples
+from annotations.queueing.sending import send_examples
 from annotations.queueing.settling import settle, unsettle
 from annotations.queueing.shares import DOUBLE_KINDS, set_share, shares_of
 
@@ -29,7 +29,6 @@ __all__ = [
     "DOUBLE_KINDS",
     "NoLongerYours",
     "NotForThem",
-    "Sent",
     "Wanted",
     "WantedItem",
     "answer",

@@ -6,12 +6,11 @@ every list and comparison of predictions.
 
 from __future__ import annotations
 
-from parser_service.slices.filters import OUTCOMES, PredictionFilters
+from parser_service.slices.filters import PredictionFilters
 from parser_service.slices.saving import delete_slice, rename_slice, save_slice
 from parser_service.slices.selecting import describe_query, filters_of, select, slice_query
 
 __all__ = [
-    "OUTCOMES",
     "PredictionFilters",
     "delete_slice",
     "describe_query",

@@ -78,4 +78,5 @@ def paraphrase_check(request: HttpRequest, world: World, pk: int) -> HttpRespons
     """Say what is wrong with a label while somebody writes it."""
     row = get_object_or_404(world.paraphrases, pk=pk)
     anonymized = anonymizer_of(world).anonymize(row.utterance).command
-    return JsonResponse(check_label(world, anonymized, request.POST.get("form", "")))
+    form = request.POST.get("form", "")
+    return JsonResponse(check_label(world, anonymized, form, may_be_unknown=True))

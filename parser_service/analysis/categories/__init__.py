@@ -15,7 +15,7 @@ from parser_service.analysis.categories.proposing import (
     propose_categories,
     propose_category,
 )
-from parser_service.analysis.categories.structure import OF_DIFFERENCES, Proposal
+from parser_service.analysis.categories.structure import OF_DIFFERENCES
 
 __all__ = [
     "DESCRIPTIONS",
@@ -26,7 +26,6 @@ __all__ = [
     "ErrorCategory",
     "ErrorEvidence",
     "Neighbour",
-    "Proposal",
     "Proposals",
     "RunEvidence",
     "propose_categories",

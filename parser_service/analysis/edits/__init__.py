@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from parser_service.analysis.edits.edit import Edit, EditKind
+from parser_service.analysis.edits.edit import EditKind
 from parser_service.analysis.edits.facts import WorldFacts, gather_facts
 from parser_service.analysis.edits.generating import generate_edits
-from parser_service.analysis.edits.mining import OneEditPairs, mine_pairs, words_of
+from parser_service.analysis.edits.mining import mine_pairs, words_of
 
 __all__ = [
-    "Edit",
     "EditKind",
-    "OneEditPairs",
     "WorldFacts",
     "gather_facts",
     "generate_edits",

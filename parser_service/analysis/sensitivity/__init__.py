@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from parser_service.analysis.sensitivity.deciding_words import (
-    DecidingWord,
-    Removals,
     find_deciding_words,
     remove_words,
     single_word,
@@ -12,16 +10,12 @@ from parser_service.analysis.sensitivity.deciding_words import (
 from parser_service.analysis.sensitivity.edit_outcomes import (
     ALL_KINDS,
     EditAnswers,
-    Sensitivity,
     measure_sensitivity,
 )
 
 __all__ = [
     "ALL_KINDS",
-    "DecidingWord",
     "EditAnswers",
-    "Removals",
-    "Sensitivity",
     "find_deciding_words",
     "measure_sensitivity",
     "remove_words",

@@ -16,6 +16,7 @@ from parser_service.analysing.refusal_points import FACTS, curve_chart, place_of
 from parser_service.analysing.state import analysis_of
 from parser_service.analysing.target import SOURCES, parts_of
 from parser_service.models import TrainingRun
+from parser_service.views.page_of_run import head_of
 
 
 @world_view(Duty.VIEW)
@@ -29,8 +30,7 @@ def defaults(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     sources = [name for name in SOURCES if name in attractors]  # a database may sort its JSON
     source = _choose(request.GET.get("source", ""), sources)
     context = {
-        "run": run,
-        "aside": f"{run.parser}, run {run.pk}",
+        **head_of(run, "Unexpected defaults"),
         "analysis": analysis_of(run),
         "parts": parts,
         "part": part,

@@ -12,6 +12,7 @@ from annotations.people.access import world_view
 from parser_service.analysing.state import analysis_of
 from parser_service.filters import ProbeFilters
 from parser_service.models import TrainingRun
+from parser_service.views.page_of_run import head_of
 
 SORTS = {"position": Sort("Text", "position")}
 
@@ -23,8 +24,7 @@ def probes(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     first = run.predictions.best().filter(example=OuterRef("base")).values("logical_form")[:1]
     rows = run.probes.filter(answer__isnull=False).select_related("base", "answer")
     context = {
-        "run": run,
-        "aside": f"{run.parser}, run {run.pk}",
+        **head_of(run, "Probes"),
         "analysis": analysis_of(run),
         "listing": Listing(request, ProbeFilters, rows.annotate(before=Subquery(first)), SORTS),
     }

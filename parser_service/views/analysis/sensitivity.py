@@ -20,6 +20,7 @@ from parser_service.analysis.edits import EditKind
 from parser_service.analysis.sensitivity import ALL_KINDS
 from parser_service.models import TrainingRun
 from parser_service.views.analysis.asked_runs import asked_runs, runs_to_choose
+from parser_service.views.page_of_run import head_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,8 +41,7 @@ def sensitivity(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     parts = parts_of(run)
     findings = findings_of(run, parts[0]) if parts else {}
     context = {
-        "run": run,
-        "aside": f"{run.parser}, run {run.pk}",
+        **head_of(run, "Sensitivity"),
         "analysis": analysis_of(run),
         "part": parts[0] if parts else "",
         "others": others,

@@ -147,7 +147,8 @@ def audit_take_back(request: HttpRequest, world: World, pk: int) -> HttpResponse
 def audit_check(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     """Say what is wrong with a form while somebody writes it."""
     finding = get_object_or_404(world.audit_findings, pk=pk)
-    return JsonResponse(check_label(world, finding.anonymized_text, request.POST.get("form", "")))
+    text, form = finding.anonymized_text, request.POST.get("form", "")
+    return JsonResponse(check_label(world, text, form, may_be_unknown=True))
 
 
 def _find_asked(request: HttpRequest, world: World, listing: Listing) -> AuditFinding | None:

@@ -10,6 +10,7 @@ from annotations.models import Duty, World
 from annotations.people.access import world_view
 from parser_service.models import TrainingRun
 from parser_service.slices import PredictionFilters, slice_query
+from parser_service.views.page_of_run import head_of
 
 SORTS = {
     "position": Sort("No.", "example_id", is_number=True),
@@ -22,12 +23,10 @@ SORTS = {
 def predictions(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     """List the first answer to every example, filtered by the URL."""
     run = get_object_or_404(TrainingRun.objects.for_table(), world=world, pk=pk)
-    aside = f"{run.parser}, run {run.pk}"
     listing = listing_of(request, run)
     filters = listing.url(sort="").removeprefix("?")
     context = {
-        "run": run,
-        "aside": aside,
+        **head_of(run, "Predictions"),
         "listing": listing,
         "filters": f"{filters}&" if filters else "",
         "slice_query": slice_query(world, request.GET),

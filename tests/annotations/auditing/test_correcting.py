@@ -28,6 +28,12 @@ def test_a_label_in_any_notation_becomes_the_next_version(row, reviewer):
     assert entry_at(stored, row.version).logical_form == BEFORE
 
 
+def test_a_label_may_become_unknown(row, reviewer):
+    stored = correct_label(row, " UNKNOWN ", reviewer, row.version)
+    assert (stored.logical_form, stored.grounded_form) == ("UNKNOWN", "UNKNOWN")
+    assert correct_label(stored, BEFORE, reviewer, stored.version).logical_form == BEFORE
+
+
 def test_what_the_queue_asks_about_it_is_done(row, annotator):
     enqueue(row.world, WorkKind.REQUESTED, [WantedItem(row, "Is that right?")])
     correct_label(row, AFTER, annotator, row.version)
@@ -54,7 +60,7 @@ def test_an_older_version_is_refused(row, reviewer):
         correct_label(row, '( say " <room> " )', reviewer, row.version - 1)
 
 
-@pytest.mark.parametrize("text", ["", "( go", "UNKNOWN", "(go $room)"])
+@pytest.mark.parametrize("text", ["", "( go", "(go $room)"])
 def test_what_is_no_label_is_refused(row, reviewer, text):
     with pytest.raises(LanguageError):
         correct_label(row, text, reviewer, row.version)

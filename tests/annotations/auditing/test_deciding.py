@@ -45,6 +45,17 @@ def test_another_form_becomes_the_label(findings, girls, annotator):
     assert state_of(girls)[1:] == (GO, '( go " kitchen " )')
 
 
+def test_what_no_form_says_becomes_unknown(findings, girls, women, annotator):
+    for row in (girls, women):
+        decide(finding_of(row), CORRECT, annotator, form="UNKNOWN")
+    assert state_of(girls) == ("accepted", "UNKNOWN", "UNKNOWN")
+    assert state_of(women)[0] == "unknown"
+    assert women.accepted_label.verdict == Verdict.UNKNOWN
+    assert finding_of(women).decided_form == "UNKNOWN"
+    take_back(finding_of(women).decision, annotator)
+    assert state_of(women)[:2] == ("labelled", MALE)
+
+
 def test_an_utterance_gets_an_answer_with_the_reason(findings, women, annotator):
     made = decide(finding_of(women), CORRECT, annotator, reason="women")
     assert state_of(women)[:2] == ("labelled", FEMALE)

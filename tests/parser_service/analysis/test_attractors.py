@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from parser_service.analysis.attractors import (
+from parser_service.analysis.attractors import find_attractors
+from parser_service.analysis.attractors.dispersion import (
     compare_dispersion,
-    find_attractors,
     mean_distance,
     unit_vectors,
 )

@@ -12,10 +12,8 @@ from scipy import stats
 from parser_service.analysis.comparing import (
     compare_runs,
     count_wins,
-    holm,
-    mcnemar,
-    paired_bootstrap,
 )
+from parser_service.analysis.comparing.significance import holm, mcnemar, paired_bootstrap
 
 matrices = arrays.arrays(
     bool, st.tuples(st.integers(1, 4), st.integers(1, 40)), elements=st.booleans()

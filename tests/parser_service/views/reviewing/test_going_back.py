@@ -90,6 +90,8 @@ def test_the_paraphrase_behind_an_example_is_corrected_on_its_page(sample, examp
         f"{BASE}/paraphrases/{row.pk}/label/", {**sent, "form": '(go "<room>")'}, follow=True
     )
     assert "Somebody has changed this paraphrase" in late.content.decode()
+    said = anna.post(f"{BASE}/paraphrases/{row.pk}/check/", {"form": "UNKNOWN"}).json()
+    assert said["problems"] == [] and said["gloss"]
 
 
 def test_the_template_behind_a_generated_example_is_opened(sample, world, anna):
