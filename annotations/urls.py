@@ -12,6 +12,7 @@ from annotations.views.description import (
     renaming,
 )
 from annotations.views.editing import comments, deletion, drafts, history
+from annotations.views.people import members
 from annotations.views.queueing import agreement, sending, work_queue
 from annotations.views.templates import (
     coverage,
@@ -20,11 +21,13 @@ from annotations.views.templates import (
     template_repairs,
     templates,
 )
-from annotations.views.worlds import files, importing, jobs, people, world_deletion, worlds
+from annotations.views.worlds import files, importing, jobs, world_deletion, worlds
 
 urlpatterns = [
-    path("people/", people.people, name="people"),
-    path("people/<int:pk>/", people.member, name="member"),
+    path("people/", members.people, name="people"),
+    path("people/<int:pk>/", members.member, name="member"),
+    path("people/invite/", members.invite, name="invite"),
+    path("people/invitations/<int:pk>/withdraw/", members.withdraw, name="invitation_withdraw"),
     path("delete/", world_deletion.world_delete, name="world_delete"),
     path("import/", importing.import_files, name="import"),
     path("import/pairs/", importing.import_pair_files, name="import_pairs"),

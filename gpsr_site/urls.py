@@ -5,6 +5,7 @@ from django.contrib.auth.views import LogoutView
 from django.urls import include, path
 
 from annotations.views.editing import comments
+from annotations.views.people.joining import join
 from annotations.views.worlds import jobs
 from annotations.views.worlds.worlds import world_import, world_new
 from gpsr_site import pages
@@ -16,6 +17,7 @@ urlpatterns = [
     path("login/", LogIn.as_view(), name="login"),
     path("logout/", LogoutView.as_view(), name="logout"),
     path("password/", ChangePassword.as_view(), name="password"),
+    path("join/<str:key>/", join, name="join"),
     path("banner/", pages.banner, name="banner"),
     path("healthz", pages.healthz, name="healthz"),
     path("worlds/new/", world_new, name="world_new"),

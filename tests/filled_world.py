@@ -9,6 +9,7 @@ from annotations.editing.edits import add, change, delete
 from annotations.labelling import collect
 from annotations.models import (
     Entity,
+    Invitation,
     Job,
     JobKind,
     Paraphrase,
@@ -21,6 +22,7 @@ from annotations.models import (
 )
 from annotations.models.background import Status
 from annotations.models.splits import Part
+from annotations.models.worlds import Role
 from annotations.queueing import answer, set_share
 from annotations.queueing.sources import refill
 from parser_service.analysing.carrying_out import analyse
@@ -44,6 +46,7 @@ def leave_traces(world: World, annotator: User, admin: User) -> None:
     a label is in doubt.
     """
     _edit(world, annotator, admin)
+    Invitation.issue(world, [Role.ANNOTATOR], admin, days=7, places=20, note="A class")
     template = SemanticTemplate.objects.filter(grammar__world=world).first()
     text = f"Is this what people say? @{admin.get_username()} please look."
     add_comment(world, SUBJECTS["template"], template, text, annotator)

@@ -4,6 +4,7 @@ from annotations.models.corpus import Command, LogicalForm, Paraphrase
 from annotations.models.drafts import Draft
 from annotations.models.editable import Editable
 from annotations.models.grammar import Grammar, Production, TaskCategory
+from annotations.models.invitations import Invitation
 from annotations.models.jobs import Job, JobKind
 from annotations.models.ontology import Entity, Ontology
 from annotations.models.people import ApiToken, Scope, User
@@ -39,6 +40,7 @@ __all__ = [
     "Example",
     "FindingStatus",
     "Grammar",
+    "Invitation",
     "Job",
     "JobKind",
     "Label",

@@ -81,4 +81,4 @@ class ApiToken(models.Model):
 
 def digest_of(key: str) -> str:
     """Return the SHA-256 in hexadecimal; enough for a secret of 256 random bits."""
-    return hashlib.sha256(key.encode()).hexdigest()
+    return hashlib.sha256(key.encode("utf-8", "surrogatepass")).hexdigest()

@@ -28,6 +28,11 @@ class Member:
     roles: tuple[str, ...]
 
 
+def role_names(roles: Collection[str]) -> str:
+    """Return roles as a sentence says them, such as ``annotator and reviewer``."""
+    return " and ".join(role for role in Role.values if role in roles)
+
+
 def members_of(world: World) -> list[Member]:
     """Return everybody who has a role in ``world``, by name. One query."""
     rows = world.memberships.select_related("user").order_by("user__username")
@@ -55,13 +60,22 @@ def find_account(name: str) -> User | None:
 def set_roles(world: World, user: User, roles: Collection[str], by: User) -> None:
     """Make ``roles`` the roles of ``user`` in ``world``; none removes them from it.
 
+    Whoever is no longer an admin has no invitations open any more.
+
     Raises:
         NoAdminLeft: the last admin would lose that role. Administrators of the site, who see every
             world, may do that all the same.
     """
     World.objects.select_for_update().get(pk=world.pk)
     world.memberships.filter(user=user).exclude(role__in=roles).delete()
-    for role in roles:
-        Membership.objects.get_or_create(world=world, user=user, role=Role(role))
+    add_roles(world, user, roles)
     if not admins_of(world) and not by.is_superuser:
         raise NoAdminLeft(world)
+    if Role.ADMIN not in roles and not user.is_superuser:
+        world.invitations.filter(created_by=user).delete()
+
+
+def add_roles(world: World, user: User, roles: Collection[str]) -> None:
+    """Give ``user`` these roles in ``world`` beside those that they have."""
+    for role in roles:
+        Membership.objects.get_or_create(world=world, user=user, role=Role(role))

@@ -46,4 +46,6 @@ class Rate:
         return [f"{self.name}:{digest}:{number}" for number in range(self.limit)]
 
 
+# Attempts from one address; joining gives its place back.
+JOINING = Rate("join", limit=20, seconds=600)
 STARTED_RUNS = Rate("runs", limit=60, seconds=3600)

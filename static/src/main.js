@@ -6,6 +6,7 @@ import "./menus.js";
 import "./drafts.js";
 import "./merge.js";
 import "./mentions.js";
+import "./copying.js";
 import "./suggestions.js";
 import "./row-search.js";
 import { onContent } from "./content.js";

@@ -109,6 +109,7 @@ def test_every_page_of_a_world_belongs_to_one_entry():
     parts |= {"slice_rename", "slice_delete"}
     parts |= {"analysis_state", "analysis_start", "analysis_cancel", "tryout_ask"}
     parts |= {"results_csv", "results_latex", "results_json", "download", "search", "member"}
+    parts |= {"invite", "invitation_withdraw"}
     parts |= {"review_tag", "review_note", "review_doubt"}
     parts |= {"error_category_move", "error_category_delete"}
     parts |= {"results_csv", "download", "search", "member"}

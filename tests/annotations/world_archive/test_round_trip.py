@@ -194,7 +194,7 @@ def models_below():
 
 def not_of_the_world():
     """What goes with a world and is no part of it: not written by people, or for one person alone."""
-    names = ("Job", "Proposal", "CommandProposal", "Draft", "Notice")
+    names = ("Job", "Proposal", "CommandProposal", "Draft", "Notice", "Invitation")
     return {model for model in apps.get_models() if model.__name__ in names}
 
 

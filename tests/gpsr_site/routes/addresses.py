@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from datetime import timedelta
 from typing import TypeAlias
 
 from django.db.models import Model
 from django.urls import URLPattern, URLResolver, get_resolver, reverse
+from django.utils import timezone
 
 from annotations.models import (
     AuditDecision,
     AuditFinding,
     Entity,
+    Invitation,
     Job,
     Label,
     Membership,
@@ -19,6 +22,7 @@ from annotations.models import (
     Utterance,
     WorkItem,
 )
+from annotations.models.people import digest_of
 from annotations.models.worlds import Role
 from parser_service.models import Slice
 from parser_service.reviewing.categories import ensure_categories
@@ -69,6 +73,25 @@ def removable_member(sample: SampleWorld) -> User:
     user, _ = User.objects.get_or_create(username=f"someone in {sample.world}")
     Membership.objects.get_or_create(world=sample.world, user=user, role=Role.REVIEWER)
     return user
+
+
+def invitation(sample: SampleWorld) -> Invitation:
+    """Return an invitation to the world, whose link has a key that ``key_of`` knows."""
+    later = timezone.now() + timedelta(days=1)
+    values = {"roles": [Role.REVIEWER], "places": 100, "expires_at": later}
+    values["created_by"] = removable_member(sample)
+    return Invitation.objects.get_or_create(
+        world=sample.world, digest=digest_of(key_of(sample)), defaults=values
+    )[0]
+
+
+def key_of(sample: SampleWorld) -> str:
+    return f"key-of-{sample.world}"
+
+
+def join_keys(sample: SampleWorld) -> dict[str, object]:
+    invitation(sample)
+    return {"key": key_of(sample)}
 
 
 def utterance(sample: SampleWorld) -> Utterance:
@@ -132,6 +155,8 @@ def run(sample: SampleWorld) -> Model:
 
 KEYS: dict[str, RouteKeys] = {
     "member": pk_of(removable_member),
+    "invitation_withdraw": pk_of(invitation),
+    "join": join_keys,
     **dict.fromkeys(("template", "template_duplicate", "template_repair"), pk_of(template)),
     "template_completion": pk_of(lambda sample: sample.world.grammar.task_categories.first()),
     "delete_row": pk_of(template, kind="template"),

@@ -38,6 +38,9 @@ POLICY = [
     Rule("logout", LOG_IN, GONE_ON, GONE_ON, GONE_ON, GONE_ON, method="post"),
     Rule("password", LOG_IN, YES, YES, YES, YES),
     Rule("password", LOG_IN, YES, YES, YES, YES, method="post"),
+    # Whoever has the link of an invitation joins
+    Rule("join", YES, YES, YES, YES, YES),
+    Rule("join", 422, GONE_ON, GONE_ON, GONE_ON, GONE_ON, method="post"),
     Rule("home", LOG_IN, YES, YES, YES, YES),
     Rule("inbox", LOG_IN, YES, YES, YES, YES),
     Rule("inbox", LOG_IN, GONE_ON, GONE_ON, GONE_ON, GONE_ON, method="post"),
@@ -229,6 +232,8 @@ POLICY = [
     Rule("split_runs", *ADMINS),
     Rule("people", *ADMINS, method="post"),
     Rule("member", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
+    Rule("invite", LOG_IN, NOWHERE, NO, NO, 422, method="post"),
+    Rule("invitation_withdraw", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("member", LOG_IN, WRONG, WRONG, WRONG, WRONG),
     # What changes something is not done by following a link
     Rule("generate", LOG_IN, WRONG, WRONG, WRONG, WRONG),
@@ -255,7 +260,7 @@ POLICY = [
 
 # Routes of rows that are not read, only changed.
 ONLY_POSTED = {
-    *("run_cancel", "member", "template_duplicate", "template_repair"),
+    *("run_cancel", "member", "invitation_withdraw", "template_duplicate", "template_repair"),
     *("queue_ask", "queue_act", "queue_settle", "api:work-item-finish", "api:work-item-give-back"),
     *("label_answer", "label_check", "label_mend", "label_take_back"),
     *("example_send", "predictions_send", "paraphrase_label", "paraphrase_check"),

@@ -164,6 +164,8 @@ FIELDS_ELSEWHERE = {
     "production_check": ("nonterminal", "expansion", "source"),
     "production_preview": ("nonterminal", "expansion", "source"),
     "member": ("roles", "remove"),
+    "invite": ("invite-note", "invite-roles", "invite-places", "invite-days"),
+    "join": ("username", "password1", "password2"),
     "label_answer": ("verdict", "form", "version", "seconds", "reason"),
     "label_check": ("form",),
     "label_send": ("text",),
@@ -183,7 +185,7 @@ FIELDS_ELSEWHERE = {
 @pytest.mark.parametrize("name", POST_ROUTES)
 def test_odd_values_in_a_form(name, sample: SampleWorld, root, monkeypatch):
     monkeypatch.setattr("annotations.background.waking.send_wake_up", lambda queue: None)
-    if name == "login":
+    if name in ("login", "join"):
         root.logout()
     path = address(name, sample)
     usual = fields_of(root, path) or dict.fromkeys(FIELDS_ELSEWHERE.get(name, ()), "")
