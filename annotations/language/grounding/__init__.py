@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from annotations.language.grounding.anonymizer import QUESTION_WORD, Anonymized, Anonymizer, Span
-from annotations.language.grounding.deanonymizer import Deanonymized, deanonymize
+from annotations.language.grounding.deanonymizer import Deanonymized, Slot, deanonymize
+from annotations.language.grounding.evidence import Evidence
 from annotations.language.grounding.grounding import ground
+from annotations.language.grounding.questions import open_slots_as_json, question_for
 from annotations.language.grounding.regrounding import ground_like
 
 __all__ = [
@@ -12,8 +14,12 @@ __all__ = [
     "Anonymized",
     "Anonymizer",
     "Deanonymized",
+    "Evidence",
+    "Slot",
     "Span",
     "deanonymize",
     "ground",
     "ground_like",
+    "open_slots_as_json",
+    "question_for",
 ]

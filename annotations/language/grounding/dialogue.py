@@ -14,13 +14,12 @@ from typing import Any
 
 from annotations.language.forms import Form, Unknown, read_form, to_corpus
 from annotations.language.grounding.anonymizer import Anonymized, Anonymizer
-from annotations.language.grounding.deanonymizer import Slot, deanonymize, filled
+from annotations.language.grounding.deanonymizer import Slot, deanonymize, fill_all
+from annotations.language.grounding.questions import noun_for, question_for
 from annotations.language.ontology import Ontology
 from annotations.language.predicates import Predicate, gloss
 
 PATIENCE = 3  # answers that do not fit before the dialogue gives up
-BLANK = "___"
-_OFFERED = 4
 _YES = frozenset(
     ["yes", "y", "yeah", "yep", "ok", "okay", "sure", "correct", "right", "please", "confirm"]
 )
@@ -74,7 +73,12 @@ class State:
     def from_json(cls, value: Mapping[str, Any]) -> State:
         """Return the state that ``value`` was made from."""
         slots = tuple(
-            Slot(**{**slot, "path": tuple(slot["path"]), "candidates": tuple(slot["candidates"])})
+            Slot(
+                **{
+                    **slot,
+                    **{name: tuple(slot[name]) for name in ("path", "candidates", "phrases")},
+                }
+            )
             for slot in value["slots"]
         )
         phase, form = Phase(value["phase"]), read_form(value["form"])
@@ -115,7 +119,9 @@ class Dialogue:
         slot = state.asked
         value = self._value(slot, answer) if slot else None
         if slot is None or value is None:
-            return self._miss(state, f"I do not know any {_noun(slot)} called “{answer.strip()}”. ")
+            return self._miss(
+                state, f"I do not know any {noun_for(slot)} called “{answer.strip()}”. "
+            )
         return self._asking(_fill(state, slot, value))
 
     def _confirm(self, state: State, said: str) -> State:
@@ -142,12 +148,10 @@ class Dialogue:
 
     def _prompt(self, state: State) -> str:
         slot = state.asked
-        if slot is None:
-            words = re.sub(r"\bme\b", "you", gloss(state.form, self.predicates))
-            return f"Shall I {words}?"
-        words = gloss(filled(state.form, slot.path, BLANK), self.predicates)
-        offered = _list(slot.candidates) if len(slot.candidates) <= _OFFERED else ""
-        return f"Which {_noun(slot)} is {BLANK} in “{words}”?" + (f" {offered}?" if offered else "")
+        if slot is not None:
+            return question_for(slot, state.form, self.predicates)
+        words = re.sub(r"\bme\b", "you", gloss(state.form, self.predicates))
+        return f"Shall I {words}?"
 
     def _value(self, slot: Slot, answer: str) -> str | None:
         """Return what an answer names: an entity of the slot's class, or any text for an UNKNOWN."""
@@ -165,23 +169,12 @@ def _fill(state: State, slot: Slot, value: str) -> State:
     slots = []
     for other in state.slots:
         if other.path == slot.path:
-            other = replace(other, value=value)
+            other = replace(other, value=value, likely=None)
         elif other.is_ambiguous and other.token == slot.token:
             left = tuple(each for each in other.candidates if each != value)
-            other = replace(other, candidates=left, value=left[0] if len(left) == 1 else None)
+            likely = other.likely if other.likely in left else None
+            last = left[0] if len(left) == 1 else None
+            other = replace(other, candidates=left, value=last, likely=None if last else likely)
         slots.append(other)
-    form = state.form
-    for other in slots:
-        form = filled(form, other.path, other.value) if other.value is not None else form
-    return replace(state, form=form, slots=tuple(slots))
-
-
-def _noun(slot: Slot | None) -> str:
-    return slot.entity_class if slot and slot.entity_class else "place or thing"
-
-
-def _list(values: tuple[str, ...]) -> str:
-    """Return ``The desk, the bar or the sofa``, in the order given."""
-    *others, last = values or ("",)
-    text = f"{', '.join(others)} or {last}" if others else last
-    return text[:1].upper() + text[1:]
+    filled = fill_all(state.form, tuple(slots))
+    return replace(state, form=filled.form, slots=filled.slots)

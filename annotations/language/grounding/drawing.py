@@ -98,7 +98,7 @@ def _candidates(slot: list[Wildcard], ontology: Ontology, drawn: Drawn) -> list[
     candidates = [
         entity
         for entity in ontology.of_class(slot[0].entity_class)
-        if all(_is_of_type(entity, wildcard) for wildcard in slot)
+        if all(is_of_type(entity, wildcard) for wildcard in slot)
         and all(each.where is None or holds(each.where, entity, value_of) for each in slot)
     ]
     if not candidates:
@@ -109,7 +109,7 @@ def _candidates(slot: list[Wildcard], ontology: Ontology, drawn: Drawn) -> list[
     return candidates
 
 
-def _is_of_type(entity: Entity, wildcard: Wildcard) -> bool:
+def is_of_type(entity: Entity, wildcard: Wildcard) -> bool:
     """Return whether an entity has the type that a wildcard asks for.
 
     A missing attribute means what the generator assumes: a known object, a female name.

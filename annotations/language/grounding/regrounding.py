@@ -6,7 +6,8 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
 from annotations.language.forms import Constant, Form, children
-from annotations.language.grounding.deanonymizer import Slot, SlotPath, filled, slots_of
+from annotations.language.grounding.deanonymizer import Slot, filled, slots_of
+from annotations.language.grounding.roles import SlotPath
 
 
 def ground_like(form: Form, label: Form, grounded: Form) -> Form:

@@ -45,9 +45,9 @@ def test_an_open_slot_is_asked_for_with_its_place_in_the_sentence() -> None:
 
 
 def test_choosing_one_of_two_places_decides_the_other() -> None:
-    state = begin("take the tea from the shelf to the stool", PUT)
+    state = begin("grab the tea on the shelf and put it on the stool", PUT)
     assert state.prompt == (
-        "Which location is ___ in “take the tea that is at the ___ and put it on the location”? "
+        "Which location is ___ in “take the tea that is at the ___ and put it on the stool”? "
         "Shelf or stool?"
     )
     after = ROBOT.reply(state, "the stool")

@@ -1,0 +1,141 @@
+"""Find the most likely assignment of the mentions of one class to the slots of that class."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import permutations, zip_longest
+
+from annotations.language.forms import Form
+from annotations.language.grounding.evidence import Evidence
+from annotations.language.grounding.roles import Context, Role
+from annotations.language.ontology import Entity
+
+# Log odds by which the best assignment of a slot has to win to be certain: 20 to 1.
+MARGIN = 3.0
+_MOST_ASSIGNMENTS = 5_040  # seven mentions in seven slots
+MOST_TOGETHER = 12  # mentions or slots of one class that are compared
+_IN_ORDER = 0.5  # log odds of mentions in the order of the slots, where the grammar does not say
+
+
+@dataclass(frozen=True, slots=True)
+class Mention:
+    """A value that an utterance names, how it stands there, and the entities it may be."""
+
+    value: str
+    context: Context
+    entities: tuple[Entity, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """The most likely value of a slot; None if the utterance names none for it. ``margin`` is in log odds."""
+
+    value: str | None
+    margin: float
+
+    @property
+    def is_certain(self) -> bool:
+        return self.value is not None and self.margin >= MARGIN
+
+
+_Values = tuple[str | None, ...]
+
+
+def assign(
+    form: Form,
+    entity_class: str,
+    roles: Sequence[Role],
+    mentions: Sequence[Mention],
+    evidence: Evidence,
+) -> tuple[Choice, ...]:
+    """Return the most likely value of each slot of a class, and how clearly it wins.
+
+    Args:
+        form: the form with class tokens.
+        entity_class: the class of all slots and mentions.
+        roles: the roles of the slots, in the order of the form.
+        mentions: what the utterance names, in its order.
+
+    The best assignment is the one with the highest sum of scores. The margin of a slot is the distance
+    to the best assignment that gives it another value. With more assignments than can be compared,
+    mentions and slots go together in order, and nothing is certain.
+    """
+    if not mentions:
+        return tuple(Choice(None, math.inf) for _ in roles)
+    fewer, more = sorted((len(roles), len(mentions)))
+    if more > MOST_TOGETHER or math.perm(more, fewer) > _MOST_ASSIGNMENTS:
+        values = [each.value for each in mentions]
+        return tuple(Choice(value, 0.0) for value, _ in zip_longest(values[: len(roles)], roles))
+    scores = _scores(form, entity_class, roles, mentions, evidence)
+    best = max(scores, key=scores.__getitem__)
+    choices = []
+    for place, value in enumerate(best):
+        rivals = (score for values, score in scores.items() if values[place] != value)
+        choices.append(Choice(value, scores[best] - max(rivals, default=-math.inf)))
+    return tuple(choices)
+
+
+def _scores(
+    form: Form,
+    entity_class: str,
+    roles: Sequence[Role],
+    mentions: Sequence[Mention],
+    evidence: Evidence,
+) -> Mapping[_Values, float]:
+    """Return the score of every assignment; of two that give the same values the better one counts."""
+    points = [
+        [
+            evidence.score(each.context, role) + evidence.fit(each.entities, role)
+            for each in mentions
+        ]
+        for role in roles
+    ]
+    orders = evidence.orders(form, entity_class)
+    scores: dict[_Values, float] = {}
+    for places, prior in _assignments(len(roles), mentions, orders):
+        total = prior + sum(
+            points[slot][place] for slot, place in enumerate(places) if place is not None
+        )
+        values = tuple(None if place is None else mentions[place].value for place in places)
+        scores[values] = max(total, scores.get(values, -math.inf))
+    return scores
+
+
+def _assignments(
+    slots: int, mentions: Sequence[Mention], orders: Mapping[tuple[int, ...], int]
+) -> Iterator[tuple[tuple[int | None, ...], float]]:
+    """Yield mentions for the slots, each with its prior log odds.
+
+    Where the grammar has the form with as many values, it says which slots have the same one.
+    """
+    first = {each.value: place for place, each in reversed([*enumerate(mentions)])}
+    turns = sorted(first.values())
+    known = {order: count for order, count in orders.items() if max(order) + 1 == len(turns)}
+    if known:
+        patterns = {
+            tuple(turn[rank] for rank in order)
+            for order in known
+            for turn in permutations(range(len(turns)))
+        }
+        total = sum(known.values()) + len(patterns) / 2
+        for pattern in patterns:
+            share = (known.get(pattern, 0) + 0.5) / total
+            yield tuple(turns[rank] for rank in pattern), math.log(share)
+        return
+    for places in _injections(slots, len(mentions)):
+        used = [place for place in places if place is not None]
+        yield places, _IN_ORDER if used == sorted(used) else 0.0
+
+
+def _injections(slots: int, mentions: int) -> Iterable[tuple[int | None, ...]]:
+    """Yield every way to give as many slots as possible a mention of their own."""
+    if mentions >= slots:
+        yield from permutations(range(mentions), slots)
+        return
+    for chosen in permutations(range(slots), mentions):
+        places: list[int | None] = [None] * slots
+        for mention, slot in enumerate(chosen):
+            places[slot] = mention
+        yield tuple(places)

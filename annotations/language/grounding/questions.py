@@ -1,0 +1,72 @@
+"""Ask for a slot in words, and give open slots as data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from annotations.language.english import CLASS_WORDS
+from annotations.language.forms import Form
+from annotations.language.grounding.deanonymizer import Deanonymized, Slot, filled
+from annotations.language.predicates import Predicate, gloss
+
+BLANK = "___"
+MOST_OFFERED = 4  # entities of the ontology that a question lists
+
+
+def question_for(slot: Slot, form: Form, predicates: Mapping[str, Predicate]) -> str:
+    """Return the question for an open slot: what is missing, where, and what there is to choose from.
+
+    An unknown word of the utterance is asked about itself: "Which object is “flurb”?".
+    """
+    noun = noun_for(slot)
+    if slot.phrases and not slot.is_named:
+        asked = f"Which {noun} is {_or(tuple(f'“{phrase}”' for phrase in slot.phrases))}?"
+    else:
+        words = gloss(filled(form, slot.path, BLANK), predicates)
+        asked = f"Which {noun} is {BLANK} in “{words}”?"
+    choices = choices_of(slot)
+    offered = _or(choices) if slot.is_named or len(choices) <= MOST_OFFERED else ""
+    return f"{asked} {offered[:1].upper()}{offered[1:]}?" if offered else asked
+
+
+def choices_of(slot: Slot) -> tuple[str, ...]:
+    """Return the values that a slot can have, the most likely one first."""
+    likely = (slot.likely,) if slot.likely is not None else ()
+    return tuple(dict.fromkeys((*likely, *slot.candidates)))
+
+
+def noun_for(slot: Slot | None) -> str:
+    """Return the word for what a slot takes."""
+    if slot is None or not slot.entity_class:
+        return "place or thing"
+    return CLASS_WORDS.get(slot.entity_class, slot.entity_class)
+
+
+def open_slots_as_json(
+    deanonymized: Deanonymized, predicates: Mapping[str, Predicate]
+) -> list[dict[str, Any]]:
+    """Return the slots to ask about as plain data, with their questions.
+
+    ``likely`` is null unless the utterance names several values; ``choices`` are the values to choose
+    from, the likely one first; ``phrases`` the unknown words of the utterance that may be meant.
+    """
+    return [
+        {
+            "path": list(slot.path),
+            "token": slot.token,
+            "entity_class": slot.entity_class,
+            "question": question_for(slot, deanonymized.form, predicates),
+            "is_named": slot.is_named,
+            "likely": slot.likely,
+            "choices": list(choices_of(slot)),
+            "phrases": list(slot.phrases),
+        }
+        for slot in deanonymized.open_slots
+    ]
+
+
+def _or(values: tuple[str, ...]) -> str:
+    """Return ``the desk, the bar or the sofa``, in the order given."""
+    *others, last = values or ("",)
+    return f"{', '.join(others)} or {last}" if others else last

@@ -1,0 +1,44 @@
+"""Turn a form with entities into a plan: actions as data, as JSON and as a behaviour tree."""
+
+from __future__ import annotations
+
+from annotations.language.plans.behavior_tree import to_behavior_tree
+from annotations.language.plans.plan import ASK, ActionName, Plan, PlanProblem, Step, Trouble
+from annotations.language.plans.planning import make_plan
+from annotations.language.plans.schemas import (
+    behavior_tree_schema_text,
+    plan_schema,
+    plan_schema_text,
+)
+from annotations.language.plans.values import (
+    Condition,
+    Described,
+    Named,
+    Number,
+    Open,
+    Result,
+    Value,
+    Words,
+)
+
+__all__ = [
+    "ASK",
+    "ActionName",
+    "Condition",
+    "Described",
+    "Named",
+    "Number",
+    "Open",
+    "Plan",
+    "PlanProblem",
+    "Result",
+    "Step",
+    "Trouble",
+    "Value",
+    "Words",
+    "behavior_tree_schema_text",
+    "make_plan",
+    "plan_schema",
+    "plan_schema_text",
+    "to_behavior_tree",
+]

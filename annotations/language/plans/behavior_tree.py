@@ -1,0 +1,80 @@
+"""Write a plan as a behaviour tree of BehaviorTree.CPP, format 4.
+
+https://www.behaviortree.dev/docs/learn-the-basics/xml_format; what is written here is valid against
+``behavior_tree.xsd`` beside this module. Nodes are written explicitly (``<Action ID="go" …/>``).
+Entities, texts and numbers are ports with plain text, descriptions ports with ``json:`` and their JSON
+(the prefix that the library itself uses), results entries of the blackboard: ``{result_1}``.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from xml.etree import ElementTree
+
+from annotations.language.plans.plan import Plan
+from annotations.language.plans.values import Described, Named, Number, Open, Result, Value, Words
+
+TREE = "Command"
+RESULT = "result"
+_NO_NAME = re.compile(r"[^A-Za-z0-9_]")
+_RESERVED = frozenset(("name", "id", RESULT))
+
+
+def to_behavior_tree(plan: Plan) -> str:
+    """Return the plan as XML: a sequence of actions and the ports of each."""
+    root = ElementTree.Element("root", {"BTCPP_format": "4", "main_tree_to_execute": TREE})
+    tree = ElementTree.SubElement(root, "BehaviorTree", {"ID": TREE})
+    sequence = ElementTree.SubElement(tree, "Sequence", {"name": "plan"})
+    ports: dict[str, dict[str, None]] = {}
+    giving: set[str] = set()
+    for step in plan.steps:
+        values = {port_name(name): _port(value) for name, value in step.arguments}
+        action = node_name(step.action)
+        ports.setdefault(action, {}).update(dict.fromkeys(values))
+        if step.gives_result:
+            values[RESULT] = _blackboard(step.number)
+            giving.add(action)
+        attributes = {"ID": action, "name": _plain(f"{step.number} {step.text}"), **values}
+        ElementTree.SubElement(sequence, "Action", attributes)
+    model = ElementTree.SubElement(root, "TreeNodesModel")
+    for action, names in ports.items():
+        node = ElementTree.SubElement(model, "Action", {"ID": action})
+        for name in names:
+            ElementTree.SubElement(node, "input_port", {"name": name, "type": "std::string"})
+        if action in giving:
+            ElementTree.SubElement(node, "output_port", {"name": RESULT, "type": "std::string"})
+    ElementTree.indent(root)
+    return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
+
+
+def node_name(action: str) -> str:
+    """Return a name that BehaviorTree.CPP takes for a node."""
+    name = _NO_NAME.sub("_", action)
+    return name if name[:1].isalpha() else f"a_{name}"
+
+
+def port_name(argument: str) -> str:
+    """Return a name that BehaviorTree.CPP takes for a port: none of its reserved words."""
+    name = _NO_NAME.sub("_", argument)
+    return name if name[:1].isalpha() and name.casefold() not in _RESERVED else f"p_{name}"
+
+
+def _port(value: Value) -> str:
+    if isinstance(value, Result):
+        return _blackboard(value.step)
+    if isinstance(value, Number):
+        return str(value.value)
+    if isinstance(value, Named | Words):
+        return _plain(value.text)
+    assert isinstance(value, Described | Open)
+    return "json:" + json.dumps(value.as_json(), ensure_ascii=False, separators=(",", ":"))
+
+
+def _blackboard(step: int) -> str:
+    return f"{{result_{step}}}"
+
+
+def _plain(text: str) -> str:
+    """Return a text that is not read as an entry of the blackboard."""
+    return text.replace("{", "(").replace("}", ")")

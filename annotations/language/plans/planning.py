@@ -1,0 +1,240 @@
+"""Make the plan of a form with entities."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from annotations.language.forms import (
+    Application,
+    Constant,
+    Form,
+    Lambda,
+    Unknown,
+    Variable,
+    children,
+)
+from annotations.language.grounding import Slot
+from annotations.language.ontology import Ontology
+from annotations.language.plans.arguments import NEEDED, argument_name, question_of
+from annotations.language.plans.describing import (
+    Describer,
+    is_description,
+    open_lambdas,
+    superlative_without_set,
+)
+from annotations.language.plans.lookup import Lookup
+from annotations.language.plans.plan import ASK, ActionName, Plan, PlanProblem, Step, Trouble
+from annotations.language.plans.values import Described, Named, Number, Open, Result, Value, Words
+from annotations.language.predicates import Predicate, gloss, infer_signatures
+
+MOST_STEPS = 50
+_SEQUENCES = ("sequence", "and")
+NOT_UNDERSTOOD = "I did not understand that. What shall I do?"
+
+
+def make_plan(
+    form: Form,
+    ontology: Ontology,
+    predicates: Mapping[str, Predicate] | None = None,
+    action_names: Mapping[str, ActionName] | None = None,
+    slots: Sequence[Slot] = (),
+) -> Plan:
+    """Return the steps that a form asks for.
+
+    Args:
+        form: a logical form with entities. Class tokens and UNKNOWN become questions to the operator.
+        ontology: says which texts are entities.
+        predicates: which predicates are actions, and how to say them.
+        action_names: predicate, or ``ask_operator`` → what the robot calls it and its arguments.
+        slots: the slots that were asked about; an entity that is only likely is named as a problem.
+    """
+    known = {**infer_signatures([form]), **(predicates or {})}
+    planner = _Planner(Lookup(ontology, predicates or {}), known, action_names or {})
+    for slot in slots:
+        if slot.value is None and slot.likely is not None:
+            message = f"it is not certain that the {slot.entity_class} is “{slot.likely}”"
+            hint = f"ask: {' or '.join(slot.candidates)}?"
+            planner.report(Trouble.AMBIGUOUS, message, hint, step=0)
+    planner.add(form)
+    return Plan(tuple(planner.steps), tuple(planner.problems))
+
+
+@dataclass(frozen=True, slots=True)
+class _Scope:
+    """The descriptions that hold for the variables of a λ around actions, and their ids."""
+
+    conjuncts: tuple[Form, ...] = ()
+    described: dict[int, Described] = field(default_factory=dict)
+
+
+@dataclass
+class _Planner:
+    """Collects steps and problems."""
+
+    lookup: Lookup
+    predicates: Mapping[str, Predicate]
+    names: Mapping[str, ActionName]
+    steps: list[Step] = field(default_factory=list)
+    problems: list[PlanProblem] = field(default_factory=list)
+    describer: Describer = field(init=False)
+    waiting: list[tuple[Trouble, str, str]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.describer = Describer(self.predicates, self.text_value)
+
+    def add(self, form: Form) -> None:
+        """Add the steps of a whole form."""
+        if isinstance(form, Unknown):
+            self.report(
+                Trouble.NOT_UNDERSTOOD,
+                "the command has no form that the robot knows",
+                "ask the operator to say it another way",
+                step=0,
+            )
+            self.ask(NOT_UNDERSTOOD, "command")
+            return
+        self._add(form, _Scope())
+        if not any(step.predicate != ASK for step in self.steps):
+            message = "the form says nothing to do"
+            self.report(Trouble.NO_ACTION, message, "put an action around it, such as find", step=0)
+            self.ask(NOT_UNDERSTOOD, "command")
+
+    def _add(self, form: Form, scope: _Scope) -> None:
+        if isinstance(form, Lambda):
+            bodies = tuple(open_lambdas(form))
+            about = tuple(each for each in bodies if is_description(each, self.predicates))
+            inner = replace(scope, conjuncts=(*scope.conjuncts, *about))
+            for body in bodies:
+                if body not in about:
+                    self._add(body, inner)
+        elif isinstance(form, Application) and form.predicate in _SEQUENCES:
+            for argument in form.arguments:
+                self._add(argument, scope)
+        elif isinstance(form, Application):
+            self.step(form, scope)
+
+    def step(self, form: Application, scope: _Scope) -> int:
+        """Add the step of one action, after the steps whose results it needs; return its number."""
+        if len(self.steps) >= MOST_STEPS:
+            if not any(each.trouble is Trouble.TOO_LONG for each in self.problems):
+                message = f"the plan has more than {MOST_STEPS} steps"
+                self.report(Trouble.TOO_LONG, message, "give shorter commands", step=0)
+            return MOST_STEPS
+        action = str(form.predicate)
+        before, self.waiting = self.waiting, []
+        text = gloss(_with_scope(form, scope), self.predicates)
+        arguments: dict[str, Value] = {}
+        for place, argument in enumerate(self._gather(form, scope)):
+            value = self._value(argument, action, place, scope)
+            entity_class = value.entity_class if isinstance(value, Named) else ""
+            name = argument_name(action, place, argument, entity_class)
+            arguments[_free_name(name, arguments)] = self._asked(value, name, action)
+        for name in NEEDED.get(action, ()):
+            if name not in arguments:
+                arguments[name] = self._asked(Open(""), name, action)
+        self._check_superlatives(arguments)
+        number = self._append(action, arguments, text)
+        for trouble, message, hint in self.waiting:
+            self.report(trouble, message, hint, step=number)
+        self.waiting = before
+        return number
+
+    def ask(self, question: str, expects: str) -> Result:
+        """Add a question to the operator; return its answer."""
+        arguments: dict[str, Value] = {"question": Words(question), "expects": Words(expects)}
+        return Result(self._append(ASK, arguments, f"ask: {question}", gives_result=True))
+
+    def report(self, trouble: Trouble, message: str, hint: str, step: int) -> None:
+        problem = PlanProblem(trouble, step, f"{message[:1].upper()}{message[1:]}.", hint)
+        if problem not in self.problems:
+            self.problems.append(problem)
+
+    def text_value(self, constant: Constant, predicate: str, place: int) -> Value:
+        """Return the value of a constant; an open one is asked for, an unknown one reported."""
+        if constant.token_class:
+            return self._asked(Open(constant.token_class), constant.token_class, predicate)
+        value, is_missing = self.lookup.value(str(constant.value), predicate, place)
+        if is_missing:
+            message = f"the ontology has no “{constant.value}”"
+            hint = "add it to the ontology, or name something that is there"
+            self.waiting.append((Trouble.UNKNOWN_ENTITY, message, hint))
+        return value
+
+    def _gather(self, form: Application, scope: _Scope) -> tuple[Form, ...]:
+        """Put the variable in place of the descriptions in ``(follow (person $1) (at $1 …))``."""
+        about = [each for each in form.arguments if is_description(each, self.predicates)]
+        if not about:
+            return form.arguments
+        variable = children(about[0])[0]
+        assert isinstance(variable, Variable)
+        conjuncts = (*scope.conjuncts, *about)
+        scope.described[variable.index] = self.describer.of_variable(variable.index, conjuncts, {})
+        return (variable, *(each for each in form.arguments if each not in about))
+
+    def _value(self, form: Form, action: str, place: int, scope: _Scope) -> Value:
+        if isinstance(form, Constant):
+            is_number = isinstance(form.value, int)
+            return Number(int(form.value)) if is_number else self.text_value(form, action, place)
+        if isinstance(form, Lambda):
+            return self.describer.of_lambda(form)
+        if isinstance(form, Variable):
+            return self._variable(form, scope)
+        if isinstance(form, Application):
+            number = self.step(form, scope)
+            self.steps[number - 1] = replace(self.steps[number - 1], gives_result=True)
+            return Result(number)
+        return Open("")
+
+    def _variable(self, variable: Variable, scope: _Scope) -> Value:
+        described = scope.described.get(variable.index)
+        if described is None:
+            described = self.describer.of_variable(variable.index, scope.conjuncts, {})
+            if not described.conditions and described.of is None:
+                return Open("")
+            scope.described[variable.index] = described
+        return described
+
+    def _asked(self, value: Value, name: str, action: str) -> Value:
+        """Return the answer of the operator in place of an open value."""
+        if not isinstance(value, Open):
+            return value
+        if value.entity_class:
+            what = f"the {value.entity_class} is open"
+            self.waiting.append((Trouble.OPEN_SLOT, what, "name one, or answer the question"))
+            return self.ask(f"Which {value.entity_class}?", value.entity_class)
+        message = f"{action} has no {name.replace('_', ' ')}"
+        self.waiting.append((Trouble.MISSING_ARGUMENT, message, "say it in the command"))
+        return self.ask(question_of(name), name)
+
+    def _check_superlatives(self, arguments: Mapping[str, Value]) -> None:
+        """Report ``the largest`` of nothing; a source says among what, as in ``from the table``."""
+        for value in arguments.values():
+            superlative = superlative_without_set(value) if isinstance(value, Described) else ""
+            if superlative and "source" not in arguments:
+                message = f"“{superlative}” does not say among which things"
+                hint = "name a category or a place"
+                self.waiting.append((Trouble.SUPERLATIVE_WITHOUT_SET, message, hint))
+
+    def _append(
+        self, predicate: str, arguments: Mapping[str, Value], text: str, gives_result: bool = False
+    ) -> int:
+        names = self.names.get(predicate, ActionName(predicate))
+        renamed = tuple((names.arguments.get(name, name), each) for name, each in arguments.items())
+        number = len(self.steps) + 1
+        self.steps.append(Step(number, names.name, predicate, renamed, text, gives_result))
+        return number
+
+
+def _with_scope(form: Application, scope: _Scope) -> Form:
+    """Return the action with the descriptions around it, to be said in English."""
+    return Lambda(1, "e", (*scope.conjuncts, form)) if scope.conjuncts else form
+
+
+def _free_name(name: str, taken: Mapping[str, Value]) -> str:
+    number = 1
+    free = name
+    while free in taken:
+        number += 1
+        free = f"{name}_{number}"
+    return free

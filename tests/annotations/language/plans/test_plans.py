@@ -1,0 +1,245 @@
+from __future__ import annotations
+
+from typing import Any
+
+import jsonschema
+import pytest
+import xmlschema
+from defusedxml.ElementTree import fromstring
+from hypothesis import given
+
+from annotations.language.forms import read_form
+from annotations.language.grounding import Anonymizer, deanonymize
+from annotations.language.ontology import Entity
+from annotations.language.plans import (
+    ASK,
+    ActionName,
+    Plan,
+    Trouble,
+    behavior_tree_schema_text,
+    make_plan,
+    plan_schema,
+    to_behavior_tree,
+)
+from tests.annotations.language.published import SHARED, needs_corpus
+from tests.annotations.language.random_forms import forms
+from tests.annotations.language.sample_ontology import HOME
+
+JSON_SCHEMA = jsonschema.Draft202012Validator(plan_schema())
+XML_SCHEMA = xmlschema.XMLSchema(behavior_tree_schema_text())
+
+
+def plan_of(text: str, **options: Any) -> Plan:
+    """Return the plan of a form; what it is written as follows its schemas."""
+    plan = make_plan(read_form(text), HOME, **options)
+    require_valid(plan)
+    return plan
+
+
+def require_valid(plan: Plan) -> None:
+    JSON_SCHEMA.validate(plan.as_json())
+    XML_SCHEMA.validate(to_behavior_tree(plan))
+
+
+def troubles(plan: Plan) -> list[str]:
+    return [str(problem.trouble) for problem in plan.problems]
+
+
+def test_an_action_has_named_arguments_with_the_entities_of_the_ontology() -> None:
+    plan = plan_of('(bring (λ$1:e (is_a $1 "tea") (at $1 "stool")))')
+    assert plan.is_executable
+    assert [step.as_json() for step in plan.steps] == [
+        {
+            "number": 1,
+            "action": "bring",
+            "predicate": "bring",
+            "text": "bring me the tea that is at the stool",
+            "arguments": {
+                "thing": {
+                    "kind": "description",
+                    "id": "x1",
+                    "text": "the tea that is at the stool",
+                    "conditions": [
+                        {
+                            "predicate": "is_a",
+                            "values": [entity("object", "tea", category="drinks")],
+                        },
+                        {"predicate": "at", "values": [entity("location", "stool", room="attic")]},
+                    ],
+                }
+            },
+            "gives_result": False,
+        }
+    ]
+
+
+def entity(entity_class: str, text: str, **attributes: str) -> dict[str, Any]:
+    return {
+        "kind": "entity",
+        "entity_class": entity_class,
+        "text": text,
+        "attributes": attributes,
+    }
+
+
+def test_a_place_that_two_rooms_have_has_no_room() -> None:
+    place = plan_of('(go "shelf")').steps[0].arguments
+    assert [(name, value.as_json()) for name, value in place] == [
+        ("destination", entity("location", "shelf"))
+    ]
+
+
+def test_a_sequence_becomes_steps_and_a_shared_variable_stays_the_same_person() -> None:
+    plan = plan_of(
+        '(λ$1:e (sequence (follow (person $1) (name $1 "Ada") (at $1 "stool")) (guide $1 "current")))'
+    )
+    follow, guide = plan.steps
+    assert (follow.predicate, guide.predicate) == ("follow", "guide")
+    assert dict(follow.arguments)["person"] == dict(guide.arguments)["person"]
+    assert dict(guide.arguments)["destination"].as_json() == {"kind": "text", "text": "current"}
+    assert plan.is_executable
+
+
+def test_what_an_action_says_about_a_count_is_a_step_before_it() -> None:
+    plan = plan_of('(say (count (λ$1:e (person $1) (at $1 "attic"))))')
+    assert [(step.predicate, step.gives_result) for step in plan.steps] == [
+        ("count", True),
+        ("say", False),
+    ]
+    assert dict(plan.steps[1].arguments)["text"].as_json() == {"kind": "result", "step": 1}
+    assert 'text="{result_1}"' in to_behavior_tree(plan)
+
+
+def test_things_beside_things_and_attributes_of_people_are_nested() -> None:
+    nested = '(bring (λ$1:e (λ$2:e (is_a $2 "tea") (right_of $1 $2))))'
+    direct = '(bring (λ$1:e (right_of $1 (λ$1:e (is_a $1 "tea")))))'
+    for text in (nested, direct):
+        thing = dict(plan_of(text).steps[0].arguments)["thing"].as_json()
+        (beside,) = thing["conditions"]
+        assert beside["predicate"] == "right_of"
+        assert beside["values"][0]["conditions"][0]["predicate"] == "is_a"
+    asked = plan_of('(say (λ$1:e (λ$2:e (person $2) (name $2 $1) (at $2 "attic"))))')
+    about = dict(asked.steps[0].arguments)["about"].as_json()
+    assert (about["kind"], about["attribute"]) == ("attribute", "name")
+    assert [each["predicate"] for each in about["of"]["conditions"]] == ["person", "at"]
+
+
+def test_unknown_asks_the_operator() -> None:
+    plan = plan_of("UNKNOWN")
+    assert [step.predicate for step in plan.steps] == [ASK]
+    assert troubles(plan) == [Trouble.NOT_UNDERSTOOD]
+    assert not plan.is_executable
+
+
+@pytest.mark.parametrize(
+    ("text", "message", "question"),
+    [
+        (
+            '(guide (λ$1:e (person $1) (name $1 "Ada")) UNKNOWN)',
+            "Guide has no destination.",
+            "Where to?",
+        ),
+        ('(guide (λ$1:e (person $1) (name $1 "Ada")))', "Guide has no destination.", "Where to?"),
+        ("(go UNKNOWN)", "Go has no destination.", "Where to?"),
+        ('(put (λ$1:e (is_a $1 "tea")) UNKNOWN)', "Put has no destination.", "Where to?"),
+        ("(bring UNKNOWN)", "Bring has no thing.", "Which thing?"),
+    ],
+)
+def test_a_missing_argument_is_named_and_asked_for_before_the_action(
+    text: str, message: str, question: str
+) -> None:
+    plan = plan_of(text)
+    ask, action = plan.steps
+    assert dict(ask.arguments)["question"].as_json()["text"] == question
+    assert {"kind": "result", "step": 1} in [value.as_json() for _, value in action.arguments]
+    assert [(each.message, each.step) for each in plan.problems] == [(message, 2)]
+
+
+def test_a_class_token_is_asked_for() -> None:
+    plan = plan_of('(bring (λ$1:e (is_a $1 "<object>")))')
+    assert [step.predicate for step in plan.steps] == [ASK, "bring"]
+    assert troubles(plan) == [Trouble.OPEN_SLOT]
+
+
+def test_an_entity_that_the_ontology_does_not_have_is_named() -> None:
+    plan = plan_of('(bring (λ$1:e (is_a $1 "flurb")))')
+    assert [each.message for each in plan.problems] == ["The ontology has no “flurb”."]
+    assert troubles(plan_of('(go "moon")')) == [Trouble.UNKNOWN_ENTITY]
+    for known in ("TEA", "cuppa", "drink", "drinks", "objects"):
+        assert plan_of(f'(bring (λ$1:e (is_a $1 "{known}")))').is_executable, known
+
+
+def test_a_superlative_needs_a_set() -> None:
+    assert troubles(plan_of("(bring (λ$1:e (largest $1)))")) == [Trouble.SUPERLATIVE_WITHOUT_SET]
+    for text in (
+        '(bring (λ$1:e (largest $1) (is_a $1 "drinks")))',
+        '(bring (λ$1:e (largest $1)) "stool")',
+        '(bring (λ$1:e (leftmost $1 "stool")))',
+        '(say (λ$1:e (and (largest $1) (at $1 "stool"))))',
+    ):
+        assert plan_of(text).is_executable, text
+
+
+def test_a_description_alone_is_nothing_to_do() -> None:
+    assert troubles(plan_of('(λ$1:e (is_a $1 "tea") (at $1 "stool"))')) == [Trouble.NO_ACTION]
+
+
+def test_a_likely_entity_is_to_be_confirmed() -> None:
+    form = read_form('(put (λ$1:e (is_a $1 "<object>") (at $1 "<location>")) "<location>")')
+    heard = Anonymizer(HOME).anonymize("grab the tea on the stool and put it on the shelf")
+    given = deanonymize(form, heard, HOME)
+    plan = make_plan(given.form, HOME, slots=given.slots)
+    require_valid(plan)
+    assert troubles(plan) == [Trouble.AMBIGUOUS] * 2
+    assert plan.problems[0].message == "It is not certain that the location is “stool”."
+
+
+def test_actions_and_arguments_have_the_names_of_the_robot() -> None:
+    names = {
+        "go": ActionName("NavigateTo", {"destination": "goal"}),
+        ASK: ActionName("Ask", {"question": "prompt"}),
+    }
+    ask, go = plan_of("(go UNKNOWN)", action_names=names).steps
+    assert (ask.action, [name for name, _ in ask.arguments]) == ("Ask", ["prompt", "expects"])
+    assert (go.action, [name for name, _ in go.arguments]) == ("NavigateTo", ["goal"])
+
+
+def test_the_behaviour_tree_has_ports_that_the_library_takes() -> None:
+    plan = make_plan(read_form('(say "{x} <b> & c" (λ$1:e (name $1 "Ada")) )'), HOME)
+    tree = fromstring(to_behavior_tree(plan))
+    assert tree.attrib == {"BTCPP_format": "4", "main_tree_to_execute": "Command"}
+    action = tree.find("BehaviorTree/Sequence/Action")
+    assert action.get("ID") == "say"
+    assert action.get("text") == "(x) <b> & c"  # braces would be an entry of the blackboard
+    assert action.get("listener").startswith('json:{"kind":"description"')
+    assert [port.get("name") for port in tree.findall("TreeNodesModel/Action/input_port")] == [
+        "text",
+        "listener",
+    ]
+
+
+def test_a_long_sequence_is_cut_and_said() -> None:
+    plan = plan_of("(sequence " + '(go "stool") ' * 80 + ")")
+    assert len(plan.steps) == 50
+    assert troubles(plan) == [Trouble.TOO_LONG]
+
+
+@given(forms())
+def test_every_form_has_a_plan_that_follows_the_schemas(form: Any) -> None:
+    require_valid(make_plan(form, HOME))
+
+
+@needs_corpus
+def test_every_published_form_has_steps_and_names_its_problems() -> None:
+    lines = (SHARED / "walker2019/gen/train.txt").read_text(encoding="utf-8").splitlines()
+    for text in sorted(set(lines[1::2])):
+        plan = plan_of(text)
+        asks = text.count("UNKNOWN") + text.count("<")
+        assert sum(step.predicate == ASK for step in plan.steps) == asks, text
+        assert plan.is_executable == (not asks and '" cereal "' not in text), text
+
+
+def test_categories_are_found_by_their_plural_and_singular() -> None:
+    assert Entity("category", "drinks", (), {"singular": "drink"}) in HOME.entities
+    value = dict(plan_of('(bring (λ$1:e (is_a $1 "drink")))').steps[0].arguments)["thing"]
+    assert value.as_json()["conditions"][0]["values"][0]["entity_class"] == "category"
