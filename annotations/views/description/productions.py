@@ -63,15 +63,7 @@ def production_new(request: HttpRequest, world: World) -> HttpResponse:
     asked = {name: request.GET.get(name, "") for name in ("nonterminal", "source")}
     form = ProductionForm(world, None, posted(request), initial=asked)
     if request.method == "POST" and form.is_valid():
-        source = form.cleaned_data["source"]
-        unsaved = Production(
-            grammar=world.grammar,
-            source=source,
-            nonterminal=form.cleaned_data["nonterminal"],
-            expansion=form.cleaned_data["expansion"],
-            task_category=own_category(world.grammar.task_categories.all(), source),
-        )
-        row = add(unsaved, request.user, form.cleaned_data["once"])
+        row = add(unsaved_production(world, form), request.user, form.cleaned_data["once"])
         tell_saved(request, "Added.", form.checked.problems)
         return redirect("production", world=world.name, pk=row.pk)
     context = {
@@ -135,6 +127,18 @@ def _completion(world: World, source: str) -> dict[str, Any]:
     """Return the task category whose nonterminals the editor offers."""
     edit = ProductionEdit(world, source, "", "")
     return {"category": next(edit.categories(), None)}
+
+
+def unsaved_production(world: World, form: ProductionForm) -> Production:
+    """Return the production that a valid form describes."""
+    source = form.cleaned_data["source"]
+    return Production(
+        grammar=world.grammar,
+        source=source,
+        nonterminal=form.cleaned_data["nonterminal"],
+        expansion=form.cleaned_data["expansion"],
+        task_category=own_category(world.grammar.task_categories.all(), source),
+    )
 
 
 def initial_values(row: Editable) -> dict[str, Any]:

@@ -1,10 +1,19 @@
 from __future__ import annotations
 
+import pytest
 import yaml
+from django.core.management import call_command
 
 
-def test_the_schema_names_the_export_its_formats_and_the_token(client, db):
-    schema = yaml.safe_load(client.get("/api/v1/schema/").content)
+@pytest.fixture(scope="module")
+def schema(tmp_path_factory):
+    """The schema, checked against OpenAPI 3.1; a warning is a failure."""
+    path = tmp_path_factory.mktemp("schema") / "schema.yml"
+    call_command("spectacular", validate=True, fail_on_warn=True, file=str(path))
+    return yaml.safe_load(path.read_text())
+
+
+def test_the_schema_names_the_export_its_formats_and_the_token(schema):
     export = schema["paths"]["/api/v1/worlds/{world}/splits/{id}/export/"]["get"]
     assert schema["openapi"].startswith("3.1")
     assert {"application/jsonl", "text/csv", "text/plain"} == set(
@@ -13,3 +22,13 @@ def test_the_schema_names_the_export_its_formats_and_the_token(client, db):
     assert {"as", "part", "source"} <= {parameter["name"] for parameter in export["parameters"]}
     assert {"token": []} in export["security"]
     assert schema["components"]["securitySchemes"]["token"] == {"type": "http", "scheme": "bearer"}
+
+
+def test_every_change_names_its_version_and_its_refusals(schema):
+    for path, methods in schema["paths"].items():
+        for method, operation in methods.items():
+            if method in ("patch", "put", "delete"):
+                headers = {each["name"]: each for each in operation["parameters"]}
+                assert headers["If-Match"]["required"], path
+                refused = operation["responses"]["412"]["content"]
+                assert "application/problem+json" in refused

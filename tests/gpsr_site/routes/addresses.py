@@ -45,7 +45,18 @@ def list_routes(patterns, namespace: str = "", path: str = "") -> Iterator[tuple
             yield f"{namespace}{pattern.name}", here
 
 
+def list_views(patterns, namespace: str = "") -> Iterator[tuple[str, type]]:
+    """Yield name and class of every route of the API."""
+    for pattern in patterns:
+        if isinstance(pattern, URLResolver):
+            inside = f"{pattern.namespace}:" if pattern.namespace else namespace
+            yield from list_views(pattern.url_patterns, inside)
+        elif isinstance(pattern, URLPattern) and namespace == "api:":
+            yield f"{namespace}{pattern.name}", pattern.callback.view_class
+
+
 ALL_ROUTES = dict(list_routes(get_resolver().url_patterns))
+API_VIEWS = dict(list_views(get_resolver().url_patterns))
 ROUTES_OF_WORLDS = {name for name, path in ALL_ROUTES.items() if "<slug:world>" in path}
 ROUTES_OF_ROWS = sorted(name for name in ROUTES_OF_WORLDS if "<int:" in ALL_ROUTES[name])
 
@@ -157,7 +168,9 @@ KEYS: dict[str, RouteKeys] = {
     "member": pk_of(removable_member),
     "invitation_withdraw": pk_of(invitation),
     "join": join_keys,
-    **dict.fromkeys(("template", "template_duplicate", "template_repair"), pk_of(template)),
+    **dict.fromkeys(
+        ("template", "template_duplicate", "template_repair", "api:template"), pk_of(template)
+    ),
     "template_completion": pk_of(lambda sample: sample.world.grammar.task_categories.first()),
     "delete_row": pk_of(template, kind="template"),
     "history": pk_of(template, kind="template"),
@@ -168,22 +181,30 @@ KEYS: dict[str, RouteKeys] = {
     ),
     "draft": lambda sample: {"kind": "template", "subject": sample.template.pk},
     "deleted": lambda _: {"kind": "template"},
-    "logical_form": pk_of(lambda sample: sample.form),
-    "command": pk_of(lambda sample: sample.world.commands.first()),
+    **dict.fromkeys(("logical_form", "api:form"), pk_of(lambda sample: sample.form)),
     **dict.fromkeys(
-        ("paraphrase", "paraphrase_label", "paraphrase_check"),
+        ("command", "api:command"), pk_of(lambda sample: sample.world.commands.first())
+    ),
+    **dict.fromkeys(
+        ("paraphrase", "paraphrase_label", "paraphrase_check", "api:paraphrase"),
         pk_of(lambda sample: paraphrase_in(sample.world)),
     ),
-    "entity": pk_of(lambda sample: Entity.objects.filter(ontology__world=sample.world).first()),
-    "predicate": pk_of(predicate),
+    **dict.fromkeys(
+        ("entity", "api:entity"),
+        pk_of(lambda sample: Entity.objects.filter(ontology__world=sample.world).first()),
+    ),
+    **dict.fromkeys(("predicate", "api:predicate"), pk_of(predicate)),
     "rename": pk_of(predicate, kind="predicate"),
-    "production": pk_of(lambda sample: sample.world.grammar.productions.first()),
+    **dict.fromkeys(
+        ("production", "api:production"),
+        pk_of(lambda sample: sample.world.grammar.productions.first()),
+    ),
     "download_part": lambda _: {"part": "grammar"},
     "notice_open": lambda _: {"pk": 10**6},
     **dict.fromkeys(
         (
             *("split", "near_duplicates", "split_changes", "split_renew", "split_runs"),
-            "api:split-export",
+            *("api:split-export", "api:split", "api:split-renew", "api:split-examples"),
         ),
         pk_of(split),
     ),

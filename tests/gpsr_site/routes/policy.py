@@ -2,30 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from tests.gpsr_site.routes.api_policy import API_ONLY_POSTED, API_POLICY
+from tests.gpsr_site.routes.rules import (
+    BAD,
+    GONE_ON,
+    LOG_IN,
+    NO,
+    NOWHERE,
+    PEOPLE,
+    WRONG,
+    YES,
+    Rule,
+)
 
-PEOPLE = ("anonymous", "stranger", "annotator", "reviewer", "admin")
-LOG_IN, NOWHERE, NO, YES, GONE_ON, WRONG, BAD = 302, 404, 403, 200, 302, 405, 400
-
-
-@dataclass(frozen=True)
-class Rule:
-    """What happens to each of ``PEOPLE`` who asks for ``name`` with ``method``.
-
-    ``stranger`` has every duty, in another world.
-    """
-
-    name: str
-    anonymous: int
-    stranger: int
-    annotator: int
-    reviewer: int
-    admin: int
-    method: str = "get"
-
-    def __str__(self) -> str:
-        return f"{self.method} {self.name}"
-
+__all__ = ["LOG_IN", "ONLY_POSTED", "PEOPLE", "POLICY", "READ_AND_POSTED", "YES", "Rule"]
 
 MEMBERS = (LOG_IN, NOWHERE, YES, YES, YES)
 ANNOTATORS = (LOG_IN, NOWHERE, YES, NO, YES)
@@ -243,25 +233,14 @@ POLICY = [
     Rule("template_consequences", LOG_IN, WRONG, WRONG, WRONG, WRONG),
     Rule("template_suggestions", LOG_IN, WRONG, WRONG, WRONG, WRONG),
     Rule("template_repair", LOG_IN, WRONG, WRONG, WRONG, WRONG),
-    # The API (its own tests say more)
-    Rule("api:schema", YES, YES, YES, YES, YES),
-    Rule("api:split-export", 401, NOWHERE, YES, YES, YES),
-    Rule("api:utterances", 401, NOWHERE, YES, YES, YES),
-    Rule("api:utterances", 401, NOWHERE, 400, NO, 400, method="post"),
-    Rule("api:utterance", 401, NOWHERE, YES, YES, YES),
-    Rule("api:audit-findings", 401, NOWHERE, YES, YES, YES),
-    Rule("api:audit-finding", 401, NOWHERE, YES, YES, YES),
-    Rule("api:work-items", 401, NOWHERE, YES, YES, YES),
-    Rule("api:work-item", 401, NOWHERE, YES, YES, YES),
-    Rule("api:work-item-next", 401, NOWHERE, YES, 204, YES, method="post"),
-    Rule("api:work-item-finish", 401, NOWHERE, 409, 409, 409, method="post"),
-    Rule("api:work-item-give-back", 401, NOWHERE, 409, 409, 409, method="post"),
+    *API_POLICY,
 ]
 
 # Routes of rows that are not read, only changed.
 ONLY_POSTED = {
+    *API_ONLY_POSTED,
     *("run_cancel", "member", "invitation_withdraw", "template_duplicate", "template_repair"),
-    *("queue_ask", "queue_act", "queue_settle", "api:work-item-finish", "api:work-item-give-back"),
+    *("queue_ask", "queue_act", "queue_settle"),
     *("label_answer", "label_check", "label_mend", "label_take_back"),
     *("example_send", "predictions_send", "paraphrase_label", "paraphrase_check"),
     *("split_renew", "run_retrain", "learning_curve_start"),

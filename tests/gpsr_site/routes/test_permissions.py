@@ -6,7 +6,7 @@ import pytest
 from django.test import Client
 from django.urls import reverse
 
-from tests.gpsr_site.routes.addresses import ALL_ROUTES, ROUTES_OF_ROWS, address
+from tests.gpsr_site.routes.addresses import ALL_ROUTES, API_VIEWS, ROUTES_OF_ROWS, address
 from tests.gpsr_site.routes.policy import (
     LOG_IN,
     ONLY_POSTED,
@@ -24,6 +24,16 @@ REFUSED_METHODS = {
 
 def test_every_route_has_a_rule():
     assert {rule.name for rule in POLICY} == set(ALL_ROUTES)
+
+
+def test_every_method_of_the_api_has_a_rule():
+    methods = {
+        (name, method)
+        for name, view in API_VIEWS.items()
+        for method in ("get", "post", "put", "patch", "delete")
+        if method in view.http_method_names and hasattr(view, method)
+    }
+    assert {(rule.name, rule.method) for rule in POLICY if rule.name in API_VIEWS} == methods
 
 
 @pytest.mark.parametrize("person", PEOPLE)

@@ -1,19 +1,20 @@
-"""The routes of the API."""
+"""Splits as files: pair files, JSON Lines, CSV."""
 
 from __future__ import annotations
 
 from django.http import StreamingHttpResponse
 from django.shortcuts import get_object_or_404
 from drf_spectacular.types import OpenApiTypes
-from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
+from drf_spectacular.utils import OpenApiParameter, extend_schema
+from rest_framework import serializers
 from rest_framework.request import Request
-from rest_framework.views import APIView
 
-from annotations.api.permissions import HasDuty
-from annotations.api.serializers import ExampleSerializer, ExportQuery
+from annotations.api.negotiation import AnyType
+from annotations.api.routes import WorldRoute
 from annotations.auditing import examples_before
-from annotations.exporting.split_export import Format, export_lines
-from annotations.models import Duty, Split, World
+from annotations.exporting.split_export import FIELDS, Format, export_lines
+from annotations.models import Example, Split
+from annotations.models.splits import Source, part_choices
 
 CONTENT_TYPES = {
     Format.TXT: "text/plain; charset=utf-8",
@@ -30,23 +31,47 @@ FOUND_WRONG = OpenApiParameter(
 )
 
 
-class SplitExport(APIView):
+class ExportedExampleSerializer(serializers.ModelSerializer):
+    """One line of a JSON Lines export."""
+
+    class Meta:
+        model = Example
+        fields = FIELDS
+
+
+class ExportQuery(serializers.Serializer):
+    """What may be asked of an export. Text needs ``part`` and ``source``: it is one pair file."""
+
+    part = serializers.ChoiceField(choices=part_choices(), required=False)
+    source = serializers.ChoiceField(choices=Source.choices, required=False)
+
+    def get_fields(self) -> dict[str, serializers.Field]:
+        # "as" is a word of Python and cannot be a class attribute.
+        as_ = serializers.ChoiceField(choices=Format.choices, default=Format.JSONL)
+        return {"as": as_, **super().get_fields()}
+
+    def validate(self, query: dict[str, str]) -> dict[str, str]:
+        if query["as"] == Format.TXT and not ("part" in query and "source" in query):
+            raise serializers.ValidationError(
+                "A text export is one pair file: add part=train|validation|test and "
+                "source=generated|paraphrased."
+            )
+        return query
+
+
+class SplitExport(WorldRoute):
     """Streams the examples of a frozen split as pair files, JSON Lines or CSV."""
 
-    permission_classes = [HasDuty]
-    duty = Duty.VIEW
-    world: World
+    model = Split
+    content_negotiation_class = AnyType
 
     @extend_schema(
         operation_id="split_export",
         parameters=[ExportQuery, FOUND_WRONG],
         responses={
-            (200, "application/jsonl"): ExampleSerializer(many=True),
+            (200, "application/jsonl"): ExportedExampleSerializer(many=True),
             (200, "text/csv"): OpenApiTypes.STR,
             (200, "text/plain"): OpenApiTypes.STR,
-            400: OpenApiResponse(description="A parameter is missing or unknown."),
-            401: OpenApiResponse(description="No token, or one that is not valid."),
-            404: OpenApiResponse(description="No such split in a world that you can see."),
         },
     )
     def get(self, request: Request, world: str, pk: int) -> StreamingHttpResponse:

@@ -1,0 +1,86 @@
+"""The predicates of the logical forms."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from http import HTTPStatus
+from typing import Any
+
+from django.db.models import QuerySet
+from rest_framework import serializers
+
+from annotations.api.problems import Refused
+from annotations.api.reading import Fields, LineField
+from annotations.api.routes import EditableRow, EditableRows, Noun
+from annotations.language.limits import MAX_GLOSS, MAX_PREDICATE
+from annotations.lists.filters import PredicateFilters
+from annotations.models import Predicate
+from annotations.models.predicates import predicate_kind_choices
+from annotations.views.description.predicate_forms import PredicateForm
+from annotations.views.description.predicates import initial_values
+
+
+class PredicateSerializer(serializers.ModelSerializer):
+    """A predicate. ``signatures`` lists the kinds of its arguments, once for each way to use it."""
+
+    signatures = serializers.ListField(child=serializers.ListField(child=serializers.CharField()))
+
+    class Meta:
+        model = Predicate
+        fields = ["id", "name", "kind", "signatures", "gloss", "is_edited", "version"]
+
+
+class PredicateChange(Fields):
+    """``signatures`` may mark arguments at the end that may be missing: ``["object", "room?"]``."""
+
+    kind = serializers.ChoiceField(choices=predicate_kind_choices())
+    signatures = serializers.ListField(
+        child=serializers.ListField(child=LineField(max_length=40), max_length=50), max_length=100
+    )
+    gloss = LineField(max_length=MAX_GLOSS, allow_blank=True, required=False)
+
+
+class NewPredicate(PredicateChange):
+    name = LineField(max_length=MAX_PREDICATE)
+
+
+class PredicateNoun(Noun):
+    model = Predicate
+    serializer_class = PredicateSerializer
+    new_serializer = NewPredicate
+    change_serializer = PredicateChange
+
+    def rows(self) -> QuerySet[Predicate]:
+        return self.world.predicates.all()
+
+    def form_of(self, row: Predicate | None, sent: Mapping[str, Any]) -> PredicateForm:
+        given = dict(sent)
+        if "signatures" in sent:
+            given["signatures"] = "\n".join(f"({', '.join(each)})" for each in sent["signatures"])
+        stored = initial_values(row) if row else {}
+        return PredicateForm(self.world, row, {**stored, **given}, initial=stored)
+
+    def valid_form(self, row: Predicate | None, sent: Mapping[str, Any]) -> PredicateForm:
+        form = super().valid_form(row, sent)
+        if row is None and self.rows().filter(name=form.cleaned_data["name"]).exists():
+            said = "There is a predicate of this name already. Change that one."
+            problems = [{"field": "name", "message": said}]
+            raise Refused(said, problems, HTTPStatus.CONFLICT)
+        return form
+
+    def unsaved(self, form: PredicateForm) -> Predicate:
+        return Predicate(world=self.world, name=form.cleaned_data["name"], **form.values)
+
+    def values_of(self, form: PredicateForm, row: Predicate) -> Mapping[str, Any]:
+        return form.values
+
+
+class Predicates(PredicateNoun, EditableRows):
+    """Lists the predicates, and declares one."""
+
+    filterset_class = PredicateFilters
+    sorts = {"name": "name", "kind": "kind", "id": "pk"}
+
+
+class OnePredicate(PredicateNoun, EditableRow):
+    """Shows, changes and deletes a predicate."""

@@ -1,0 +1,165 @@
+"""What routes of the API are made of: lists of rows, and single rows that people may edit.
+
+The verbs behind writes are those of the pages: a form of theirs says what is wrong, and
+``annotations.editing`` stores what is right, with its history and all that follows from it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from http import HTTPStatus
+from typing import Any, ClassVar
+
+from django import forms
+from django.db.models import Model, QuerySet
+from rest_framework.filters import BaseFilterBackend
+from rest_framework.generics import GenericAPIView
+from rest_framework.mixins import ListModelMixin
+from rest_framework.request import Request
+from rest_framework.response import Response
+from rest_framework.serializers import BaseSerializer
+
+from annotations.api.matching import etag_of, require_match
+from annotations.api.once import once, slot_of
+from annotations.api.paging import Keyset
+from annotations.api.parsing import BoundedJSONParser
+from annotations.api.permissions import HasDuty
+from annotations.api.problems import refusal_of_form
+from annotations.editing.edits import add, change, delete
+from annotations.language.errors import Problem
+from annotations.models import Duty, Editable, World
+from annotations.rows.problems import as_json
+
+
+class WorldRoute(GenericAPIView):
+    """A route below a world. ``duties`` says what each method needs; reading needs ``Duty.VIEW``."""
+
+    permission_classes = [HasDuty]
+    parser_classes = [BoundedJSONParser]
+    duties: ClassVar[Mapping[str, Duty]] = {}
+    conditional_methods: ClassVar[tuple[str, ...]] = ()
+    model: ClassVar[type[Model]]
+    world: World
+
+    @property
+    def duty(self) -> Duty:
+        """What the method of the request needs."""
+        return self.duties.get(self.request.method, Duty.VIEW)
+
+    def initial(self, request: Request, *args: Any, **kwargs: Any) -> None:
+        super().initial(request, *args, **kwargs)
+        request.world = self.world  # filters look there for the choices of the world
+
+    def rows(self) -> QuerySet[Any]:
+        """Return the rows of the world that the route is about."""
+        raise NotImplementedError
+
+    def get_queryset(self) -> QuerySet[Any]:
+        is_described = getattr(self, "swagger_fake_view", False)
+        return self.model._default_manager.none() if is_described else self.rows()
+
+    def read(self, serializer: type[BaseSerializer[Any]], **options: Any) -> dict[str, Any]:
+        """Return what was sent as ``serializer`` reads it. Raises ValidationError."""
+        sent = serializer(data=self.request.data, **options)
+        sent.is_valid(raise_exception=True)
+        return dict(sent.validated_data)
+
+
+class RowsRoute(ListModelMixin, WorldRoute):
+    """A list, filtered, sorted and paged by its address."""
+
+    pagination_class = Keyset
+    sorts: ClassVar[dict[str, str]] = {"id": "pk"}
+
+    def get(self, request: Request, **kwargs: Any) -> Response:
+        return self.list(request)
+
+
+class RowRoute(WorldRoute):
+    """One row, with the tag of its version."""
+
+    filter_backends: ClassVar[list[type[BaseFilterBackend]]] = []
+
+    def get(self, request: Request, **kwargs: Any) -> Response:
+        return self.show(self.get_object())
+
+    def show(self, row: Any, status: int = HTTPStatus.OK) -> Response:
+        shown = self.get_serializer(row).data
+        return Response(shown, status=status, headers={"ETag": etag_of(row, shown)})
+
+    def matched(self) -> Any:
+        """Return the row, if it is as the request says that it is. Raises Overtaken otherwise."""
+        row = self.get_object()
+        require_match(self.request, row, self.get_serializer(row).data)
+        return row
+
+
+class Noun:
+    """What a kind of editable row says of itself: how it is read from a request and stored.
+
+    ``new_serializer`` reads a new row and ``change_serializer`` what may be changed of one.
+    """
+
+    new_serializer: ClassVar[type[BaseSerializer[Any]]]
+    change_serializer: ClassVar[type[BaseSerializer[Any]]]
+    world: World
+
+    def form_of(self, row: Any | None, sent: Mapping[str, Any]) -> forms.Form:
+        """Return the form of the page, bound to what was sent; of a row that is there, to the rest of it too."""
+        raise NotImplementedError
+
+    def unsaved(self, form: Any) -> Editable:
+        """Return the row that a valid form describes."""
+        raise NotImplementedError
+
+    def values_of(self, form: Any, row: Any) -> Mapping[str, Any]:
+        """Return what a valid form changes of ``row``."""
+        raise NotImplementedError
+
+    def problems_of(self, form: Any) -> Iterable[Problem]:
+        """Return what the checker says of it, though it was stored."""
+        return ()
+
+    def valid_form(self, row: Any | None, sent: Mapping[str, Any]) -> forms.Form:
+        form = self.form_of(row, sent)
+        if not form.is_valid():
+            raise refusal_of_form(form)
+        return form
+
+    def written(self, row: Editable, form: Any, status: int = HTTPStatus.OK) -> Response:
+        """Answer with the row as it is stored, and what the checker says of it."""
+        problems = [as_json(each) for each in self.problems_of(form)]
+        shown = {"problems": problems, **self.get_serializer(row).data}
+        return Response(shown, status=status, headers={"ETag": etag_of(row, shown)})
+
+
+class EditableRows(Noun, RowsRoute):
+    """A list to which annotators add rows."""
+
+    duties: ClassVar[Mapping[str, Duty]] = {"POST": Duty.ANNOTATE}
+
+    @once
+    def post(self, request: Request, **kwargs: Any) -> Response:
+        form = self.valid_form(None, self.read(self.new_serializer))
+        row = add(self.unsaved(form), request.user, slot_of(request))
+        response = self.written(row, form, HTTPStatus.CREATED)
+        response["Location"] = request.build_absolute_uri(f"{request.path}{row.pk}/")
+        return response
+
+
+class EditableRow(Noun, RowRoute):
+    """One row that annotators change and delete; its history keeps what it was."""
+
+    duties: ClassVar[Mapping[str, Duty]] = {"PATCH": Duty.ANNOTATE, "DELETE": Duty.ANNOTATE}
+    conditional_methods = ("PATCH", "DELETE")
+
+    def patch(self, request: Request, **kwargs: Any) -> Response:
+        row = self.matched()
+        form = self.valid_form(row, self.read(self.change_serializer, partial=True))
+        saved = change(row, self.values_of(form, row), request.user, row.version)
+        return self.written(saved, form)
+
+    def delete(self, request: Request, **kwargs: Any) -> Response:
+        row = self.matched()
+        delete(row, request.user, row.version)
+        return Response(status=HTTPStatus.NO_CONTENT)

@@ -1,0 +1,50 @@
+"""The policy of access to the API: one line for each route and method.
+
+What is allowed is refused for another reason here, as the requests bring nothing: a body that is no
+JSON (415), a change that does not say of which version (428).
+"""
+
+from __future__ import annotations
+
+from tests.gpsr_site.routes.rules import NO, NOWHERE, YES, Rule
+
+NO_TOKEN, CLASH, NO_JSON, NO_VERSION, NOTHING = 401, 409, 415, 428, 204
+READ = (NO_TOKEN, NOWHERE, YES, YES, YES)
+
+# Lists and rows that members read.
+READABLE = (
+    *("entities", "entity", "predicates", "predicate", "task-categories", "productions"),
+    *("production", "templates", "template", "commands", "command", "forms", "form"),
+    *("paraphrases", "paraphrase", "utterances", "utterance", "splits", "split"),
+    *("split-examples", "split-export", "audit-findings", "audit-finding"),
+    *("work-items", "work-item", "world"),
+)
+# Lists that annotators add to, and rows that they change and delete.
+ADDED_BY_ANNOTATORS = ("entities", "predicates", "productions", "templates", "utterances", "splits")
+CHANGED_BY_ANNOTATORS = ("entity", "predicate", "production", "template")
+
+
+def annotators(outcome: int) -> tuple[int, ...]:
+    return NO_TOKEN, NOWHERE, outcome, NO, outcome
+
+
+API_POLICY = [
+    Rule("api:schema", YES, YES, YES, YES, YES),
+    Rule("api:worlds", NO_TOKEN, YES, YES, YES, YES),
+    *(Rule(f"api:{name}", *READ) for name in READABLE),
+    *(Rule(f"api:{name}", *annotators(NO_JSON), method="post") for name in ADDED_BY_ANNOTATORS),
+    *(
+        Rule(f"api:{name}", *annotators(NO_VERSION), method=method)
+        for name in CHANGED_BY_ANNOTATORS
+        for method in ("patch", "delete")
+    ),
+    # Who corrects a label is the business of the work queue.
+    Rule("api:paraphrase", NO_TOKEN, NOWHERE, *[NO_VERSION] * 3, method="patch"),
+    Rule("api:paraphrase", *annotators(NO_VERSION), method="delete"),
+    Rule("api:split-renew", *annotators(400), method="post"),  # nothing has changed since
+    Rule("api:work-item-next", NO_TOKEN, NOWHERE, YES, NOTHING, YES, method="post"),
+    Rule("api:work-item-finish", NO_TOKEN, NOWHERE, *[CLASH] * 3, method="post"),
+    Rule("api:work-item-give-back", NO_TOKEN, NOWHERE, *[CLASH] * 3, method="post"),
+]
+
+API_ONLY_POSTED = {"api:work-item-finish", "api:work-item-give-back", "api:split-renew"}
