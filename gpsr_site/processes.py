@@ -15,16 +15,20 @@ from types import FrameType
 
 # A worker stops within 5 s of being asked (DESIGN §6); whoever is later than this is killed.
 PATIENCE_SECONDS = 7.0
+# A child that had worked for a while is started again at once, one that ends soon after its start later.
+SETTLED_SECONDS = 10.0
 RESTART_PAUSE_SECONDS = 3.0
 # Linux tells a child of its parent's end, also of a SIGKILL. (Loaded now: between fork and exec little is safe.)
 LIBC = ctypes.CDLL(None) if sys.platform == "linux" else None
 PR_SET_PDEATHSIG = 1
 
+PARSE_SERVER = [sys.executable, "manage.py", "parse_server"]
+
 
 class Supervisor:
     """Child processes by name, each in a process group of its own.
 
-    A child that ends is started again after a pause; ``SIGINT`` or ``SIGTERM`` ends them all. Where this
+    A child that ends is started again; ``SIGINT`` or ``SIGTERM`` ends them all. Where this
     process is killed, Linux ends them.
     """
 
@@ -32,6 +36,7 @@ class Supervisor:
         self.commands = dict(commands)
         self.say = say
         self.children: dict[str, subprocess.Popen[bytes]] = {}
+        self.started_at: dict[str, float] = {}
         self.restart_at: dict[str, float] = {}
         self.is_stopping = False
 
@@ -61,6 +66,7 @@ class Supervisor:
             child.wait()
 
     def _start_child(self, name: str) -> None:
+        self.started_at[name] = time.monotonic()
         self.children[name] = subprocess.Popen(
             self.commands[name],
             start_new_session=True,
@@ -75,7 +81,8 @@ class Supervisor:
             if name not in self.restart_at:
                 self.say(f"The {name} ended with status {child.returncode}; starting it again.")
                 _kill_group(child.pid)
-                self.restart_at[name] = now + RESTART_PAUSE_SECONDS
+                has_settled = now - self.started_at[name] >= SETTLED_SECONDS
+                self.restart_at[name] = now + (0.0 if has_settled else RESTART_PAUSE_SECONDS)
             elif now >= self.restart_at[name]:
                 del self.restart_at[name]
                 self._start_child(name)

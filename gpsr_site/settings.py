@@ -179,6 +179,20 @@ BROKER_QUEUE_PREFIX = env.str("GPSR_QUEUE_PREFIX", default="gpsr-")
 # Divides every period of the background work (leases, timers): tests run at tempo 10.
 WORK_TEMPO = env.float("GPSR_WORK_TEMPO", default=1.0)
 
+# --- the parse server -----------------------------------------------------------------------------
+
+PARSER_HOST = env.str("PARSER_HOST", default="127.0.0.1")
+PARSER_PORT = env.int("PARSER_PORT", default=PORT + 100 if PORT < 65_436 else PORT - 100)
+# Where pages and REST ask; one that is named is on another machine, or started by somebody else.
+PARSER_URL = env.str("PARSER_URL", default="")
+PARSER_IS_ELSEWHERE = bool(PARSER_URL)
+PARSER_URL = PARSER_URL or f"http://127.0.0.1:{PARSER_PORT}"
+PARSER_SECRET = env.str("PARSER_SECRET", default="") or read_or_make_secret_key(
+    VAR_DIR / "parser_secret"
+)
+# What runs that were asked but not promoted may take in the server's memory.
+PARSER_MEMORY_MB = env.int("PARSER_MEMORY_MB", default=2_000)
+
 # --- people -------------------------------------------------------------------------------------
 
 AUTH_USER_MODEL = "annotations.User"

@@ -4,6 +4,7 @@ from django.contrib import admin
 from django.contrib.auth.views import LogoutView
 from django.urls import include, path
 
+from annotations.api.urls import urlpatterns as corpus_routes
 from annotations.views.editing import comments
 from annotations.views.people.joining import join
 from annotations.views.worlds import jobs
@@ -11,6 +12,9 @@ from annotations.views.worlds.worlds import world_import, world_new
 from gpsr_site import pages
 from gpsr_site.accounts import ChangePassword, LogIn
 from gpsr_site.search import search
+from parser_service.api.urls import urlpatterns as parser_routes
+
+API_ROUTES = [*corpus_routes, *parser_routes]
 
 urlpatterns = [
     path("", pages.home, name="home"),
@@ -32,7 +36,7 @@ urlpatterns = [
     path("w/<slug:world>/search/", search, name="search"),
     path("w/<slug:world>/", include("annotations.urls")),
     path("w/<slug:world>/", include("parser_service.urls")),
-    path("api/v1/", include("annotations.api.urls")),
+    path("api/v1/", include((API_ROUTES, "api"))),
     path("admin/", admin.site.urls),
 ]
 

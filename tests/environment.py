@@ -8,6 +8,7 @@ os.mkdir(os.path.join(var, "static"))  # where collectstatic would write, and wh
 os.environ["GPSR_VAR_DIR"] = var
 os.environ["DEBUG"] = "false"
 os.environ["HOST"] = "127.0.0.1"
+os.environ["PARSER_PORT"] = "1"  # nobody answers there
 os.environ["GPSR_QUEUE_PREFIX"] = f"{os.path.basename(var)}-"  # processes of tests share a broker
 if url := os.environ.get("TEST_BROKER_URL"):
     os.environ["CELERY_BROKER_URL"] = url

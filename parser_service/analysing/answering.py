@@ -15,7 +15,8 @@ from annotations.rows.from_rows import ontology_of
 from parser_service.models import TrainingRun, Tryout, Worker
 from parser_service.parsers.interface import Parser
 from parser_service.runs.evaluating import BEAM_WIDTH
-from parser_service.serving import load_parser, text_for
+from parser_service.serving.loading import load_parser
+from parser_service.serving.preparing import text_for
 
 STAY_SECONDS = 20.0  # after the last text
 LONGEST_SECONDS = 600.0

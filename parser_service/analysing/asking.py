@@ -14,7 +14,8 @@ from parser_service.analysis.reading import is_same_answer
 from parser_service.models import Expectation, Probe, ProbeAnswer
 from parser_service.parsers.interface import Candidate
 from parser_service.runs.evaluating import AT_ONCE, BEAM_WIDTH
-from parser_service.serving import load_parser, text_for
+from parser_service.serving.loading import load_parser
+from parser_service.serving.preparing import text_for
 
 REFUSALS = ("", canonical_text(UNKNOWN))
 

@@ -15,7 +15,7 @@ from annotations.suggesting import (
 )
 from parser_service.candidates.composing import NEIGHBOUR, say_source
 from parser_service.candidates.neighbours import nearest_forms
-from parser_service.serving import best_run
+from parser_service.serving.choosing import best_run
 
 MOST_NEIGHBOURS = 3
 

@@ -14,7 +14,8 @@ from parser_service.candidates.doubting import enqueue_doubts
 from parser_service.models import TrainingRun
 from parser_service.parsers.conditions import TrainSources
 from parser_service.parsers.interface import Candidate, Parser
-from parser_service.serving import best_run, load_parser
+from parser_service.serving.choosing import best_run
+from parser_service.serving.loading import load_parser
 
 MOST_AT_ONCE = 5_000  # utterances of one job, the oldest first
 BEAM_WIDTH = 5

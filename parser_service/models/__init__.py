@@ -2,6 +2,7 @@ from parser_service.models.analyses import Expectation, Probe, ProbeAnswer, RunA
 from parser_service.models.columns import AnswerColumns, ExampleColumns
 from parser_service.models.folders import RunFolder
 from parser_service.models.predictions import Evaluation, Prediction
+from parser_service.models.promotions import Promotion, PromotionState
 from parser_service.models.reviews import ErrorCategory, Review, Slice
 from parser_service.models.runs import Checkpoint, EpochMetric, RunEvent, TrainingRun
 from parser_service.models.tryouts import Tryout
@@ -18,6 +19,8 @@ __all__ = [
     "Prediction",
     "Probe",
     "ProbeAnswer",
+    "Promotion",
+    "PromotionState",
     "Review",
     "RunAnalysis",
     "RunEvent",

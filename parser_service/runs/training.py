@@ -17,6 +17,7 @@ from annotations.models.splits import Part
 from parser_service.models import TrainingRun
 from parser_service.parsers import registry
 from parser_service.parsers.interface import Cancelled, Parser
+from parser_service.promotion import consider
 from parser_service.runs import lifecycle
 from parser_service.runs.analysis_requests import request_analysis
 from parser_service.runs.checkpoints import model_folder, write_folder
@@ -62,6 +63,7 @@ def _fit_and_evaluate(run: TrainingRun, observe: RunObserver) -> None:
     lifecycle.finish(run, parser.parameters(), epochs or time.monotonic() - began)
     request_proposals(run.world)  # it may be the best parser now
     request_analysis(run)
+    consider(run)
 
 
 def make_parser(run: TrainingRun) -> Parser:

@@ -15,7 +15,7 @@ from django.core.management.base import BaseCommand, CommandError
 
 from annotations.models import User
 from annotations.worlds.starter_world import load_starter_world
-from gpsr_site.processes import Supervisor, web_server_commands, worker_command
+from gpsr_site.processes import PARSE_SERVER, Supervisor, web_server_commands, worker_command
 from gpsr_site.web.server import require_free_port
 from parser_service.runs.first_runs import request_first_runs
 
@@ -25,7 +25,8 @@ HEALTH_PATIENCE_SECONDS = 60
 class Command(BaseCommand):
     help = (
         "Prepare the database, load the starter world, create an admin on the first start, "
-        "then serve the pages and run two workers until stopped: one that trains, one for short work."
+        "then serve the pages and run two workers and the parse server until stopped; one worker trains, one "
+        "does short work."
     )
 
     def handle(self, *args: Any, **options: Any) -> None:
@@ -39,6 +40,8 @@ class Command(BaseCommand):
             "training worker": worker_command("cpu", "gpu"),
             "quick worker": worker_command("quick"),
         }
+        if not settings.PARSER_IS_ELSEWHERE:
+            commands["parse server"] = PARSE_SERVER
         supervisor = Supervisor(commands, self.say)
         supervisor.start()
         threading.Thread(target=self.announce, daemon=True).start()

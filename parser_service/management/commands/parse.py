@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict
 from typing import Any
 
 from django.core.management.base import CommandParser
@@ -12,7 +11,8 @@ from annotations.management.base import ReportingCommand, find_world
 from annotations.models import World
 from parser_service.models import TrainingRun
 from parser_service.runs.evaluating import BEAM_WIDTH
-from parser_service.serving import best_run, parse
+from parser_service.serving.answers import parse
+from parser_service.serving.choosing import best_run
 
 
 class Command(ReportingCommand):
@@ -32,15 +32,7 @@ class Command(ReportingCommand):
         if options["beam"] < 1:
             raise ValueError("--beam has to be at least 1.")
         run = find_run(find_world(world), options["run"])
-        parsed = parse(run, text, options["beam"])
-        return {
-            "utterance": parsed.utterance,
-            "parsed_text": parsed.parsed_text,
-            "run": run.pk,
-            "parser": run.parser,
-            "remarks": list(parsed.remarks),
-            "candidates": [asdict(answer) for answer in parsed.answers],
-        }
+        return {"run": run.pk, "parser": run.parser, **parse(run, text, options["beam"]).as_json()}
 
     def describe(self, report: Mapping[str, Any]) -> str:
         lines = [f"{report['parser']} (run {report['run']}): {report['parsed_text']}"]

@@ -16,7 +16,7 @@ from annotations.people.access import WRITE, world_view
 from parser_service.analysing.trying import MOST_TEXT, ask, request_answers
 from parser_service.analysis.probing import PAPER_PROBES
 from parser_service.models import TrainingRun, Tryout
-from parser_service.serving import best_run
+from parser_service.serving.choosing import best_run
 from parser_service.views.analysis.asked_runs import MOST_RUNS, asked_runs, runs_to_choose
 
 MOST_OFFERED = 30

@@ -45,6 +45,7 @@ API_POLICY = [
     Rule("api:work-item-next", NO_TOKEN, NOWHERE, YES, NOTHING, YES, method="post"),
     Rule("api:work-item-finish", NO_TOKEN, NOWHERE, *[CLASH] * 3, method="post"),
     Rule("api:work-item-give-back", NO_TOKEN, NOWHERE, *[CLASH] * 3, method="post"),
+    Rule("api:parse", NO_TOKEN, NOWHERE, *[NO_JSON] * 3, method="post"),
 ]
 
 API_ONLY_POSTED = {"api:work-item-finish", "api:work-item-give-back", "api:split-renew"}

@@ -9,9 +9,9 @@ import pytest
 from annotations import background
 from annotations.jobs.carrying_out import carry_out
 from annotations.models import Job
-from parser_service import serving
 from parser_service.models import TrainingRun
 from parser_service.runs.analysis_requests import analysis_jobs, request_analysis
+from parser_service.serving import loading
 from tests.parser_service.analysing.made_parsers import register_all
 from tests.parser_service.runs.test_training import trained
 from tests.sample_world import SampleWorld
@@ -21,7 +21,7 @@ from tests.sample_world import SampleWorld
 def home(transactional_db, sample, monkeypatch) -> SampleWorld:
     """A world whose runs may be of the parsers made for these tests."""
     register_all(monkeypatch)
-    serving._load.cache_clear()
+    loading._load.cache_clear()
     return sample
 
 

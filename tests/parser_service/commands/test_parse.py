@@ -12,7 +12,7 @@ from annotations.models import Entity, Ontology
 from parser_service.runs import lifecycle, requesting
 from parser_service.runs.checkpoints import model_folder, remove_folder
 from parser_service.runs.training import train
-from parser_service.serving import best_run
+from parser_service.serving.choosing import best_run
 from tests.parser_service.made_up import TINY, make_split
 
 FETCH = '( bring ( lambda $1 e ( is_a $1 " <object> " ) ) )'
@@ -49,7 +49,7 @@ def test_a_parser_of_generated_commands_is_asked_with_class_tokens(split):
     first = answer["candidates"][0]
     assert (first["form"], first["grounded"]) == (FETCH, FETCH_CUP)
     assert first["reading"] == 'bring(λx. is_a(x, "red cup"))'
-    assert first["gloss"] == "bring me the red cup"
+    assert first["english"] == "bring me the red cup"
 
 
 def test_a_parser_that_knows_paraphrases_is_asked_as_people_speak(split):

@@ -1,0 +1,65 @@
+"""What a parser is given for an utterance that somebody typed or said."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Self
+
+from annotations.language.grounding import Anonymized, Anonymizer
+from annotations.language.ontology import Ontology
+from annotations.language.predicates import Predicate
+from annotations.models import World
+from annotations.models.utterances import MOST_CHARACTERS
+from annotations.rows.from_rows import ontology_of, predicates_of
+from parser_service.models import TrainingRun
+from parser_service.parsers.conditions import TrainSources
+
+MOST_CANDIDATES = 20
+
+
+@dataclass(frozen=True, slots=True)
+class WorldLanguage:
+    """What the texts and forms of a world are read with, as it was at one moment."""
+
+    ontology: Ontology
+    predicates: Mapping[str, Predicate]
+    anonymizer: Anonymizer
+
+    @classmethod
+    def of(cls, world: World) -> Self:
+        ontology = ontology_of(world)
+        return cls(ontology, predicates_of(world), Anonymizer(ontology))
+
+
+def wants_class_tokens(run: TrainingRun) -> bool:
+    """Return whether the parser of ``run`` gets class tokens in place of the entities.
+
+    One that was trained on generated commands alone has only ever seen those.
+    """
+    return run.train_sources == TrainSources.GENERATED
+
+
+def text_for(run: TrainingRun, anonymized: Anonymized) -> str:
+    """Return what the parser of ``run`` is given for an utterance."""
+    return anonymized.command if wants_class_tokens(run) else anonymized.original
+
+
+def require_utterance(text: object) -> str:
+    """Return ``text`` where it is an utterance. Raises ValueError, a sentence, where it is none."""
+    if not isinstance(text, str) or not text.strip():
+        raise ValueError("There is no utterance: send a text.")
+    if "\0" in text:
+        raise ValueError("The utterance holds a character that cannot be written (NUL).")
+    if len(text) > MOST_CHARACTERS:
+        raise ValueError(
+            f"The utterance has {len(text):,} characters; at most {MOST_CHARACTERS} are parsed."
+        )
+    return text
+
+
+def require_beam(beam: object) -> int:
+    """Return ``beam`` where it is a number of candidates. Raises ValueError, a sentence."""
+    if not isinstance(beam, int) or isinstance(beam, bool) or not 1 <= beam <= MOST_CANDIDATES:
+        raise ValueError(f"beam has to be a whole number from 1 to {MOST_CANDIDATES}.")
+    return beam

@@ -1,0 +1,174 @@
+"""What the parse server holds, and how that follows the database."""
+
+from __future__ import annotations
+
+import pytest
+
+from annotations.models import Entity, World
+from parser_service.promotion import promote
+from parser_service.runs.checkpoints import model_folder, remove_folder
+from parser_service.runs.knowledge import knowledge_of
+from parser_service.serving.metrics import Metrics
+from parser_service.serving.shelf import NotServed, Shelf
+from tests.parser_service.served import make_home, trained_run
+
+RED_CUP = '( bring ( lambda $1 e ( is_a $1 " red cup " ) ) )'
+
+
+@pytest.fixture
+def split(world):
+    return make_home(world)
+
+
+@pytest.fixture
+def shelf():
+    return Shelf(10_000_000, Metrics())
+
+
+def answer_of(shelf: Shelf, utterance: str, run: int | None = None, world: str = "home") -> dict:
+    return shelf.find(world, run, 0).parse([utterance], 5)[0]
+
+
+def test_the_promoted_parser_answers_with_the_entities_of_the_utterance(split, shelf):
+    run = trained_run(split, train_sources="gen")
+    promote(run, None)
+    assert not shelf.is_ready
+    shelf.update()
+    answer = answer_of(shelf, "Bring me the red cup")
+    assert shelf.is_ready
+    assert (answer["run"], answer["parser"], answer["score_kind"]) == (run.pk, "knn", "similarity")
+    assert (answer["anonymized"], answer["parsed_text"]) == (("Bring me the <object>",) * 2)
+    assert answer["spans"] == [
+        {
+            "start": 13,
+            "end": 20,
+            "text": "red cup",
+            "token": "<object>",
+            "entity_class": "object",
+            "value": "red cup",
+        }
+    ]
+    first = answer["candidates"][0]
+    assert (first["grounded"], first["english"]) == (RED_CUP, "bring me the red cup")
+    assert first["open_slots"] == [] and answer["is_unknown"] is False
+
+
+def test_what_stays_open_is_offered(split, shelf):
+    promote(trained_run(split, train_sources="gen"), None)
+    shelf.update()
+    (slot,) = answer_of(shelf, "bring me the red cup or the bowl")["candidates"][0]["open_slots"]
+    assert (slot["token"], slot["candidates"], slot["is_named"]) == (
+        "<object>",
+        ["red cup", "bowl"],
+        True,
+    )
+
+
+def test_a_parser_that_abstains_answers_unknown(split, shelf):
+    promote(trained_run(split, config={"least_overlap": 0.9}), None)
+    shelf.update()
+    answer = answer_of(shelf, "sing a song")
+    assert (answer["is_unknown"], answer["candidates"]) == (True, [])
+
+
+def test_a_newly_promoted_run_takes_over_and_who_began_ends_with_the_old_one(split, shelf):
+    first, second = trained_run(split), trained_run(split, seed=1)
+    promote(first, None)
+    shelf.update()
+    begun = shelf.find("home", None, 0)
+    promote(second, None)
+    shelf.update()
+    assert answer_of(shelf, "find the bowl")["run"] == second.pk
+    assert begun.parse(["find the bowl"], 5)[0]["run"] == first.pk
+
+
+def test_a_parser_that_cannot_be_loaded_leaves_the_old_one(split, shelf):
+    first, second = trained_run(split), trained_run(split, seed=1)
+    promote(first, None)
+    shelf.update()
+    promote(second, None)
+    remove_folder(model_folder(second.pk))
+    shelf.update()
+    assert answer_of(shelf, "find the bowl")["run"] == first.pk
+    (said,) = shelf.describe()
+    assert (said["promoted"], said["run"]) == (second.pk, first.pk)
+    assert "Bring that folder back, or train again" in said["problem"]
+
+
+def test_an_entity_that_is_added_is_known_from_then_on(split, shelf):
+    promote(trained_run(split, train_sources="gen"), None)
+    shelf.update()
+    before = shelf.find("home", None, 0)
+    assert answer_of(shelf, "bring me the flurb")["spans"] == []
+    ontology = split.world.ontology
+    Entity.objects.create(ontology=ontology, entity_class="object", text="flurb", position=9)
+    shelf.update()
+    answer = answer_of(shelf, "bring me the flurb")
+    assert answer["candidates"][0]["english"] == "bring me the flurb"
+    assert shelf.find("home", None, 0).parser is before.parser  # it need not be loaded again
+
+
+def test_a_parser_that_knows_the_ontology_is_loaded_again_with_it(split, shelf, monkeypatch):
+    knowledge = []
+    monkeypatch.setattr(
+        "parser_service.serving.loading.knowledge_of",
+        lambda *asked: knowledge.append(asked) or knowledge_of(*asked),
+    )
+    run = trained_run(split)
+    type(run).objects.filter(pk=run.pk).update(protocol="domain")
+    promote(run, None)
+    shelf.update()
+    shelf.update()
+    assert len(knowledge) == 1
+    Entity.objects.filter(text="bowl").update(text="basin", version=2)
+    shelf.update()
+    assert len(knowledge) == 2
+
+
+def test_another_run_of_the_world_can_be_asked(split, other_world, shelf):
+    first, other = trained_run(split), trained_run(split, seed=1)
+    promote(first, None)
+    shelf.update()
+    assert answer_of(shelf, "find the bowl", other.pk)["run"] == other.pk
+    assert answer_of(shelf, "find the bowl", first.pk)["run"] == first.pk
+    with pytest.raises(NotServed, match=f"There is no run {other.pk} in laboratory"):
+        shelf.find("laboratory", other.pk, 0)
+
+
+def test_runs_that_are_not_promoted_have_a_bound_on_memory(split):
+    shelf = Shelf(1, Metrics())
+    shelf.update()
+    run = trained_run(split)
+    with pytest.raises(NotServed, match="PARSER_MEMORY_MB"):
+        shelf.find("home", run.pk, 0)
+    size = sum(each.stat().st_size for each in model_folder(run.pk).iterdir())
+    roomy = Shelf(int(2.5 * size), Metrics())
+    roomy.update()
+    for seed in range(1, 5):
+        roomy.find("home", trained_run(split, seed=seed).pk, 0)
+        roomy.find("home", run.pk, 0)
+    assert len(roomy._others) == 2
+
+
+def test_what_cannot_be_asked_is_a_sentence(split, shelf):
+    shelf.update()
+    with pytest.raises(NotServed, match="No run of home has been promoted yet") as refused:
+        shelf.find("home", None, 0)
+    assert refused.value.status == 409
+    with pytest.raises(NotServed, match="There is no world moon") as refused:
+        shelf.find("moon", None, 0)
+    assert refused.value.status == 404
+    with pytest.raises(NotServed, match="has not reached the database"):
+        Shelf(1, Metrics()).find("home", None, 0)
+
+
+def test_a_world_that_is_new_or_gone_is_noticed(split, shelf):
+    promote(trained_run(split), None)
+    shelf.update()
+    World.objects.create(name="new")
+    with pytest.raises(NotServed, match="No run of new"):
+        shelf.find("new", None, 0)
+    split.world.promotions.all().delete()
+    shelf.update()
+    with pytest.raises(NotServed, match="No run of home"):
+        shelf.find("home", None, 0)
