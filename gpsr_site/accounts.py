@@ -15,6 +15,7 @@ from django.http import HttpRequest, HttpResponse
 from django.urls import reverse_lazy
 
 from annotations.people.rate_limits import Rate
+from annotations.people.sessions import remember_device
 
 # For one name from one address; beyond it even the right password waits.
 BY_NAME_AND_ADDRESS = Rate("log-in", limit=10, seconds=600)
@@ -72,18 +73,22 @@ class LogIn(LoginView):
     def form_valid(self, form: forms.Form) -> HttpResponse:
         BY_NAME_AND_ADDRESS.forget(self.key)
         BY_ADDRESS.give_back(self.address_place)
-        return super().form_valid(form)
+        response = super().form_valid(form)
+        remember_device(self.request)
+        return response
 
 
 class ChangePassword(PasswordChangeView):
     """Whoever is logged in changes their own password, and stays logged in here but nowhere else."""
 
     template_name = "registration/password.html"
-    success_url = reverse_lazy("home")
+    success_url = reverse_lazy("account")
 
     def form_valid(self, form: forms.Form) -> HttpResponse:
         response = super().form_valid(form)
-        messages.success(self.request, "Your password was changed.")
+        messages.success(
+            self.request, "Your password was changed. Your tokens have ended, make new ones."
+        )
         return response
 
 

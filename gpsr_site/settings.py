@@ -196,6 +196,7 @@ PARSER_MEMORY_MB = env.int("PARSER_MEMORY_MB", default=2_000)
 # --- people -------------------------------------------------------------------------------------
 
 AUTH_USER_MODEL = "annotations.User"
+SESSION_ENGINE = "annotations.models.sessions"
 AUTH_PASSWORD_VALIDATORS = [
     {"NAME": f"django.contrib.auth.password_validation.{name}"}
     for name in (

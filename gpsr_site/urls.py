@@ -6,6 +6,7 @@ from django.urls import include, path
 
 from annotations.api.urls import urlpatterns as corpus_routes
 from annotations.views.editing import comments
+from annotations.views.people import account
 from annotations.views.people.joining import join
 from annotations.views.worlds import jobs
 from annotations.views.worlds.worlds import world_import, world_new
@@ -21,6 +22,11 @@ urlpatterns = [
     path("login/", LogIn.as_view(), name="login"),
     path("logout/", LogoutView.as_view(), name="logout"),
     path("password/", ChangePassword.as_view(), name="password"),
+    path("account/", account.account, name="account"),
+    path("account/tokens/new/", account.token_new, name="token_new"),
+    path("account/tokens/<int:pk>/revoke/", account.token_revoke, name="token_revoke"),
+    path("account/sessions/end/", account.sessions_end, name="sessions_end"),
+    path("account/sessions/<slug:handle>/end/", account.session_end, name="session_end"),
     path("join/<str:key>/", join, name="join"),
     path("banner/", pages.banner, name="banner"),
     path("healthz", pages.healthz, name="healthz"),

@@ -11,6 +11,7 @@ from annotations.models.people import ApiToken, Scope, User
 from annotations.models.predicates import Predicate
 from annotations.models.problems import StoredProblem
 from annotations.models.proposals import CommandProposal, Proposal
+from annotations.models.sessions import LogInSession
 from annotations.models.splits import Example, Split
 from annotations.models.templates import SemanticTemplate
 from annotations.models.utterances import (
@@ -44,6 +45,7 @@ __all__ = [
     "Job",
     "JobKind",
     "Label",
+    "LogInSession",
     "LogicalForm",
     "Membership",
     "Notice",

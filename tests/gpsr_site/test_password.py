@@ -11,7 +11,8 @@ TYPED = {"old_password": "correct horse", "new_password1": NEW, "new_password2":
 
 
 def test_the_menu_leads_to_the_page(anna):
-    assert 'href="/password/"' in anna.get("/").content.decode()
+    assert 'href="/account/"' in anna.get("/").content.decode()
+    assert 'href="/password/"' in anna.get("/account/").content.decode()
     assert "Change password" in anna.get("/password/").content.decode()
 
 

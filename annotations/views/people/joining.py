@@ -18,6 +18,7 @@ from annotations.people.invitations import InvitationOver, NameTaken, sign_up
 from annotations.people.invitations import join as take_place
 from annotations.people.members import role_names
 from annotations.people.rate_limits import JOINING
+from annotations.people.sessions import remember_device
 
 MODEL_BACKEND = "django.contrib.auth.backends.ModelBackend"
 OVER = str(InvitationOver())
@@ -91,6 +92,7 @@ def _name_and_password(form: SignUpForm) -> tuple[str, str]:
 
 def _log_in(request: HttpRequest, user: User) -> None:
     login(request, user, backend=MODEL_BACKEND)
+    remember_device(request)
 
 
 def _refuse(request: HttpRequest, sentence: str, status: int) -> HttpResponse:

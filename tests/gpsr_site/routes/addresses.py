@@ -168,6 +168,8 @@ KEYS: dict[str, RouteKeys] = {
     "member": pk_of(removable_member),
     "invitation_withdraw": pk_of(invitation),
     "join": join_keys,
+    "token_revoke": lambda _: {"pk": 10**6},
+    "session_end": lambda _: {"handle": "none"},
     **dict.fromkeys(
         ("template", "template_duplicate", "template_repair", "api:template"), pk_of(template)
     ),

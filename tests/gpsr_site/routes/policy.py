@@ -28,6 +28,12 @@ POLICY = [
     Rule("logout", LOG_IN, GONE_ON, GONE_ON, GONE_ON, GONE_ON, method="post"),
     Rule("password", LOG_IN, YES, YES, YES, YES),
     Rule("password", LOG_IN, YES, YES, YES, YES, method="post"),
+    # Everybody has an account, and tokens and sessions of their own alone
+    Rule("account", LOG_IN, YES, YES, YES, YES),
+    Rule("token_new", LOG_IN, 422, 422, 422, 422, method="post"),
+    Rule("token_revoke", LOG_IN, NOWHERE, NOWHERE, NOWHERE, NOWHERE, method="post"),
+    Rule("session_end", LOG_IN, GONE_ON, GONE_ON, GONE_ON, GONE_ON, method="post"),
+    Rule("sessions_end", LOG_IN, GONE_ON, GONE_ON, GONE_ON, GONE_ON, method="post"),
     # Whoever has the link of an invitation joins
     Rule("join", YES, YES, YES, YES, YES),
     Rule("join", 422, GONE_ON, GONE_ON, GONE_ON, GONE_ON, method="post"),

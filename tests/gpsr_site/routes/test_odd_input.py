@@ -165,6 +165,7 @@ FIELDS_ELSEWHERE = {
     "production_preview": ("nonterminal", "expansion", "source"),
     "member": ("roles", "remove"),
     "invite": ("invite-note", "invite-roles", "invite-places", "invite-days"),
+    "token_new": ("name", "scope", "days"),
     "join": ("username", "password1", "password2"),
     "label_answer": ("verdict", "form", "version", "seconds", "reason"),
     "label_check": ("form",),
