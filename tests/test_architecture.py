@@ -39,7 +39,7 @@ ROOMS = {
     ),
     "annotations/language": (
         "errors", "limits", "decoding", "english", "symbols", "forms", "grammar", "ontology", "predicates", "templates",
-        "writing", "suggesting", "grounding", "plans", "renaming", "corpus", "agreement", "auditing",
+        "writing", "suggesting", "grounding", "dialogue", "plans", "renaming", "corpus", "agreement", "auditing",
     ),
     "parser_service/neural": (
         "device", "weights", "pretrained", "training", "word_vectors", "sentence_encoder", "seq2seq",
