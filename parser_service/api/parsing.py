@@ -89,10 +89,17 @@ class SpanSerializer(serializers.Serializer):
 
 
 class OpenSlotSerializer(serializers.Serializer):
+    """A slot to ask about. ``choices`` are those that the utterance names (``is_named``), the likely one
+    first, or else entities of the class; ``phrases`` are unknown words that may be meant."""
+
+    path = serializers.ListField(child=serializers.IntegerField())
     token = serializers.CharField()
     entity_class = serializers.CharField()
-    candidates = serializers.ListField(child=serializers.CharField())
+    question = serializers.CharField()
     is_named = serializers.BooleanField()
+    likely = serializers.CharField(allow_null=True)
+    choices = serializers.ListField(child=serializers.CharField())
+    phrases = serializers.ListField(child=serializers.CharField())
 
 
 class CandidateSerializer(serializers.Serializer):
@@ -106,6 +113,7 @@ class CandidateSerializer(serializers.Serializer):
     english = serializers.CharField()
     open_slots = OpenSlotSerializer(many=True)
     remarks = serializers.ListField(child=serializers.CharField())
+    plan = serializers.DictField(allow_null=True, help_text="As docs/plans.md describes it.")
 
 
 class ParseSerializer(serializers.Serializer):

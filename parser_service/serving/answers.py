@@ -16,8 +16,14 @@ from annotations.language.forms import (
     to_corpus,
     to_reading,
 )
-from annotations.language.grounding import Anonymized, Deanonymized, deanonymize
+from annotations.language.grounding import (
+    Anonymized,
+    Deanonymized,
+    deanonymize,
+    open_slots_as_json,
+)
 from annotations.language.ontology import Ontology
+from annotations.language.plans import make_plan
 from annotations.language.predicates import gloss
 from annotations.language.symbols import ENTITY_CLASSES
 from parser_service.models import TrainingRun
@@ -31,21 +37,11 @@ MOST_OFFERED = 20
 
 
 @dataclass(frozen=True, slots=True)
-class OpenSlot:
-    """A slot that no entity fills with certainty. ``candidates`` are those that the utterance names where
-    the slot ``is_named``, or else the first ``MOST_OFFERED`` of its class."""
-
-    token: str
-    entity_class: str
-    candidates: tuple[str, ...]
-    is_named: bool
-
-
-@dataclass(frozen=True, slots=True)
 class Answer:
-    """One candidate. ``grounded`` names the entities of the utterance where that is certain, and
-    ``remarks`` say why where it is not; the texts but ``form`` are empty where the parser wrote no
-    well-formed form."""
+    """One candidate. ``grounded`` names the entities of the utterance, certain and likely ones, and
+    ``remarks`` say what stays open; ``open_slots`` ask for it (``grounding.open_slots_as_json``). ``plan``
+    is what a robot does (``plans.Plan.as_json``). Where the parser wrote no well-formed form there is
+    nothing but ``form`` and ``score``."""
 
     form: str
     score: float
@@ -54,8 +50,9 @@ class Answer:
     grounded: str = ""
     reading: str = ""
     english: str = ""
-    open_slots: tuple[OpenSlot, ...] = ()
+    open_slots: tuple[dict[str, Any], ...] = ()
     remarks: tuple[str, ...] = ()
+    plan: dict[str, Any] | None = None
 
     def as_json(self) -> dict[str, Any]:
         """Return plain values, as REST answers them (DESIGN §8)."""
@@ -66,16 +63,9 @@ class Answer:
             "is_well_formed": self.is_well_formed,
             "reading": self.reading,
             "english": self.english,
-            "open_slots": [
-                {
-                    "token": slot.token,
-                    "entity_class": slot.entity_class,
-                    "candidates": list(slot.candidates),
-                    "is_named": slot.is_named,
-                }
-                for slot in self.open_slots
-            ],
+            "open_slots": list(self.open_slots),
             "remarks": list(self.remarks),
+            "plan": self.plan,
         }
 
 
@@ -151,12 +141,24 @@ def _read(candidate: Candidate, heard: Anonymized, language: WorldLanguage) -> A
         grounded=to_corpus(grounded),
         reading=to_reading(grounded),
         english=gloss(grounded, language.predicates),
-        open_slots=tuple(
-            OpenSlot(slot.token, slot.entity_class, slot.candidates[:MOST_OFFERED], slot.is_named)
-            for slot in deanonymized.open_slots
-        ),
+        open_slots=tuple(_ask(deanonymized, language)),
         remarks=tuple(dict.fromkeys(_open_slots(deanonymized, language.ontology))),
+        plan=make_plan(
+            grounded,
+            language.ontology,
+            language.predicates,
+            slots=deanonymized.slots,
+            lookup=language.lookup,
+        ).as_json(),
     )
+
+
+def _ask(deanonymized: Deanonymized, language: WorldLanguage) -> Iterator[dict[str, Any]]:
+    """Yield the open slots, with at most ``MOST_OFFERED`` choices each where the utterance names none."""
+    for slot in open_slots_as_json(deanonymized, language.predicates):
+        if not slot["is_named"]:
+            slot["choices"] = slot["choices"][:MOST_OFFERED]
+        yield slot
 
 
 @lru_cache(maxsize=REMEMBERED_FORMS)

@@ -8,6 +8,7 @@ from typing import Self
 
 from annotations.language.grounding import Anonymized, Anonymizer
 from annotations.language.ontology import Ontology
+from annotations.language.plans import Lookup
 from annotations.language.predicates import Predicate
 from annotations.models import World
 from annotations.models.utterances import MOST_CHARACTERS
@@ -25,11 +26,12 @@ class WorldLanguage:
     ontology: Ontology
     predicates: Mapping[str, Predicate]
     anonymizer: Anonymizer
+    lookup: Lookup
 
     @classmethod
     def of(cls, world: World) -> Self:
-        ontology = ontology_of(world)
-        return cls(ontology, predicates_of(world), Anonymizer(ontology))
+        ontology, predicates = ontology_of(world), predicates_of(world)
+        return cls(ontology, predicates, Anonymizer(ontology), Lookup(ontology, predicates))
 
 
 def wants_class_tokens(run: TrainingRun) -> bool:

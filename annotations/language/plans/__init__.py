@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from annotations.language.plans.behavior_tree import to_behavior_tree
+from annotations.language.plans.lookup import Lookup
 from annotations.language.plans.plan import ASK, ActionName, Plan, PlanProblem, Step, Trouble
 from annotations.language.plans.planning import make_plan
 from annotations.language.plans.schemas import (
@@ -26,6 +27,7 @@ __all__ = [
     "ActionName",
     "Condition",
     "Described",
+    "Lookup",
     "Named",
     "Number",
     "Open",

@@ -39,6 +39,7 @@ def make_plan(
     predicates: Mapping[str, Predicate] | None = None,
     action_names: Mapping[str, ActionName] | None = None,
     slots: Sequence[Slot] = (),
+    lookup: Lookup | None = None,
 ) -> Plan:
     """Return the steps that a form asks for.
 
@@ -48,9 +49,11 @@ def make_plan(
         predicates: which predicates are actions, and how to say them.
         action_names: predicate, or ``ask_operator`` → what the robot calls it and its arguments.
         slots: the slots that were asked about; an entity that is only likely is named as a problem.
+        lookup: that of ontology and predicates, for who makes many plans; made anew if there is none.
     """
     known = {**infer_signatures([form]), **(predicates or {})}
-    planner = _Planner(Lookup(ontology, predicates or {}), known, action_names or {})
+    lookup = lookup or Lookup(ontology, predicates or {})
+    planner = _Planner(lookup, known, action_names or {})
     for slot in slots:
         if slot.value is None and slot.likely is not None:
             message = f"it is not certain that the {slot.entity_class} is “{slot.likely}”"

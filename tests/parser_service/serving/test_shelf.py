@@ -51,17 +51,17 @@ def test_the_promoted_parser_answers_with_the_entities_of_the_utterance(split, s
     first = answer["candidates"][0]
     assert (first["grounded"], first["english"]) == (RED_CUP, "bring me the red cup")
     assert first["open_slots"] == [] and answer["is_unknown"] is False
+    assert first["plan"]["is_executable"]
 
 
 def test_what_stays_open_is_offered(split, shelf):
     promote(trained_run(split, train_sources="gen"), None)
     shelf.update()
-    (slot,) = answer_of(shelf, "bring me the red cup or the bowl")["candidates"][0]["open_slots"]
-    assert (slot["token"], slot["candidates"], slot["is_named"]) == (
-        "<object>",
-        ["red cup", "bowl"],
-        True,
-    )
+    answer = answer_of(shelf, "bring me the red cup, the bowl")["candidates"][0]
+    (slot,) = answer["open_slots"]
+    assert (slot["choices"], slot["is_named"]) == (["red cup", "bowl"], True)
+    assert slot["question"].endswith("Red cup or bowl?")
+    assert answer["plan"]["problems"][0]["code"] == "ambiguous"
 
 
 def test_a_parser_that_abstains_answers_unknown(split, shelf):
