@@ -12,7 +12,7 @@ from annotations.views.description import (
     renaming,
 )
 from annotations.views.editing import comments, deletion, drafts, history
-from annotations.views.people import members
+from annotations.views.people import audit_log, members
 from annotations.views.queueing import agreement, sending, work_queue
 from annotations.views.templates import (
     coverage,
@@ -26,6 +26,7 @@ from annotations.views.worlds import files, importing, jobs, world_deletion, wor
 urlpatterns = [
     path("people/", members.people, name="people"),
     path("people/<int:pk>/", members.member, name="member"),
+    path("log/", audit_log.audit_log, name="audit_log"),
     path("people/invite/", members.invite, name="invite"),
     path("people/invitations/<int:pk>/withdraw/", members.withdraw, name="invitation_withdraw"),
     path("delete/", world_deletion.world_delete, name="world_delete"),

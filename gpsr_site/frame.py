@@ -46,7 +46,7 @@ PLACES = (
     Place(
         "Overview",
         "world",
-        below=("import", "import_pairs", "jobs", "job", "people", "world_delete"),
+        below=("import", "import_pairs", "jobs", "job", "people", "audit_log", "world_delete"),
     ),
     Place(
         "Ontology",

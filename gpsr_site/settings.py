@@ -97,6 +97,7 @@ MIDDLEWARE = [
     "django.contrib.messages.middleware.MessageMiddleware",
     "django.middleware.clickjacking.XFrameOptionsMiddleware",
     "django_htmx.middleware.HtmxMiddleware",
+    "gpsr_site.web.audit_log.AuditLog",
 ]
 
 ROOT_URLCONF = "gpsr_site.urls"

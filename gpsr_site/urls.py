@@ -7,6 +7,7 @@ from django.urls import include, path
 from annotations.api.urls import urlpatterns as corpus_routes
 from annotations.views.editing import comments
 from annotations.views.people import account
+from annotations.views.people.audit_log import site_log
 from annotations.views.people.joining import join
 from annotations.views.worlds import jobs
 from annotations.views.worlds.worlds import world_import, world_new
@@ -22,6 +23,7 @@ urlpatterns = [
     path("login/", LogIn.as_view(), name="login"),
     path("logout/", LogoutView.as_view(), name="logout"),
     path("password/", ChangePassword.as_view(), name="password"),
+    path("log/", site_log, name="site_log"),
     path("account/", account.account, name="account"),
     path("account/tokens/new/", account.token_new, name="token_new"),
     path("account/tokens/<int:pk>/revoke/", account.token_revoke, name="token_revoke"),

@@ -8,6 +8,7 @@ from annotations.commenting import SUBJECTS, add_comment
 from annotations.editing.edits import add, change, delete
 from annotations.labelling import collect
 from annotations.models import (
+    AuditEntry,
     Entity,
     Invitation,
     Job,
@@ -46,6 +47,9 @@ def leave_traces(world: World, annotator: User, admin: User) -> None:
     a label is in doubt.
     """
     _edit(world, annotator, admin)
+    AuditEntry.objects.create(
+        world=world, world_name=world.name, who=admin, who_name=admin.username, what="invite"
+    )
     Invitation.issue(world, [Role.ANNOTATOR], admin, days=7, places=20, note="A class")
     template = SemanticTemplate.objects.filter(grammar__world=world).first()
     text = f"Is this what people say? @{admin.get_username()} please look."

@@ -1,4 +1,5 @@
 from annotations.models.audit import AuditDecision, AuditFinding, AuditReason, FindingStatus
+from annotations.models.audit_entries import AuditEntry
 from annotations.models.comments import Comment, EarlierText, Notice
 from annotations.models.corpus import Command, LogicalForm, Paraphrase
 from annotations.models.drafts import Draft
@@ -28,6 +29,7 @@ __all__ = [
     "ApiToken",
     "Assignment",
     "AuditDecision",
+    "AuditEntry",
     "AuditFinding",
     "AuditReason",
     "Command",

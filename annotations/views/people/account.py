@@ -14,6 +14,7 @@ from django.views.decorators.http import require_http_methods
 from annotations.models import ApiToken, LogInSession, Scope
 from annotations.models.people import scope_choices
 from annotations.people.access import READ, WRITE
+from annotations.people.audit_log import note
 from annotations.people.sessions import end_session, sessions_of
 
 MOST_TOKENS = 50
@@ -55,7 +56,8 @@ def token_new(request: HttpRequest) -> HttpResponse:
         form.add_error(None, f"You have {MOST_TOKENS} tokens. Revoke one that you do not need.")
     if not form.is_valid():
         return _render_account(request, status=422, form=form)
-    _, key = ApiToken.issue(request.user, **form.cleaned_data)
+    token, key = ApiToken.issue(request.user, **form.cleaned_data)
+    note(request, f"{token.name} ({token.scope})")
     return _render_account(request, key=key)
 
 
@@ -64,6 +66,7 @@ def token_revoke(request: HttpRequest, pk: int) -> HttpResponse:
     """End one of one's tokens."""
     token = get_object_or_404(request.user.api_tokens, pk=pk)
     token.delete()
+    note(request, token.name)
     messages.success(request, f"The token “{token.name}” is revoked.")
     return redirect("account")
 

@@ -14,6 +14,7 @@ from django.views.decorators.http import require_http_methods
 
 from annotations.models import Invitation, User
 from annotations.people.access import READ_AND_WRITE
+from annotations.people.audit_log import note
 from annotations.people.invitations import InvitationOver, NameTaken, sign_up
 from annotations.people.invitations import join as take_place
 from annotations.people.members import role_names
@@ -80,6 +81,8 @@ def join(request: HttpRequest, key: str) -> HttpResponse:
             form.add_error("username", str(error))
         if request.user.is_authenticated:
             JOINING.give_back(place)
+            request.world = invitation.world
+            note(request, f"as {role_names(invitation.roles)}")
             return redirect("world", world=invitation.world.name)
     context = {"invitation": invitation, "form": form, "roles": role_names(invitation.roles)}
     status = 422 if form.errors else 200

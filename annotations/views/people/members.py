@@ -13,6 +13,7 @@ from django.views.decorators.cache import never_cache
 from annotations.models import Duty, Invitation, User, World
 from annotations.models.worlds import Role, role_choices
 from annotations.people.access import READ_AND_WRITE, WRITE, world_view
+from annotations.people.audit_log import note
 from annotations.people.invitations import MOST_DAYS, MOST_PLACES
 from annotations.people.members import (
     NoAdminLeft,
@@ -88,6 +89,7 @@ def people(request: HttpRequest, world: World) -> HttpResponse:
     if form.is_bound and form.is_valid():
         account = form.cleaned_data["name"]
         add_roles(world, account, form.cleaned_data["roles"])
+        note(request, f"{account}: {role_names(form.cleaned_data['roles'])}")
         messages.success(request, f"{account} is a member of {world}.")
         return redirect("people", world=world.name)
     return _render_people(request, world, form=form)
@@ -100,7 +102,8 @@ def invite(request: HttpRequest, world: World) -> HttpResponse:
     form = InvitationForm(request.POST)
     if not form.is_valid():
         return _render_people(request, world, status=422, invitation_form=form)
-    _, key = Invitation.issue(world, by=request.user, **form.cleaned_data)
+    invitation, key = Invitation.issue(world, by=request.user, **form.cleaned_data)
+    note(request, f"{role_names(invitation.roles)}: {invitation.note or 'a link'}")
     link = request.build_absolute_uri(reverse("join", kwargs={"key": key}))
     return _render_people(request, world, link=link)
 
@@ -108,7 +111,9 @@ def invite(request: HttpRequest, world: World) -> HttpResponse:
 @world_view(Duty.MANAGE, WRITE)
 def withdraw(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     """Delete an invitation, so that nobody else joins by its link."""
-    get_object_or_404(world.invitations, pk=pk).delete()
+    invitation = get_object_or_404(world.invitations, pk=pk)
+    invitation.delete()
+    note(request, invitation.note or "a link")
     messages.success(request, "The invitation is withdrawn. Who has joined by it stays.")
     return redirect("people", world=world.name)
 
@@ -125,8 +130,10 @@ def member(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     try:
         set_roles(world, account, roles, by=request.user)
     except NoAdminLeft as error:
+        note(request, f"refused: {account} is the last admin")
         messages.error(request, str(error))
         return redirect("people", world=world.name)
+    note(request, f"{account}: {role_names(roles) or 'removed'}")
     done = f"is now {role_names(roles)} of" if roles else "is no longer a member of"
     messages.success(request, f"{account} {done} {world}.")
     is_gone = not roles and account == request.user and not request.user.is_superuser

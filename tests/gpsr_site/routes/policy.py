@@ -34,6 +34,7 @@ POLICY = [
     Rule("token_revoke", LOG_IN, NOWHERE, NOWHERE, NOWHERE, NOWHERE, method="post"),
     Rule("session_end", LOG_IN, GONE_ON, GONE_ON, GONE_ON, GONE_ON, method="post"),
     Rule("sessions_end", LOG_IN, GONE_ON, GONE_ON, GONE_ON, GONE_ON, method="post"),
+    Rule("site_log", LOG_IN, NO, NO, NO, NO),
     # Whoever has the link of an invitation joins
     Rule("join", YES, YES, YES, YES, YES),
     Rule("join", 422, GONE_ON, GONE_ON, GONE_ON, GONE_ON, method="post"),
@@ -228,6 +229,7 @@ POLICY = [
     Rule("split_runs", *ADMINS),
     Rule("people", *ADMINS, method="post"),
     Rule("member", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
+    Rule("audit_log", *ADMINS),
     Rule("invite", LOG_IN, NOWHERE, NO, NO, 422, method="post"),
     Rule("invitation_withdraw", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("member", LOG_IN, WRONG, WRONG, WRONG, WRONG),
