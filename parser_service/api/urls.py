@@ -1,11 +1,47 @@
-"""Routes below ``/api/v1/`` that need a parser."""
+"""Routes below ``/api/v1/`` about runs, what they answer, and what the promoted one says."""
 
 from __future__ import annotations
 
-from django.urls import path
+from django.urls import include, path
 
+from parser_service.api import error_categories, predictions, reviews, runs, slices
 from parser_service.api.parsing import ParseRoute
 
-urlpatterns = [
-    path("worlds/<slug:world>/parse/", ParseRoute.as_view(), name="parse"),
+ANSWER = "runs/<int:run>/examples/<int:pk>"
+of_runs = [
+    path("parse/", ParseRoute.as_view(), name="parse"),
+    path("runs/", runs.Runs.as_view(), name="runs"),
+    path("runs/<int:pk>/", runs.OneRun.as_view(), name="run"),
+    path("runs/<int:pk>/cancel/", runs.CancelRun.as_view(), name="run-cancel"),
+    path("runs/<int:pk>/retrain/", runs.RetrainRun.as_view(), name="run-retrain"),
+    path("runs/<int:pk>/log/", runs.RunLog.as_view(), name="run-log"),
+    path("runs/<int:pk>/curves/", runs.RunCurves.as_view(), name="run-curves"),
+    path("runs/<int:pk>/checkpoints/", runs.RunCheckpoints.as_view(), name="run-checkpoints"),
+    path("runs/<int:pk>/predictions/", predictions.Predictions.as_view(), name="predictions"),
+    path("runs/<int:pk>/candidates/", predictions.Candidates.as_view(), name="candidates"),
+    path("results/", predictions.Results.as_view(), name="results"),
+    path("evaluations/", predictions.Evaluations.as_view(), name="evaluations"),
+    path("evaluations/<int:pk>/", predictions.OneEvaluation.as_view(), name="evaluation"),
 ]
+
+of_reviews = [
+    path(f"{ANSWER}/review/", reviews.ReviewOfAnswer.as_view(), name="answer-review"),
+    path(f"{ANSWER}/doubt/", reviews.DoubtLabel.as_view(), name="answer-doubt"),
+    path("reviews/", reviews.Reviews.as_view(), name="reviews"),
+    path("reviews/<int:pk>/", reviews.OneReview.as_view(), name="review"),
+    path("slices/", slices.Slices.as_view(), name="slices"),
+    path("slices/<int:pk>/", slices.OneSlice.as_view(), name="slice"),
+    path("error-categories/", error_categories.ErrorCategories.as_view(), name="error-categories"),
+    path(
+        "error-categories/<int:pk>/",
+        error_categories.OneErrorCategory.as_view(),
+        name="error-category",
+    ),
+    path(
+        "error-categories/<int:pk>/move/",
+        error_categories.MoveErrorCategory.as_view(),
+        name="error-category-move",
+    ),
+]
+
+urlpatterns = [path("worlds/<slug:world>/", include([*of_runs, *of_reviews]))]

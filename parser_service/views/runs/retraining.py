@@ -9,12 +9,10 @@ from django.views.decorators.cache import never_cache
 
 from annotations.models import Duty, Split, World
 from annotations.people.access import WRITE, world_view
-from annotations.people.rate_limits import STARTED_RUNS
-from annotations.splits.renewing import last_of
 from parser_service.models import TrainingRun
-from parser_service.runs.requesting import retrain
 from parser_service.runs.retraining import retrainable
-from parser_service.views.runs.run_new import in_words, too_many
+from parser_service.runs.starting import start_again
+from parser_service.views.runs.run_new import in_words
 
 
 @never_cache
@@ -32,21 +30,11 @@ def run_retrain(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     run = get_object_or_404(
         TrainingRun.objects.select_related("split", "world"), world=world, pk=pk
     )
-    key, newest = str(request.user.pk), last_of(run.split)
-    if newest.pk == run.split_id:
-        messages.info(
-            request, f"{run.split} has not been frozen anew, so there is nothing to retrain on."
-        )
-        return redirect("run", world=world.name, pk=pk)
-    if refusal := too_many(1, STARTED_RUNS.left(key)):
-        messages.error(request, refusal)
-        return redirect("run", world=world.name, pk=pk)
     try:
-        answer = retrain(run, newest, request.user)
+        answer = start_again(run, request.user)
     except ValueError as error:
-        messages.error(request, str(error))
+        messages.warning(request, str(error))
         return redirect("run", world=world.name, pk=pk)
-    STARTED_RUNS.take(key)
     if told := in_words([answer]):
         messages.info(request, told)
     return redirect("run", world=world.name, pk=answer[0].pk)

@@ -99,6 +99,18 @@ class RunForm(forms.Form):
         }
         return missing_weights(make_config(self.parser, names), anywhere=False)
 
+    @property
+    def asked(self) -> dict[str, Any]:
+        """The arguments of ``start_runs``, once the form is valid."""
+        names = ("split", "protocol", "train_sources")
+        return {
+            **{name: self.cleaned_data[name] for name in names},
+            "parser": self.parser,
+            "config": self.config,
+            "seeds": self.asked_seeds,
+            "train_share": self.cleaned_data["share"] / 100,
+        }
+
     def clean_share(self) -> float:
         """Return the percentage; all pairs where the field is empty."""
         share = self.cleaned_data["share"]

@@ -9,11 +9,10 @@ from django.shortcuts import redirect, render
 from annotations.forms import posted
 from annotations.models import Duty, World
 from annotations.people.access import READ_AND_WRITE, world_view
-from annotations.people.rate_limits import STARTED_RUNS
 from parser_service.models import TrainingRun
 from parser_service.parsers.registry import PARSERS
 from parser_service.results.accuracy import seeds_url
-from parser_service.runs import requesting
+from parser_service.runs.starting import start_runs
 from parser_service.views.runs.parser_picker import parser_groups
 from parser_service.views.runs.run_choices import RunChoices, choices_in, query_of
 from parser_service.views.runs.run_forms import RunForm
@@ -55,44 +54,14 @@ def context_of(world: World, form: RunForm, choices: RunChoices) -> dict[str, ob
 def start(request: HttpRequest, world: World, form: RunForm) -> list[TrainingRun]:
     """Request the runs of the form, one per seed, and return them, whether new or already there. Where
     they are refused, return none and put the reason into the form."""
-    key = str(request.user.pk)
-    if refusal := too_many(len(form.asked_seeds), STARTED_RUNS.left(key)):
-        form.add_error(None, refusal)
-        return []
-    asked = {name: form.cleaned_data[name] for name in ("split", "protocol", "train_sources")}
     try:
-        answers = requesting.request_seeds(
-            world,
-            parser=form.parser,
-            config=form.config,
-            by=request.user,
-            seeds=form.asked_seeds,
-            train_share=form.cleaned_data["share"] / 100,
-            **asked,
-        )
+        answers = start_runs(world, request.user, **form.asked)
     except ValueError as error:
         form.add_error(None, str(error))
         return []
-    for _ in answers:
-        STARTED_RUNS.take(key)
     if told := in_words(answers):
         messages.info(request, told)
     return [run for run, _ in answers]
-
-
-def too_many(asked: int, left: int) -> str:
-    """Say why a user who may start ``left`` more runs may not start ``asked``; empty if they may."""
-    if asked <= left:
-        return ""
-    if left == 0:
-        return (
-            f"You have started {STARTED_RUNS.limit} runs within the hour. "
-            "Wait for some of them before you start more."
-        )
-    return (
-        f"{asked} runs are more than the {left} that you may still start within this hour. "
-        "Ask for fewer seeds."
-    )
 
 
 def in_words(answers: list[tuple[TrainingRun, bool]]) -> str:

@@ -148,6 +148,11 @@ def error_category(sample: SampleWorld) -> Model:
     return list(ensure_categories(sample.world).values())[-1]
 
 
+def review(sample: SampleWorld) -> Model:
+    """Return what somebody whose account was deleted wrote about an answer."""
+    return sample.run.reviews.get_or_create(example=sample.example, note="Hm.")[0]
+
+
 def predicate(sample: SampleWorld) -> Model:
     return sample.world.predicates.first()
 
@@ -219,6 +224,8 @@ KEYS: dict[str, RouteKeys] = {
             *("run", "run_state", "run_charts", "run_curves", "run_cancel", "run_retrain"),
             *("run_report", "predictions", "predictions_send"),
             "learning_curve_start",
+            *("api:run", "api:run-log", "api:run-curves", "api:run-checkpoints"),
+            *("api:run-cancel", "api:run-retrain", "api:predictions", "api:candidates"),
         ),
         pk_of(run),
     ),
@@ -228,7 +235,17 @@ KEYS: dict[str, RouteKeys] = {
         ("review_tag", "review_note", "review_doubt"), pk_of(lambda sample: sample.example)
     ),
     **dict.fromkeys(
-        ("error_category", "error_category_move", "error_category_delete"), pk_of(error_category)
+        (
+            *("error_category", "error_category_move", "error_category_delete"),
+            *("api:error-category", "api:error-category-move"),
+        ),
+        pk_of(error_category),
+    ),
+    "api:evaluation": pk_of(lambda sample: sample.run.evaluations.first()),
+    "api:review": pk_of(review),
+    **dict.fromkeys(
+        ("api:answer-review", "api:answer-doubt"),
+        lambda sample: {"run": sample.run.pk, "pk": sample.example.pk},
     ),
     **dict.fromkeys(("job", "job_state", "job_cancel", "job_answer"), pk_of(waiting_job)),
     **dict.fromkeys(
@@ -248,5 +265,5 @@ KEYS: dict[str, RouteKeys] = {
     ),
     "audit_take_back": pk_of(decision_of_nobody),
     "queue_ask": pk_of(utterance, kind="utterance"),
-    **dict.fromkeys(("slice_rename", "slice_delete"), pk_of(saved_slice)),
+    **dict.fromkeys(("slice_rename", "slice_delete", "api:slice"), pk_of(saved_slice)),
 }

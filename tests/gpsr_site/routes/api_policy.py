@@ -18,6 +18,9 @@ READABLE = (
     *("paraphrases", "paraphrase", "utterances", "utterance", "splits", "split"),
     *("split-examples", "split-export", "audit-findings", "audit-finding"),
     *("work-items", "work-item", "world"),
+    *("runs", "run", "run-log", "run-curves", "run-checkpoints", "predictions", "candidates"),
+    *("results", "evaluations", "evaluation", "reviews", "review", "answer-review"),
+    *("slices", "slice", "error-categories", "error-category"),
 )
 # Lists that annotators add to, and rows that they change and delete.
 ADDED_BY_ANNOTATORS = ("entities", "predicates", "productions", "templates", "utterances", "splits")
@@ -28,11 +31,36 @@ def annotators(outcome: int) -> tuple[int, ...]:
     return NO_TOKEN, NOWHERE, outcome, NO, outcome
 
 
+def reviewers(outcome: int) -> tuple[int, ...]:
+    return NO_TOKEN, NOWHERE, NO, outcome, outcome
+
+
+def admins(outcome: int) -> tuple[int, ...]:
+    return NO_TOKEN, NOWHERE, NO, NO, outcome
+
+
 API_POLICY = [
     Rule("api:schema", YES, YES, YES, YES, YES),
     Rule("api:worlds", NO_TOKEN, YES, YES, YES, YES),
     *(Rule(f"api:{name}", *READ) for name in READABLE),
     *(Rule(f"api:{name}", *annotators(NO_JSON), method="post") for name in ADDED_BY_ANNOTATORS),
+    # What reviewers say, what admins decide
+    *(
+        Rule(f"api:{name}", *reviewers(NO_JSON), method="post")
+        for name in ("slices", "answer-doubt")
+    ),
+    Rule("api:answer-review", *reviewers(NO_VERSION), method="patch"),
+    *(Rule("api:slice", *reviewers(NO_VERSION), method=method) for method in ("patch", "delete")),
+    *(
+        Rule(f"api:{name}", *admins(NO_JSON), method="post")
+        for name in ("runs", "error-categories", "error-category-move")
+    ),
+    *(
+        Rule("api:error-category", *admins(NO_VERSION), method=method)
+        for method in ("patch", "delete")
+    ),
+    Rule("api:run-cancel", *admins(CLASH), method="post"),  # it has ended
+    Rule("api:run-retrain", *admins(400), method="post"),  # there is no newer split
     *(
         Rule(f"api:{name}", *annotators(NO_VERSION), method=method)
         for name in CHANGED_BY_ANNOTATORS
@@ -48,4 +76,6 @@ API_POLICY = [
     Rule("api:parse", NO_TOKEN, NOWHERE, *[NO_JSON] * 3, method="post"),
 ]
 
-API_ONLY_POSTED = {"api:work-item-finish", "api:work-item-give-back", "api:split-renew"}
+API_ONLY_POSTED = {"api:work-item-finish", "api:work-item-give-back", "api:split-renew"} | {
+    *("api:run-cancel", "api:run-retrain", "api:answer-doubt", "api:error-category-move"),
+}

@@ -1,0 +1,65 @@
+"""Verbs: start runs for somebody, within what they may start in an hour."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from annotations.models import User, World
+from annotations.people.rate_limits import STARTED_RUNS
+from annotations.splits.renewing import last_of
+from parser_service.models import TrainingRun
+from parser_service.runs.requesting import request_seeds, retrain
+
+Answer = tuple[TrainingRun, bool]
+
+
+class TooMany(ValueError):
+    """Somebody asks for more runs than they may start within this hour."""
+
+
+def start_runs(world: World, by: User, *, seeds: Sequence[int], **asked: Any) -> list[Answer]:
+    """Request one run per seed, all or none. Return what ``request`` returns, in the order of ``seeds``.
+
+    Raises TooMany, and ValueError as ``requesting.request`` does.
+    """
+    _require_left(by, len(seeds))
+    answers = request_seeds(world, seeds=seeds, by=by, **asked)
+    _count(by, len(answers))
+    return answers
+
+
+def start_again(run: TrainingRun, by: User) -> Answer:
+    """Request the configuration of ``run`` on the newest split that follows its own.
+
+    Raises TooMany, and ValueError where its split has not been frozen anew, or as ``retrain`` does.
+    """
+    newest = last_of(run.split)
+    if newest.pk == run.split_id:
+        raise ValueError(
+            f"{run.split} has not been frozen anew, so there is nothing to retrain on."
+        )
+    _require_left(by, 1)
+    answer = retrain(run, newest, by)
+    _count(by, 1)
+    return answer
+
+
+def _require_left(by: User, asked: int) -> None:
+    left = STARTED_RUNS.left(str(by.pk))
+    if asked <= left:
+        return
+    if left == 0:
+        raise TooMany(
+            f"You have started {STARTED_RUNS.limit} runs within the hour. "
+            "Wait for some of them before you start more."
+        )
+    raise TooMany(
+        f"{asked} runs are more than the {left} that you may still start within this hour. "
+        "Ask for fewer seeds."
+    )
+
+
+def _count(by: User, started: int) -> None:
+    for _ in range(started):
+        STARTED_RUNS.take(str(by.pk))
