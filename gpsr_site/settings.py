@@ -241,6 +241,7 @@ SPECTACULAR_SETTINGS = {
         "UtteranceStatus": "annotations.models.utterances.utterance_status_choices",
         "FindingStatus": "annotations.models.audit.finding_status_choices",
         "PredicateKind": "annotations.models.predicates.predicate_kind_choices",
+        "WorkStatus": "annotations.models.background.status_choices",
         "WorkKind": "annotations.models.work_items.work_kind_choices",
         "WorkSubjectKind": ["utterance", "template", "paraphrase"],
         "FindingSubjectKind": ["utterance", "paraphrase"],

@@ -7,7 +7,8 @@ from drf_spectacular.views import SpectacularAPIView
 from rest_framework.permissions import AllowAny
 
 from annotations.api.corpus import commands, exports, paraphrases, splits, utterances
-from annotations.api.description import entities, predicates, productions, templates
+from annotations.api.description import entities, history, predicates, productions, templates
+from annotations.api.jobs import imports, jobs
 from annotations.api.queueing import audit, work_items
 from annotations.api.worlds import OneWorld, Worlds
 
@@ -23,6 +24,20 @@ description = [
     path("productions/<int:pk>/", productions.OneProduction.as_view(), name="production"),
     path("templates/", templates.Templates.as_view(), name="templates"),
     path("templates/<int:pk>/", templates.OneTemplate.as_view(), name="template"),
+    path("history/<slug:kind>/<int:pk>/", history.History.as_view(), name="history"),
+    path("deleted/<slug:kind>/", history.Deleted.as_view(), name="deleted"),
+    path("rename/<slug:kind>/<int:pk>/", history.Rename.as_view(), name="rename"),
+]
+
+work = [
+    path("import/", imports.ImportGenerator.as_view(), name="import"),
+    path("import/pairs/", imports.ImportPairs.as_view(), name="import-pairs"),
+    path("generate/", imports.Generate.as_view(), name="generate"),
+    path("download/", imports.Archive.as_view(), name="download"),
+    path("jobs/", jobs.Jobs.as_view(), name="jobs"),
+    path("jobs/<int:pk>/", jobs.OneJob.as_view(), name="job"),
+    path("jobs/<int:pk>/cancel/", jobs.CancelJob.as_view(), name="job-cancel"),
+    path("jobs/<int:pk>/answer/", jobs.AnswerJob.as_view(), name="job-answer"),
 ]
 
 corpus = [
@@ -62,5 +77,5 @@ urlpatterns = [
     path("schema/", SpectacularAPIView.as_view(permission_classes=[AllowAny]), name="schema"),
     path("worlds/", Worlds.as_view(), name="worlds"),
     path("worlds/<slug:world>/", OneWorld.as_view(), name="world"),
-    path("worlds/<slug:world>/", include([*description, *corpus, *queueing])),
+    path("worlds/<slug:world>/", include([*description, *work, *corpus, *queueing])),
 ]

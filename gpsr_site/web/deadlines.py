@@ -19,7 +19,9 @@ from gpsr_site.web.refusals import refuse
 logger = logging.getLogger(__name__)
 
 # What takes files or makes many rows may take longer, by this factor.
-LONG_ADDRESS = re.compile(r"^/(w/[-\w]+/(import/|generate/|splits/new/|download/)|worlds/import/)")
+LONG_ADDRESS = re.compile(
+    r"^/((w|api/v1/worlds)/[-\w]+/(import/|generate/|splits/new/|splits/$|download/)|worlds/import/)"
+)
 LONG_FACTOR = 10
 CHECK_SECONDS = 0.5
 # What cleans up after an interruption may hang as well, as a rollback does with the database.

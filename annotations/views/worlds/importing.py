@@ -28,7 +28,7 @@ def import_files(request: HttpRequest, world: World) -> HttpResponse:
     report = None
     if form.is_bound and form.is_valid():
         try:
-            files, brings_back = _uploads(world, form), form.cleaned_data["brings_back"]
+            files, brings_back = uploads_of(world, form), form.cleaned_data["brings_back"]
             started = start_generator_import(world, files, request.user, brings_back)
         except LanguageError as error:
             form.add_error("files", str(error))
@@ -40,7 +40,7 @@ def import_files(request: HttpRequest, world: World) -> HttpResponse:
     return _page(request, "annotations/import.html", form, report)
 
 
-def _uploads(world: World, form: ImportForm) -> list[Any]:
+def uploads_of(world: World, form: ImportForm) -> list[Any]:
     """Return the files to import: those that were sent, complete with those of the world if asked for."""
     sent = form.cleaned_data["files"]
     if not form.cleaned_data["keeps_others"]:

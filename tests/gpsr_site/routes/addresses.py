@@ -180,14 +180,14 @@ KEYS: dict[str, RouteKeys] = {
     ),
     "template_completion": pk_of(lambda sample: sample.world.grammar.task_categories.first()),
     "delete_row": pk_of(template, kind="template"),
-    "history": pk_of(template, kind="template"),
+    **dict.fromkeys(("history", "api:history"), pk_of(template, kind="template")),
     "comments": pk_of(template, kind="template"),
     **dict.fromkeys(
         ("comment", "comment_delete", "comment_restore"),
         pk_of(lambda sample: comment_in(sample.world)),
     ),
     "draft": lambda sample: {"kind": "template", "subject": sample.template.pk},
-    "deleted": lambda _: {"kind": "template"},
+    **dict.fromkeys(("deleted", "api:deleted"), lambda _: {"kind": "template"}),
     **dict.fromkeys(("logical_form", "api:form"), pk_of(lambda sample: sample.form)),
     **dict.fromkeys(
         ("command", "api:command"), pk_of(lambda sample: sample.world.commands.first())
@@ -201,7 +201,7 @@ KEYS: dict[str, RouteKeys] = {
         pk_of(lambda sample: Entity.objects.filter(ontology__world=sample.world).first()),
     ),
     **dict.fromkeys(("predicate", "api:predicate"), pk_of(predicate)),
-    "rename": pk_of(predicate, kind="predicate"),
+    **dict.fromkeys(("rename", "api:rename"), pk_of(predicate, kind="predicate")),
     **dict.fromkeys(
         ("production", "api:production"),
         pk_of(lambda sample: sample.world.grammar.productions.first()),
@@ -247,7 +247,13 @@ KEYS: dict[str, RouteKeys] = {
         ("api:answer-review", "api:answer-doubt"),
         lambda sample: {"run": sample.run.pk, "pk": sample.example.pk},
     ),
-    **dict.fromkeys(("job", "job_state", "job_cancel", "job_answer"), pk_of(waiting_job)),
+    **dict.fromkeys(
+        (
+            *("job", "job_state", "job_cancel", "job_answer"),
+            *("api:job", "api:job-cancel", "api:job-answer"),
+        ),
+        pk_of(waiting_job),
+    ),
     **dict.fromkeys(
         ("utterance", "label_answer", "label_check", "label_mend", "api:utterance"),
         pk_of(utterance),

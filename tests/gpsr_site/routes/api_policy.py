@@ -21,6 +21,7 @@ READABLE = (
     *("runs", "run", "run-log", "run-curves", "run-checkpoints", "predictions", "candidates"),
     *("results", "evaluations", "evaluation", "reviews", "review", "answer-review"),
     *("slices", "slice", "error-categories", "error-category"),
+    *("jobs", "job", "download", "history", "deleted"),
 )
 # Lists that annotators add to, and rows that they change and delete.
 ADDED_BY_ANNOTATORS = ("entities", "predicates", "productions", "templates", "utterances", "splits")
@@ -44,6 +45,12 @@ API_POLICY = [
     Rule("api:worlds", NO_TOKEN, YES, YES, YES, YES),
     *(Rule(f"api:{name}", *READ) for name in READABLE),
     *(Rule(f"api:{name}", *annotators(NO_JSON), method="post") for name in ADDED_BY_ANNOTATORS),
+    Rule("api:generate", *annotators(YES), method="post"),
+    Rule("api:history", *annotators(NO_JSON), method="post"),
+    Rule("api:rename", *annotators(NO_VERSION), method="post"),
+    *(Rule(f"api:{name}", *admins(400), method="post") for name in ("import", "import-pairs")),
+    Rule("api:job-cancel", *admins(YES), method="post"),
+    Rule("api:job-answer", *admins(CLASH), method="post"),  # it asks nothing
     # What reviewers say, what admins decide
     *(
         Rule(f"api:{name}", *reviewers(NO_JSON), method="post")
@@ -78,4 +85,7 @@ API_POLICY = [
 
 API_ONLY_POSTED = {"api:work-item-finish", "api:work-item-give-back", "api:split-renew"} | {
     *("api:run-cancel", "api:run-retrain", "api:answer-doubt", "api:error-category-move"),
+    *("api:job-cancel", "api:job-answer", "api:rename"),
 }
+
+API_READ_AND_POSTED = {"api:history"}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.gpsr_site.routes.api_policy import API_ONLY_POSTED, API_POLICY
+from tests.gpsr_site.routes.api_policy import API_ONLY_POSTED, API_POLICY, API_READ_AND_POSTED
 from tests.gpsr_site.routes.rules import (
     BAD,
     GONE_ON,
@@ -261,6 +261,7 @@ ONLY_POSTED = {
 }
 # Routes of rows that take a POST at the address where they are read.
 READ_AND_POSTED = {
+    *API_READ_AND_POSTED,
     "template",
     "entity",
     "production",

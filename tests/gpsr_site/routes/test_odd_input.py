@@ -46,7 +46,10 @@ WORST_VALUES = ["a\0b", SURROGATE, "²", str(2**63), "[" * 1500, "1e400"]
 if connection.vendor != "sqlite":
     ODD_VALUES = ["a\0b", SURROGATE, "NaN", "9" * 5000, str(2**31), str(2**63), "a" * 20_000]
     WORST_VALUES = ["a\0b", SURROGATE, str(2**63)]
-FILE_FIELDS = {"import": b"files", "import_pairs": b"archive", "world_import": b"archive"}
+FILE_FIELDS = {
+    **{"import": b"files", "import_pairs": b"archive", "world_import": b"archive"},
+    **{"api:import": b"files", "api:import-pairs": b"archive"},
+}
 CURSORS = [
     *("[null,1]", "[1e400,1]", "[1,1e400]", '["\\u0000",1]', '["\\ud800",1]', "[[1],1]", "[{},1]"),
     *("[true,1]", "[1,null]", "[1,true]", "[1.5,1]", '["²",1]', "[" * 1500 + "]" * 1500, "[-1,-1]"),

@@ -1,0 +1,1 @@
+"""What takes long or takes files: jobs, imports, generation, downloads."""

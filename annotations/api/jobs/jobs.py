@@ -1,0 +1,97 @@
+"""What the worker does for somebody."""
+
+from __future__ import annotations
+
+from http import HTTPStatus
+
+import django_filters
+from django.db.models import QuerySet
+from drf_spectacular.utils import extend_schema
+from rest_framework import serializers
+from rest_framework.request import Request
+from rest_framework.response import Response
+
+from annotations.api.problems import Conflict
+from annotations.api.routes import RowRoute, RowsRoute
+from annotations.jobs import answer_job, cancel_job
+from annotations.models import Duty, Job
+
+
+class JobSerializer(serializers.ModelSerializer):
+    """An import, a generation, an analysis. ``report`` is what came of it, null until it has ended.
+
+    One that ``is_waiting_for_answer`` would remove something: POST to ``answer/`` lets it, ``cancel/``
+    drops it.
+    """
+
+    report = serializers.DictField(allow_null=True)
+    created_by = serializers.CharField(source="created_by.username", default=None)
+    is_waiting_for_answer = serializers.BooleanField()
+
+    class Meta:
+        model = Job
+        fields = [
+            *("id", "kind", "status", "progress", "activity", "failure", "report"),
+            *("is_waiting_for_answer", "cancel_requested", "created_by"),
+            *("queued_at", "started_at", "finished_at"),
+        ]
+
+
+class JobQuery(django_filters.FilterSet):
+    class Meta:
+        model = Job
+        fields = ["kind", "status"]
+
+
+class JobNoun:
+    model = Job
+    serializer_class = JobSerializer
+
+    def rows(self) -> QuerySet[Job]:
+        return self.world.jobs.select_related("created_by")
+
+
+class Jobs(JobNoun, RowsRoute):
+    """Lists the jobs of a world, the newest first."""
+
+    filterset_class = JobQuery
+    sorts = {"newest": "-id", "status": "status"}
+
+
+class OneJob(JobNoun, RowRoute):
+    """Shows a job: how far it is, or what came of it."""
+
+
+class JobVerb(JobNoun, RowRoute):
+    http_method_names = ["post", "options"]
+
+    @property
+    def duty(self) -> Duty:
+        """What asking for the job needed."""
+        keys = {"world__name": self.kwargs["world"], "pk": self.kwargs["pk"]}
+        job = Job.objects.filter(**keys).first()
+        return job.duty if job else Duty.VIEW
+
+
+class CancelJob(JobVerb):
+    """Stops a job within seconds, or drops an import that asks."""
+
+    @extend_schema(request=None, responses={200: JobSerializer})
+    def post(self, request: Request, **kwargs: object) -> Response:
+        try:
+            cancel_job(self.get_object())
+        except ValueError as error:
+            raise Conflict(str(error)) from error
+        return self.show(self.get_object())
+
+
+class AnswerJob(JobVerb):
+    """Imports the kept files after all, and removes what they do not have."""
+
+    @extend_schema(request=None, responses={202: JobSerializer})
+    def post(self, request: Request, **kwargs: object) -> Response:
+        try:
+            job = answer_job(self.get_object(), request.user)
+        except ValueError as error:
+            raise Conflict(str(error)) from error
+        return self.show(job, HTTPStatus.ACCEPTED)
