@@ -12,7 +12,13 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 SETTINGS = (ROOT / "gpsr_site" / "settings.py").read_text(encoding="utf-8")
 TABLE_ROW = re.compile(r"^\| `([A-Z_]+)` \|", re.MULTILINE)
 # Django's and Celery's own; read by the shell, the tests or a library rather than by the settings.
-READ_ELSEWHERE = {"GPSR_SHARED_DATA", "TEST_DATABASE_URL", "TEST_BROKER_URL", "TEST_KILLS"}
+READ_ELSEWHERE = {
+    "GPSR_SHARED_DATA",
+    "TEST_DATABASE_URL",
+    "TEST_BROKER_URL",
+    "TEST_KILLS",
+    "TEST_WALK",
+}
 
 
 def variables_of_the_settings() -> set[str]:

@@ -29,12 +29,16 @@ from parser_service.slices.slots import SLOTS
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """``find`` returns what is kept under ``name``; ``share`` is its part of all the time."""
+    """``find`` returns what is kept under ``name``; ``share`` is its part of all the time.
+
+    ``changes_with_world`` where it also goes by what people say meanwhile, so that it may be asked for again.
+    """
 
     name: str
     activity: str
     find: Callable[[Target, Progress], Any]
     share: float = 1.0
+    changes_with_world: bool = False
 
 
 def _find_confusions(target: Target, progress: Progress) -> dict[str, Any]:
@@ -49,7 +53,7 @@ OF_PARTS = (
     Step(SLOTS, "counting confusions of slots", _find_confusions),
 )
 OF_FIRST_PART = (
-    Step("proposals", "proposing error categories", proposal_findings, 4),
+    Step("proposals", "proposing error categories", proposal_findings, 4, True),
     Step("pairs", "comparing utterances one word apart", pair_findings),
     Step("probes", "making probes", probe_findings, 2),
     Step("answers", "asking the parser its probes", answer_findings, 20),
@@ -65,6 +69,8 @@ def names_of_steps() -> frozenset[str]:
 
 def analyse(job: Job, progress: Progress) -> dict[str, Any]:
     """Analyse the run that the arguments of the job name. Returns the report of the job.
+
+    What is stored already is not done again, but where ``again`` is asked for what changes with the world.
 
     Raises ValueError, a sentence, where the run is gone, has not succeeded, or its parser is not
     there to be asked, and what ``progress`` raises to stop it.
@@ -83,7 +89,8 @@ def analyse(job: Job, progress: Progress) -> dict[str, Any]:
                 other.forget_answers()  # one part of a million answers in memory is enough
         share = _Share(progress, done / total, step.share / total)
         share.report(0, f"{step.activity} ({target.part} part)")
-        if step.name not in findings_of(run, target.part):
+        is_wanted = job.arguments.get("again") and step.changes_with_world
+        if is_wanted or step.name not in findings_of(run, target.part):
             keep_finding(run, target.part, step.name, step.find(target, share), progress)
         done += step.share
     return _report(run, parts)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from parser_service.analysing.asking import is_refusal
-from parser_service.analysis.probing import ProbeKind
-from parser_service.models import Probe, TrainingRun
+from parser_service.analysis.probing import PAPER_PROBES, ProbeKind
+from parser_service.models import ProbeAnswer, RunAnalysis, TrainingRun
 
 # What each kind of probe is, and what its answers show.
 EXPLANATIONS = {
@@ -17,6 +17,17 @@ EXPLANATIONS = {
     ProbeKind.TRUNCATED: "the beginning of an utterance",
     ProbeKind.UNRELATED: "sentences that are no commands: only UNKNOWN is right",
 }
+
+
+MOST_BESIDE = 3  # runs beside the one that a page is about
+
+
+@dataclass(frozen=True, slots=True)
+class PaperText:
+    """A text of the paper with the answer of each run, None where the run was not asked it."""
+
+    text: str
+    answers: tuple[ProbeAnswer | None, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,10 +60,29 @@ def summaries_of(run: TrainingRun) -> list[ProbeSummary]:
     return [_summarize(str(kind), answers[kind]) for kind in EXPLANATIONS if answers[kind]]
 
 
-def paper_probes(run: TrainingRun) -> list[Probe]:
-    """Return the six texts of the paper with the answers of the run; empty before it was asked."""
-    rows = run.probes.filter(kind=ProbeKind.PAPER, answer__isnull=False)
-    return list(rows.select_related("answer").order_by("position"))
+def paper_texts(runs: Sequence[TrainingRun]) -> list[PaperText]:
+    """Return the six texts of the paper with the answers of ``runs``; empty where none was asked."""
+    rows = ProbeAnswer.objects.filter(probe__run__in=runs, probe__kind=ProbeKind.PAPER)
+    given = {
+        (each.probe.utterance, each.probe.run_id): each
+        for each in rows.select_related("probe").order_by("pk")
+    }
+    if not given:
+        return []
+    return [
+        PaperText(probe.text, tuple(given.get((probe.text, run.pk)) for run in runs))
+        for probe in PAPER_PROBES
+    ]
+
+
+def runs_beside(run: TrainingRun) -> list[TrainingRun]:
+    """Return the newest run of each other parser on the split of ``run`` that was asked its probes."""
+    analysed = RunAnalysis.objects.filter(run__split=run.split_id).values("run")
+    others = run.world.runs.filter(pk__in=analysed).exclude(parser=run.parser).on_all_pairs()
+    newest: dict[str, TrainingRun] = {}
+    for each in others.order_by("-pk"):
+        newest.setdefault(each.parser, each)
+    return list(newest.values())[:MOST_BESIDE]
 
 
 def _summarize(kind: str, answers: Iterable[str]) -> ProbeSummary:

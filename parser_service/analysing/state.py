@@ -43,7 +43,7 @@ class AnalysisState:
     @property
     def failure(self) -> str:
         """What stopped the last job, as a sentence; empty where nothing did."""
-        return self.job.failure if self.job and not self.is_complete else ""
+        return self.job.failure if self.job else ""
 
 
 def analysis_of(run: TrainingRun) -> AnalysisState:

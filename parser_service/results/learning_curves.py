@@ -17,7 +17,9 @@ from parser_service.parsers.conditions import SETTINGS, Setting
 from parser_service.results.accuracy import Changes, Column, TableMaker, rank_of, title_of
 from parser_service.results.cells import Cell
 from parser_service.results.measures import Measure
-from parser_service.runs.learning_curve import SHARES
+from parser_service.runs.learning_curve import MOST_SEEDS, SHARES, points_of
+
+_SEEDS = (1, 3, MOST_SEEDS)  # what is offered
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,12 +34,13 @@ class CurvePoint:
 @dataclass(frozen=True, slots=True)
 class LearningCurve:
     """A parser with one configuration; ``points`` by share, the ``SHARES`` at least. ``run`` is the one that
-    missing runs are asked for like."""
+    missing runs are asked for like; ``asked`` has share and seed of those that are there."""
 
     parser: str
     changes: Changes
     points: tuple[CurvePoint, ...]
     run: TrainingRun
+    asked: frozenset[tuple[float, int]]
 
     @property
     def title(self) -> str:
@@ -50,9 +53,10 @@ class LearningCurve:
         return f"{self.title} ({changes})" if changes else self.title
 
     @property
-    def missing(self) -> int:
-        """The number of ``SHARES`` without a run."""
-        return sum(point.cell is None for point in self.points)
+    def offers(self) -> list[tuple[int, int]]:
+        """Numbers of seeds with how many runs they need more, those that need any."""
+        numbers = ((n, len(set(points_of(self.run, n)) - self.asked)) for n in _SEEDS)
+        return [(n_seeds, missing) for n_seeds, missing in numbers if missing]
 
     @property
     def is_active(self) -> bool:
@@ -155,8 +159,9 @@ def _curve(
         _point(maker, parser, share, [run for run in alike if run.train_share == share])
         for share in shares
     )
-    whole = (run for run in alike if run.train_share == 1)
-    return LearningCurve(parser, changes, tuple(points), next(whole, alike[0]))
+    first = min(alike, key=lambda run: (run.train_share < 1, run.seed))
+    asked = frozenset((run.train_share, run.seed) for run in alike)
+    return LearningCurve(parser, changes, tuple(points), first, asked)
 
 
 def _point(maker: TableMaker, parser: str, share: float, runs: list[TrainingRun]) -> CurvePoint:

@@ -13,12 +13,14 @@ def analysis_jobs(run: TrainingRun) -> JobQuerySet:
     return run.world.jobs.filter(kind=JobKind.ANALYSE, arguments__run=run.pk).order_by("-pk")
 
 
-def request_analysis(run: TrainingRun, by: User | None = None) -> Job:
+def request_analysis(run: TrainingRun, by: User | None = None, again: bool = False) -> Job:
     """Queue the job where the run was trained, unless one waits or works already; return it.
 
-    What an earlier job has found is kept, so that this one goes on where that stopped.
+    What an earlier job has found is kept, so that this one goes on where that stopped. With ``again`` it
+    makes anew what depends on the world of today: the proposals of error categories.
     """
     active = analysis_jobs(run).active().first()
     if active is not None:
         return active
-    return request_job(JobKind.ANALYSE, run.world.name, by, {"run": run.pk}, queue=run.queue)
+    arguments = {"run": run.pk, "again": True} if again else {"run": run.pk}
+    return request_job(JobKind.ANALYSE, run.world.name, by, arguments, queue=run.queue)

@@ -117,6 +117,9 @@ const actions = {
   Enter: () => press("Enter", shown()),
   t: () => unfold(FOLDS.t),
   b: () => unfold(FOLDS.b),
+  a: () => document.getElementById("review-add")?.focus(),
+  e: () => press("e", current()),
+  q: () => press("q", current()),
 };
 
 function actionOf(event) {

@@ -6,13 +6,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import Page, expect
 
 from annotations.editing.edits import delete
 from annotations.labelling import collect
 from annotations.models import Entity, Label, SemanticTemplate, Utterance
 from annotations.models.worlds import World
 from tests.browser.arriving import arrive
+from tests.browser.walking import follow, place, skip_to_content, tab_to
 from tests.waiting import wait_for
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
@@ -21,30 +22,6 @@ pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 SAID = [f"find the tea {said}" for said in ("now", "please", "quickly", "for me", "at once")]
 SAID += [f"go to the kitchen {said}" for said in ("now", "please", "again", "for me")]
 SAID += ["fetch my cuppa", *(f"go to the bath {time} times" for time in range(2, 42))]
-MOST_TABS = 40
-
-
-def tab_to(page: Page, target: Locator, key: str = "Tab") -> None:
-    """Press ``key`` until ``target`` has the focus."""
-    for _ in range(MOST_TABS):
-        page.keyboard.press(key)
-        if target.evaluate("target => target.contains(document.activeElement)"):
-            return
-    pytest.fail(f"{MOST_TABS} times {key} do not reach {target}")
-
-
-def skip_to_content(page: Page) -> None:
-    page.keyboard.press("Tab")
-    page.keyboard.press("Enter")
-    expect(page.locator("main")).to_be_focused()
-
-
-def follow(page: Page, target: Locator, title: str) -> None:
-    """Open a link by Tab and Enter; the page that it leads to is called ``title``."""
-    tab_to(page, target)
-    with page.expect_navigation(wait_until="domcontentloaded"):  # also to a page of the same title
-        page.keyboard.press("Enter")
-    arrive(page, title)
 
 
 def log_in(page: Page) -> None:
@@ -58,10 +35,6 @@ def log_in(page: Page) -> None:
     page.keyboard.press("j")
     page.keyboard.press("Enter")
     arrive(page, "home")
-
-
-def place(page: Page, name: str) -> Locator:
-    return page.locator("#rail a", has_text=name)
 
 
 def expect_counts(page: Page, templates: int, commands: int, covered: str) -> None:

@@ -27,10 +27,11 @@ def analysis_state(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 @world_view(Duty.REVIEW, WRITE)
 def analysis_start(request: HttpRequest, world: World, pk: int) -> HttpResponse:
-    """Let a worker analyse the run; an analysis that waits or works already goes on."""
+    """Let a worker analyse the run, again where that was done; one that waits or works already goes on."""
     run = get_object_or_404(world.runs.select_related("world"), pk=pk)
-    if analysis_of(run).is_possible:
-        request_analysis(run, request.user)
+    analysis = analysis_of(run)
+    if analysis.is_possible:
+        request_analysis(run, request.user, again=analysis.is_complete)
     else:
         messages.error(
             request, f"Run {run.pk} is {run.status}: only one that succeeded is analysed."

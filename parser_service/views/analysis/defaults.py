@@ -11,7 +11,7 @@ from django.shortcuts import get_object_or_404, render
 from annotations.models import Duty, World
 from annotations.people.access import world_view
 from parser_service.analysing.findings import findings_of
-from parser_service.analysing.probe_summaries import paper_probes, summaries_of
+from parser_service.analysing.probe_summaries import paper_texts, runs_beside, summaries_of
 from parser_service.analysing.refusal_points import FACTS, curve_chart, place_of, points_of
 from parser_service.analysing.state import analysis_of
 from parser_service.analysing.target import SOURCES, parts_of
@@ -29,6 +29,7 @@ def defaults(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     attractors = findings.get("attractors", {})
     sources = [name for name in SOURCES if name in attractors]  # a database may sort its JSON
     source = _choose(request.GET.get("source", ""), sources)
+    paper_runs = [run, *runs_beside(run)]
     context = {
         **head_of(run, "Unexpected defaults"),
         "analysis": analysis_of(run),
@@ -38,7 +39,8 @@ def defaults(request: HttpRequest, world: World, pk: int) -> HttpResponse:
         "source": source,
         "of_part": urlencode({"part": part, "source": str(SOURCES.get(source, ""))}),
         "attractors": attractors.get(source),
-        "paper_probes": paper_probes(run),
+        "paper_runs": paper_runs,
+        "paper_texts": paper_texts(paper_runs),
         "summaries": summaries_of(run),
         **_refusal(findings.get("risk_coverage", {}).get(source), request.GET.get("bound", "")),
     }

@@ -13,7 +13,7 @@ from annotations.models import Duty, World
 from annotations.people.access import world_view
 from parser_service.analysing.findings import findings_of
 from parser_service.analysing.probe_kinds import PROBE_KINDS
-from parser_service.analysing.probe_summaries import paper_probes
+from parser_service.analysing.probe_summaries import paper_texts, runs_beside
 from parser_service.analysing.state import analysis_of
 from parser_service.analysing.target import parts_of
 from parser_service.analysis.edits import EditKind
@@ -40,6 +40,7 @@ def sensitivity(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     others = [each for each in asked_runs(request.GET, world) if each.pk != run.pk]
     parts = parts_of(run)
     findings = findings_of(run, parts[0]) if parts else {}
+    paper_runs = [run, *(others or runs_beside(run))]
     context = {
         **head_of(run, "Sensitivity"),
         "analysis": analysis_of(run),
@@ -49,7 +50,8 @@ def sensitivity(request: HttpRequest, world: World, pk: int) -> HttpResponse:
         "kinds": _kinds_of([run, *others]),
         "words": findings.get("deciding_words"),
         "pairs": findings.get("pairs"),
-        "paper_probes": paper_probes(run),
+        "paper_runs": paper_runs,
+        "paper_texts": paper_texts(paper_runs),
     }
     return render(request, "parser_service/sensitivity.html", context)
 

@@ -39,8 +39,11 @@ KEYS = (
     ("n", "write a note on the answer"),
     ("w", "only where the runs differ, or everywhere again"),
     ("g", "the label is wrong: send it to the work queue"),
+    ("q", "open the work queue, once something was sent there"),
+    ("a", "choose another run to show beside them"),
     ("t", "show the difference as a tree"),
     ("b", "show all candidates of the answer"),
+    ("e", "edit the utterance, and see what each run answers then"),
 )
 
 

@@ -10,6 +10,7 @@ from django.http import HttpRequest, HttpResponse, JsonResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.views.decorators.cache import never_cache
 
+from annotations.language.english import say_count
 from annotations.models import Duty, Split, User, World
 from annotations.people.access import WRITE, world_view
 from annotations.people.rate_limits import STARTED_RUNS
@@ -18,7 +19,7 @@ from parser_service.parsers.conditions import SETTINGS, Protocol, Setting
 from parser_service.results.choices import PARTS, default_part, scored_splits
 from parser_service.results.learning_curves import LearningCurves, curves_url, learning_curves
 from parser_service.results.measures import Measure
-from parser_service.runs.learning_curve import request_learning_curve
+from parser_service.runs.learning_curve import MOST_SEEDS, request_learning_curve
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,14 +61,12 @@ def learning_curve_start(request: HttpRequest, world: World, pk: int) -> HttpRes
     """Start the missing runs of a run's learning curve, and show it."""
     run = get_object_or_404(TrainingRun, world=world, pk=pk)
     try:
-        new = start(run, request.user)
+        new = start(run, request.user, n_seeds_of(request.POST.get("seeds", "")))
     except ValueError as error:
         messages.error(request, str(error))
     else:
         there = "All runs of this learning curve have been asked for already."
-        told = (
-            f"Started {len(new)} run{'s' if len(new) > 1 else ''} on shares of the training pairs."
-        )
+        told = f"Started {say_count(len(new), 'run')} on shares of the training pairs."
         messages.info(request, told if new else there)
     test_source = request.POST.get("test", "")
     test_source = test_source if test_source in tested_with(run) else ""
@@ -75,11 +74,16 @@ def learning_curve_start(request: HttpRequest, world: World, pk: int) -> HttpRes
     return redirect(curves_url(world, run, test_source, part if part in PARTS else ""))
 
 
-def start(run: TrainingRun, by: User) -> list[TrainingRun]:
+def n_seeds_of(text: str) -> int:
+    """Return how many seeds are asked for: one unless ``text`` is a number up to ``MOST_SEEDS``."""
+    return next((n for n in range(1, MOST_SEEDS + 1) if text == str(n)), 1)
+
+
+def start(run: TrainingRun, by: User, n_seeds: int = 1) -> list[TrainingRun]:
     """Request the missing runs. Raises ValueError where they are refused, or too many for an hour."""
     key = str(by.pk)
     with transaction.atomic():
-        new = request_learning_curve(run, by)
+        new = request_learning_curve(run, by, n_seeds=n_seeds)
         left = STARTED_RUNS.left(key)
         if len(new) > left:
             raise ValueError(

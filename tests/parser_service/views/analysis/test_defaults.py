@@ -8,7 +8,7 @@ import pytest
 
 from parser_service.models import ProbeAnswer, TrainingRun
 from parser_service.runs.analysis_requests import analysis_jobs
-from tests.parser_service.analysing.conftest import analysed, home, train_one  # noqa: F401
+from tests.parser_service.analysing.conftest import analysed, done, home, train_one  # noqa: F401
 from tests.parser_service.analysing.made_parsers import DEFAULT, WORD
 
 PAGES = ("defaults", "sensitivity", "probes")
@@ -46,6 +46,21 @@ def test_a_reviewer_starts_and_cancels_the_analysis(sample, rene):
     job.refresh_from_db()
     assert job.status == "cancelled"
     assert rene.post(cancel, {"next": here}).url == here
+
+
+def test_what_the_world_of_today_proposes_is_made_anew(analysed, rene):  # noqa: F811
+    run = analysed("always-one")
+    run.world.error_categories.filter(code="unexpected_default").delete()
+    asked = list(run.probes.values_list("answer__pk", flat=True))
+    assert "Analyse again" in text_of(page_of(rene, run, "defaults"))
+    rene.post(f"/w/home/runs/{run.pk}/analysis/start/")
+    job = analysis_jobs(run).first()
+    assert job.arguments == {"run": run.pk, "again": True}
+    assert "Analyse again" not in text_of(page_of(rene, run, "defaults"))
+    assert done(job).status == "succeeded"
+    assert not run.reviews.proposed().filter(category=None).exists()
+    assert run.reviews.proposed().count() == 24
+    assert list(run.probes.values_list("answer__pk", flat=True)) == asked
 
 
 def test_a_run_that_has_not_succeeded_is_not_analysed(sample, rene):
@@ -121,13 +136,21 @@ def test_runs_stand_side_by_side(analysed, rene):  # noqa: F811
 
 
 def test_the_texts_of_the_paper_stand_on_both_pages(analysed, rene):  # noqa: F811
-    run = analysed("perfect")
+    run, default = analysed("perfect"), analysed("always-one")
     for name in ("defaults", "sensitivity"):
         page = page_of(rene, run, name)
-        assert [probe.utterance for probe in page.context["paper_probes"]][2:4] == [
-            "Do this then that",
-            "Bring an umbrella to me",
-        ]
+        assert page.context["paper_runs"] == [run, default]
+        texts = page.context["paper_texts"]
+        assert [row.text for row in texts][2:4] == ["Do this then that", "Bring an umbrella to me"]
+        assert {row.answers[1].logical_form for row in texts} == {DEFAULT}
+        assert {row.answers[0].probe.run_id for row in texts} == {run.pk}
+
+
+def test_a_run_that_was_not_asked_the_texts_of_the_paper_says_so(analysed, rene, sample):  # noqa: F811
+    run = analysed("perfect")
+    page = page_of(rene, run, "sensitivity", run=sample.run.pk)
+    assert page.context["paper_runs"] == [run, sample.run]
+    assert text_of(page).count("not asked") == 6
 
 
 def test_what_a_parser_writes_is_no_script(analysed, rene):  # noqa: F811

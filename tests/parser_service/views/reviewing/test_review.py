@@ -240,6 +240,14 @@ def test_a_label_in_doubt_goes_to_the_queue_with_the_reason(run, rene):
     assert "Say in a few words" in act(rene, "doubt", example.pk, run).content.decode()
 
 
+def test_the_utterance_is_edited_where_the_shown_runs_answer(run, other, rene):
+    page = look(rene, run, other, example=run.predictions.first().example_id).content.decode()
+    address = re.search(r'href="([^"]*/try/[^"]*)"\s+data-key="e"', page)[1].replace("&amp;", "&")
+    tried = rene.get(address)
+    assert tried.context["chosen"] == [run, other]
+    assert tried.context["text"] == run.predictions.first().example.utterance
+
+
 def test_annotators_read_and_do_not_tag(run, anna):
     page = look(anna, run).content.decode()
     assert "Reviewers and admins of this world tag errors." in page

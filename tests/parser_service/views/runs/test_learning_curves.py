@@ -46,8 +46,9 @@ def test_the_table_says_the_same_and_has_a_place_for_what_is_missing(curve, anna
     page = anna.get(PAGE).content.decode()
     for text in ("8.3", "16.7", "25.0", "3 pairs", "24 pairs", "10 % of the pairs"):
         assert text in page
-    assert "Start 1 missing run<" not in page
-    assert "Start 1 missing run<" in adam.get(PAGE).content.decode()
+    for offered in ("1 seed: 1 run missing", "3 seeds: 9 runs missing", "5 seeds: 17 runs missing"):
+        assert offered not in page
+        assert offered in adam.get(PAGE).content.decode()
 
 
 def test_several_seeds_are_one_point(curve, anna):
@@ -78,6 +79,18 @@ def test_one_button_starts_the_missing_runs_and_shows_the_curves(sample, adam):
     assert page.context["shown"].is_active
     adam.post(f"/w/home/runs/{sample.run.pk}/learning-curve/")
     assert TrainingRun.objects.count() == 4
+
+
+def test_several_seeds_are_started_at_once(sample, adam):
+    address = f"/w/home/runs/{sample.run.pk}/learning-curve/"
+    answer = adam.post(address, {"seeds": "3"}, follow=True)
+    assert "Started 11 runs" in answer.content.decode()
+    assert "3 seeds:" not in answer.content.decode()
+    assert sorted(set(TrainingRun.objects.values_list("seed", flat=True))) == [0, 1, 2]
+    for odd in ("0", "6", "-1", "x", "²", "9" * 30, ""):
+        assert (
+            "asked for already" in adam.post(address, {"seeds": odd}, follow=True).content.decode()
+        )
 
 
 def test_more_runs_than_somebody_may_start_are_refused(sample, adam, monkeypatch):
