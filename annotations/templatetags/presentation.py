@@ -283,8 +283,10 @@ def figure(number: float | None) -> str:
 
 @register.filter
 def decimals(number: float | None, digits: int = 2) -> str:
-    """Write a number with ``digits`` decimals; a dash for None."""
-    return "–" if number is None else f"{number:,.{digits}f}"
+    """Write a number with ``digits`` decimals; a dash for None. Nothing that rounds to 0 has a sign."""
+    if number is None:
+        return "–"
+    return f"{number:z,.{digits}f}".replace("-", "−")
 
 
 @register.filter

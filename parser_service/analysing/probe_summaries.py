@@ -24,10 +24,10 @@ MOST_BESIDE = 3  # runs beside the one that a page is about
 
 @dataclass(frozen=True, slots=True)
 class PaperText:
-    """A text of the paper with the answer of each run, None where the run was not asked it."""
+    """A text of the paper with each run and its answer, None where the run was not asked it."""
 
     text: str
-    answers: tuple[ProbeAnswer | None, ...]
+    answers: tuple[tuple[TrainingRun, ProbeAnswer | None], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +70,7 @@ def paper_texts(runs: Sequence[TrainingRun]) -> list[PaperText]:
     if not given:
         return []
     return [
-        PaperText(probe.text, tuple(given.get((probe.text, run.pk)) for run in runs))
+        PaperText(probe.text, tuple((run, given.get((probe.text, run.pk))) for run in runs))
         for probe in PAPER_PROBES
     ]
 

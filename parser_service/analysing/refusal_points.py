@@ -56,7 +56,11 @@ def curve_chart(points: list[RefusalPoint], mark: int) -> dict[str, Any]:
     """Return the chart of risk by coverage; the point ``mark`` is marked."""
     return {
         "kind": "lines",
-        "x": {"label": "answered, %", "values": [f"{point.coverage:.0f}" for point in points]},
+        "x": {
+            "label": "answered, %",
+            "values": [f"{point.coverage:.0f}" for point in points],
+            "ticks": [100, 75, 50, 25, 0],
+        },
         "y": {"label": "wrong", "unit": "%"},
         "series": [{"name": "wrong", "values": [point.risk for point in points]}],
         "mark": mark,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from django.utils.html import format_html, format_html_join
 from django.utils.safestring import SafeString
@@ -16,6 +17,7 @@ ROW = 24
 HEIGHT = 260  # of a chart of lines
 LEFT, RIGHT, TOP, BOTTOM = 48, 110, 12, 40
 LONGEST_LABEL = 30
+LABEL_GAP = 15  # between the names of lines
 STYLES = 4  # of lines, in the style sheet
 
 
@@ -93,16 +95,33 @@ def draw_lines(
     first = min(xs) if x_most is None else 0.0
     across = _Scale(first, x_most or max(xs), LEFT, WIDTH - RIGHT)
     up = _Scale(0.0, max(ys), HEIGHT - BOTTOM, TOP)
+    shown = [(number, some) for number, some in enumerate(points) if some]
+    heights = spread([up.place(some[-1][1]) for _, some in shown])
     drawn = format_html_join(
         "",
         "{}",
         (
-            (_draw_line(number, line.name, some, across, up),)
-            for number, (line, some) in enumerate(zip(lines, points, strict=True))
-            if some
+            (_draw_line(number, lines[number].name, some, across, up, height),)
+            for (number, some), height in zip(shown, heights, strict=True)
         ),
     )
     return _svg(title, HEIGHT, format_html("{}{}", _axes(across, up, x_label, y_label), drawn))
+
+
+def spread(heights: Sequence[float], gap: float = LABEL_GAP) -> list[float]:
+    """Return the heights of labels, moved apart so that no two are closer than ``gap``.
+
+    Those further up stay where they are as far as the lowest does not leave the chart.
+    """
+    order = sorted(range(len(heights)), key=lambda number: heights[number])
+    placed = list(heights)
+    for before, number in pairwise(order):
+        placed[number] = max(placed[number], placed[before] + gap)
+    lowest = HEIGHT - BOTTOM
+    for number in reversed(order):
+        placed[number] = min(placed[number], lowest)
+        lowest = placed[number] - gap
+    return placed
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,7 +183,12 @@ def _axes(across: _Scale, up: _Scale, x_label: str, y_label: str) -> SafeString:
 
 
 def _draw_line(
-    number: int, name: str, points: Sequence[tuple[float, float]], across: _Scale, up: _Scale
+    number: int,
+    name: str,
+    points: Sequence[tuple[float, float]],
+    across: _Scale,
+    up: _Scale,
+    label_height: float,
 ) -> SafeString:
     path = " ".join(f"{_number(across.place(x))},{_number(up.place(y))}" for x, y in points)
     x, y = points[-1]
@@ -173,7 +197,7 @@ def _draw_line(
         '<circle class="end style-{0}" cx="{2}" cy="{3}" r="3"/>'
         '<text class="label style-{0}" x="{4}" y="{5}">{6}</text>',
         *(number % STYLES, path, _number(across.place(x)), _number(up.place(y))),
-        *(_number(across.place(x) + 8), _number(up.place(y) + 4), name),
+        *(_number(across.place(x) + 8), _number(label_height + 4), name),
     )
 
 

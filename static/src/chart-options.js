@@ -50,10 +50,18 @@ function categoryAxis(axis, palette) {
     nameLocation: "middle",
     nameGap: 26,
     nameTextStyle: { color: palette.quiet },
-    axisLabel: { color: palette.quiet, fontSize: 12, hideOverlap: true },
+    axisLabel: { color: palette.quiet, fontSize: 12, hideOverlap: true, ...(axis.ticks && roundLabels(axis)) },
     axisLine: { lineStyle: { color: palette.line } },
     axisTick: { show: false },
   };
+}
+
+// Labels at round numbers, each where the nearest of the values stands.
+function roundLabels({ values, ticks }) {
+  const distance = (tick) => (at) => Math.abs(values[at] - tick);
+  const nearest = (tick) => [...values.keys()].reduce((best, at) => (distance(tick)(at) < distance(tick)(best) ? at : best));
+  const labels = new Map(ticks.map((tick) => [nearest(tick), String(tick)]));
+  return { interval: (at) => labels.has(at), formatter: (_, at) => labels.get(at) ?? "" };
 }
 
 function lineOf(one, colour) {

@@ -56,6 +56,8 @@ PAGES = {
     "run-new": "runs/new/?parser=seq2seq",
     "results": "results/",
     "learning-curves": "results/curves/",
+    "compare-choose": "compare/",
+    "slices": "slices/",
     "tryout": "try/?text=Bring+an+umbrella",
     "review": "review/?outcome=wrong",
     "error-categories": "error-categories/",
@@ -78,7 +80,10 @@ DETAILS = {
     "review-errors": ("results/", TO_REVIEW),
     "error-category": ("error-categories/", "a.row-link"),
     "seeds": ("results/", "a.accuracy[href*=seeds_of]"),
+    "compare": ("compare/", ".empty a[href*=run]"),
 }
+# Name of the picture → path below the page of the run in ``DETAILS``.
+OF_RUN = {name: f"{name}/" for name in ("defaults", "sensitivity", "probes")}
 
 
 def log_in(page: Page, url: str, user: str, password: str) -> None:
@@ -99,8 +104,13 @@ def addresses(page: Page, url: str, world: str) -> Iterator[tuple[str, str]]:
         yield name, base + path
     for name, (path, selector) in DETAILS.items():
         page.goto(base + path)
-        if link := page.query_selector(selector):
-            yield name, url + link.get_attribute("href")
+        link = page.query_selector(selector)
+        if link is None:
+            continue
+        address = link.evaluate("link => link.href")
+        yield name, address
+        if name == "run":
+            yield from ((each, address + below) for each, below in OF_RUN.items())
 
 
 def shoot(browser: Browser, variant: Variant, args: argparse.Namespace) -> None:

@@ -114,7 +114,7 @@ def test_the_parts_of_a_score_stand_in_a_table(sample, anna):
     sample.world.runs.update(score_kind="log_probability")
     text = anna.get(page).content.decode()
     assert "Fits its English sentence" in text and "3.250" in text
-    assert "Mystery" in text and "-0.500" in text
+    assert "Mystery" in text and "−0.500" in text
     assert "Score (log-probability)" in text
 
 
