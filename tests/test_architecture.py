@@ -50,8 +50,8 @@ ROOMS = {
         "confusions", "categories", "attractors", "risk_coverage", "edits", "sensitivity", "probing",
     ),
     "parser_service": (
-        "parsers", "neural", "analysis", "models", "promotion", "runs", "serving", "results", "slices", "reviewing",
-        "analysing", "reporting", "benchmarking", "audit",
+        "parsers", "neural", "analysis", "models", "promotion", "runs", "robots", "serving", "conversing",
+        "results", "slices", "reviewing", "analysing", "reporting", "benchmarking", "audit",
     ),
 }  # fmt: skip
 MOST_MODULES, MOST_FILES = 3, 15

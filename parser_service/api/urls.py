@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from django.urls import include, path
 
-from parser_service.api import error_categories, predictions, reviews, runs, slices
+from parser_service.api import dialogues, error_categories, predictions, reviews, runs, slices
 from parser_service.api.parsing import ParseRoute
 
 ANSWER = "runs/<int:run>/examples/<int:pk>"
@@ -44,4 +44,11 @@ of_reviews = [
     ),
 ]
 
-urlpatterns = [path("worlds/<slug:world>/", include([*of_runs, *of_reviews]))]
+of_dialogues = [
+    path("dialogues/", dialogues.Dialogues.as_view(), name="dialogues"),
+    path("dialogues/<int:pk>/", dialogues.OneDialogue.as_view(), name="dialogue"),
+    path("dialogues/<int:pk>/answer/", dialogues.AnswerDialogue.as_view(), name="dialogue-answer"),
+    path("dialogues/<int:pk>/keep/", dialogues.KeepDialogue.as_view(), name="dialogue-keep"),
+]
+
+urlpatterns = [path("worlds/<slug:world>/", include([*of_runs, *of_reviews, *of_dialogues]))]

@@ -1,5 +1,7 @@
+from parser_service.models.action_names import ActionNames
 from parser_service.models.analyses import Expectation, Probe, ProbeAnswer, RunAnalysis
 from parser_service.models.columns import AnswerColumns, ExampleColumns
+from parser_service.models.dialogues import Dialogue, OfferedEntity, OfferState
 from parser_service.models.folders import RunFolder
 from parser_service.models.predictions import Evaluation, Prediction
 from parser_service.models.promotions import Promotion, PromotionState
@@ -9,13 +11,17 @@ from parser_service.models.tryouts import Tryout
 from parser_service.models.workers import Worker
 
 __all__ = [
+    "ActionNames",
     "AnswerColumns",
     "Checkpoint",
+    "Dialogue",
     "EpochMetric",
     "ErrorCategory",
     "Evaluation",
     "ExampleColumns",
     "Expectation",
+    "OfferState",
+    "OfferedEntity",
     "Prediction",
     "Probe",
     "ProbeAnswer",

@@ -131,7 +131,7 @@ def _read(candidate: Candidate, heard: Anonymized, language: WorldLanguage) -> A
     form = _form_of(candidate.form)
     if form is None:
         return Answer(candidate.form, score)
-    deanonymized = deanonymize(form, heard, language.ontology)
+    deanonymized = deanonymize(form, heard, language.ontology, language.evidence)
     grounded = deanonymized.form
     return Answer(
         form=candidate.form,
@@ -147,6 +147,7 @@ def _read(candidate: Candidate, heard: Anonymized, language: WorldLanguage) -> A
             grounded,
             language.ontology,
             language.predicates,
+            language.action_names,
             slots=deanonymized.slots,
             lookup=language.lookup,
         ).as_json(),

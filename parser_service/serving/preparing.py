@@ -6,15 +6,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Self
 
-from annotations.language.grounding import Anonymized, Anonymizer
+from annotations.language.grounding import Anonymized, Anonymizer, Evidence
 from annotations.language.ontology import Ontology
-from annotations.language.plans import Lookup
+from annotations.language.plans import ActionName, Lookup
 from annotations.language.predicates import Predicate
 from annotations.models import World
 from annotations.models.utterances import MOST_CHARACTERS
 from annotations.rows.from_rows import ontology_of, predicates_of
 from parser_service.models import TrainingRun
 from parser_service.parsers.conditions import TrainSources
+from parser_service.robots.action_names import names_of
+from parser_service.robots.evidence import evidence_of
 
 MOST_CANDIDATES = 20
 
@@ -27,11 +29,20 @@ class WorldLanguage:
     predicates: Mapping[str, Predicate]
     anonymizer: Anonymizer
     lookup: Lookup
+    evidence: Evidence
+    action_names: Mapping[str, ActionName]
 
     @classmethod
     def of(cls, world: World) -> Self:
         ontology, predicates = ontology_of(world), predicates_of(world)
-        return cls(ontology, predicates, Anonymizer(ontology), Lookup(ontology, predicates))
+        return cls(
+            ontology,
+            predicates,
+            Anonymizer(ontology),
+            Lookup(ontology, predicates),
+            evidence_of(world),
+            names_of(world),
+        )
 
 
 def wants_class_tokens(run: TrainingRun) -> bool:

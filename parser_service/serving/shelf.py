@@ -233,7 +233,7 @@ class Shelf:
         row = TrainingRun.objects.select_related("world").filter(world=wanted.world, pk=run).first()
         if row is None:
             raise ValueError(f"There is no run {run} in {name}.")
-        is_same_language = held is not None and held.wanted.language == wanted.language
+        is_same_language = held is not None and _words(held.wanted) == _words(wanted)
         language = held.language if is_same_language else WorldLanguage.of(row.world)
         knowledge = _knowledge(row, wanted)
         if held is not None and (held.parser.run, held.parser.knowledge) == (row.pk, knowledge):
@@ -250,6 +250,11 @@ class Shelf:
             batcher=batcher,
         )
         return Service(name, loaded, language, wanted)
+
+
+def _words(wanted: Wanted) -> tuple[object, ...]:
+    """Return what changes when the language of the world has to be read anew."""
+    return wanted.language, wanted.revision, wanted.names
 
 
 def _knowledge(run: TrainingRun, wanted: Wanted) -> tuple[object, ...]:

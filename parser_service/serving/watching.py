@@ -8,24 +8,26 @@ from dataclasses import dataclass
 from django.db.models import Count, Max, Sum
 
 from annotations.models import Entity, Predicate, World
-from parser_service.models import Promotion
+from parser_service.models import ActionNames, Promotion
 
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
     """A world, the key of its promoted run (None: none), and what changes whenever its words do.
 
-    ``language`` stands for ontology and predicates, ``revision`` for the grammar.
+    ``language`` stands for ontology and predicates, ``revision`` for the grammar, ``names`` for those
+    of actions.
     """
 
     world: int
     run: int | None
     language: tuple[object, ...]
     revision: int
+    names: int = 0
 
 
 def read_wanted() -> dict[str, Wanted]:
-    """Return world name → what is wanted there, in four queries.
+    """Return world name → what is wanted there, in five queries.
 
     Every edit and import of rows adds, deletes or raises a version, so that number, last key and sum of
     the versions together change.
@@ -36,8 +38,9 @@ def read_wanted() -> dict[str, Wanted]:
         for world, *of_world in totals.annotate(Count("pk"), Max("pk"), Sum("version")):
             language[world] += [model.__name__, *of_world]
     runs = dict(Promotion.objects.present().order_by().values_list("world", "run"))
+    names = dict(ActionNames.objects.values_list("world", "version"))
     rows = World.objects.present().values_list("pk", "name", "revision")
     return {
-        name: Wanted(key, runs.get(key), tuple(language[key]), revision)
+        name: Wanted(key, runs.get(key), tuple(language[key]), revision, names.get(key, 0))
         for key, name, revision in rows
     }

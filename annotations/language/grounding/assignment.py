@@ -60,7 +60,8 @@ def assign(
 
     The best assignment is the one with the highest sum of scores. The margin of a slot is the distance
     to the best assignment that gives it another value. With more assignments than can be compared,
-    mentions and slots go together in order, and nothing is certain.
+    mentions and slots go together in order, and nothing is certain. Neither is it where the utterance
+    names more than the form has slots for, and the grammar does not have the form.
     """
     if not mentions:
         return tuple(Choice(None, math.inf) for _ in roles)
@@ -70,6 +71,9 @@ def assign(
         return tuple(Choice(value, 0.0) for value, _ in zip_longest(values[: len(roles)], roles))
     scores = _scores(form, entity_class, roles, mentions, evidence)
     best = max(scores, key=scores.__getitem__)
+    is_too_much = len({each.value for each in mentions}) > len(roles)
+    if is_too_much and not evidence.orders(form, entity_class):
+        return tuple(Choice(value, 0.0) for value in best)
     choices = []
     for place, value in enumerate(best):
         rivals = (score for values, score in scores.items() if values[place] != value)

@@ -10,6 +10,7 @@ from django.db.models import Model
 from django.urls import URLPattern, URLResolver, get_resolver, reverse
 from django.utils import timezone
 
+from annotations.language.dialogue import Phase, State
 from annotations.models import (
     AuditDecision,
     AuditFinding,
@@ -24,7 +25,7 @@ from annotations.models import (
 )
 from annotations.models.people import digest_of
 from annotations.models.worlds import Role
-from parser_service.models import Slice
+from parser_service.models import Dialogue, Slice
 from parser_service.reviewing.categories import ensure_categories
 from tests.sample_world import SampleWorld, comment_in, paraphrase_in
 
@@ -153,6 +154,13 @@ def review(sample: SampleWorld) -> Model:
     return sample.run.reviews.get_or_create(example=sample.example, note="Hm.")[0]
 
 
+def dialogue(sample: SampleWorld) -> Dialogue:
+    """Return a dialogue about a command that nobody understood."""
+    state = State(Phase.REPHRASING, prompt="Please say it another way.").as_json()
+    values = {"state": state, "phase": "rephrasing"}
+    return Dialogue.objects.get_or_create(world=sample.world, utterance="dance", defaults=values)[0]
+
+
 def predicate(sample: SampleWorld) -> Model:
     return sample.world.predicates.first()
 
@@ -270,6 +278,7 @@ KEYS: dict[str, RouteKeys] = {
         ("audit_item", "audit_decide", "audit_check", "api:audit-finding"), pk_of(finding)
     ),
     "audit_take_back": pk_of(decision_of_nobody),
+    **dict.fromkeys(("api:dialogue", "api:dialogue-answer", "api:dialogue-keep"), pk_of(dialogue)),
     "queue_ask": pk_of(utterance, kind="utterance"),
     **dict.fromkeys(("slice_rename", "slice_delete", "api:slice"), pk_of(saved_slice)),
 }

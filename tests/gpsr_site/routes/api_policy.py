@@ -81,11 +81,18 @@ API_POLICY = [
     Rule("api:work-item-finish", NO_TOKEN, NOWHERE, *[CLASH] * 3, method="post"),
     Rule("api:work-item-give-back", NO_TOKEN, NOWHERE, *[CLASH] * 3, method="post"),
     Rule("api:parse", NO_TOKEN, NOWHERE, *[NO_JSON] * 3, method="post"),
+    # Who may see a world may talk about its commands; only annotators label what comes of it.
+    Rule("api:dialogues", *READ),
+    Rule("api:dialogue", *READ),
+    Rule("api:dialogues", NO_TOKEN, NOWHERE, *[NO_JSON] * 3, method="post"),
+    Rule("api:dialogue-answer", NO_TOKEN, NOWHERE, *[NO_JSON] * 3, method="post"),
+    Rule("api:dialogue-keep", NO_TOKEN, NOWHERE, CLASH, NO, CLASH, method="post"),
 ]
 
 API_ONLY_POSTED = {"api:work-item-finish", "api:work-item-give-back", "api:split-renew"} | {
     *("api:run-cancel", "api:run-retrain", "api:answer-doubt", "api:error-category-move"),
     *("api:job-cancel", "api:job-answer", "api:rename"),
+    *("api:dialogue-answer", "api:dialogue-keep"),
 }
 
 API_READ_AND_POSTED = {"api:history"}
