@@ -8,6 +8,9 @@ BIN := $(VENV)/bin
 PYTEST_ARGS ?= --numprocesses 4 --dist loadfile
 SOURCES := $(wildcard static/src/*.js static/css/*.css) static/build.mjs
 
+# Some shells forbid it; the many processes of the tests would each compile every module anew.
+export PYTHONDONTWRITEBYTECODE :=
+
 .PHONY: run test install lint
 .DEFAULT_GOAL := run
 

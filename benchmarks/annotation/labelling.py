@@ -20,7 +20,8 @@ from pathlib import Path
 
 from playwright.sync_api import Page, sync_playwright
 
-from tests.browser.screenshots import CHROMIUM, log_in
+from tests.browser.chromium import CHROMIUM
+from tests.browser.screenshots import log_in
 
 
 def read_pairs(path: Path, count: int, seed: int) -> dict[str, str]:

@@ -12,8 +12,8 @@ from playwright.sync_api import Browser, BrowserContext, Page, expect
 
 from annotations.models import User
 from parser_service.runs import requesting
+from tests.browser.chromium import CHROMIUM, MISSING
 from tests.browser.faults import AXE
-from tests.browser.screenshots import CHROMIUM
 from tests.browser.variants import Variant
 from tests.parser_service.worker_process import RunningWorker
 from tests.sample_world import SampleWorld, fill_world
@@ -30,10 +30,8 @@ BUNDLE = Path(__file__).resolve().parents[2] / "static" / "dist" / "main.js"
 @pytest.fixture(scope="session")
 def browser_type_launch_args() -> dict[str, object]:
     """The machine's Chromium; the tests are skipped without it or without the built front end."""
-    if not Path(CHROMIUM).exists():
-        pytest.skip(
-            f"needs Chromium, and there is none at {CHROMIUM} (CHROMIUM names another place)"
-        )
+    if not CHROMIUM:
+        pytest.skip(MISSING)
     if not BUNDLE.exists():
         pytest.skip("needs the built front end: make install")
     return {"executable_path": CHROMIUM, "args": ["--no-sandbox"]}

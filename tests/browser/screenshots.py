@@ -14,9 +14,8 @@ from pathlib import Path
 
 from playwright.sync_api import Browser, Page, sync_playwright
 
+from tests.browser.chromium import CHROMIUM
 from tests.browser.variants import VARIANTS, Variant
-
-CHROMIUM = os.environ.get("CHROMIUM", "/usr/bin/chromium")
 
 # Name of the picture → path below the world. A path in braces is the first link of that page that
 # the selector finds.
