@@ -123,14 +123,15 @@ def test_odd_values_in_an_address(name, sample: SampleWorld, root):
         return
     filters, orders = filters_and_orders(answer)
     parameters = sorted({*filters, *OTHER_PARAMETERS})
+    alone = {"hx-request": "true"} if orders else {}  # a list without the frame around it
     for value in ODD_VALUES if orders else WORST_VALUES:
         query = in_query(dict.fromkeys(parameters, value))
-        check(root.get(joined(path, query)), query)
+        check(root.get(joined(path, query), headers=alone), query)
     check(root.get(joined(path, f"{query}&{query}")), "twice")
     for number, cursor in enumerate(CURSORS if orders else ()):
         order = orders[number % len(orders)]
         query = in_query({"sort": order, ("after", "before")[number % 2]: cursor})
-        check(root.get(joined(path, query)), query)
+        check(root.get(joined(path, query), headers=alone), query)
 
 
 @pytest.mark.parametrize("name", sorted(name for name in GET_ROUTES if "<int:" in ALL_ROUTES[name]))
