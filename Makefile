@@ -24,7 +24,7 @@ install: $(VENV)/.installed static/dist/.built
 test: install $(VENV)/.tested lint
 	env -u TEST_DATABASE_URL -u TEST_BROKER_URL $(BIN)/python -m pytest $(PYTEST_ARGS)
 ifneq ($(TEST_DATABASE_URL)$(TEST_BROKER_URL),)
-	$(BIN)/python -m pytest -m "(services or processes) and not browser" $(PYTEST_ARGS)
+	$(BIN)/python -m pytest -m "services and not browser" $(PYTEST_ARGS)
 else
 	@echo "Skipped: PostgreSQL (TEST_DATABASE_URL is not set) and a message broker (TEST_BROKER_URL is not set)."
 endif

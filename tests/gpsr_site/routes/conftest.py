@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from copy import deepcopy
 
 import pytest
+from django.conf import settings
 from django.db import transaction
+from django.test import Client
 
-from annotations.models import World
+from annotations.models import User, World
+from annotations.models.worlds import Role
+from tests.conftest import client_of, member
 from tests.gpsr_site.routes.addresses import KEYS
 from tests.sample_world import SampleWorld, fill_world
 
@@ -32,6 +36,52 @@ def make_world(name: str) -> SampleWorld:
     for make_rows in KEYS.values():
         make_rows(sample)
     return sample
+
+
+@pytest.fixture(scope="module")
+def logged_in_people(filled_worlds, django_db_blocker) -> dict[str, tuple[User, str]]:
+    """Everybody of the policy but the anonymous, with the key of a session of theirs."""
+    home, laboratory = (sample.world for sample in filled_worlds)
+    with django_db_blocker.unblock():
+        people = {
+            "annotator": member(home, "anna", Role.ANNOTATOR),
+            "reviewer": member(home, "rene", Role.REVIEWER),
+            "admin": member(home, "adam", Role.ADMIN),
+            "stranger": member(laboratory, "stina", Role.ADMIN),
+            "superuser": User.objects.create_superuser("root", password="correct horse"),
+        }
+        return {
+            person: (user, client_of(user).cookies[settings.SESSION_COOKIE_NAME].value)
+            for person, user in people.items()
+        }
+
+
+@pytest.fixture
+def client_as(logged_in_people, db) -> Callable[[str], Client]:
+    """Makes a browser in which a person of the policy is logged in, or nobody."""
+
+    def make(person: str) -> Client:
+        client = Client()
+        if person != "anonymous":
+            client.cookies[settings.SESSION_COOKIE_NAME] = logged_in_people[person][1]
+        return client
+
+    return make
+
+
+@pytest.fixture
+def annotator(logged_in_people, db) -> User:
+    return deepcopy(logged_in_people["annotator"][0])
+
+
+@pytest.fixture
+def admin(logged_in_people, db) -> User:
+    return deepcopy(logged_in_people["admin"][0])
+
+
+@pytest.fixture
+def superuser(logged_in_people, db) -> User:
+    return deepcopy(logged_in_people["superuser"][0])
 
 
 @pytest.fixture

@@ -96,9 +96,8 @@ def joined(path: str, query: str) -> str:
 
 
 @pytest.fixture
-def root(superuser, client):
-    client.force_login(superuser)
-    return client
+def root(client_as):
+    return client_as("superuser")
 
 
 def check(answer, what: object) -> None:

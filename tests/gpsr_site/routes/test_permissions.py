@@ -38,18 +38,15 @@ def test_every_method_of_the_api_has_a_rule():
 
 @pytest.mark.parametrize("person", PEOPLE)
 @pytest.mark.parametrize("rule", POLICY, ids=str)
-def test_the_policy_holds(rule, person, sample, request, client):
-    if person != "anonymous":
-        client.force_login(request.getfixturevalue(person))
-    answer = getattr(client, rule.method)(address(rule.name, sample))
+def test_the_policy_holds(rule, person, sample, client_as):
+    answer = getattr(client_as(person), rule.method)(address(rule.name, sample))
     assert answer.status_code == getattr(rule, person)
 
 
 @pytest.mark.parametrize("name", ROUTES_OF_ROWS)
 @pytest.mark.parametrize("method", ["get", "post", "put", "patch", "delete"])
-def test_an_id_of_another_world_is_not_found(name, method, sample, other_sample, admin, client):
-    client.force_login(admin)
-    answer = getattr(client, method)(address(name, sample, other_sample))
+def test_an_id_of_another_world_is_not_found(name, method, sample, other_sample, client_as):
+    answer = getattr(client_as("admin"), method)(address(name, sample, other_sample))
     assert answer.status_code in (404, 405)
     if method in ("get", "post") and answer.status_code == 405:
         assert (name, method) in REFUSED_METHODS
