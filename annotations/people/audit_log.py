@@ -16,7 +16,7 @@ SAFE_METHODS = ("GET", "HEAD", "OPTIONS", "TRACE")
 MOST_SUBJECT_CHARACTERS = 200
 # Routes that are posted to and change nothing that others see.
 UNRECORDED = re.compile(
-    r"_(check|preview|suggestions|completion|consequences)$|^(draft|inbox|notice_open|queue_next|tryout_ask)$"
+    r"_(check|preview|suggestions|completion|consequences)$|^(draft|inbox|notice_open|queue_next|work-item-next|tryout_ask)$"
 )
 VERBS = {"POST": "create", "PUT": "change", "PATCH": "change", "DELETE": "delete"}
 # What a route does where its name does not say it.
