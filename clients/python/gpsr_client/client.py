@@ -1,0 +1,101 @@
+"""The workbench of one world."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Iterable, Iterator
+from http.client import HTTPException
+from pathlib import Path
+from urllib.parse import quote
+from uuid import uuid4
+
+from gpsr_client.answers import Parse
+from gpsr_client.dialogue import Dialogue
+from gpsr_client.errors import Away, WorkbenchError
+from gpsr_client.transport import Transport
+
+
+class Workbench:
+    """Asks about one world of a workbench.
+
+    Args:
+        url: the address of the site, such as ``http://localhost:8000``.
+        world: the name of the world, as its pages have it: ``/w/<world>/``.
+        token: from the page of your account. Scope read for ``parse`` and ``export``, annotate for ``dialogue``.
+        timeout: seconds until an answer has to begin.
+
+    Everything raises ``Away`` where nobody answers, and ``Refused`` with a status and a sentence where the
+    workbench refuses.
+    """
+
+    def __init__(self, url: str, world: str, token: str, timeout: float = 30.0) -> None:
+        self._transport = Transport(url, token, timeout)
+        self._path = f"worlds/{quote(world, safe='')}/"
+
+    def parse(self, utterance: str, beam: int = 5, run: int | None = None) -> Parse:
+        """Return the candidates for an utterance, of the promoted parser or of a run."""
+        body: dict[str, object] = {"utterance": utterance, "beam": beam}
+        if run is not None:
+            body["run"] = run
+        return Parse.from_json(self._transport.post(f"{self._path}parse/", body))
+
+    def parse_many(self, utterances: Iterable[str], beam: int = 5) -> Iterator[Parse]:
+        """Yield the answers to many utterances, in order, as they come; one parser answers all of them.
+
+        Raises WorkbenchError with the sentence of the workbench for an utterance that cannot be parsed.
+        """
+        lines = "".join(json.dumps({"utterance": each}) + "\n" for each in utterances).encode()
+        if not lines:
+            return
+        path = f"{self._path}parse/"
+        with self._transport.open(
+            "POST", path, lines, "application/jsonl", {"beam": beam}
+        ) as response:
+            try:
+                for line in response:
+                    value = json.loads(line)
+                    if "candidates" not in value:
+                        raise WorkbenchError(str(value.get("detail", value)))
+                    yield Parse.from_json(value)
+            except (HTTPException, OSError, ValueError) as error:
+                raise Away(f"The answer broke off: {error}") from error
+
+    def dialogue(self, utterance: str) -> Dialogue:
+        """Start a dialogue about an utterance."""
+        path = f"{self._path}dialogues/"
+        value = self._transport.post(path, {"utterance": utterance}, uuid4().hex)
+        return Dialogue(self._transport, path, value)
+
+    def dialogue_at(self, key: int) -> Dialogue:
+        """Return a dialogue that was started before, to go on with it."""
+        path = f"{self._path}dialogues/"
+        return Dialogue(self._transport, path, self._transport.get(f"{path}{int(key)}/"))
+
+    def export(
+        self,
+        split: int,
+        file: str | Path,
+        format: str = "jsonl",
+        part: str | None = None,
+        source: str | None = None,
+    ) -> Path:
+        """Write the examples of a split to a file and return its path.
+
+        It is written beside and renamed when it is whole, so that a file that breaks off replaces nothing.
+        ``format`` is one that the page of a split offers: txt, jsonl, csv. ``part`` is train, validation
+        or test; ``source`` generated or paraphrased. All without them.
+        """
+        path = f"{self._path}splits/{int(split)}/export/"
+        query = {"as": format, "part": part, "source": source}
+        target = Path(file)
+        beside = target.with_name(f".{target.name}.part")
+        try:
+            with self._transport.open("GET", path, query=query) as answer, beside.open("wb") as out:
+                shutil.copyfileobj(answer, out)
+            beside.replace(target)
+        except HTTPException as error:
+            raise Away(f"The export broke off: {error}") from error
+        finally:
+            beside.unlink(missing_ok=True)
+        return target

@@ -1,0 +1,131 @@
+"""The Python client against a site and a parse server that run."""
+
+from __future__ import annotations
+
+import ast
+import json
+import subprocess
+import sys
+import tomllib
+
+import pytest
+from command_desk import SORRY_AWAY, CommandDesk
+from pytest_django.live_server_helper import LiveServer
+
+from annotations.models import ApiToken
+from gpsr_client import Away, Refused, Workbench, WorkbenchError
+from tests.clients.conftest import CLIENT
+
+
+@pytest.fixture
+def home(parse_server, live_server: LiveServer, annotator) -> Workbench:
+    _, token = ApiToken.issue(annotator, "robot", scope="annotate")
+    return Workbench(live_server.url, "home", token)
+
+
+def test_an_utterance_is_parsed(home):
+    parse = home.parse("find the red cup", beam=2)
+    assert len(parse.candidates) == 2 and parse.best is not None
+    assert "red cup" in parse.best.grounded
+    assert parse.best.plan is not None and parse.best.plan.is_executable
+    assert parse.best.plan.steps[0].action == "find"
+
+
+def test_many_utterances_are_parsed_in_order(home):
+    said = ["find the red cup", "bring me the bowl", "bring me the flurb"]
+    parses = list(home.parse_many(said))
+    assert [parse.utterance for parse in parses] == said
+    (slot,) = parses[2].best.open_slots
+    assert (slot.phrases, slot.choices) == (("flurb",), ("red cup", "bowl"))
+    assert list(home.parse_many([])) == []
+    with pytest.raises(WorkbenchError, match="Line 2: There is no utterance"):
+        list(home.parse_many(["find the bowl", " "]))
+
+
+def test_a_dialogue_is_held_and_gone_on_with(home):
+    talk = home.dialogue("bring me the flurb")
+    assert (talk.phase, talk.asked.phrases) == ("asking", ("flurb",))
+    after = home.dialogue_at(talk.id).answer("the bowl")
+    assert after.prompt == "Shall I bring you the bowl?" and after.asked is None
+    with pytest.raises(Refused, match="answered this meanwhile") as late:
+        talk.answer("red cup")
+    assert late.value.status == 409
+    done = after.answer("yes")
+    assert done.is_agreed and done.plan.is_executable and "bowl" in done.grounded
+
+
+def test_examples_are_exported_whole(home, parse_server, world, tmp_path):
+    split = world.splits.get()
+    file = home.export(split.pk, tmp_path / "train.jsonl", part="train", source="paraphrased")
+    rows = [json.loads(line) for line in file.read_text().splitlines()]
+    assert len(rows) == split.examples.filter(part="train", source="paraphrased").count()
+    with pytest.raises(Refused) as refused:
+        home.export(split.pk + 1, file)
+    assert refused.value.status == 404
+    assert len(file.read_text().splitlines()) == len(rows)
+    assert [each.name for each in tmp_path.iterdir()] == ["train.jsonl"]
+
+
+def test_refusals_and_absence_are_sentences(home, live_server, settings):
+    with pytest.raises(Refused) as refused:
+        Workbench(live_server.url, "home", "nonsense").parse("go")
+    assert refused.value.status == 401
+    with pytest.raises(Refused) as refused:
+        home.parse("")
+    assert refused.value.problems[0]["field"] == "utterance"
+    settings.PARSER_URL = "http://127.0.0.1:9"
+    with pytest.raises(Away, match="The parse server is away"):
+        home.parse("go")
+    with pytest.raises(Away, match="does not answer"):
+        Workbench("http://127.0.0.1:9", "home", "t", timeout=1).parse("go")
+    with pytest.raises(ValueError, match="no address"):
+        Workbench("file:///etc/passwd", "home", "t")
+    assert "nonsense" not in repr(vars(Workbench(live_server.url, "home", "nonsense")))
+
+
+def test_a_desk_asks_and_hands_over_the_agreed_plan(home, settings):
+    said: list[str] = []
+    plans: list[str] = []
+    desk = CommandDesk(home, said.append, plans.append)
+    for text in ("bring me the flurb", "", "new", "yes", "find the bowl", "stop"):
+        desk.hear(text)
+    assert said[0].startswith("Which object is “flurb”?")
+    assert said[1:3] == ["Shall I bring you the flurb?", "I will do it."]
+    assert said[4] == "I will not do it."
+    (plan,) = map(json.loads, plans)
+    assert plan["steps"][0]["action"] == "bring"
+    settings.PARSER_URL = "http://127.0.0.1:9"
+    desk.hear("find the bowl")
+    assert said[-1] == SORRY_AWAY
+
+
+def test_the_client_needs_the_standard_library_alone():
+    names = {
+        alias.split(".")[0]
+        for path in (CLIENT / "gpsr_client").glob("*.py")
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        for alias in (
+            [each.name for each in node.names]
+            if isinstance(node, ast.Import)
+            else [node.module or ""]
+            if isinstance(node, ast.ImportFrom)
+            else []
+        )
+    }
+    assert names - {"gpsr_client"} <= sys.stdlib_module_names
+    project = tomllib.loads((CLIENT / "pyproject.toml").read_text())["project"]
+    assert project["dependencies"] == []
+
+
+def test_the_client_and_its_examples_are_typed_and_compile():
+    assert (CLIENT / "gpsr_client" / "py.typed").exists()
+    for path in CLIENT.rglob("*.py"):
+        compile(path.read_text(encoding="utf-8"), str(path), "exec")
+    checked = subprocess.run(
+        [sys.executable, "-m", "mypy", "--strict", "--config-file=", "gpsr_client"],
+        cwd=CLIENT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert checked.returncode == 0, checked.stdout
