@@ -85,8 +85,8 @@ def test_what_the_world_does_not_know_gets_a_remark(split):
     Entity.objects.create(
         ontology=split.world.ontology, entity_class="object", text="bowl", position=2
     )
-    assert remarks("bring me the red cup, the bowl") == [
-        "<object> stays open: it may be red cup or bowl."
+    assert remarks("bring me the bowl the red cup") == [
+        "<object> stays open: it may be bowl or red cup."
     ]
     assert remarks("bring me the <gadget>")[0].startswith("<gadget> is not a class of entities.")
     Entity.objects.filter(entity_class="object").delete()

@@ -57,10 +57,10 @@ def test_the_promoted_parser_answers_with_the_entities_of_the_utterance(split, s
 def test_what_stays_open_is_offered(split, shelf):
     promote(trained_run(split, train_sources="gen"), None)
     shelf.update()
-    answer = answer_of(shelf, "bring me the red cup, the bowl")["candidates"][0]
+    answer = answer_of(shelf, "bring me the bowl the red cup")["candidates"][0]
     (slot,) = answer["open_slots"]
-    assert (slot["choices"], slot["is_named"]) == (["red cup", "bowl"], True)
-    assert slot["question"].endswith("Red cup or bowl?")
+    assert (slot["choices"], slot["is_named"]) == (["bowl", "red cup"], True)
+    assert slot["question"].endswith("Bowl or red cup?")
     assert answer["plan"]["problems"][0]["code"] == "ambiguous"
 
 
