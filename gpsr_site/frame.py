@@ -139,6 +139,14 @@ PLACES = (
     ),
     Place("Compare", "compare", below=("slices",)),
     Place("Errors", "review", below=("error_categories", "error_category")),
+    Place(
+        "Parse",
+        "playground",
+        waiting="promotions_proposed",
+        noun="run",
+        reason="proposed for promotion",
+        below=("promotions",),
+    ),
 )
 
 

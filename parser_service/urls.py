@@ -7,6 +7,7 @@ from parser_service.views.labelling import audit, labelling, suggestions
 from parser_service.views.results import compare, reports, results, slices
 from parser_service.views.reviewing import predictions, review, review_categories, sending
 from parser_service.views.runs import learning_curves, retraining, run_new, runs
+from parser_service.views.serving import playground, promotions
 
 urlpatterns = [
     path("label/", labelling.label_page, name="label"),
@@ -43,6 +44,14 @@ urlpatterns = [
     path("runs/<int:pk>/defaults/", defaults.defaults, name="defaults"),
     path("runs/<int:pk>/sensitivity/", sensitivity.sensitivity, name="sensitivity"),
     path("runs/<int:pk>/probes/", probes.probes, name="probes"),
+    path("parse/", playground.playground, name="playground"),
+    path("parse/ask/", playground.playground_ask, name="playground_ask"),
+    path("parse/wrong/", playground.playground_wrong, name="playground_wrong"),
+    path("parse/state/", promotions.parser_state, name="parser_state"),
+    path("promotion/", promotions.promotions, name="promotions"),
+    path("promotion/promote/", promotions.promotion_promote, name="promotion_promote"),
+    path("promotion/roll-back/", promotions.promotion_roll_back, name="promotion_roll_back"),
+    path("promotion/<int:pk>/decline/", promotions.promotion_decline, name="promotion_decline"),
     path("try/", tryout.tryout, name="tryout"),
     path("try/ask/", tryout.tryout_ask, name="tryout_ask"),
     path("review/", review.review, name="review"),

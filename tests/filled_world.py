@@ -28,7 +28,8 @@ from annotations.queueing import answer, set_share
 from annotations.queueing.sources import refill
 from parser_service.analysing.carrying_out import analyse
 from parser_service.analysing.trying import ask
-from parser_service.models import Slice, TrainingRun
+from parser_service.models import Promotion, PromotionState, Slice, TrainingRun
+from parser_service.promotion import promote
 from parser_service.reviewing.categories import ensure_categories
 from parser_service.reviewing.proposing import propose_for_run
 from parser_service.reviewing.tagging import tag, write_note
@@ -72,6 +73,7 @@ def leave_traces(world: World, annotator: User, admin: User) -> None:
     )
     store_findings(world, [doubt(paraphrase, '( go " <room> " )')])
     _analyse(world, annotator)
+    _promote(world, admin)
     _review(world, annotator, admin)
     Job.objects.create(
         world=world,
@@ -96,6 +98,20 @@ def _analyse(world: World, annotator: User) -> None:
     save_parser(run)
     analyse(Job(world=world, kind=JobKind.ANALYSE, arguments={"run": run.pk}), UNWATCHED)
     ask(world, annotator, "Bring an umbrella", [run])
+
+
+def _promote(world: World, admin: User) -> None:
+    """Let a run answer, after another one, and propose the latter again."""
+    runs = list(TrainingRun.objects.succeeded().filter(world=world))
+    promote(runs[-1], None, "The first run of this world.")
+    if len(runs) > 1:
+        promote(runs[0], admin, "It is right more often.")
+        Promotion.objects.create(
+            world=world,
+            run=runs[-1],
+            state=PromotionState.PROPOSED,
+            reason="Trained after the corpus changed.",
+        )
 
 
 def _review(world: World, *reviewers: User) -> None:

@@ -16,7 +16,8 @@ SAFE_METHODS = ("GET", "HEAD", "OPTIONS", "TRACE")
 MOST_SUBJECT_CHARACTERS = 200
 # Routes that are posted to and change nothing that others see.
 UNRECORDED = re.compile(
-    r"_(check|preview|suggestions|completion|consequences)$|^(draft|inbox|notice_open|queue_next|work-item-next|tryout_ask)$"
+    r"_(check|preview|suggestions|completion|consequences)$"
+    r"|^(draft|inbox|notice_open|queue_next|work-item-next|tryout_ask|playground_ask)$"
 )
 VERBS = {"POST": "create", "PUT": "change", "PATCH": "change", "DELETE": "delete"}
 # What a route does where its name does not say it.
@@ -47,6 +48,10 @@ WHAT = {
     "split_new": "freeze a split",
     "run_new": "start a run",
     "run_cancel": "cancel a run",
+    "promotion_promote": "promote a run",
+    "promotion_roll_back": "roll back to the run before",
+    "promotion_decline": "decline a proposed run",
+    "playground_wrong": "report a wrong answer",
     "label_answer": "label",
     "label_take_back": "take a label back",
     "queue_settings": "set shares",

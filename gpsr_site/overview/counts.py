@@ -30,7 +30,7 @@ from annotations.models import (
 from annotations.models.corpus import ParaphraseStatus
 from annotations.models.problems import Subject
 from annotations.models.templates import Status as TemplateStatus
-from parser_service.models import TrainingRun
+from parser_service.models import Promotion, TrainingRun
 from parser_service.models.runs import Status as RunStatus
 
 
@@ -72,6 +72,7 @@ class Counts:
     runs_failed: int
     runs_lost: int
     evaluated: int
+    promotions_proposed: int
 
     @property
     def templates_waiting(self) -> int:
@@ -163,6 +164,7 @@ def _run_rows() -> dict[str, tuple[QuerySet, str]]:
         "runs_failed": (runs.filter(status=RunStatus.FAILED).not_succeeded_since(), "world"),
         "runs_lost": (runs.filter(status=RunStatus.LOST).not_succeeded_since(), "world"),
         "evaluated": (runs.succeeded(), "world"),
+        "promotions_proposed": (Promotion.objects.proposed(), "world"),
     }
 
 

@@ -68,6 +68,7 @@ class Waiting:
 FOR_ADMINS = (
     Waiting("runs_failed", "failed run", "Read why", "runs", "?status=failed&since=no", "bad"),
     Waiting("runs_lost", "lost run", "Read why", "runs", "?status=lost&since=no", "bad"),
+    Waiting("promotions_proposed", "run", "Decide", "promotions", "", "", "proposed for promotion"),
     Waiting("ontology_problems", "remark", "Read", "ontology", "", "warn", "on the ontology"),
     Waiting("grammar_problems", "remark", "Read", "grammar", "", "warn", "on the grammar"),
     Waiting("runs_running", "run", "Watch", "runs", "?status=running", "", "in progress"),

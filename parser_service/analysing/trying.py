@@ -1,8 +1,10 @@
-"""Verb: try a text on runs. A worker answers; pages show what it has answered so far."""
+"""Verb: try a text on runs. The parse server answers, or a worker while there is none; pages show what was
+answered so far."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from django.db import transaction
 from django.utils import timezone
@@ -11,12 +13,14 @@ from annotations.jobs import request_job
 from annotations.models import Job, JobKind, User, World
 from annotations.models.jobs import JobQuerySet
 from parser_service.models import TrainingRun, Tryout
+from parser_service.runs.evaluating import BEAM_WIDTH
+from parser_service.serving.client import ParserAway, ParserRefused, client
 
 MOST_TEXT = 500  # characters
 
 
 def ask(world: World, person: User, text: str, runs: Sequence[TrainingRun]) -> Tryout:
-    """Let a worker ask ``runs`` about a text, in place of the text that the person tried before.
+    """Ask ``runs`` about a text, in place of the text that the person tried before.
 
     Runs that have answered the very text are not asked again.
     """
@@ -33,6 +37,7 @@ def ask(world: World, person: User, text: str, runs: Sequence[TrainingRun]) -> T
             row.text, row.runs, row.number = text, keys, row.number + 1
             row.asked_at, row.is_answered = timezone.now(), not row.open_runs
             row.save()
+    _ask_server(row)
     request_answers(row)
     return row
 
@@ -46,6 +51,32 @@ def request_answers(tryout: Tryout) -> Job | None:
         return None
     active = answer_jobs(tryout.world).first()
     return active or request_job(JobKind.ANSWER, tryout.world.name, tryout.person)
+
+
+def _ask_server(tryout: Tryout) -> None:
+    """Store what the parse server answers for the runs that have not; nothing while it is away."""
+    answers: dict[str, dict[str, Any]] = {}
+    for run in tryout.open_runs:
+        try:
+            parsed = client().parse(tryout.world.name, tryout.text, BEAM_WIDTH, run)
+        except ParserRefused as error:
+            answers[str(run)] = {"problem": str(error)}
+        except ParserAway:
+            break
+        else:
+            forms = [
+                {name: each[name] for name in ("form", "score")} for each in parsed["candidates"]
+            ]
+            answers[str(run)] = {"answers": forms}
+    if not answers:
+        return
+    with transaction.atomic():
+        row = Tryout.objects.select_for_update().get(pk=tryout.pk)
+        if row.number == tryout.number:
+            row.answers |= answers
+            row.is_answered = not row.open_runs
+            row.save(update_fields=["answers", "is_answered"])
+    tryout.refresh_from_db()
 
 
 def answer_jobs(world: World) -> JobQuerySet:

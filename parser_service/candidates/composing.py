@@ -16,6 +16,7 @@ from parser_service.parsers.registry import PARSERS
 
 MOST_CANDIDATES = 9  # one for each of the keys 1 to 9
 NOW, GRAMMAR, NEIGHBOUR = "the answer now", "grammar", "nearest utterance"
+PERSON = "somebody who tried it"  # the source of a form that a person gave for a wrong answer
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,15 +30,17 @@ class LabelCandidate:
 def candidates_for(utterance: Utterance) -> tuple[LabelCandidate, ...]:
     """Return up to nine forms for ``utterance``, each once, the most likely first.
 
-    The form that it has comes first, then what the grammar derives, which is certain for a generated
-    command; the trained parser and the neighbours take turns behind it.
+    The form that it has comes first, then what a person gave for a wrong answer and what the grammar
+    derives, which is certain for a generated command; the trained parser and the neighbours take turns
+    behind it.
     """
     text, world = utterance.anonymized_text, utterance.world
-    proposals = utterance.proposals.order_by("rank")
-    proposed = [(row.form, say_source(row.source)) for row in proposals if is_label(row.form)]
+    rows = [row for row in utterance.proposals.order_by("rank") if is_label(row.form)]
+    proposed = [(row.form, say_source(row.source)) for row in rows if row.source != PERSON]
     nearest = nearest_forms(world, text, MOST_CANDIDATES)
     ranked = chain(
         [(utterance.logical_form, NOW)] if utterance.logical_form else [],
+        [(row.form, PERSON) for row in rows if row.source == PERSON],
         _from(GRAMMAR, derived_forms(world, text, MOST_CANDIDATES)),
         chain.from_iterable(zip_longest(proposed, _from(NEIGHBOUR, nearest))),
     )

@@ -9,7 +9,7 @@ from django.db.models import Exists, OuterRef
 from annotations.background.progress import Progress
 from annotations.models import CommandProposal, Job, Proposal, Utterance, World
 from annotations.rows.synchronise import batches
-from parser_service.candidates.composing import is_label
+from parser_service.candidates.composing import PERSON, is_label
 from parser_service.candidates.doubting import enqueue_doubts
 from parser_service.models import TrainingRun
 from parser_service.parsers.conditions import TrainSources
@@ -86,7 +86,7 @@ def _answer(rows: list[Utterance], run: TrainingRun, parser: Parser, progress: P
         for each in _rows(candidates, run)
     ]
     with progress.writing():
-        Proposal.objects.filter(utterance__in=rows).delete()
+        Proposal.objects.filter(utterance__in=rows).exclude(source=PERSON).delete()
         Proposal.objects.bulk_create(made)
 
 

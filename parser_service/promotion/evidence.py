@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 from parser_service.models import Evaluation, TrainingRun
@@ -11,13 +12,42 @@ SPOKEN = "para"  # the test source of paraphrases
 COMPARED_ON = "validation"
 
 
-def is_tested_on_paraphrases(run: TrainingRun) -> bool:
-    return run.evaluations.filter(test_source=SPOKEN).exists()
+def is_right_on_paraphrases(run: TrainingRun) -> bool:
+    """Return whether the run was tested on paraphrases, and is right on some."""
+    return run.evaluations.filter(test_source=SPOKEN, correct__gt=0).exists()
 
 
 def spoken_score(run: TrainingRun) -> Evaluation | None:
     """Return the score on validation paraphrases, None for a run that was not asked any."""
-    return run.evaluations.filter(test_source=SPOKEN, part=COMPARED_ON).first()
+    wanted = (SPOKEN, COMPARED_ON)
+    scores = run.evaluations.all()  # which may have been fetched already
+    return next((each for each in scores if (each.test_source, each.part) == wanted), None)
+
+
+@dataclass(frozen=True, slots=True)
+class ComparedScore:
+    """What a run reaches on one test source of one part, beside the run ``before`` it."""
+
+    test_source: str
+    part: str
+    score: Evaluation | None
+    before: Evaluation | None
+
+    @property
+    def change(self) -> float | None:
+        """Percentage points; None where only one of them was tested so."""
+        if self.score is None or self.before is None:
+            return None
+        return 100 * (self.score.accuracy - self.before.accuracy)
+
+
+def compare_scores(run: TrainingRun, before: TrainingRun | None) -> list[ComparedScore]:
+    """Return the scores of ``run`` beside those of ``before``, paraphrases first."""
+    mine = {(each.test_source, each.part): each for each in run.evaluations.all()}
+    others = before.evaluations.all() if before else ()
+    theirs = {(each.test_source, each.part): each for each in others}
+    order = sorted({*mine, *theirs}, key=lambda key: (key[0] != SPOKEN, key[0], key[1] == "test"))
+    return [ComparedScore(*key, mine.get(key), theirs.get(key)) for key in order]
 
 
 def evidence_for(run: TrainingRun, before: TrainingRun | None) -> dict[str, Any]:

@@ -6,9 +6,10 @@ from django.db import transaction
 
 from annotations.models import Split, World
 from parser_service.models import Promotion, PromotionState, TrainingRun
+from parser_service.parsers.registry import PARSERS, Needs
 from parser_service.promotion.evidence import (
     evidence_for,
-    is_tested_on_paraphrases,
+    is_right_on_paraphrases,
     spoken_score,
 )
 from parser_service.promotion.verbs import promote, promoted_run
@@ -19,20 +20,32 @@ FIRST = "The first run of this world that was tested on paraphrases."
 def consider(run: TrainingRun) -> Promotion | None:
     """Promote the first run of a world that was tested on paraphrases; propose one after retraining.
 
-    A run is proposed where the corpus has changed (its split follows that of the promoted run) and it is
-    not clearly worse on validation paraphrases: its accuracy there is within the 95 % interval of the
-    promoted run's, or above. Runs on a share of the training pairs do not count. Nothing is switched but
-    the first time. Returns the row that was made, if any.
+    The first one has to be right on some paraphrase. A parser that is trained in seconds, as those are that
+    others are compared with, leaves it to others that wait or run in its world. A run is proposed where
+    the corpus has changed (its split follows that of the promoted run) and it is not clearly worse on
+    validation paraphrases: its accuracy there is within the 95 % interval of the promoted run's, or
+    above. Runs on a share of the training pairs do not count. Nothing is switched but the first time.
+    Returns the row that was made, if any.
     """
     run = TrainingRun.objects.select_related("world", "split").get(pk=run.pk)
-    if run.train_share != 1 or not is_tested_on_paraphrases(run):
+    if run.train_share != 1 or not is_right_on_paraphrases(run):
         return None
     with transaction.atomic():
         World.objects.select_for_update().get(pk=run.world_id)
         present = promoted_run(run.world)
         if present is None:
-            return promote(run, None, FIRST)
+            return None if _leaves_it_to_others(run) else promote(run, None, FIRST)
         return _propose(run, present)
+
+
+def _leaves_it_to_others(run: TrainingRun) -> bool:
+    """Return whether ``run`` is of a parser that needs nothing, and one that needs more is on its way."""
+    rivals = run.world.runs.active().exclude(pk=run.pk).values_list("parser", flat=True)
+    return _needs_nothing(run.parser) and not all(map(_needs_nothing, rivals))
+
+
+def _needs_nothing(parser: str) -> bool:
+    return parser in PARSERS and PARSERS[parser].needs is Needs.NOTHING
 
 
 def _propose(run: TrainingRun, present: TrainingRun) -> Promotion | None:

@@ -57,6 +57,8 @@ PAGES = {
     "learning-curves": "results/curves/",
     "compare-choose": "compare/",
     "slices": "slices/",
+    "playground": "parse/?text=Bring+an+umbrella",
+    "promotions": "promotion/",
     "tryout": "try/?text=Bring+an+umbrella",
     "review": "review/?outcome=wrong",
     "error-categories": "error-categories/",

@@ -117,6 +117,8 @@ def test_every_page_of_a_world_belongs_to_one_entry():
     parts |= {"split_changes", "split_renew", "split_runs", "run_retrain", "run_report"}
     parts |= {"compare_report"}
     parts |= {"learning_curves_table", "learning_curves_data", "learning_curve_start"}
+    parts |= {"playground_ask", "playground_wrong", "parser_state"}
+    parts |= {"promotion_promote", "promotion_roll_back", "promotion_decline"}
     names = [name for place in PLACES for name in (place.name, *place.below)]
     assert len(names) == len(set(names))
     assert set(names) - {"job"} == ROUTES_OF_WORLDS - parts

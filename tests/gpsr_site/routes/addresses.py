@@ -25,7 +25,7 @@ from annotations.models import (
 )
 from annotations.models.people import digest_of
 from annotations.models.worlds import Role
-from parser_service.models import Dialogue, Slice
+from parser_service.models import Dialogue, Promotion, PromotionState, Slice
 from parser_service.reviewing.categories import ensure_categories
 from tests.sample_world import SampleWorld, comment_in, paraphrase_in
 
@@ -78,6 +78,13 @@ def pk_of(row: Callable[[SampleWorld], Model], **others: str) -> RouteKeys:
 def waiting_job(sample: SampleWorld) -> Job:
     world = sample.world
     return Job.objects.get_or_create(world=world, world_name=world.name, kind="import_generator")[0]
+
+
+def proposal(sample: SampleWorld) -> Promotion:
+    """Return a proposal that nobody has decided."""
+    return Promotion.objects.get_or_create(
+        world=sample.world, run=sample.run, state=PromotionState.PROPOSED
+    )[0]
 
 
 def removable_member(sample: SampleWorld) -> User:
@@ -281,4 +288,5 @@ KEYS: dict[str, RouteKeys] = {
     **dict.fromkeys(("api:dialogue", "api:dialogue-answer", "api:dialogue-keep"), pk_of(dialogue)),
     "queue_ask": pk_of(utterance, kind="utterance"),
     **dict.fromkeys(("slice_rename", "slice_delete", "api:slice"), pk_of(saved_slice)),
+    "promotion_decline": pk_of(proposal),
 }

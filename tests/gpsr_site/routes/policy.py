@@ -97,6 +97,9 @@ POLICY = [
             "sensitivity",
             "probes",
             "tryout",
+            "playground",
+            "parser_state",
+            "promotions",
             "predictions",
             "review",
             "error_categories",
@@ -200,6 +203,8 @@ POLICY = [
         for name in ("slices", "slice_rename", "slice_delete")
     ),
     Rule("tryout_ask", *MEMBERS, method="post"),
+    Rule("playground_ask", *MEMBERS, method="post"),
+    Rule("playground_wrong", LOG_IN, NOWHERE, 422, 422, 422, method="post"),
     Rule("analysis_start", LOG_IN, NOWHERE, NO, GONE_ON, GONE_ON, method="post"),
     Rule("analysis_cancel", LOG_IN, NOWHERE, NO, GONE_ON, GONE_ON, method="post"),
     # Reviewers say why answers are wrong
@@ -214,6 +219,9 @@ POLICY = [
         Rule(name, LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post")
         for name in ("error_category_move", "error_category_delete")
     ),
+    Rule("promotion_promote", LOG_IN, NOWHERE, NO, NO, NOWHERE, method="post"),
+    Rule("promotion_roll_back", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
+    Rule("promotion_decline", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("queue_assign", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("queue_settings", *ADMINS),
     Rule("queue_settings", *ADMINS, method="post"),
@@ -258,6 +266,7 @@ ONLY_POSTED = {
     *("analysis_start", "analysis_cancel"),
     *("review_tag", "review_note", "review_doubt"),
     *("error_category_move", "error_category_delete"),
+    "promotion_decline",
 }
 # Routes of rows that take a POST at the address where they are read.
 READ_AND_POSTED = {

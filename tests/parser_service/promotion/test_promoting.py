@@ -46,6 +46,17 @@ def test_the_first_run_that_was_tested_on_paraphrases_answers_by_itself(split):
     assert promoted_run(split.world) == first
 
 
+def test_a_run_that_is_never_right_on_paraphrases_is_not_promoted_by_itself(split):
+    assert consider(trained_run(split, spoken=0.0)) is None
+
+
+def test_a_parser_that_trains_in_seconds_leaves_it_to_others_on_their_way(split):
+    waiting, _ = requesting.request(split.world, split, "seq2seq", send=False)
+    assert consider(trained_run(split)) is None
+    TrainingRun.objects.filter(pk=waiting.pk).update(status="failed")
+    assert consider(trained_run(split, seed=1)).state == "promoted"
+
+
 def test_a_run_on_a_share_of_the_pairs_does_not_count(split):
     run = trained_run(split)
     TrainingRun.objects.filter(pk=run.pk).update(train_share=0.5)
@@ -54,7 +65,10 @@ def test_a_run_on_a_share_of_the_pairs_does_not_count(split):
 
 def test_training_considers_the_run(world, transactional_db):
     split = make_split(world)
-    run, _ = requesting.request(world, split, "knn", send=False)
+    known = split.examples.get(part="train", source="paraphrased", position=1)
+    asked = split.examples.filter(part="validation", source="paraphrased")
+    asked.update(utterance=known.utterance, logical_form=known.logical_form)
+    run, _ = requesting.request(world, split, "knn", train_sources="gen+para", send=False)
     train(lifecycle.claim("the test", run.queue, run))
     assert promoted_run(world) == run
 
