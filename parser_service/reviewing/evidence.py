@@ -12,11 +12,18 @@ from django.db.models import Count
 from annotations.language.auditing import LabelledPair, check_words
 from annotations.language.forms import CLASS_TOKEN, read_form
 from annotations.models import AuditFinding, Entity, Example, FindingStatus, Split, World
-from parser_service.analysis.categories import Audit, ErrorEvidence, Neighbour, RunEvidence
+from parser_service.analysis.categories import (
+    Audit,
+    ErrorEvidence,
+    Neighbour,
+    RunEvidence,
+)
 from parser_service.analysis.edits import mine_pairs, words_of
 from parser_service.analysis.reading import read_or_none
 from parser_service.models import TrainingRun
+from parser_service.models.runs import Status
 from parser_service.reviewing.answers import Answered
+from parser_service.reviewing.texts import Texts
 
 PREDICATE = re.compile(r"\( ([^\s()\"]+) ")  # in canonical corpus text
 ROWS_AT_ONCE = 500
@@ -61,6 +68,8 @@ class ErrorEvidences:
         self._audits: dict[tuple[str, str], Audit | None] = dict(_read_audits(run.world))
         self._labels = _ambiguous_labels(run.split)
         self._neighbours = _Neighbours(answers)
+        self._texts = Texts(run, (each.utterance for each in answers if not each.is_right))
+        self._others = list(_read_others(run))
 
     def of(self, at: int) -> ErrorEvidence:
         """Return what is known of the answer number ``at``."""
@@ -69,8 +78,20 @@ class ErrorEvidences:
         return ErrorEvidence(
             neighbours=tuple(self._neighbours.of(at)),
             other_golds=tuple(read_form(text) for text in labels if text != answered.label),
+            alike_golds=tuple(map(read_form, self._texts.alike_labels(answered.utterance))),
             audit=self._doubt_about(answered),
+            named=self._texts.named(answered.utterance),
+            spoken_for=self._texts.spoken_for(answered),
+            agreeing=self._agreeing(answered),
+            is_familiar=self._texts.is_familiar(answered),
         )
+
+    def _agreeing(self, answered: Answered) -> tuple[str, ...]:
+        """Return the other parsers that give the same answer although training has the label."""
+        if not self._texts.has_trained(answered.label):
+            return ()
+        at = answered.example
+        return tuple(name for name, wrong in self._others if wrong.get(at) == answered.answer)
 
     def _doubt_about(self, answered: Answered) -> Audit | None:
         """Return what an audit or a person says against the label, otherwise what its own words say."""
@@ -78,6 +99,18 @@ class ErrorEvidences:
         if pair not in self._audits:
             self._audits[pair] = _read_words(*pair)
         return self._audits[pair]
+
+
+def _read_others(run: TrainingRun) -> Iterator[tuple[str, dict[int, str]]]:
+    """Yield the name of each other parser with the wrong answers of its newest run on the same split, by the
+    key of the example."""
+    runs = run.split.runs.filter(status=Status.SUCCEEDED, train_share=1).exclude(parser=run.parser)
+    newest = {each.parser: each for each in runs.order_by("pk")}
+    texts: dict[str, str] = {}
+    for name, each in sorted(newest.items()):
+        rows = each.predictions.best().filter(is_exact_match=False, is_well_formed=True).order_by()
+        answers = rows.values_list("example_id", "logical_form").iterator(ROWS_AT_ONCE)
+        yield name, {key: texts.setdefault(answer, answer) for key, answer in answers}
 
 
 def _read_audits(world: World) -> Iterator[tuple[tuple[str, str], Audit | None]]:
@@ -105,7 +138,7 @@ def _decision(finding: AuditFinding) -> Audit | None:
     if finding.status == FindingStatus.KEPT:
         return None
     decided = read_or_none(finding.decided_form)
-    return Audit(DECIDED[FindingStatus(finding.status)], decided)
+    return Audit(DECIDED[FindingStatus(finding.status)], decided, is_sure=True)
 
 
 def _read_words(utterance: str, label: str) -> Audit | None:
@@ -113,9 +146,8 @@ def _read_words(utterance: str, label: str) -> Audit | None:
     finding = next(check_words([LabelledPair("", utterance, label)]), None)
     if finding is None:
         return None
-    return Audit(
-        f"The label may be wrong. {finding.sentence}", read_or_none(finding.suggested_form)
-    )
+    suggested = read_or_none(finding.suggested_form)
+    return Audit(f"The label may be wrong. {finding.sentence}", suggested, is_sure=True)
 
 
 def _ambiguous_labels(split: Split) -> dict[str, list[str]]:

@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 
 from annotations.language.auditing.findings import WEAK, Finding, LabelledPair, Reason
 from annotations.language.auditing.words import contradictions
 from annotations.language.errors import LanguageError
 from annotations.language.forms import (
-    Application,
     Form,
-    Lambda,
     Unknown,
     canonical_text,
     equivalent,
+    flatten_conjunctions,
     read_form,
 )
 
@@ -98,26 +97,11 @@ def _say_difference(pair: LabelledPair) -> tuple[str, float]:
 def _mean_the_same(first: str, second: str) -> bool:
     """Return whether two texts are one form but for the order and the notation of conjunctions."""
     one, other = _read(first), _read(second)
-    return one is not None and other is not None and equivalent(_flat(one), _flat(other))
-
-
-def _flat(form: Form) -> Form:
-    """Return the form with each explicit ``and`` of a λ as bodies of it."""
-    if isinstance(form, Lambda):
-        return replace(
-            form, bodies=tuple(each for body in form.bodies for each in _conjuncts(body))
-        )
-    if isinstance(form, Application):
-        return replace(form, arguments=tuple(map(_flat, form.arguments)))
-    return form
-
-
-def _conjuncts(body: Form) -> Iterator[Form]:
-    if isinstance(body, Application) and body.predicate == "and":
-        for each in body.arguments:
-            yield from _conjuncts(each)
-    else:
-        yield _flat(body)
+    return (
+        one is not None
+        and other is not None
+        and equivalent(flatten_conjunctions(one), flatten_conjunctions(other))
+    )
 
 
 def _lead(pair: LabelledPair, answers: Sequence[Answer]) -> float:

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
-from annotations.language.forms.canonical import canonical_text, canonicalize, equivalent
+from annotations.language.forms.canonical import (
+    canonical_text,
+    canonicalize,
+    equivalent,
+    flatten_conjunctions,
+)
 from annotations.language.forms.conjunct_order import ConjunctOrder, conjunctions, head_of, order_of
 from annotations.language.forms.difference import Change, Difference, diff
 from annotations.language.forms.logic import read_form
@@ -50,6 +55,7 @@ __all__ = [
     "diff",
     "diff_unordered",
     "equivalent",
+    "flatten_conjunctions",
     "free_variables",
     "head_of",
     "head_predicate",

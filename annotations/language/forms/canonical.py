@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from annotations.language.forms.printing import to_corpus
@@ -34,6 +34,23 @@ def equivalent(first: Form, second: Form) -> bool:
     write a conjunction stay distinct.
     """
     return _order(canonicalize(first)) == _order(canonicalize(second))
+
+
+def flatten_conjunctions(form: Form) -> Form:
+    """Write every explicit ``and`` below a λ as several bodies of it."""
+    if isinstance(form, Application):
+        return replace(form, arguments=tuple(map(flatten_conjunctions, form.arguments)))
+    if not isinstance(form, Lambda):
+        return form
+    return replace(form, bodies=tuple(each for body in form.bodies for each in _conjuncts(body)))
+
+
+def _conjuncts(body: Form) -> Iterator[Form]:
+    if isinstance(body, Application) and body.predicate == "and":
+        for each in body.arguments:
+            yield from _conjuncts(each)
+    else:
+        yield flatten_conjunctions(body)
 
 
 def _rename(form: Form, names: Mapping[int, int], next_name: int) -> Form:

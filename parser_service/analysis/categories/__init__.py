@@ -16,6 +16,7 @@ from parser_service.analysis.categories.proposing import (
     propose_category,
 )
 from parser_service.analysis.categories.structure import OF_DIFFERENCES
+from parser_service.analysis.categories.word_use import SpokenFor, WordUse
 
 __all__ = [
     "DESCRIPTIONS",
@@ -28,6 +29,8 @@ __all__ = [
     "Neighbour",
     "Proposals",
     "RunEvidence",
+    "SpokenFor",
+    "WordUse",
     "propose_categories",
     "propose_category",
 ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from annotations.language.forms import Form
+from parser_service.analysis.categories.word_use import SpokenFor
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,19 +32,36 @@ class Neighbour:
 
 @dataclass(frozen=True, slots=True)
 class Audit:
-    """A doubt about the label, as a sentence, and the form that the audit suggests, if it does."""
+    """A doubt about the label, as a sentence, and the form that the audit suggests, if it does.
+
+    It ``is_sure`` where a person or the very words of the utterance say so.
+    """
 
     sentence: str
     suggested: Form | None = None
+    is_sure: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class ErrorEvidence:
-    """What is known of one error. ``other_golds`` are further labels of the very same text."""
+    """What is known of one error.
+
+    ``other_golds`` are further labels of the very same text, ``alike_golds`` those of training texts that
+    differ by nothing but the names and articles. ``named`` are the classes of the entities that
+    the utterance names, each as often as it does, None where that is not known. ``spoken_for`` is a word
+    of it that in training goes with the answer, not with the label; ``agreeing`` are other parsers that
+    give the same answer although training has the label. ``is_familiar``: the utterance is worded as those
+    whose label has the head predicate of the answer.
+    """
 
     neighbours: tuple[Neighbour, ...] = ()
     other_golds: tuple[Form, ...] = ()
+    alike_golds: tuple[Form, ...] = ()
     audit: Audit | None = None
+    named: tuple[str, ...] | None = None
+    spoken_for: SpokenFor | None = None
+    agreeing: tuple[str, ...] = ()
+    is_familiar: bool = False
 
 
 NOTHING_MORE = ErrorEvidence()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 
 from annotations.language.forms import (
@@ -19,14 +19,13 @@ from annotations.language.forms import (
     Variable,
     diff_unordered,
     equivalent,
+    flatten_conjunctions,
     head_predicate,
     predicates,
     to_reading,
 )
 from parser_service.analysis.categories.error_categories import ErrorCategory
 
-# Three kinds of change at once are more than a slip in one place.
-_KINDS_OF_A_WRONG_STRUCTURE = 3
 _BOTH_MEAN_THE_SAME = (
     "Label and answer mean the same; only the conjunctions are written differently."
 )
@@ -44,10 +43,11 @@ class Proposal:
 def read_structure(gold: Form, predicted: Form) -> tuple[Proposal, ...]:
     """Return what the difference of two forms suggests, the most likely first; at least one.
 
-    A different head predicate comes first. Otherwise the kind with the most changes does; of as many,
-    predicates before constraints before arguments.
+    A different head predicate comes first, and then predicates that only the label has where there are
+    some that only the answer has: one was taken for the other, whatever else changed with it. Otherwise
+    the kind with the most changes comes first; of as many, constraints before structure before arguments.
     """
-    left, right = _flatten(gold), _flatten(predicted)
+    left, right = flatten_conjunctions(gold), flatten_conjunctions(predicted)
     if equivalent(left, right):
         return (Proposal(ErrorCategory.WRONG_STRUCTURE, _BOTH_MEAN_THE_SAME),)
     head = _compare_heads(left, right)
@@ -60,10 +60,9 @@ def read_structure(gold: Form, predicted: Form) -> tuple[Proposal, ...]:
         by_category, key=lambda kind: (-len(by_category[kind]), OF_DIFFERENCES.index(kind))
     )
     proposals = {kind: Proposal(kind, " ".join(by_category[kind])) for kind in ranked}
-    if len(proposals) >= _KINDS_OF_A_WRONG_STRUCTURE:
-        reason = f"{len(proposals)} kinds of things differ between the label and the answer."
-        whole = Proposal(ErrorCategory.WRONG_STRUCTURE, reason)
-        proposals = {ErrorCategory.WRONG_STRUCTURE: whole} | proposals
+    exchange = _compare_predicates(left, right)
+    if exchange is not None:
+        proposals = {exchange.category: exchange} | proposals
     if head is not None:
         proposals = {head.category: head} | proposals | {head.category: head}
     return tuple(proposals.values())
@@ -74,22 +73,9 @@ OF_DIFFERENCES = (
     ErrorCategory.WRONG_PREDICATE,
     ErrorCategory.MISSING_CONSTRAINT,
     ErrorCategory.EXTRA_CONSTRAINT,
-    ErrorCategory.WRONG_ARGUMENT,
     ErrorCategory.WRONG_STRUCTURE,
+    ErrorCategory.WRONG_ARGUMENT,
 )
-
-
-def _flatten(form: Form) -> Form:
-    """Write every conjunction below a λ as several bodies."""
-    if isinstance(form, Application):
-        return replace(form, arguments=tuple(map(_flatten, form.arguments)))
-    if not isinstance(form, Lambda):
-        return form
-    bodies: list[Form] = []
-    for body in map(_flatten, form.bodies):
-        is_conjunction = isinstance(body, Application) and body.predicate == "and"
-        bodies += body.arguments if is_conjunction and isinstance(body, Application) else (body,)
-    return replace(form, bodies=tuple(bodies))
 
 
 def _compare_heads(gold: Form, predicted: Form) -> Proposal | None:
@@ -109,6 +95,17 @@ def _compare_heads(gold: Form, predicted: Form) -> Proposal | None:
         return Proposal(ErrorCategory.WRONG_STRUCTURE, reason)
     else:
         reason = f"The answer says {answered} instead of {said}."
+    return Proposal(ErrorCategory.WRONG_PREDICATE, reason)
+
+
+def _compare_predicates(gold: Form, predicted: Form) -> Proposal | None:
+    """Return what follows from predicates that only one of the forms has; None where it is not both of them."""
+    said, answered = (dict.fromkeys(predicates(form)) for form in (gold, predicted))
+    only_said = [name for name in said if name not in answered]
+    only_answered = [name for name in answered if name not in said]
+    if not only_said or not only_answered:
+        return None
+    reason = f"The answer says {' and '.join(only_answered)} instead of {' and '.join(only_said)}."
     return Proposal(ErrorCategory.WRONG_PREDICATE, reason)
 
 
@@ -147,7 +144,7 @@ def _exchanged(left: Form, right: Form, parent: Difference | None, place: int) -
     texts = f"{to_reading(right)} instead of {to_reading(left)}"
     is_argument = parent is not None and isinstance(parent.left, Application)
     fillers = Constant | Variable | Unknown | Lambda
-    if is_argument and isinstance(left, fillers) and isinstance(right, fillers):
+    if is_argument and (isinstance(left, fillers) or isinstance(right, fillers)):
         assert parent is not None and isinstance(parent.left, Application)
         reason = f"The answer gives {parent.left.predicate} {texts} as argument {place}."
         return Proposal(ErrorCategory.WRONG_ARGUMENT, reason)
