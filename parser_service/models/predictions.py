@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from django.db import models
+from django.db.models.functions import Length
 
 from annotations.models import Example
 from parser_service.models.runs import TrainingRun
+
+models.TextField.register_lookup(Length)
 
 
 class Evaluation(models.Model):
@@ -88,7 +91,16 @@ class Prediction(models.Model):
         indexes = [
             models.Index(
                 fields=["run", "rank", "is_exact_match", "example"], name="answers_in_order"
-            )
+            ),
+            # Narrows a search for one form down without holding the forms once more.
+            models.Index(
+                "run",
+                "rank",
+                Length("logical_form"),
+                "is_exact_match",
+                "example",
+                name="answers_by_length",
+            ),
         ]
 
     def __str__(self) -> str:

@@ -74,16 +74,17 @@ class ErrorEvidences:
     def of(self, at: int) -> ErrorEvidence:
         """Return what is known of the answer number ``at``."""
         answered = self._answers[at]
+        said = self._texts.read(answered.utterance)
         labels = self._labels.get(answered.utterance, ())
         return ErrorEvidence(
             neighbours=tuple(self._neighbours.of(at)),
             other_golds=tuple(read_form(text) for text in labels if text != answered.label),
-            alike_golds=tuple(map(read_form, self._texts.alike_labels(answered.utterance))),
+            alike_golds=tuple(map(read_form, self._texts.alike_labels(said))),
             audit=self._doubt_about(answered),
-            named=self._texts.named(answered.utterance),
-            spoken_for=self._texts.spoken_for(answered),
+            named=said.named,
+            spoken_for=self._texts.spoken_for(said, answered.label, answered.answer),
             agreeing=self._agreeing(answered),
-            is_familiar=self._texts.is_familiar(answered),
+            is_familiar=self._texts.is_familiar(said, answered.answer),
         )
 
     def _agreeing(self, answered: Answered) -> tuple[str, ...]:

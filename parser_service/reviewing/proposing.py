@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 
 from annotations.background.progress import Progress
 from annotations.language.forms import read_form
 from annotations.rows.synchronise import batches
 from parser_service.analysis.categories import (
-    NOTHING_MORE,
     OF_DIFFERENCES,
     ErrorEvidence,
     Proposals,
@@ -64,7 +63,7 @@ def _replace(run: TrainingRun, rows: Sequence[Review], after: int) -> None:
 
 
 class _Maker:
-    """Makes the rows of one run. Errors with the same two forms and nothing else share their work."""
+    """Makes the rows of one run. Errors with the same two forms and the same evidence share their work."""
 
     def __init__(
         self, run: TrainingRun, attractors: frozenset[str], answers: Sequence[Answered]
@@ -75,7 +74,7 @@ class _Maker:
         self._of_errors = ErrorEvidences(run, answers)
         self._slices = _read_slices(run, self._categories)
         self._earlier = read_earlier_errors(run)
-        self._known: dict[tuple[str, str], Proposals] = {}
+        self._known: dict[Hashable, Proposals] = {}
 
     def make(self, errors: Sequence[int]) -> Iterator[Review]:
         """Yield an unsaved proposal for each of the answers with these numbers."""
@@ -99,11 +98,12 @@ class _Maker:
 
     def _propose(self, answered: Answered, evidence: ErrorEvidence) -> Proposals:
         forms = answered.label, answered.answer
-        if evidence != NOTHING_MORE:
+        if evidence.is_of_this_text:
             return self._propose_for(*forms, evidence)
-        if forms not in self._known:
-            self._known[forms] = self._propose_for(*forms, evidence)
-        return self._known[forms]
+        key = *forms, evidence.named, evidence.spoken_for, evidence.agreeing, evidence.is_familiar
+        if key not in self._known:
+            self._known[key] = self._propose_for(*forms, evidence)
+        return self._known[key]
 
     def _propose_for(self, label: str, answer: str, evidence: ErrorEvidence) -> Proposals:
         return propose_category(read_form(label), read_or_none(answer), self._of_run, evidence)

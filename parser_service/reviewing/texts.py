@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from functools import lru_cache
 
 from annotations.language.english import ARTICLES
@@ -14,7 +15,21 @@ from parser_service.analysis.categories import SpokenFor, WordUse
 from parser_service.analysis.edits import words_of
 from parser_service.analysis.reading import read_or_none
 from parser_service.models import TrainingRun
-from parser_service.reviewing.answers import ROWS_AT_ONCE, Answered
+from parser_service.reviewing.answers import ROWS_AT_ONCE
+
+
+@dataclass(frozen=True, slots=True)
+class Said:
+    """The words of an utterance, class tokens for the entities that it names, and the class of each of these;
+    None where the world has no entities."""
+
+    words: tuple[str, ...]
+    named: tuple[str, ...] | None
+
+    @property
+    def key(self) -> tuple[str, ...]:
+        """What texts share that differ by names and articles at most."""
+        return tuple(word for word in self.words if word not in ARTICLES)
 
 
 class Texts:
@@ -29,61 +44,53 @@ class Texts:
         self._has_names = bool(ontology.entities)
         self._anonymizer = Anonymizer(ontology)
         self._alike: dict[tuple[str, ...], set[str]] = {
-            _without_articles(self._words(text)): set() for text in utterances
+            self.read(text).key: set() for text in utterances
         }
         self._word_use = WordUse(self._training_pairs(run))
 
-    def alike_labels(self, utterance: str) -> list[str]:
+    def read(self, utterance: str) -> Said:
+        """Return what an utterance says."""
+        command = self._anonymizer.anonymize(utterance).command
+        classes = (name.rstrip("0123456789") for name in CLASS_TOKEN.findall(command))
+        return Said(words_of(command), tuple(sorted(classes)) if self._has_names else None)
+
+    def alike_labels(self, said: Said) -> list[str]:
         """Return the labels of training texts that differ from this one by names and articles at most."""
-        return sorted(self._alike.get(_without_articles(self._words(utterance)), ()))
-
-    def named(self, utterance: str) -> tuple[str, ...] | None:
-        """Return the class of each entity that the utterance names; None where the world has no entities."""
-        if not self._has_names:
-            return None
-        classes = CLASS_TOKEN.findall(self._anonymize(utterance))
-        return tuple(sorted(name.rstrip("0123456789") for name in classes))
-
-    def spoken_for(self, answered: Answered) -> SpokenFor | None:
-        """Return a word of the utterance that in training goes with the answer, not with the label."""
-        if not self.has_trained(answered.label):
-            return None  # of a label that training lacks its words say nothing
-        label, answer = _predicates_of(answered.label), _predicates_of(answered.answer)
-        return self._word_use.speaks_for(
-            self._words(answered.utterance), answer - label, label - answer
-        )
+        return sorted(self._alike.get(said.key, ()))
 
     def has_trained(self, label: str) -> bool:
         """Tell whether the training pairs have the label."""
         return self._word_use.knows(label)
 
-    def is_familiar(self, answered: Answered) -> bool:
+    def spoken_for(self, said: Said, label: str, answer: str) -> SpokenFor | None:
+        """Return a word of the utterance that in training goes with the answer, not with the label. Of a label
+        that training lacks its words say nothing."""
+        if not self.has_trained(label):
+            return None
+        of_label, of_answer = _predicates_of(label), _predicates_of(answer)
+        return self._word_use.speaks_for(said.words, of_answer - of_label, of_label - of_answer)
+
+    def is_familiar(self, said: Said, answer: str) -> bool:
         """Tell whether the utterance is worded like training pairs with the head predicate of the answer."""
-        form = read_or_none(answered.answer)
-        head = head_predicate(form) if form is not None else ""
-        return self._word_use.is_familiar(self._words(answered.utterance), head)
-
-    def _words(self, utterance: str) -> tuple[str, ...]:
-        return words_of(self._anonymize(utterance))
-
-    def _anonymize(self, utterance: str) -> str:
-        return self._anonymizer.anonymize(utterance).command
+        return self._word_use.is_familiar(said.words, _head_of(answer))
 
     def _training_pairs(self, run: TrainingRun) -> Iterator[tuple[tuple[str, ...], str]]:
         rows = run.split.examples.filter(part=Part.TRAIN).order_by()
         for text, label in rows.values_list("utterance", "logical_form").iterator(ROWS_AT_ONCE):
-            words = self._words(text)
-            alike = self._alike.get(_without_articles(words))
+            said = self.read(text)
+            alike = self._alike.get(said.key)
             if alike is not None:
                 alike.add(label)
-            yield words, label
-
-
-def _without_articles(words: Iterable[str]) -> tuple[str, ...]:
-    return tuple(word for word in words if word not in ARTICLES)
+            yield said.words, label
 
 
 @lru_cache(maxsize=1 << 14)
 def _predicates_of(form: str) -> frozenset[str]:
     read = read_or_none(form)
     return frozenset(predicates(read)) if read is not None else frozenset()
+
+
+@lru_cache(maxsize=1 << 14)
+def _head_of(form: str) -> str:
+    read = read_or_none(form)
+    return head_predicate(read) if read is not None else ""

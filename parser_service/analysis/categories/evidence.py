@@ -63,5 +63,10 @@ class ErrorEvidence:
     agreeing: tuple[str, ...] = ()
     is_familiar: bool = False
 
+    @property
+    def is_of_this_text(self) -> bool:
+        """Whether there is evidence that hardly another error has: other forms, or a doubt."""
+        return bool(self.neighbours or self.other_golds or self.alike_golds or self.audit)
+
 
 NOTHING_MORE = ErrorEvidence()

@@ -123,7 +123,8 @@ def _read_words(case: Case) -> Readings:
 def _read_other_parsers(case: Case) -> Readings:
     """Other parsers that agree speak against the label, unless the answer has what the utterance does not name."""
     error = case.error
-    adds = frozenset(classes_in(case.predicted)) - set(error.named or ())
+    classes = frozenset(classes_in(case.predicted))
+    adds = classes - set(classes if error.named is None else error.named)
     if error.agreeing and not adds and not _is_the_same(case.gold, case.predicted):
         reason = f"{' and '.join(error.agreeing)} answered the same, and training has the label."
         yield Proposal(ErrorCategory.WRONG_GOLD_LABEL, reason), True

@@ -35,6 +35,16 @@ TO_NAME = read_form('(bring (λ$1:e (is_a $1 "<object>")) (λ$1:e (person $1) (n
             "The answer says near instead of at.",
         ),
         (
+            '(bring (count (λ$1:e (at $1 "<room>") (red $1))))',
+            "wrong_predicate",
+            "The answer says count and red instead of is_a.",
+        ),
+        (
+            '(bring "<object>")',
+            "wrong_argument",
+            "The answer gives bring ⟨object⟩ instead of λx. is_a(x, ⟨object⟩) ∧ at(x, ⟨room⟩) as argument 1.",
+        ),
+        (
             '(bring (λ$1:e (at $1 "<location>") (is_a $1 "<object>")))',
             "wrong_argument",
             "The answer gives at ⟨location⟩ instead of ⟨room⟩ as argument 2.",
@@ -71,8 +81,8 @@ TO_NAME = read_form('(bring (λ$1:e (is_a $1 "<object>")) (λ$1:e (person $1) (n
         ),
         (
             '(bring (λ$1:e (on $1 "<location>") (red $1) (is_a $1 "<object>")))',
-            "wrong_structure",
-            "3 kinds of things differ between the label and the answer.",
+            "wrong_predicate",
+            "The answer says on instead of at.",
         ),
     ],
 )
@@ -123,6 +133,30 @@ def test_an_answer_that_moves_as_far_as_its_label_is_not_overly_sensitive():
     moved = propose_category(GOLD, WITHOUT_PLACE, error=ErrorEvidence(neighbours=(same,)))
     assert moved.first.category is ErrorCategory.MISSING_CONSTRAINT
     assert moved.runners_up == ()
+
+
+def test_an_argument_of_another_kind_is_a_wrong_argument():
+    gold = read_form('(say (answer "<question>") (λ$1:e (person $1)))')
+    answer = read_form('(say "<whattosay>" (λ$1:e (person $1)))')
+    first = propose_category(gold, answer).first
+    assert first.category is ErrorCategory.WRONG_ARGUMENT
+    assert (
+        first.reason
+        == "The answer gives say ⟨whattosay⟩ instead of answer(⟨question⟩) as argument 1."
+    )
+
+
+def test_a_part_that_is_lost_counts_more_than_an_argument_that_is_left_over():
+    gold = read_form('(say (answer "<question>") (λ$1:e (person $1)))')
+    answer = read_form("(say (λ$1:e (person $1)) UNKNOWN)")
+    assert propose_category(gold, answer).first.category is ErrorCategory.WRONG_STRUCTURE
+
+
+def test_an_attractor_that_is_worded_as_usual_is_no_default():
+    run = RunEvidence(attractors=frozenset({canonical_text(GO)}))
+    usual = propose_category(GOLD, GO, run, ErrorEvidence(is_familiar=True))
+    assert usual.first.category is ErrorCategory.WRONG_PREDICATE
+    assert usual.runners_up[-1].category is ErrorCategory.UNEXPECTED_DEFAULT
 
 
 def test_evidence_about_the_label_comes_first():

@@ -7,7 +7,7 @@ import pytest
 from annotations.auditing import store_findings
 from annotations.background import Stopped
 from annotations.background.progress import UNWATCHED, Unwatched
-from annotations.models import Example, FindingStatus
+from annotations.models import Entity, Example, FindingStatus, Ontology
 from parser_service.models import Prediction, Review, Slice
 from parser_service.reviewing import proposing
 from parser_service.reviewing.categories import ensure_categories
@@ -27,6 +27,15 @@ def run(sample):
     """A run whose answers the test gives."""
     sample.run.predictions.all().delete()
     return sample.run
+
+
+@pytest.fixture
+def names(world):
+    """Two rooms and an object that the world has."""
+    ontology, _ = Ontology.objects.get_or_create(world=world)
+    rows = [("room", "kitchen"), ("room", "bedroom"), ("object", "apple")]
+    for position, (kind, text) in enumerate(rows, start=100):
+        Entity.objects.create(ontology=ontology, entity_class=kind, text=text, position=position)
 
 
 @pytest.fixture
@@ -119,6 +128,37 @@ def test_another_label_of_the_same_text_makes_it_ambiguous(run, say):
     Example.objects.filter(pk=other.pk).update(part="train")
     code, reason = proposed(run)["get the tea"]
     assert code == "ambiguous_utterance" and "just this answer" in reason
+
+
+def test_the_same_text_with_another_name_in_training_makes_it_ambiguous(run, say, names):
+    say("get the kitchen", GO, FIND)
+    other = say("Get a bedroom", FIND, FIND)
+    assert proposed(run)["get the kitchen"][0] == "wrong_predicate"
+    Example.objects.filter(pk=other.pk).update(part="train")
+    assert proposed(run)["get the kitchen"][0] == "ambiguous_utterance"
+
+
+def test_a_label_with_a_place_that_nobody_names_is_a_wrong_gold_label(run, say, names):
+    at_room = '( bring ( lambda $1 e ( is_a $1 " <object> " ) ( at $1 " <room> " ) ) )'
+    say("bring the apple", at_room, BRING)
+    say("bring the apple from the kitchen", at_room, BRING)
+    found = proposed(run)
+    assert found["bring the apple"][0] == "wrong_gold_label"
+    assert found["bring the apple from the kitchen"][0] == "missing_constraint"
+
+
+def test_another_parser_with_the_same_answer_speaks_against_a_label_that_training_has(
+    run, say, names
+):
+    known = run.split.examples.filter(part="train").first().logical_form
+    asked = [say("serve an apple", known, FIND), say("hand me an apple", BIGGEST, FIND)]
+    other = scored_run(run.world, run.split, "seq2seq", right=0)
+    for example in asked:
+        answer(other, example, FIND)
+    found = proposed(run)
+    assert found["serve an apple"][0] == "wrong_gold_label"
+    assert found["serve an apple"][1].startswith("seq2seq answered the same")
+    assert found["hand me an apple"][0] != "wrong_gold_label"
 
 
 def test_what_the_label_audit_suggests_is_a_wrong_gold_label(run, say):

@@ -42,6 +42,9 @@ IN_ROWS = {
     "category=none": 3,
     "category=none&category_by=people": 5,
     "category=no+such+category": 0,
+    "answer_form=UNKNOWN": 1,
+    "answer_form=%28+go+%22+%3Croom%3E+%22+%29": 1,
+    "answer_form=%28+go": 0,
 }
 
 
