@@ -18,6 +18,7 @@ READ_ELSEWHERE = {
     "TEST_BROKER_URL",
     "TEST_KILLS",
     "TEST_WALK",
+    "TEST_SCHEMA_CASES",
 }
 
 

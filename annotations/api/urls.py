@@ -53,6 +53,7 @@ corpus = [
     path("splits/<int:pk>/", splits.OneSplit.as_view(), name="split"),
     path("splits/<int:pk>/renew/", splits.RenewSplit.as_view(), name="split-renew"),
     path("splits/<int:pk>/examples/", splits.Examples.as_view(), name="split-examples"),
+    path("splits/<int:pk>/manifest/", exports.SplitManifest.as_view(), name="split-manifest"),
     path("splits/<int:pk>/export/", exports.SplitExport.as_view(), name="split-export"),
 ]
 

@@ -1,19 +1,24 @@
-"""Verb: give a split out, as pair files (FORMATS §5), JSON Lines or CSV, row by row."""
+"""Verb: give a split out, row by row: pair files (FORMATS §5), JSON Lines, CSV, Parquet."""
 
 from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Iterator
+import zipfile
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
 from django.db import models
 from django.db.models import Count
 
+from annotations.exporting.manifest import manifest_of
+from annotations.exporting.parquet_export import parquet_pieces
+from annotations.exporting.pipe import Pipe
 from annotations.language.corpus import CORPUS_FOLDERS, PART_FILES, write_pairs
 from annotations.models import Split
 from annotations.models.splits import Criterion
+from annotations.rows.synchronise import batches
 
 # The keys of every export, in this order in every release.
 FIELDS = [
@@ -26,16 +31,39 @@ FIELDS = [
     "logical_form",
     "grounded_form",
 ]
-CHUNK = 2000  # rows fetched at once
+CHUNK = 2000  # rows fetched, and sent, at once
+MANIFEST = "manifest.json"
 
 # A spreadsheet takes a cell that begins so for a formula.
 FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")
+Row = tuple[Any, ...]
 
 
 class Format(models.TextChoices):
+    """``zip`` holds the pair files of all parts with the manifest, as an import of pairs takes them."""
+
     TXT = "txt"
     JSONL = "jsonl"
     CSV = "csv"
+    PARQUET = "parquet"
+    ZIP = "zip"
+
+
+def export_pieces(
+    split: Split, as_: str, part: str | None = None, source: str | None = None
+) -> Iterator[bytes]:
+    """Return the chosen examples of ``split`` as a file in pieces, none of them large.
+
+    ``as_`` is a ``Format``. Raises ValueError for ``txt`` without ``part`` and ``source``.
+    """
+    match Format(as_):
+        case Format.PARQUET:
+            rows = _rows(split, part, source)
+            return parquet_pieces(rows, FIELDS, manifest_of(split, part, source))
+        case Format.ZIP:
+            return _pair_archive(split, part, source)
+    lines = export_lines(split, as_, part, source)
+    return ("".join(some).encode() for some in batches(lines, CHUNK))
 
 
 def export_lines(
@@ -43,15 +71,12 @@ def export_lines(
 ) -> Iterator[str]:
     """Return the chosen examples of ``split`` as lines of text, each with its line end.
 
-    ``as_`` is a ``Format``. ``txt`` is one pair file, so it needs ``part`` and ``source``; of an
+    ``as_`` is a ``Format`` of text. ``txt`` is one pair file, so it needs ``part`` and ``source``; of an
     imported split it is the file that came in, byte for byte. Raises ValueError without them.
     """
     if as_ == Format.TXT and not (part and source):
         raise ValueError("A pair file holds one part of one source: say which part and source.")
-    chosen = {"part": part, "source": source}
-    examples = split.examples.filter(**{key: value for key, value in chosen.items() if value})
-    rows = examples.values(*FIELDS, "written_form").iterator(chunk_size=CHUNK)
-    return WRITERS[Format(as_)](rows)
+    return WRITERS[Format(as_)](split, part, source)
 
 
 def export_split(split: Split, as_: str, target: Path) -> dict[str, int]:
@@ -60,14 +85,14 @@ def export_split(split: Split, as_: str, target: Path) -> dict[str, int]:
     ``txt`` makes a folder of pair files, laid out as ``import_pairs`` reads it (``gen_logical/val.txt``);
     the other formats make the file ``target``. Raises OSError where that cannot be written.
     """
-    counts = split.examples.order_by().values_list("source", "part").annotate(n=Count("pk"))
+    counts = _count_files(split)
     if as_ != Format.TXT:
-        _write(target, export_lines(split, as_))
+        _write(target, export_pieces(split, as_))
         return {str(target): sum(count for _, _, count in counts)}
     files: dict[str, int] = {}
-    for source, part, count in sorted(counts):
+    for source, part, count in counts:
         path = target / folder_of(split, source) / PART_FILES[part]
-        _write(path, export_lines(split, as_, part, source))
+        _write(path, export_pieces(split, as_, part, source))
         files[str(path)] = count
     return files
 
@@ -79,21 +104,38 @@ def folder_of(split: Split, source: str) -> str:
     return kinds.get((source, split.criterion), f"{plain}_{split.criterion}")
 
 
-def _write(path: Path, lines: Iterator[str]) -> None:
+def _count_files(
+    split: Split, part: str | None = None, source: str | None = None
+) -> list[tuple[str, str, int]]:
+    """Return source, part and number of examples of each pair file that is not empty, in order."""
+    chosen = {name: value for name, value in (("part", part), ("source", source)) if value}
+    rows = split.examples.filter(**chosen).order_by()
+    return sorted(rows.values_list("source", "part").annotate(n=Count("pk")))
+
+
+def _write(path: Path, pieces: Iterable[bytes]) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("w", encoding="utf-8", newline="") as file:
-        file.writelines(lines)
+    with path.open("wb") as file:
+        file.writelines(pieces)
 
 
-def _pair_lines(rows: Iterator[dict[str, Any]]) -> Iterator[str]:
-    return write_pairs(
-        (row["utterance"], row["written_form"] or row["logical_form"]) for row in rows
-    )
+def _rows(
+    split: Split, part: str | None, source: str | None, fields: Iterable[str] = FIELDS
+) -> Iterator[Row]:
+    """Return the chosen examples in the order of the files."""
+    chosen = {name: value for name, value in (("part", part), ("source", source)) if value}
+    return split.examples.filter(**chosen).values_list(*fields).iterator(chunk_size=CHUNK)
 
 
-def _json_lines(rows: Iterator[dict[str, Any]]) -> Iterator[str]:
-    for row in rows:
-        yield json.dumps({key: row[key] for key in FIELDS}, ensure_ascii=False) + "\n"
+def _pair_lines(split: Split, part: str | None, source: str | None) -> Iterator[str]:
+    rows = _rows(split, part, source, ("utterance", "written_form", "logical_form"))
+    return write_pairs((utterance, written or form) for utterance, written, form in rows)
+
+
+def _json_lines(split: Split, part: str | None, source: str | None) -> Iterator[str]:
+    encode = json.JSONEncoder(ensure_ascii=False).encode
+    for row in _rows(split, part, source):
+        yield encode(dict(zip(FIELDS, row, strict=True))) + "\n"
 
 
 class _Line:
@@ -103,19 +145,34 @@ class _Line:
         self.text = text
 
 
-def _csv_lines(rows: Iterator[dict[str, Any]]) -> Iterator[str]:
+def _csv_lines(split: Split, part: str | None, source: str | None) -> Iterator[str]:
     line = _Line()
     writer = csv.writer(line)
     writer.writerow(FIELDS)
     yield line.text
-    for row in rows:
-        writer.writerow([formula_safe(row[key]) for key in FIELDS])
+    for row in _rows(split, part, source):
+        writer.writerow([formula_safe(cell) for cell in row])
         yield line.text
 
 
 def formula_safe(cell: Any) -> Any:
     """Return ``cell`` with an apostrophe before anything that a spreadsheet would execute."""
     return f"'{cell}" if isinstance(cell, str) and cell.startswith(FORMULA_STARTS) else cell
+
+
+def _pair_archive(split: Split, part: str | None, source: str | None) -> Iterator[bytes]:
+    """Yield a zip archive with a pair file for each part of each source, and the manifest."""
+    target = Pipe()
+    with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as archive:
+        for of, where, _ in _count_files(split, part, source):
+            path = f"{folder_of(split, of)}/{PART_FILES[where]}"
+            with archive.open(path, "w", force_zip64=True) as file:
+                for piece in export_pieces(split, Format.TXT, where, of):
+                    file.write(piece)
+                    yield target.take()
+        manifest = json.dumps(manifest_of(split, part, source), ensure_ascii=False, indent=2)
+        archive.writestr(MANIFEST, f"{manifest}\n")
+    yield target.take()
 
 
 WRITERS = {Format.TXT: _pair_lines, Format.JSONL: _json_lines, Format.CSV: _csv_lines}

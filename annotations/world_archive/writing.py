@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 import zipfile
 from collections.abc import Iterable, Iterator
@@ -12,6 +11,7 @@ from typing import Any
 from django.db.models import Count
 
 from annotations.exporting.generator_export import generator_files
+from annotations.exporting.pipe import Pipe
 from annotations.exporting.split_export import Format, export_lines, folder_of
 from annotations.importing.archives import MANIFEST
 from annotations.language.corpus import PART_FILES, TRIPLES_FILE
@@ -51,7 +51,7 @@ def world_archive(world: World) -> Iterator[bytes]:
         ChangedMeanwhile: the world was generated or imported anew while it was read.
     """
     world = World.objects.get(pk=world.pk)  # as it is now, whatever the caller read
-    target = _Pipe()
+    target = Pipe()
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as archive:
         counts: dict[str, int] = {}
         numbers: Numbers = {}
@@ -68,27 +68,8 @@ def world_archive(world: World) -> Iterator[bytes]:
     yield target.take()
 
 
-class _Pipe(io.RawIOBase):
-    """A file that gives away what was written to it, so that nothing is kept."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self._pieces: list[bytes] = []
-
-    def writable(self) -> bool:
-        return True
-
-    def write(self, data: Any) -> int:
-        self._pieces.append(bytes(data))
-        return len(data)
-
-    def take(self) -> bytes:
-        data, self._pieces = b"".join(self._pieces), []
-        return data
-
-
 def _member(
-    archive: zipfile.ZipFile, target: _Pipe, name: str, lines: Iterable[str]
+    archive: zipfile.ZipFile, target: Pipe, name: str, lines: Iterable[str]
 ) -> Iterator[bytes]:
     with archive.open(name, "w") as file:
         for some in batches(lines, CHUNK):

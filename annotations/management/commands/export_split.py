@@ -1,4 +1,4 @@
-"""``export_split W NAME --as txt|jsonl|csv --output PATH``: gives a frozen split out."""
+"""``export_split W NAME --as txt|jsonl|csv|parquet|zip --output PATH``: gives a frozen split out."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from annotations.management.base import ReportingCommand, find_split, find_world
 
 
 class Command(ReportingCommand):
-    help = "Writes a split as a folder of pair files (txt) or as one file (jsonl, csv)."
+    help = "Writes a split as a folder of pair files (txt) or as one file (the rest)."
 
     def add_options(self, parser: CommandParser) -> None:
         parser.add_argument("world")

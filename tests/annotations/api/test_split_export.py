@@ -5,12 +5,17 @@ from __future__ import annotations
 import csv
 import io
 import json
+import zipfile
 from datetime import timedelta
 
+import pyarrow.parquet as pq
 import pytest
+from django.core.files.uploadedfile import SimpleUploadedFile
 from django.utils import timezone
 
+from annotations.generation.generating import generate_pairs
 from annotations.models import ApiToken
+from annotations.splits.freezing import freeze_split
 
 
 def url_of(split, query="", world=None):
@@ -53,13 +58,49 @@ def test_text_without_part_and_source_is_refused_with_a_sentence(caller, split, 
     assert "one pair file" in str(response.json())
 
 
+def test_parquet_holds_the_rows_and_the_manifest(caller, split, annotator):
+    response = caller(url_of(split, "?as=parquet"), annotator, accept="text/html")
+    table = pq.read_table(io.BytesIO(b"".join(response.streaming_content)))
+    rows = table.to_pylist()
+    assert [row["utterance"] for row in rows][2] == "=HYPERLINK the <room>"
+    manifest = json.loads(table.schema.metadata[b"gpsr-workbench"])
+    path = url_of(split).replace("export", "manifest")
+    assert manifest == caller(path, annotator).json()
+    assert (manifest["examples"], manifest["criterion"]) == (3, "command")
+    assert manifest["counts"]["generated"] == {"train": 2, "validation": 0, "test": 1}
+    assert response["X-Content-Hash"] == manifest["content_hash"] == split.content_hash
+    assert manifest["code_version"].startswith("0.")
+    part = caller(f"{path}?part=train", annotator).json()
+    assert (part["examples"], part["chosen"]) == (2, {"part": "train"})
+
+
+def test_an_archive_of_pair_files_comes_back_byte_for_byte(caller, tiny_world, admin, client):
+    generate_pairs(tiny_world)
+    first = freeze_split(tiny_world, "first", "logical_form", proportions=(0.5, 0, 0.5))
+    packed = b"".join(caller(url_of(first, "?as=zip"), admin).streaming_content)
+    _, key = ApiToken.issue(admin, "notebook")
+    imported = client.post(
+        "/api/v1/worlds/home/import/pairs/",
+        {"name": "again", "archive": SimpleUploadedFile("pairs.zip", packed)},
+        headers={"authorization": f"Bearer {key}"},
+    )
+    assert imported.status_code == 200, imported.json()
+    second = tiny_world.splits.get(name=imported.json()["report"]["splits"]["logical_form"])
+    before = zipfile.ZipFile(io.BytesIO(packed))
+    after = b"".join(caller(url_of(second, "?as=zip"), admin).streaming_content)
+    names = [name for name in before.namelist() if name != "manifest.json"]
+    assert names == ["gen_logical/test.txt", "gen_logical/train.txt"]
+    for name in names:
+        assert zipfile.ZipFile(io.BytesIO(after)).read(name) == before.read(name)
+
+
 def test_csv_never_starts_a_cell_with_a_formula(caller, split, annotator):
     text = text_of(caller(url_of(split, "?as=csv&part=train"), annotator))
     rows = list(csv.DictReader(io.StringIO(text)))
     assert [row["utterance"] for row in rows] == ["go to the <room>", "'=HYPERLINK the <room>"]
 
 
-@pytest.mark.parametrize("query", ["?as=parquet", "?part=dev", "?source=gen"])
+@pytest.mark.parametrize("query", ["?as=xlsx", "?part=dev", "?source=gen"])
 def test_an_unknown_value_is_refused(caller, split, annotator, query):
     assert caller(url_of(split, query), annotator).status_code == 400
 

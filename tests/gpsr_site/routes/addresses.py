@@ -227,6 +227,7 @@ KEYS: dict[str, RouteKeys] = {
         (
             *("split", "near_duplicates", "split_changes", "split_renew", "split_runs"),
             *("api:split-export", "api:split", "api:split-renew", "api:split-examples"),
+            "api:split-manifest",
         ),
         pk_of(split),
     ),

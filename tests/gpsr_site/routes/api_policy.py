@@ -16,7 +16,7 @@ READABLE = (
     *("entities", "entity", "predicates", "predicate", "task-categories", "productions"),
     *("production", "templates", "template", "commands", "command", "forms", "form"),
     *("paraphrases", "paraphrase", "utterances", "utterance", "splits", "split"),
-    *("split-examples", "split-export", "audit-findings", "audit-finding"),
+    *("split-examples", "split-export", "split-manifest", "audit-findings", "audit-finding"),
     *("work-items", "work-item", "world"),
     *("runs", "run", "run-log", "run-curves", "run-checkpoints", "predictions", "candidates"),
     *("results", "evaluations", "evaluation", "reviews", "review", "answer-review"),

@@ -1,0 +1,115 @@
+"""Requests that Schemathesis makes from the schema: whatever is sent, the server has no error.
+
+``TEST_SCHEMA_CASES`` says how many, all operations together.
+"""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from typing import Any
+
+import pytest
+import yaml
+from django.test import Client
+from django.urls import Resolver404, resolve
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from annotations.models import ApiToken
+from tests.gpsr_site.routes.addresses import KEYS
+
+CASES = int(os.environ.get("TEST_SCHEMA_CASES", "120"))
+NAMES_IN_THE_SCHEMA = {"pk": "id"}
+WRITES = {"post": 4, "patch": 4, "delete": 1, "get": 2}  # how often one is tried beside the others
+# What is asked of the database is rolled back; what a worker, the parse server or the disk would do is not.
+LEFT_OUT = {"/api/v1/worlds/{world}/parse/"}
+
+
+@pytest.fixture
+def operations():
+    schemathesis = pytest.importorskip("schemathesis")
+    described = yaml.safe_load(Client().get("/api/v1/schema/").content)
+    results = schemathesis.openapi.from_dict(described).get_all_operations()
+    found = [result.ok() for result in results]
+    return [each for each in found if not each.path.startswith(tuple(LEFT_OUT))]
+
+
+def test_no_request_is_an_error_of_the_server(operations, sample, admin, monkeypatch):
+    monkeypatch.setattr("annotations.background.waking.send_wake_up", lambda queue: None)
+    monkeypatch.setattr("annotations.jobs.requesting.keep_uploads", lambda uploads: None)
+    _, key = ApiToken.issue(admin, "robot")
+    client = Client(raise_request_exception=False)
+    share = CASES / sum(WRITES[each.method] for each in operations)
+    statuses: Counter[int] = Counter()
+    for operation in operations:
+        count = max(1, round(share * WRITES[operation.method]))
+        statuses += ask(client, operation, count, sample, key)
+    assert sum(statuses.values()) >= min(CASES, len(operations))
+    assert {200, 400, 404} <= set(statuses), dict(statuses)
+
+
+def ask(client: Client, operation: Any, count: int, sample: Any, key: str) -> Counter[int]:
+    """Send ``count`` requests of one operation, most of them about rows that are there."""
+    statuses: Counter[int] = Counter()
+    mostly = st.sampled_from([True, True, True, False])
+
+    @settings(
+        max_examples=count,
+        database=None,
+        deadline=None,
+        derandomize=True,
+        suppress_health_check=list(HealthCheck),
+    )
+    @given(st.tuples(operation.as_strategy(), mostly, mostly))
+    def send(drawn: Any) -> None:
+        case, is_there, is_present = drawn
+        if is_there:
+            point_to_rows(case, sample)
+        sent = case.as_transport_kwargs(base_url="http://testserver")
+        headers = {name: value for name, value in sent["headers"].items() if is_header(value)}
+        headers |= {"Authorization": f"Bearer {key}"} | ({"If-Match": "*"} if is_present else {})
+        answer = send_request(client, case, sent, headers)
+        if answer.streaming:
+            b"".join(answer.streaming_content)
+        assert answer.status_code < 500, f"{case.as_curl_command()}\n{answer.content[:2000]!r}"
+        statuses[answer.status_code] += 1
+
+    send()
+    return statuses
+
+
+def send_request(client: Client, case: Any, sent: dict[str, Any], headers: dict[str, str]) -> Any:
+    """Send what was drawn, with the body as a client of HTTP writes it."""
+    import requests
+
+    options = {name: sent[name] for name in ("params", "json", "data", "files") if name in sent}
+    prepared = requests.Request(case.method, sent["url"], headers=headers, **options).prepare()
+    body = prepared.body or b""
+    body = body.encode() if isinstance(body, str) else bytes(body)
+    kind = prepared.headers.get("Content-Type", "application/json")
+    return client.generic(case.method, prepared.path_url, body, kind, headers=headers)
+
+
+def is_header(value: Any) -> bool:
+    return isinstance(value, str) and value.isascii() and value.isprintable()
+
+
+def point_to_rows(case: Any, sample: Any) -> None:
+    """Let the address lead to a row of the sample world."""
+    values = {"world": sample.world.name}
+    try:
+        name = resolve(numbered(case.path)).view_name
+    except Resolver404:
+        return
+    keys = KEYS[name](sample) if name in KEYS else {}
+    values |= {NAMES_IN_THE_SCHEMA.get(each, each): value for each, value in keys.items()}
+    known = {each: value for each, value in values.items() if f"{{{each}}}" in case.path}
+    case.path_parameters = {**(case.path_parameters or {}), **known}
+
+
+def numbered(path: str) -> str:
+    """Return an address of the form of ``path``."""
+    for name, value in (("world", "home"), ("id", "1"), ("run", "1"), ("kind", "template")):
+        path = path.replace(f"{{{name}}}", value)
+    return path
