@@ -3,13 +3,13 @@ import { copyForm } from "./forms.js";
 
 const TYPING = "input:not([type=checkbox], [type=radio]), textarea, select, [contenteditable], .cm-editor";
 
+// A row that only goes on with the one above it, or says that there is none, cannot have the focus.
 const rows = () =>
-  [...document.querySelectorAll("table[data-rows] > tbody > tr")].filter((row) => row.offsetParent);
+  [...document.querySelectorAll("table[data-rows] > tbody > tr[tabindex]")].filter((row) => row.offsetParent);
 const currentRow = () => document.activeElement?.closest?.("table[data-rows] > tbody > tr");
 
 function focusRow(row) {
   if (!row) return;
-  row.tabIndex = -1;
   row.focus({ preventScroll: true });
   row.scrollIntoView({ block: "nearest" });
 }

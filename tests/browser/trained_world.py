@@ -48,9 +48,9 @@ def train_three(world: World, published: Path, folder: Path) -> list[TrainingRun
 
 
 def cut(published: Path, folder: Path) -> Path:
-    """Copy the first pairs by command, and where these paraphrases come from. Returns the folder."""
+    """Copy the first pairs of each split, and where these paraphrases come from. Returns the folder."""
     said = set()
-    for source in ("gen", "para"):
+    for source in ("gen", "para", "gen_logical", "para_logical"):
         (folder / source).mkdir(parents=True)
         for part, most in PAIRS.items():
             lines = _lines(published / source / f"{part}.txt")[: PAIR * most]
