@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from django.conf import settings
 from django.http import HttpRequest
 from django.urls import ResolverMatch, reverse
 from django.utils.functional import SimpleLazyObject
@@ -172,6 +173,7 @@ def frame(request: HttpRequest) -> dict[str, Any]:
     duties = getattr(request, "duties", frozenset())
     return {
         "world": world,
+        "sso": settings.SSO_NAME,
         "can": {duty.value: duty in duties for duty in Duty},
         "worlds": World.objects.visible_to(request.user),
         "rail": SimpleLazyObject(lambda: list(_rail(request, world))) if world else [],

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 from ipaddress import ip_network
 from pathlib import Path
+from urllib.parse import urlsplit
 
 import environ
 from csp.constants import NONCE, NONE, SELF
@@ -212,6 +213,43 @@ LOGIN_URL = "login"
 LOGIN_REDIRECT_URL = "home"
 LOGOUT_REDIRECT_URL = "login"
 
+# Single sign-on by OpenID Connect, where a server is named. Needs the extra "sso" of pyproject.toml.
+SSO_SERVER_URL = env.str("SSO_SERVER_URL", default="")
+SSO_NAME = env.str("SSO_NAME", default="single sign-on") if SSO_SERVER_URL else ""
+if SSO_SERVER_URL:
+    INSTALLED_APPS += [
+        "allauth",
+        "allauth.account",
+        "allauth.socialaccount",
+        "allauth.socialaccount.providers.openid_connect",
+    ]
+    MIDDLEWARE.append("allauth.account.middleware.AccountMiddleware")
+    AUTHENTICATION_BACKENDS = [
+        "django.contrib.auth.backends.ModelBackend",
+        "allauth.account.auth_backends.AuthenticationBackend",
+    ]
+    ACCOUNT_ADAPTER = "gpsr_site.single_sign_on.Accounts"
+    ACCOUNT_EMAIL_VERIFICATION = "none"
+    ACCOUNT_SIGNUP_FIELDS = ["username*"]
+    ACCOUNT_UNIQUE_EMAIL = False
+    SOCIALACCOUNT_ADAPTER = "gpsr_site.single_sign_on.SignOn"
+    SOCIALACCOUNT_AUTO_SIGNUP = True
+    SOCIALACCOUNT_OPENID_CONNECT_URL_PREFIX = ""
+    SOCIALACCOUNT_PROVIDERS = {
+        "openid_connect": {
+            "OAUTH_PKCE_ENABLED": True,
+            "APPS": [
+                {
+                    "provider_id": "site",
+                    "name": SSO_NAME,
+                    "client_id": env.str("SSO_CLIENT_ID"),
+                    "secret": env.str("SSO_CLIENT_SECRET"),
+                    "settings": {"server_url": SSO_SERVER_URL},
+                }
+            ],
+        }
+    }
+
 # --- the API ------------------------------------------------------------------------------------
 
 REST_FRAMEWORK = {
@@ -282,6 +320,10 @@ CONTENT_SECURITY_POLICY = {
         "frame-ancestors": [NONE],
     }
 }
+if SSO_SERVER_URL:  # browsers look at where a form leads in the end
+    CONTENT_SECURITY_POLICY["DIRECTIVES"]["form-action"].append(
+        "{0.scheme}://{0.netloc}".format(urlsplit(SSO_SERVER_URL))
+    )
 X_FRAME_OPTIONS = "DENY"
 CSRF_FAILURE_VIEW = "gpsr_site.web.errors.csrf_failure"
 SECURE_REFERRER_POLICY = "same-origin"

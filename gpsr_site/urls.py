@@ -1,5 +1,6 @@
 """All pages and routes."""
 
+from django.conf import settings
 from django.contrib import admin
 from django.contrib.auth.views import LogoutView
 from django.urls import include, path
@@ -47,6 +48,9 @@ urlpatterns = [
     path("api/v1/", include((API_ROUTES, "api"))),
     path("admin/", admin.site.urls),
 ]
+
+if settings.SSO_SERVER_URL:
+    urlpatterns.append(path("sso/", include("allauth.socialaccount.providers.openid_connect.urls")))
 
 handler400 = "gpsr_site.web.errors.bad_request"
 handler403 = "gpsr_site.web.errors.permission_denied"

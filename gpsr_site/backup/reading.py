@@ -73,7 +73,10 @@ def _refuse_other_versions(manifest: Manifest) -> None:
                 f"{here.get(app)}. Install that version, restore, then upgrade."
             )
     if set(manifest.tables) != {table.name for table in tables()}:
-        raise ValueError("The backup has other tables than this version.")
+        raise ValueError(
+            "The backup has other tables than this installation. Single sign-on has to be set up in "
+            "both, or in neither."
+        )
 
 
 def _refuse_to_overwrite() -> None:

@@ -18,6 +18,8 @@ from django.db.models import JSONField
 from annotations.models import LogInSession
 
 APPS = ("annotations", "parser_service")
+# Of single sign-on, where it is set up.
+SIGN_ON_APPS = ("account", "socialaccount")
 # Log-ins end with the installation, and permissions of Django's own have other keys in each database.
 LEFT_OUT = ("User_groups", "User_user_permissions")
 SNAPSHOT = "snapshot"
@@ -68,7 +70,8 @@ def tables() -> list[Table]:
     """Return the tables of a backup, by name."""
     found = [
         Table(model)
-        for app in APPS
+        for app in (*APPS, *SIGN_ON_APPS)
+        if app in apps.app_configs
         for model in apps.get_app_config(app).get_models(include_auto_created=True)
         if model.__name__ not in LEFT_OUT and model is not LogInSession
     ]

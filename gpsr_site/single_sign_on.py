@@ -1,0 +1,83 @@
+"""Single sign-on by django-allauth, where the environment names a server; nothing else imports this.
+
+It opens no door of its own: somebody new needs an invitation, somebody who has an account connects it
+once, on the page of the account, and logs in by it from then on.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from allauth.account.adapter import DefaultAccountAdapter
+from allauth.core.exceptions import ImmediateHttpResponse
+from allauth.socialaccount.adapter import DefaultSocialAccountAdapter
+from allauth.socialaccount.models import SocialLogin
+from django.http import HttpRequest, HttpResponse
+from django.shortcuts import render
+from django.urls import Resolver404, resolve, reverse
+
+from annotations.models import AuditEntry, Invitation, User
+from annotations.people.sessions import remember_device
+
+NO_ACCOUNT = (
+    "Nobody here is connected to this sign-on. If you have an account, log in with its password and "
+    "connect it under Account; if not, ask for an invitation."
+)
+CLOSED = "This account is closed. Ask an administrator of this installation."
+FAILED = "The sign-on did not succeed. Try again, or log in with a password."
+
+
+class Accounts(DefaultAccountAdapter):
+    """What happens when somebody has signed on."""
+
+    def is_open_for_signup(self, request: HttpRequest) -> bool:
+        """No account is made but by ``SignOn``."""
+        return False
+
+    def login(self, request: HttpRequest, user: User) -> None:
+        super().login(request, user)
+        remember_device(request)
+        name = user.get_username()
+        AuditEntry.objects.create(who=user, who_name=name, what="log in", subject="single sign-on")
+
+    def respond_user_inactive(self, request: HttpRequest, user: User) -> HttpResponse:
+        return refusal(request, CLOSED)
+
+    def add_message(self, *args: Any, **kwargs: Any) -> None:
+        """Say nothing: the page that follows shows who one is."""
+
+    def send_mail(self, *args: Any, **kwargs: Any) -> None:
+        """Send nothing: this site sends no mail."""
+
+
+class SignOn(DefaultSocialAccountAdapter):
+    """Who may come in."""
+
+    def is_open_for_signup(self, request: HttpRequest, sociallogin: SocialLogin) -> bool:
+        """Return True for somebody who has come by the link of an open invitation; refuse all others."""
+        if _invitation_of(sociallogin) is None:
+            raise ImmediateHttpResponse(refusal(request, NO_ACCOUNT))
+        return True
+
+    def get_connect_redirect_url(self, request: HttpRequest, socialaccount: Any) -> str:
+        return reverse("account")
+
+    def on_authentication_error(self, request: HttpRequest, *args: Any, **kwargs: Any) -> None:
+        raise ImmediateHttpResponse(refusal(request, FAILED))
+
+    def send_notification_mail(self, *args: Any, **kwargs: Any) -> None:
+        """Send nothing."""
+
+
+def _invitation_of(sociallogin: SocialLogin) -> Invitation | None:
+    """Return the open invitation whose page the sign-on was begun on."""
+    try:
+        match = resolve(sociallogin.state.get("next") or "")
+    except Resolver404:
+        return None
+    return Invitation.objects.for_key(match.kwargs["key"]) if match.url_name == "join" else None
+
+
+def refusal(request: HttpRequest, sentence: str) -> HttpResponse:
+    """Return the page that says why somebody does not come in."""
+    return render(request, "annotations/join.html", {"refusal": sentence}, status=403)
