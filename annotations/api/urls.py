@@ -9,7 +9,7 @@ from rest_framework.permissions import AllowAny
 from annotations.api.corpus import commands, exports, paraphrases, splits, utterances
 from annotations.api.description import entities, history, predicates, productions, templates
 from annotations.api.jobs import imports, jobs
-from annotations.api.queueing import audit, work_items
+from annotations.api.queueing import audit, comments, work_items
 from annotations.api.worlds import OneWorld, Worlds
 
 app_name = "api"
@@ -58,6 +58,9 @@ corpus = [
 ]
 
 queueing = [
+    path("comments/<slug:kind>/<int:pk>/", comments.Comments.as_view(), name="comments"),
+    path("comments/<int:pk>/", comments.OneComment.as_view(), name="comment"),
+    path("comments/<int:pk>/restore/", comments.RestoreComment.as_view(), name="comment-restore"),
     path("audit-findings/", audit.AuditFindings.as_view(), name="audit-findings"),
     path("audit-findings/<int:pk>/", audit.OneAuditFinding.as_view(), name="audit-finding"),
     path("work-items/", work_items.WorkItems.as_view(), name="work-items"),

@@ -12,18 +12,22 @@ from rest_framework import serializers
 from rest_framework.request import Request
 from rest_framework.response import Response
 
+from annotations.api.jobs.jobs import JobSerializer
 from annotations.api.once import once
 from annotations.api.problems import Conflict, Refused, refusal_of_form
 from annotations.api.reading import Fields, FiniteField
 from annotations.api.routes import RowRoute, RowsRoute
 from annotations.models import Duty, Scope
+from parser_service.analysing.state import analysis_of
 from parser_service.filters import RunFilters
 from parser_service.models import Checkpoint, EpochMetric, RunEvent, TrainingRun
 from parser_service.parsers.conditions import Protocol, TrainSources
 from parser_service.parsers.registry import PARSERS, config_fields
 from parser_service.runs import lifecycle
+from parser_service.runs.analysis_requests import request_analysis
+from parser_service.runs.learning_curve import MOST_SEEDS as MOST_CURVE_SEEDS
 from parser_service.runs.requesting import LARGEST_SEED, LEAST_SHARE, MOST_SEEDS
-from parser_service.runs.starting import TooMany, start_again, start_runs
+from parser_service.runs.starting import TooMany, start_again, start_learning_curve, start_runs
 from parser_service.views.runs.run_forms import PREFIX, RunForm
 
 
@@ -151,6 +155,41 @@ class RetrainRun(RunVerb):
     def post(self, request: Request, **kwargs: object) -> Response:
         run = self.get_object()
         return self.answer_started([refusing(lambda: start_again(run, request.user))])
+
+
+class CurveSeeds(Fields):
+    """How many runs there are to be for each share, counting seeds up from that of the run."""
+
+    seeds = serializers.IntegerField(min_value=1, max_value=MOST_CURVE_SEEDS, default=1)
+
+
+class LearningCurve(RunVerb):
+    """Trains the run's configuration on shares of its training pairs, as far as that is not done."""
+
+    @extend_schema(
+        request=CurveSeeds, responses={201: StartedRunsSerializer, 200: StartedRunsSerializer}
+    )
+    @once
+    def post(self, request: Request, **kwargs: object) -> Response:
+        run, seeds = self.get_object(), self.read(CurveSeeds)["seeds"]
+        new = refusing(lambda: start_learning_curve(run, request.user, seeds))
+        return self.answer_started([(each, True) for each in new])
+
+
+class Analyse(RunVerb):
+    """Lets a worker analyse the errors of a run, again where that was done; the answer is its job."""
+
+    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.REVIEW}
+    scopes: ClassVar[dict[str, Scope]] = {}
+
+    @extend_schema(request=None, responses={202: JobSerializer})
+    def post(self, request: Request, **kwargs: object) -> Response:
+        analysis = analysis_of(self.get_object())
+        if not analysis.is_possible:
+            run = analysis.run
+            raise Conflict(f"Run {run.pk} is {run.status}: only one that succeeded is analysed.")
+        job = request_analysis(analysis.run, request.user, again=analysis.is_complete)
+        return Response(JobSerializer(job).data, status=HTTPStatus.ACCEPTED)
 
 
 def refusal_of_run(form: RunForm) -> Refused:

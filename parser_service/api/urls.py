@@ -14,6 +14,13 @@ of_runs = [
     path("runs/<int:pk>/", runs.OneRun.as_view(), name="run"),
     path("runs/<int:pk>/cancel/", runs.CancelRun.as_view(), name="run-cancel"),
     path("runs/<int:pk>/retrain/", runs.RetrainRun.as_view(), name="run-retrain"),
+    path("runs/<int:pk>/learning-curve/", runs.LearningCurve.as_view(), name="learning-curve"),
+    path("runs/<int:pk>/analysis/", runs.Analyse.as_view(), name="run-analyse"),
+    path(
+        "runs/<int:pk>/predictions/send/",
+        predictions.SendPredictions.as_view(),
+        name="predictions-send",
+    ),
     path("runs/<int:pk>/log/", runs.RunLog.as_view(), name="run-log"),
     path("runs/<int:pk>/curves/", runs.RunCurves.as_view(), name="run-curves"),
     path("runs/<int:pk>/checkpoints/", runs.RunCheckpoints.as_view(), name="run-checkpoints"),

@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from django.db import transaction
+
 from annotations.models import User, World
 from annotations.people.rate_limits import STARTED_RUNS
 from annotations.splits.renewing import last_of
 from parser_service.models import TrainingRun
+from parser_service.runs.learning_curve import request_learning_curve
 from parser_service.runs.requesting import request_seeds, retrain
 
 Answer = tuple[TrainingRun, bool]
@@ -43,6 +46,23 @@ def start_again(run: TrainingRun, by: User) -> Answer:
     answer = retrain(run, newest, by)
     _count(by, 1)
     return answer
+
+
+def start_learning_curve(run: TrainingRun, by: User, n_seeds: int = 1) -> list[TrainingRun]:
+    """Request the missing runs of a learning curve, all or none, and return them.
+
+    Raises TooMany, and ValueError as ``request_learning_curve`` does.
+    """
+    with transaction.atomic():
+        new = request_learning_curve(run, by, n_seeds=n_seeds)
+        left = STARTED_RUNS.left(str(by.pk))
+        if len(new) > left:
+            raise TooMany(
+                f"This learning curve needs {len(new)} more runs, and you may start {left} within this "
+                "hour. Try again later."
+            )
+    _count(by, len(new))
+    return new
 
 
 def _require_left(by: User, asked: int) -> None:

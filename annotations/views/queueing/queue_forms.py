@@ -14,12 +14,13 @@ from annotations.models import Label, User, Verdict, World
 from annotations.queueing import DOUBLE_KINDS
 
 MOST_ASSIGNED = 100
+LONGEST_REASON = 200
 
 
 class AskForm(forms.Form):
     """Why somebody is to look at something."""
 
-    reason = forms.CharField(max_length=200)
+    reason = forms.CharField(max_length=LONGEST_REASON)
 
 
 class AssignForm(forms.Form):

@@ -5,21 +5,20 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from django.contrib import messages
-from django.db import transaction
 from django.http import HttpRequest, HttpResponse, JsonResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.views.decorators.cache import never_cache
 
 from annotations.language.english import say_count
-from annotations.models import Duty, Split, User, World
+from annotations.models import Duty, Split, World
 from annotations.people.access import WRITE, world_view
-from annotations.people.rate_limits import STARTED_RUNS
 from parser_service.models import TrainingRun
 from parser_service.parsers.conditions import SETTINGS, Protocol, Setting
 from parser_service.results.choices import PARTS, default_part, scored_splits
 from parser_service.results.learning_curves import LearningCurves, curves_url, learning_curves
 from parser_service.results.measures import Measure
-from parser_service.runs.learning_curve import MOST_SEEDS, request_learning_curve
+from parser_service.runs.learning_curve import MOST_SEEDS
+from parser_service.runs.starting import start_learning_curve
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +60,7 @@ def learning_curve_start(request: HttpRequest, world: World, pk: int) -> HttpRes
     """Start the missing runs of a run's learning curve, and show it."""
     run = get_object_or_404(TrainingRun, world=world, pk=pk)
     try:
-        new = start(run, request.user, n_seeds_of(request.POST.get("seeds", "")))
+        new = start_learning_curve(run, request.user, n_seeds_of(request.POST.get("seeds", "")))
     except ValueError as error:
         messages.error(request, str(error))
     else:
@@ -77,22 +76,6 @@ def learning_curve_start(request: HttpRequest, world: World, pk: int) -> HttpRes
 def n_seeds_of(text: str) -> int:
     """Return how many seeds are asked for: one unless ``text`` is a number up to ``MOST_SEEDS``."""
     return next((n for n in range(1, MOST_SEEDS + 1) if text == str(n)), 1)
-
-
-def start(run: TrainingRun, by: User, n_seeds: int = 1) -> list[TrainingRun]:
-    """Request the missing runs. Raises ValueError where they are refused, or too many for an hour."""
-    key = str(by.pk)
-    with transaction.atomic():
-        new = request_learning_curve(run, by, n_seeds=n_seeds)
-        left = STARTED_RUNS.left(key)
-        if len(new) > left:
-            raise ValueError(
-                f"This learning curve needs {len(new)} more runs, and you may start {left} within this "
-                "hour. Try again later."
-            )
-    for _ in new:
-        STARTED_RUNS.take(key)
-    return new
 
 
 def tested_with(run: TrainingRun) -> list[str]:

@@ -21,7 +21,7 @@ READABLE = (
     *("runs", "run", "run-log", "run-curves", "run-checkpoints", "predictions", "candidates"),
     *("results", "evaluations", "evaluation", "reviews", "review", "answer-review"),
     *("slices", "slice", "error-categories", "error-category"),
-    *("jobs", "job", "download", "history", "deleted"),
+    *("jobs", "job", "download", "history", "deleted", "comments", "comment"),
 )
 # Lists that annotators add to, and rows that they change and delete.
 ADDED_BY_ANNOTATORS = ("entities", "predicates", "productions", "templates", "utterances", "splits")
@@ -45,6 +45,11 @@ API_POLICY = [
     Rule("api:worlds", NO_TOKEN, YES, YES, YES, YES),
     *(Rule(f"api:{name}", *READ) for name in READABLE),
     *(Rule(f"api:{name}", *annotators(NO_JSON), method="post") for name in ADDED_BY_ANNOTATORS),
+    # Every member comments; what somebody said is their own, and admins may take it away.
+    Rule("api:comments", NO_TOKEN, NOWHERE, *[NO_JSON] * 3, method="post"),
+    Rule("api:comment", NO_TOKEN, NOWHERE, NO, NO, NO, method="patch"),
+    Rule("api:comment", NO_TOKEN, NOWHERE, NO, NO, NO_VERSION, method="delete"),
+    Rule("api:comment-restore", NO_TOKEN, NOWHERE, YES, YES, YES, method="post"),  # it is there
     Rule("api:generate", *annotators(YES), method="post"),
     Rule("api:history", *annotators(NO_JSON), method="post"),
     Rule("api:rename", *annotators(NO_VERSION), method="post"),
@@ -54,7 +59,7 @@ API_POLICY = [
     # What reviewers say, what admins decide
     *(
         Rule(f"api:{name}", *reviewers(NO_JSON), method="post")
-        for name in ("slices", "answer-doubt")
+        for name in ("slices", "answer-doubt", "predictions-send")
     ),
     Rule("api:answer-review", *reviewers(NO_VERSION), method="patch"),
     *(Rule("api:slice", *reviewers(NO_VERSION), method=method) for method in ("patch", "delete")),
@@ -66,6 +71,8 @@ API_POLICY = [
         Rule("api:error-category", *admins(NO_VERSION), method=method)
         for method in ("patch", "delete")
     ),
+    Rule("api:learning-curve", *admins(NO_JSON), method="post"),
+    Rule("api:run-analyse", *reviewers(202), method="post"),
     Rule("api:run-cancel", *admins(CLASH), method="post"),  # it has ended
     Rule("api:run-retrain", *admins(400), method="post"),  # there is no newer split
     *(
@@ -91,8 +98,9 @@ API_POLICY = [
 
 API_ONLY_POSTED = {"api:work-item-finish", "api:work-item-give-back", "api:split-renew"} | {
     *("api:run-cancel", "api:run-retrain", "api:answer-doubt", "api:error-category-move"),
-    *("api:job-cancel", "api:job-answer", "api:rename"),
+    *("api:job-cancel", "api:job-answer", "api:rename", "api:comment-restore"),
+    *("api:learning-curve", "api:run-analyse", "api:predictions-send"),
     *("api:dialogue-answer", "api:dialogue-keep"),
 }
 
-API_READ_AND_POSTED = {"api:history"}
+API_READ_AND_POSTED = {"api:history", "api:comments"}

@@ -6,9 +6,11 @@ import pytest
 from django.test import Client
 from django.urls import reverse
 
+from annotations.models import ApiToken, Scope
 from tests.gpsr_site.routes.addresses import ALL_ROUTES, API_VIEWS, ROUTES_OF_ROWS, address
 from tests.gpsr_site.routes.policy import (
     LOG_IN,
+    NO,
     ONLY_POSTED,
     PEOPLE,
     POLICY,
@@ -74,3 +76,14 @@ def test_accounts_are_the_business_of_superusers(superuser, admin, client):
     admin.save()
     client.force_login(admin)
     assert client.get(reverse("admin:index")).status_code == LOG_IN
+
+
+def test_a_token_that_reads_changes_nothing(sample, admin, client):
+    _, key = ApiToken.issue(admin, "notebook", scope=Scope.READ)
+    headers = {"authorization": f"Bearer {key}"}
+    for rule in POLICY:
+        view = API_VIEWS.get(rule.name)
+        if view is None or view.__dict__.get("scopes", {}).get("POST") == Scope.READ:
+            continue
+        answer = getattr(client, rule.method)(address(rule.name, sample), headers=headers)
+        assert answer.status_code == (YES if rule.method == "get" else NO), rule

@@ -22,8 +22,8 @@ from tests.gpsr_site.routes.addresses import KEYS
 CASES = int(os.environ.get("TEST_SCHEMA_CASES", "120"))
 NAMES_IN_THE_SCHEMA = {"pk": "id"}
 WRITES = {"post": 4, "patch": 4, "delete": 1, "get": 2}  # how often one is tried beside the others
-# What is asked of the database is rolled back; what a worker, the parse server or the disk would do is not.
-LEFT_OUT = {"/api/v1/worlds/{world}/parse/"}
+# What the parse server answers, which is away here: 503.
+LEFT_OUT = ("/api/v1/worlds/{world}/parse/", "/api/v1/worlds/{world}/dialogues/")
 
 
 @pytest.fixture
@@ -32,7 +32,7 @@ def operations():
     described = yaml.safe_load(Client().get("/api/v1/schema/").content)
     results = schemathesis.openapi.from_dict(described).get_all_operations()
     found = [result.ok() for result in results]
-    return [each for each in found if not each.path.startswith(tuple(LEFT_OUT))]
+    return [each for each in found if not each.path.startswith(LEFT_OUT)]
 
 
 def test_no_request_is_an_error_of_the_server(operations, sample, admin, monkeypatch):

@@ -131,3 +131,47 @@ def test_slices_and_error_categories(call, sample):
     assert moved["position"] == odd.json()["position"] - 1
     assert call("delete", of_odd, if_match="*").status_code == 204
     assert call("delete", path, if_match="*").status_code == 204
+
+
+def test_a_run_is_analysed_its_curve_trained_and_its_answers_sent(call, sample):
+    path = f"runs/{sample.run.pk}/"
+    job = call("post", f"{path}analysis/")
+    assert (job.status_code, job.json()["kind"]) == (202, "analyse")
+    assert call("post", f"{path}analysis/").json()["id"] == job.json()["id"]
+    curve = call("post", f"{path}learning-curve/", {"seeds": 1})
+    shares = [run["train_share"] for run in curve.json()["runs"]]
+    assert (curve.status_code, shares) == (201, [0.1, 0.25, 0.5])
+    assert call("post", f"{path}learning-curve/", {}).json() == {"new": 0, "runs": []}
+    queued = call("get", f"runs/{curve.json()['runs'][0]['id']}/").json()["id"]
+    assert call("post", f"runs/{queued}/analysis/").status_code == 409
+    sent = call("post", f"{path}predictions/send/?outcome=wrong", {"reason": "odd"})
+    assert sent.json()["queued"] > 0, sent.json()
+    assert call("post", f"{path}predictions/send/", {"reason": ""}).status_code == 400
+
+
+def test_what_another_world_has_is_not_named_in_a_body(call, sample, other_sample):
+    wrong = sample.run.predictions.best().filter(is_exact_match=False).first()
+    answer = f"runs/{sample.run.pk}/examples/"
+    elsewhere = {
+        "runs/": {"split": other_sample.split.pk, "parser": "knn"},
+        "error-categories/": {"name": "Odd", "slice": slice_in(other_sample).pk},
+    }
+    for path, sent in elsewhere.items():
+        assert call("post", path, sent).status_code == 400, path
+    of_others = f"{answer}{other_sample.example.pk}/"
+    assert call("get", f"{of_others}review/").status_code == 404
+    assert call("post", f"{of_others}doubt/", {"reason": "odd"}).status_code == 404
+    name = other_sample.world.error_categories.create(code="theirs", name="x", position=1).code
+    sent = {"category": name}
+    own = f"{answer}{wrong.example_id}/review/"
+    assert call("patch", own, sent, if_match="*").status_code == 400
+    predictions = f"runs/{sample.run.pk}/predictions/"
+    assert call("get", f"{predictions}?slice={slice_in(other_sample).pk}").status_code == 400
+    first = call("get", "error-categories/").json()["results"][0]["id"]
+    theirs = other_sample.world.error_categories.get().pk
+    moved = call("delete", f"error-categories/{first}/?move_to={theirs}", if_match="*")
+    assert moved.status_code == 400
+
+
+def slice_in(sample):
+    return sample.world.slices.get_or_create(name="theirs", query="outcome=wrong")[0]
