@@ -56,7 +56,10 @@ PLACES = (
         "ontology_problems",
         "remark",
         "to read",
-        below=("entity", "entity_new", "entities_new", "predicates", "predicate", "predicate_new"),
+        below=(
+            *("entity", "entity_new", "entities_new", "offered_entities"),
+            *("predicates", "predicate", "predicate_new", "robot"),
+        ),
     ),
     Place(
         "Grammar",
@@ -146,7 +149,7 @@ PLACES = (
         waiting="promotions_proposed",
         noun="run",
         reason="proposed for promotion",
-        below=("promotions",),
+        below=("promotions", "dialogues", "dialogue"),
     ),
 )
 

@@ -8,8 +8,20 @@ from parser_service.views.results import compare, reports, results, slices
 from parser_service.views.reviewing import predictions, review, review_categories, sending
 from parser_service.views.runs import learning_curves, retraining, run_new, runs
 from parser_service.views.serving import playground, promotions
+from parser_service.views.talking import dialogues, offered, robot
 
 urlpatterns = [
+    path("dialogue/", dialogues.dialogues, name="dialogues"),
+    path("dialogue/<int:pk>/", dialogues.dialogue, name="dialogue"),
+    path("dialogue/<int:pk>/keep/", dialogues.dialogue_keep, name="dialogue_keep"),
+    path("ontology/offered/", offered.offered_entities, name="offered_entities"),
+    path(
+        "ontology/offered/<int:pk>/decide/",
+        offered.offered_entity_decide,
+        name="offered_entity_decide",
+    ),
+    path("predicates/robot/", robot.robot, name="robot"),
+    path("predicates/robot/<str:name>", robot.plan_schema_file, name="plan_schema"),
     path("label/", labelling.label_page, name="label"),
     path("label/item/", labelling.label_item, name="label_item"),
     path("label/send/", labelling.label_send, name="label_send"),

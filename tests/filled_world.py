@@ -7,6 +7,7 @@ from annotations.background.progress import UNWATCHED
 from annotations.commenting import SUBJECTS, add_comment
 from annotations.editing.edits import add, change, delete
 from annotations.labelling import collect
+from annotations.language.dialogue import Offer
 from annotations.models import (
     AuditEntry,
     Entity,
@@ -28,6 +29,8 @@ from annotations.queueing import answer, set_share
 from annotations.queueing.sources import refill
 from parser_service.analysing.carrying_out import analyse
 from parser_service.analysing.trying import ask
+from parser_service.conversing.offering import offer, refuse
+from parser_service.conversing.talking import reply, start
 from parser_service.models import Promotion, PromotionState, Slice, TrainingRun
 from parser_service.promotion import promote
 from parser_service.reviewing.categories import ensure_categories
@@ -75,6 +78,7 @@ def leave_traces(world: World, annotator: User, admin: User) -> None:
     _analyse(world, annotator)
     _promote(world, admin)
     _review(world, annotator, admin)
+    _talk(world, annotator)
     Job.objects.create(
         world=world,
         world_name=world.name,
@@ -112,6 +116,18 @@ def _promote(world: World, admin: User) -> None:
             state=PromotionState.PROPOSED,
             reason="Trained after the corpus changed.",
         )
+
+
+def _talk(world: World, annotator: User) -> None:
+    """Let somebody ask for what nobody knows, and agree; let another word wait and one be refused."""
+    form = '( bring ( lambda $1 e ( is_a $1 " <object> " ) ) )'
+    parsed = {"candidates": [{"form": form}], "is_unknown": False}
+    for answers in (["new", "yes"], []):
+        row = start(world, "bring me the flurb", annotator, lambda *_: parsed)
+        for each in answers:
+            row = reply(row, each)
+    refuse(offer(world, Offer("object", "glim"), "where is the glim"), annotator)
+    offer(world, Offer("object", "tea", "brew"), "bring me the brew")
 
 
 def _review(world: World, *reviewers: User) -> None:

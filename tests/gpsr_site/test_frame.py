@@ -116,6 +116,7 @@ def test_every_page_of_a_world_belongs_to_one_entry():
     parts |= {"example_send", "predictions_send", "paraphrase_label", "paraphrase_check"}
     parts |= {"split_changes", "split_renew", "split_runs", "run_retrain", "run_report"}
     parts |= {"compare_report"}
+    parts |= {"dialogue_keep", "offered_entity_decide", "plan_schema"}
     parts |= {"learning_curves_table", "learning_curves_data", "learning_curve_start"}
     parts |= {"playground_ask", "playground_wrong", "parser_state"}
     parts |= {"promotion_promote", "promotion_roll_back", "promotion_decline"}

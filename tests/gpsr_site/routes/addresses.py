@@ -10,7 +10,7 @@ from django.db.models import Model
 from django.urls import URLPattern, URLResolver, get_resolver, reverse
 from django.utils import timezone
 
-from annotations.language.dialogue import Phase, State
+from annotations.language.dialogue import Offer, Phase, State
 from annotations.models import (
     AuditDecision,
     AuditFinding,
@@ -25,7 +25,8 @@ from annotations.models import (
 )
 from annotations.models.people import digest_of
 from annotations.models.worlds import Role
-from parser_service.models import Dialogue, Promotion, PromotionState, Slice
+from parser_service.conversing.offering import offer
+from parser_service.models import Dialogue, OfferedEntity, Promotion, PromotionState, Slice
 from parser_service.reviewing.categories import ensure_categories
 from tests.sample_world import SampleWorld, comment_in, paraphrase_in
 
@@ -168,6 +169,10 @@ def dialogue(sample: SampleWorld) -> Dialogue:
     return Dialogue.objects.get_or_create(world=sample.world, utterance="dance", defaults=values)[0]
 
 
+def offered_entity(sample: SampleWorld) -> OfferedEntity:
+    return offer(sample.world, Offer("object", "flurb"), "bring me the flurb")
+
+
 def predicate(sample: SampleWorld) -> Model:
     return sample.world.predicates.first()
 
@@ -287,7 +292,15 @@ KEYS: dict[str, RouteKeys] = {
         ("audit_item", "audit_decide", "audit_check", "api:audit-finding"), pk_of(finding)
     ),
     "audit_take_back": pk_of(decision_of_nobody),
-    **dict.fromkeys(("api:dialogue", "api:dialogue-answer", "api:dialogue-keep"), pk_of(dialogue)),
+    **dict.fromkeys(
+        (
+            *("dialogue", "dialogue_keep"),
+            *("api:dialogue", "api:dialogue-answer", "api:dialogue-keep"),
+        ),
+        pk_of(dialogue),
+    ),
+    "offered_entity_decide": pk_of(offered_entity),
+    "plan_schema": lambda _: {"name": "plan.schema.json"},
     "queue_ask": pk_of(utterance, kind="utterance"),
     **dict.fromkeys(("slice_rename", "slice_delete", "api:slice"), pk_of(saved_slice)),
     "promotion_decline": pk_of(proposal),

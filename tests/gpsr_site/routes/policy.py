@@ -104,6 +104,11 @@ POLICY = [
             "review",
             "error_categories",
             "error_category",
+            "dialogues",
+            "dialogue",
+            "offered_entities",
+            "robot",
+            "plan_schema",
             "results",
             "results_table",
             "results_csv",
@@ -123,7 +128,13 @@ POLICY = [
             "progress",
         )
     ),
+    # Who may see a world may talk about its commands
+    Rule("dialogues", LOG_IN, NOWHERE, 422, 422, 422, method="post"),
+    Rule("dialogue", LOG_IN, NOWHERE, 422, 422, 422, method="post"),
     # What annotators write
+    Rule("dialogue_keep", LOG_IN, NOWHERE, GONE_ON, NO, GONE_ON, method="post"),
+    Rule("offered_entity_decide", LOG_IN, NOWHERE, GONE_ON, NO, GONE_ON, method="post"),
+    Rule("robot", LOG_IN, NOWHERE, GONE_ON, NO, GONE_ON, method="post"),
     Rule("template_new", *ANNOTATORS),
     Rule("template_completion", *ANNOTATORS),
     Rule("template_duplicate", LOG_IN, NOWHERE, GONE_ON, NO, GONE_ON, method="post"),
@@ -255,6 +266,7 @@ POLICY = [
 # Routes of rows that are not read, only changed.
 ONLY_POSTED = {
     *API_ONLY_POSTED,
+    *("dialogue_keep", "offered_entity_decide"),
     *("run_cancel", "member", "invitation_withdraw", "template_duplicate", "template_repair"),
     *("queue_ask", "queue_act", "queue_settle"),
     *("label_answer", "label_check", "label_mend", "label_take_back"),
@@ -271,6 +283,7 @@ ONLY_POSTED = {
 # Routes of rows that take a POST at the address where they are read.
 READ_AND_POSTED = {
     *API_READ_AND_POSTED,
+    "dialogue",
     "template",
     "entity",
     "production",
