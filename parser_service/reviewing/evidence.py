@@ -23,11 +23,11 @@ from parser_service.analysis.reading import read_or_none
 from parser_service.models import TrainingRun
 from parser_service.models.runs import Status
 from parser_service.reviewing.answers import Answered
-from parser_service.reviewing.texts import Texts
+from parser_service.reviewing.texts import Texts, head_of
 
 PREDICATE = re.compile(r"\( ([^\s()\"]+) ")  # in canonical corpus text
 ROWS_AT_ONCE = 500
-MOST_NEIGHBOURS = 4  # with different answers; the tree distance to each costs time
+MOST_NEIGHBOURS = 4  # the tree distance to each costs time
 DECIDED = {
     FindingStatus.CORRECTED: "Somebody has corrected this label since the split was frozen.",
     FindingStatus.EXCLUDED: "Somebody has excluded this pair from new splits.",
@@ -180,12 +180,15 @@ class _Neighbours:
         self._starts = np.searchsorted(both_ways[order], np.arange(len(numbers) + 1))
 
     def of(self, at: int) -> Iterator[Neighbour]:
-        """Yield the neighbours with another answer than number ``at``, one of each label and answer."""
-        answer, number = self._answers[at].answer, self._number_of[at]
+        """Yield the neighbours that could explain the answer number ``at``, one of each label and answer: the head
+        predicate of their label is the same, that of their answer another one."""
+        answered, number = self._answers[at], self._number_of[at]
+        heads = head_of(answered.label), head_of(answered.answer)
         seen: set[tuple[str, str]] = set()
         for other in self._others[self._starts[number] : self._starts[number + 1]]:
             near = self._answers[self._first_of[other]]
-            if near.answer == answer or (near.label, near.answer) in seen:
+            is_like = head_of(near.label) == heads[0] and head_of(near.answer) not in ("", heads[1])
+            if not is_like or (near.label, near.answer) in seen:
                 continue
             seen.add((near.label, near.answer))
             yield Neighbour(near.utterance, read_form(near.label), read_or_none(near.answer))

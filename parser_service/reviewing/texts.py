@@ -72,7 +72,7 @@ class Texts:
 
     def is_familiar(self, said: Said, answer: str) -> bool:
         """Tell whether the utterance is worded like training pairs with the head predicate of the answer."""
-        return self._word_use.is_familiar(said.words, _head_of(answer))
+        return self._word_use.is_familiar(said.words, head_of(answer))
 
     def _training_pairs(self, run: TrainingRun) -> Iterator[tuple[tuple[str, ...], str]]:
         rows = run.split.examples.filter(part=Part.TRAIN).order_by()
@@ -91,6 +91,7 @@ def _predicates_of(form: str) -> frozenset[str]:
 
 
 @lru_cache(maxsize=1 << 14)
-def _head_of(form: str) -> str:
+def head_of(form: str) -> str:
+    """Return the head predicate of a form as text; empty for what is no form."""
     read = read_or_none(form)
     return head_predicate(read) if read is not None else ""

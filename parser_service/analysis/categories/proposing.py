@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 from annotations.language.forms import Form, canonical_text, read_form
 from parser_service.analysis.categories.error_categories import ErrorCategory
@@ -48,7 +49,7 @@ def propose_category(
         explained, fitting = [Proposal(ErrorCategory.ILL_FORMED, reason)], []
         differences: tuple[Proposal, ...] = ()
     else:
-        if canonical_text(gold) == canonical_text(predicted):
+        if _canonical(gold) == _canonical(predicted):
             raise ValueError("The answer is right: it equals the label.")
         case = Case(gold, predicted, run or RunEvidence(), error)
         read = [each for reader in READERS for each in reader(case)]
@@ -89,5 +90,11 @@ def propose_categories(
 
 def _differences(case: Case) -> tuple[Proposal, ...]:
     said = case.label_as_said()
-    is_right = canonical_text(said) == canonical_text(case.predicted)
-    return read_structure(case.gold if is_right else said, case.predicted)
+    if said is case.gold or _canonical(said) == _canonical(case.predicted):
+        return read_structure(case.gold, case.predicted)
+    return read_structure(said, case.predicted)
+
+
+@lru_cache(maxsize=1 << 14)
+def _canonical(form: Form) -> str:
+    return canonical_text(form)

@@ -97,7 +97,7 @@ def _read_names(case: Case) -> Readings:
 
 def _read_unknown_label(case: Case, named: tuple[str, ...]) -> Readings:
     classes = classes_in(case.predicted)
-    if classes and sorted(classes.elements()) == [each for each in named if each not in SENTENCES]:
+    if classes and classes == tuple(each for each in named if each not in SENTENCES):
         reason = (
             "The label is UNKNOWN, yet the answer has a place for all that the utterance names."
         )
@@ -143,7 +143,7 @@ def _read_world(case: Case) -> Readings:
 def _read_attractors(case: Case) -> Readings:
     category = ErrorCategory.UNEXPECTED_DEFAULT
     heads_differ = head_predicate(case.gold) != head_predicate(case.predicted)
-    if canonical_text(case.predicted) in case.run.attractors:
+    if case.run.attractors and canonical_text(case.predicted) in case.run.attractors:
         reason = f"Many unlike utterances get the answer {to_reading(case.predicted)}."
         yield Proposal(category, reason), heads_differ and not case.error.is_familiar
     elif isinstance(case.gold, Unknown):

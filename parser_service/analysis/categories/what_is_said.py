@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Collection
 from dataclasses import replace
+from functools import lru_cache
 
 from annotations.language.forms import Application, Constant, Form, Lambda, walk
 
@@ -12,10 +12,11 @@ from annotations.language.forms import Application, Constant, Form, Lambda, walk
 SENTENCES = frozenset({"question", "whattosay"})
 
 
-def classes_in(form: Form) -> Counter[str]:
-    """Return how often a form has a place for each class of entities that utterances name."""
+@lru_cache(maxsize=1 << 14)
+def classes_in(form: Form) -> tuple[str, ...]:
+    """Return the class of each place that a form has for an entity which utterances name, sorted."""
     tokens = (node.token_class for node in walk(form) if isinstance(node, Constant))
-    return Counter(token for token in tokens if token and token not in SENTENCES)
+    return tuple(sorted(token for token in tokens if token and token not in SENTENCES))
 
 
 def unsaid_in_label(gold: Form, predicted: Form, named: Collection[str]) -> frozenset[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from django.db import connection
 
 from annotations.models import Example
 from parser_service.models import Slice
@@ -84,6 +85,12 @@ def test_what_no_column_holds_is_said_so(query, varied):
     with pytest.raises(NoColumn):
         for condition in filters_of(varied.world, query).conditions():
             condition.mask(examples.columns)
+
+
+@pytest.mark.skipif(connection.vendor != "sqlite", reason="a planner scans so few rows")
+def test_a_form_is_looked_up_by_its_length(varied):
+    plan = select(varied.run, "answer_form=UNKNOWN").order_by().explain()
+    assert "answers_by_length (run_id=? AND rank=? AND <expr>=?)" in plan
 
 
 def test_another_run_of_the_same_example_is_a_filter(varied, second_run):
