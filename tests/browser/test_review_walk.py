@@ -147,6 +147,7 @@ def freeze_anew(page: Page, run: TrainingRun) -> None:
     expect(page.get_by_role("heading", name="A newer corpus exists")).to_be_visible()
     skip_to_content(page)
     follow(page, page.get_by_role("button", name="Freeze anew"), f"{run.split.name}-2")
+    expect(page.locator("#split-changes")).to_contain_text("since it was frozen")
 
 
 def retrain(page: Page, run: TrainingRun) -> TrainingRun:
