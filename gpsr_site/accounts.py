@@ -9,7 +9,7 @@ import unicodedata
 from django import forms
 from django.contrib import messages
 from django.contrib.auth.forms import AuthenticationForm
-from django.contrib.auth.views import LoginView, PasswordChangeView
+from django.contrib.auth.views import LoginView, PasswordChangeView, PasswordResetConfirmView
 from django.core.exceptions import ValidationError
 from django.http import HttpRequest, HttpResponse
 from django.urls import reverse_lazy
@@ -90,6 +90,13 @@ class ChangePassword(PasswordChangeView):
             self.request, "Your password was changed. Your tokens have ended, make new ones."
         )
         return response
+
+
+class SetPassword(PasswordResetConfirmView):
+    """Whoever has the link that an administrator has made sets a new password by it, once."""
+
+    template_name = "registration/password_set.html"
+    success_url = reverse_lazy("login")
 
 
 def normalize_name(name: str) -> str:

@@ -9,7 +9,7 @@ from contextvars import ContextVar
 from datetime import UTC, datetime
 from typing import Any
 
-SECRET_ADDRESS = re.compile(r"(/join/)[^/\s?]+")
+SECRET_ADDRESS = re.compile(r"(/join/|/password/[^/\s?]+/)[^/\s?]+")
 REQUEST_ID: ContextVar[str] = ContextVar("request_id", default="")
 
 

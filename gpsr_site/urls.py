@@ -7,13 +7,13 @@ from django.urls import include, path
 
 from annotations.api.urls import urlpatterns as corpus_routes
 from annotations.views.editing import comments
-from annotations.views.people import account
+from annotations.views.people import account, accounts
 from annotations.views.people.audit_log import site_log
 from annotations.views.people.joining import join
 from annotations.views.worlds import jobs
 from annotations.views.worlds.worlds import world_import, world_new
 from gpsr_site import pages
-from gpsr_site.accounts import ChangePassword, LogIn
+from gpsr_site.accounts import ChangePassword, LogIn, SetPassword
 from gpsr_site.search import search
 from parser_service.api.urls import urlpatterns as parser_routes
 
@@ -25,6 +25,10 @@ urlpatterns = [
     path("logout/", LogoutView.as_view(), name="logout"),
     path("password/", ChangePassword.as_view(), name="password"),
     path("log/", site_log, name="site_log"),
+    path("accounts/", accounts.accounts, name="accounts"),
+    path("accounts/<int:pk>/close/", accounts.account_close, name="account_close"),
+    path("accounts/<int:pk>/link/", accounts.account_link, name="account_link"),
+    path("password/<uidb64>/<token>/", SetPassword.as_view(), name="password_set"),
     path("account/", account.account, name="account"),
     path("account/tokens/new/", account.token_new, name="token_new"),
     path("account/tokens/<int:pk>/revoke/", account.token_revoke, name="token_revoke"),

@@ -25,6 +25,8 @@ WHAT = {
     "login": "log in",
     "join": "join",
     "password": "change password",
+    "account_close": "close or open an account",
+    "account_link": "make a link for a new password",
     "token_new": "make a token",
     "token_revoke": "revoke a token",
     "session_end": "log out elsewhere",

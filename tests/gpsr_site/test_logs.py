@@ -22,6 +22,10 @@ def test_the_key_of_an_invitation_is_hidden(end):
     assert shown("%s: %s", "Not Found", f"/join/s3cret-key{end}") == f"Not Found: /join/…{end}"
 
 
+def test_the_key_of_a_link_for_a_password_is_hidden():
+    assert shown("at %s", "/password/MQ/abc-def/") == "at /password/MQ/…/"
+
+
 def test_other_lines_stay_as_they_are():
     assert shown("%d of %s", 3, "/w/home/join/") == "3 of /w/home/join/"
 

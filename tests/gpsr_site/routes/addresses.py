@@ -193,6 +193,8 @@ KEYS: dict[str, RouteKeys] = {
     "member": pk_of(removable_member),
     "invitation_withdraw": pk_of(invitation),
     "join": join_keys,
+    **dict.fromkeys(("account_close", "account_link"), pk_of(removable_member)),
+    "password_set": lambda _: {"uidb64": "MQ", "token": "none"},
     "token_revoke": lambda _: {"pk": 10**6},
     "session_end": lambda _: {"handle": "none"},
     **dict.fromkeys(

@@ -34,6 +34,10 @@ POLICY = [
     Rule("token_revoke", LOG_IN, NOWHERE, NOWHERE, NOWHERE, NOWHERE, method="post"),
     Rule("session_end", LOG_IN, GONE_ON, GONE_ON, GONE_ON, GONE_ON, method="post"),
     Rule("sessions_end", LOG_IN, GONE_ON, GONE_ON, GONE_ON, GONE_ON, method="post"),
+    Rule("accounts", LOG_IN, NO, NO, NO, NO),
+    Rule("account_close", LOG_IN, NO, NO, NO, NO, method="post"),
+    Rule("account_link", LOG_IN, NO, NO, NO, NO, method="post"),
+    Rule("password_set", YES, YES, YES, YES, YES),
     Rule("site_log", LOG_IN, NO, NO, NO, NO),
     # Whoever has the link of an invitation joins
     Rule("join", YES, YES, YES, YES, YES),
