@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import os
 import signal
 import threading
 from typing import Any
@@ -24,6 +25,8 @@ LOOK_EVERY = 0.5  # seconds
 
 def serve(host: str, port: int, secret: str, most_bytes: int) -> None:
     """Answer on ``host:port`` until SIGTERM or SIGINT. Raises OSError where it cannot listen there."""
+    # Read when torch is loaded. More threads wait for each other wherever something else computes too.
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
     shelf = Shelf(most_bytes, Metrics())
     server = create_server(
         Application(shelf, secret, connections.close_all),

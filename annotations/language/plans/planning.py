@@ -26,7 +26,7 @@ from annotations.language.plans.describing import (
 from annotations.language.plans.lookup import Lookup
 from annotations.language.plans.plan import ASK, ActionName, Plan, PlanProblem, Step, Trouble
 from annotations.language.plans.values import Described, Named, Number, Open, Result, Value, Words
-from annotations.language.predicates import Predicate, gloss, infer_signatures
+from annotations.language.predicates import Predicate, declared_or_inferred, gloss
 
 MOST_STEPS = 50
 _SEQUENCES = ("sequence", "and")
@@ -51,7 +51,7 @@ def make_plan(
         slots: the slots that were asked about; an entity that is only likely is named as a problem.
         lookup: that of ontology and predicates, for who makes many plans; made anew if there is none.
     """
-    known = {**infer_signatures([form]), **(predicates or {})}
+    known = declared_or_inferred(predicates or {}, form)
     lookup = lookup or Lookup(ontology, predicates or {})
     planner = _Planner(lookup, known, action_names or {})
     for slot in slots:

@@ -100,10 +100,24 @@ def gloss(form: Form, predicates: Mapping[str, Predicate]) -> str:
     ``( bring ( lambda $1 e ( is_a $1 " <object> " ) ) )`` is "bring me the object". Predicates that
     are not declared are glossed by their names.
     """
-    known = {**infer_signatures([form]), **predicates}
-    patterns = {name: each.gloss or _default(each) for name, each in known.items()}
-    actions = frozenset(n for n, each in known.items() if each.kind == PredicateKind.ACTION)
+    declared = declared_or_inferred(predicates, form)
+    used = {name: declared[name] for name in map(_name_of, _applications(form))}
+    patterns = {name: each.gloss or _default(each) for name, each in used.items()}
+    actions = frozenset(n for n, each in used.items() if each.kind == PredicateKind.ACTION)
     return sentence(form, patterns, actions)
+
+
+def declared_or_inferred(
+    predicates: Mapping[str, Predicate], form: Form
+) -> Mapping[str, Predicate]:
+    """Return the predicates, together with those that the form uses and nothing declares."""
+    if all(_name_of(each) in predicates for each in _applications(form)):
+        return predicates
+    return {**infer_signatures([form]), **predicates}
+
+
+def _name_of(application: Application) -> str:
+    return str(application.predicate)
 
 
 def _predicate(name: str, is_action: bool, signatures: tuple[Signature, ...]) -> Predicate:
