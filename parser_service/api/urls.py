@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from django.urls import include, path
 
-from parser_service.api import dialogues, error_categories, predictions, reviews, runs, slices
+from parser_service.api import (
+    dialogues,
+    error_categories,
+    predictions,
+    reviews,
+    robots,
+    runs,
+    slices,
+)
 from parser_service.api.parsing import ParseRoute
 
 ANSWER = "runs/<int:run>/examples/<int:pk>"
@@ -55,6 +63,14 @@ of_dialogues = [
     path("dialogues/", dialogues.Dialogues.as_view(), name="dialogues"),
     path("dialogues/<int:pk>/", dialogues.OneDialogue.as_view(), name="dialogue"),
     path("dialogues/<int:pk>/answer/", dialogues.AnswerDialogue.as_view(), name="dialogue-answer"),
+    path("plan/", robots.PlanRoute.as_view(), name="plan"),
+    path("robot/action-names/", robots.ActionNamesRoute.as_view(), name="action-names"),
+    path("offered-entities/", robots.OfferedEntities.as_view(), name="offered-entities"),
+    path(
+        "offered-entities/<int:pk>/decide/",
+        robots.DecideOfferedEntity.as_view(),
+        name="offered-entity-decide",
+    ),
     path("dialogues/<int:pk>/keep/", dialogues.KeepDialogue.as_view(), name="dialogue-keep"),
 ]
 

@@ -301,7 +301,7 @@ KEYS: dict[str, RouteKeys] = {
         ),
         pk_of(dialogue),
     ),
-    "offered_entity_decide": pk_of(offered_entity),
+    **dict.fromkeys(("offered_entity_decide", "api:offered-entity-decide"), pk_of(offered_entity)),
     "plan_schema": lambda _: {"name": "plan.schema.json"},
     "queue_ask": pk_of(utterance, kind="utterance"),
     **dict.fromkeys(("slice_rename", "slice_delete", "api:slice"), pk_of(saved_slice)),

@@ -93,6 +93,11 @@ API_POLICY = [
     Rule("api:dialogue", *READ),
     Rule("api:dialogues", NO_TOKEN, NOWHERE, *[NO_JSON] * 3, method="post"),
     Rule("api:dialogue-answer", NO_TOKEN, NOWHERE, *[NO_JSON] * 3, method="post"),
+    Rule("api:plan", NO_TOKEN, NOWHERE, *[NO_JSON] * 3, method="post"),
+    Rule("api:action-names", *READ),
+    Rule("api:action-names", *annotators(NO_JSON), method="post"),
+    Rule("api:offered-entities", *READ),
+    Rule("api:offered-entity-decide", *annotators(NO_JSON), method="post"),
     Rule("api:dialogue-keep", NO_TOKEN, NOWHERE, CLASH, NO, CLASH, method="post"),
 ]
 
@@ -100,7 +105,7 @@ API_ONLY_POSTED = {"api:work-item-finish", "api:work-item-give-back", "api:split
     *("api:run-cancel", "api:run-retrain", "api:answer-doubt", "api:error-category-move"),
     *("api:job-cancel", "api:job-answer", "api:rename", "api:comment-restore"),
     *("api:learning-curve", "api:run-analyse", "api:predictions-send"),
-    *("api:dialogue-answer", "api:dialogue-keep"),
+    *("api:dialogue-answer", "api:dialogue-keep", "api:offered-entity-decide"),
 }
 
 API_READ_AND_POSTED = {"api:history", "api:comments"}

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import jsonschema
@@ -21,10 +22,12 @@ from annotations.language.plans import (
     plan_schema,
     to_behavior_tree,
 )
+from tests.annotations.language.ontology_files import read_ontology_folder
 from tests.annotations.language.published import SHARED, needs_corpus
 from tests.annotations.language.random_forms import forms
 from tests.annotations.language.sample_ontology import HOME
 
+STARTER = Path(__file__).parents[4] / "annotations" / "starter"
 JSON_SCHEMA = jsonschema.Draft202012Validator(plan_schema())
 XML_SCHEMA = xmlschema.XMLSchema(behavior_tree_schema_text())
 
@@ -243,3 +246,15 @@ def test_categories_are_found_by_their_plural_and_singular() -> None:
     assert Entity("category", "drinks", (), {"singular": "drink"}) in HOME.entities
     value = dict(plan_of('(bring (λ$1:e (is_a $1 "drink")))').steps[0].arguments)["thing"]
     assert value.as_json()["conditions"][0]["values"][0]["entity_class"] == "category"
+
+
+def test_the_starter_world_gives_a_robot_something_to_do() -> None:
+    ontology, _ = read_ontology_folder(STARTER)
+    said = "bring me the apple juice from the kitchen table, please"
+    heard = Anonymizer(ontology).anonymize(said)
+    form = read_form('(bring (λ$1:e (is_a $1 "<object>") (at $1 "<location>")))')
+    given = deanonymize(form, heard, ontology)
+    plan = make_plan(given.form, ontology, slots=given.slots)
+    require_valid(plan)
+    assert plan.is_executable
+    assert plan.steps[0].text == "bring me the apple juice that is at the kitchen table"
