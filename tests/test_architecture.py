@@ -33,8 +33,9 @@ THEIR_OWN = (
 # The rooms of a package in the order of their imports: each may import only from rooms before it.
 ROOMS = {
     "annotations": (
-        "language", "models", "background", "rows", "splits", "presentation", "people", "lists", "generation",
-        "checking", "suggesting", "importing", "exporting", "worlds", "world_archive", "jobs", "editing", "renaming",
+        "language", "models", "background", "rows", "splits", "presentation", "figures", "people", "lists",
+        "generation", "checking", "suggesting", "importing", "exporting", "worlds", "world_archive", "jobs", "editing",
+        "renaming",
         "commenting", "labelling", "queueing", "auditing", "forms", "templatetags",
     ),
     "annotations/language": (

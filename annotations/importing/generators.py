@@ -56,7 +56,19 @@ def import_generator(
     report = _report(world_name, generator)
     if report.is_refused:
         return report
-    world = World.objects.filter(name=world_name).first()
+    return _compare_and_store(generator, report, by, progress, may_remove, brings_back)
+
+
+def _compare_and_store(
+    generator: Generator,
+    report: ImportReport,
+    by: User | None,
+    progress: Progress,
+    may_remove: bool,
+    brings_back: bool,
+) -> ImportReport:
+    """Say what would change in the world, and store it unless that has to be asked first."""
+    world = World.objects.filter(name=report.world).first()
     apart = differences_of(world, generator, brings_back)
     report = replace(report, removals=apart.removals, left_out=apart.left_out)
     if apart.removals and not may_remove:

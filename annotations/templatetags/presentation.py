@@ -11,10 +11,10 @@ from django import template
 from django.db.models import QuerySet
 from django.template.loader import render_to_string
 from django.urls import reverse
-from django.utils import timezone
 from django.utils.html import format_html, format_html_join
 from django.utils.safestring import SafeString, mark_safe
 
+from annotations import figures
 from annotations.language.errors import Position
 from annotations.language.forms import Change, predicates
 from annotations.language.renaming import CLASS_OF_ATTRIBUTE
@@ -35,6 +35,16 @@ from annotations.presentation import (
 )
 
 register = template.Library()
+for written in (
+    figures.percent,
+    figures.figure,
+    figures.decimals,
+    figures.signed,
+    figures.p_value,
+    figures.duration,
+    figures.ago,
+):
+    register.filter(written)
 
 PLACE = ("source", "line", "column")
 PATTERN_TOKEN = re.compile(r"(\$\w+|\{[^{}]*\})")
@@ -267,71 +277,3 @@ def place(at: Any) -> str:
     """
     parts = [at[name] if isinstance(at, dict) else getattr(at, name) for name in PLACE]
     return str(Position(*parts))
-
-
-@register.filter
-def percent(fraction: float | None) -> float | None:
-    """Convert a fraction to percent; None for what is not a number."""
-    return 100 * fraction if isinstance(fraction, float | int) else None
-
-
-@register.filter
-def figure(number: float | None) -> str:
-    """Write a count with commas between thousands."""
-    return "" if number is None else f"{number:,}"
-
-
-@register.filter
-def decimals(number: float | None, digits: int = 2) -> str:
-    """Write a number with ``digits`` decimals; a dash for None. Nothing that rounds to 0 has a sign."""
-    if number is None:
-        return "–"
-    return f"{number:z,.{digits}f}".replace("-", "−")
-
-
-@register.filter
-def signed(number: float) -> str:
-    """Write a difference with one decimal and its sign; nothing that rounds to 0 has one."""
-    rounded = round(number, 1)
-    return f"{rounded:+.1f}".replace("-", "−") if rounded else "0.0"
-
-
-@register.filter
-def p_value(p: float) -> str:
-    """Write the probability of a test."""
-    return "< 0.001" if p < 0.001 else f"{p:.3f}"
-
-
-@register.filter
-def duration(seconds: float | None) -> str:
-    """Write seconds as ``48 s``, ``3 min 20 s`` or ``2 h 5 min``; nothing for None."""
-    if seconds is None:
-        return ""
-    if seconds < 10:
-        return f"{seconds:.1f} s"
-    whole = round(seconds)
-    if whole < 60:
-        return f"{whole} s"
-    minutes, rest = divmod(whole, 60)
-    return f"{minutes} min {rest} s" if minutes < 60 else f"{minutes // 60} h {minutes % 60} min"
-
-
-@register.filter
-def ago(moment: Any) -> SafeString:
-    """Write how long ago a moment was, with the moment itself on hover."""
-    if moment is None:
-        return format_html("")
-    absolute = timezone.localtime(moment)
-    return format_html(
-        '<time datetime="{}" title="{}">{}</time>',
-        absolute.isoformat(),
-        f"{absolute:%Y-%m-%d %H:%M:%S %Z}",
-        _age((timezone.now() - moment).total_seconds()),
-    )
-
-
-def _age(seconds: float) -> str:
-    for size, unit in ((86400, "d"), (3600, "h"), (60, "min")):
-        if seconds >= size:
-            return f"{int(seconds // size)} {unit} ago"
-    return "just now"

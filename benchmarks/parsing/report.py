@@ -31,20 +31,43 @@ EPOCHS = 30
 def fill(examples: int) -> None:
     """Fill the installation that this process has entered."""
     from django.db import connection, transaction
-    from django.utils import timezone
 
-    from annotations.models import Split, World
-    from parser_service.models import EpochMetric, Evaluation, TrainingRun
-    from parser_service.models.runs import Status
+    from annotations.models import World
 
     world = World.objects.get(name=WORLD)
     commands = list(
         world.commands.values_list("anonymized_text", "logical_form__text", "task_category")
     )
+    run = make_run(world)
+    store_scores(run, examples, sum(is_right for *_, is_right in answered(commands, examples)))
+    tables = (
+        ("annotations_example", EXAMPLE, example_rows(run.split_id, commands, examples)),
+        ("parser_service_prediction", PREDICTION, prediction_rows(run.pk, commands, examples)),
+        (
+            "parser_service_review",
+            REVIEW,
+            review_rows(run.pk, category_of(world), commands, examples),
+        ),
+    )
+    with transaction.atomic(), connection.cursor() as cursor:
+        for table, columns, rows in tables:
+            insert(cursor, table, columns, rows)
+    with connection.cursor() as cursor:
+        cursor.execute("ANALYZE")
+
+
+def make_run(world: Any) -> Any:
+    """Return a run that has succeeded, on a split without examples."""
+    from django.utils import timezone
+
+    from annotations.models import Split
+    from parser_service.models import TrainingRun
+    from parser_service.models.runs import Status
+
     split = Split.objects.create(
         world=world, name="large", criterion="command", seed=0, content_hash="0" * 64
     )
-    run = TrainingRun.objects.create(
+    return TrainingRun.objects.create(
         world=world,
         split=split,
         parser="seq2seq",
@@ -55,7 +78,11 @@ def fill(examples: int) -> None:
         status=Status.SUCCEEDED,
         finished_at=timezone.now(),
     )
-    correct = sum(is_right for *_, is_right in answered(commands, examples))
+
+
+def store_scores(run: Any, examples: int, correct: int) -> None:
+    from parser_service.models import EpochMetric, Evaluation
+
     scores = {"accuracy": correct / examples, "interval_low": 0.79, "interval_high": 0.81}
     counts = {"count": examples, "correct": correct, "equivalent": 0.8, "well_formed": 1}
     Evaluation.objects.create(run=run, test_source="gen", part="validation", **scores, **counts)
@@ -63,19 +90,6 @@ def fill(examples: int) -> None:
         EpochMetric(run=run, epoch=each, train_loss=2 / each, validation_loss=3 / each, seconds=1)
         for each in range(1, EPOCHS + 1)
     )
-    with transaction.atomic(), connection.cursor() as cursor:
-        for table, columns, rows in (
-            ("annotations_example", EXAMPLE, example_rows(split.pk, commands, examples)),
-            ("parser_service_prediction", PREDICTION, prediction_rows(run.pk, commands, examples)),
-            (
-                "parser_service_review",
-                REVIEW,
-                review_rows(run.pk, category_of(world), commands, examples),
-            ),
-        ):
-            insert(cursor, table, columns, rows)
-    with connection.cursor() as cursor:
-        cursor.execute("ANALYZE")
 
 
 EXAMPLE = {

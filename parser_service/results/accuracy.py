@@ -9,145 +9,18 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from itertools import groupby
-from typing import Any, TypeAlias
 
 from django.urls import reverse
 from django.utils.http import urlencode
 
 from annotations.models import Split, World
-from annotations.models.splits import Criterion
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.parsers.conditions import SETTINGS, Protocol, only_source
 from parser_service.parsers.registry import PARSERS
 from parser_service.results.cells import Cell, Figure, figure_of, newest_of_each_seed
 from parser_service.results.measures import Measure
 from parser_service.results.published import published_accuracy, published_criteria
-
-# What distinguishes the splits of one corpus, in a word.
-SHORT_CRITERIA = {
-    Criterion.COMMAND: "command",
-    Criterion.SOURCE_COMMAND: "source",
-    Criterion.LOGICAL_FORM: "form",
-}
-APART = {
-    Criterion.COMMAND: "a command",
-    Criterion.SOURCE_COMMAND: "a source command",
-    Criterion.LOGICAL_FORM: "a logical form",
-}
-IN_WORDS = {
-    "gen": "generated commands",
-    "para": "paraphrases",
-    "gen+para": "generated commands and paraphrases",
-    "mixed": "generated commands and paraphrases together",
-}
-WHAT_IT_KNOWS = {
-    Protocol.STRICT: "Training pairs only.",
-    Protocol.DOMAIN: "The declared predicates and the ontology are known too, as on a robot.",
-    Protocol.GRAMMAR: "The annotated grammar and all its forms are known too.",
-}
-
-Changes: TypeAlias = "tuple[tuple[str, Any], ...]"
-
-
-@dataclass(frozen=True, slots=True)
-class Column:
-    """One setting on one split; ``starts_group`` at the first split of a setting.
-
-    ``label`` names the split: by its criterion where that tells the splits of the table apart, which
-    ``explanation`` spells out.
-    """
-
-    train_sources: str
-    test_source: str
-    split: Split
-    label: str
-    starts_group: bool = False
-
-    @property
-    def setting(self) -> tuple[str, str]:
-        return self.train_sources, self.test_source
-
-    @property
-    def explanation(self) -> str:
-        apart = APART[Criterion(self.split.criterion)]
-        return f"Split {self.split.name}: no two parts share {apart}"
-
-    @property
-    def query(self) -> str:
-        """The address of its learning curves, without part and protocol."""
-        return urlencode({"split": self.split.name, "setting": "-".join(self.setting)})
-
-    def shows(self, run: TrainingRun) -> bool:
-        """Tell whether a score of ``run`` belongs here."""
-        return run.split_id == self.split.pk and run.train_sources == self.train_sources
-
-
-@dataclass(frozen=True, slots=True)
-class Row:
-    """A parser with one configuration; ``changes`` are the hyperparameters that are not the default.
-
-    ``cells`` stand in the order of the table's columns, None where nobody has trained.
-    """
-
-    parser: str
-    changes: Changes
-    cells: tuple[Cell | None, ...]
-
-    @property
-    def title(self) -> str:
-        return title_of(self.parser)
-
-
-@dataclass(frozen=True, slots=True)
-class Table:
-    """All rows of one protocol, by one or more measures. The best of a column is the best among them."""
-
-    protocol: str
-    columns: tuple[Column, ...]
-    rows: tuple[Row, ...]
-    measures: tuple[Measure, ...] = (Measure.EXACT,)
-
-    @property
-    def sentence(self) -> str:
-        return WHAT_IT_KNOWS[Protocol(self.protocol)]
-
-    @property
-    def settings(self) -> list[tuple[str, str, int]]:
-        """Each setting as a head, in words, and its number of columns."""
-        grouped = groupby(self.columns, key=lambda column: column.setting)
-        return [
-            (
-                f"{train} → {test}",
-                f"Trained on {IN_WORDS[train]}, tested on {IN_WORDS[test]}",
-                len(list(columns)),
-            )
-            for (train, test), columns in grouped
-        ]
-
-    @property
-    def is_active(self) -> bool:
-        return any(cell and cell.active for row in self.rows for cell in row.cells)
-
-    @property
-    def is_scored(self) -> bool:
-        return any(cell and cell.score for row in self.rows for cell in row.cells)
-
-    @property
-    def is_by_criterion(self) -> bool:
-        """Whether the columns are named after the criteria of their splits."""
-        return any(column.label in SHORT_CRITERIA.values() for column in self.columns)
-
-    @property
-    def is_published(self) -> bool:
-        """Whether the paper has a figure for one of the cells."""
-        cells = (cell for row in self.rows for cell in row.cells)
-        return any(cell and cell.published is not None for cell in cells)
-
-    @property
-    def filled(self) -> list[tuple[Row, list[tuple[Column, Cell | None]]]]:
-        """Each row with its cells beside their columns."""
-        return [(row, list(zip(self.columns, row.cells, strict=True))) for row in self.rows]
+from parser_service.results.tables import SHORT_CRITERIA, Changes, Column, Row, Table
 
 
 def accuracy_tables(
@@ -283,11 +156,6 @@ class TableMaker:
 def seeds_url(world: World, run: TrainingRun) -> str:
     """Return the address of the list of ``run`` and those that differ from it only by their seed."""
     return f"{reverse('runs', kwargs={'world': world.name})}?seeds_of={run.pk}"
-
-
-def title_of(parser: str) -> str:
-    """Return what pages call a parser; its name where the registry no longer has it."""
-    return PARSERS[parser].title if parser in PARSERS else parser
 
 
 def rank_of(parser: str, changes: Changes) -> tuple[int, int, str]:

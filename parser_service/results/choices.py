@@ -11,8 +11,9 @@ from django.utils.http import urlencode
 
 from annotations.models import Split, World
 from annotations.models.splits import Part
-from parser_service.results.accuracy import Table, accuracy_tables
+from parser_service.results.accuracy import accuracy_tables
 from parser_service.results.measures import Measure
+from parser_service.results.tables import Table
 
 PARTS = (Part.VALIDATION, Part.TEST)
 MOST_SPLITS = 4  # side by side without a choice

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from annotations.models import World
-from parser_service.results.accuracy import Column, Row, Table
 from parser_service.results.cells import Cell, Figure
 from parser_service.results.choices import ResultsChoices
+from parser_service.results.tables import Column, Row, Table
 
 # Of the newest run of a cell.
 SCORE_FIELDS = (

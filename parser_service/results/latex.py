@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import accumulate, pairwise
 
-from parser_service.results.accuracy import Column, Row, Table
 from parser_service.results.cells import Cell, Figure
 from parser_service.results.choices import ResultsChoices
+from parser_service.results.tables import Column, Row, Table
 
 ESCAPES = {
     "\\": r"\textbackslash{}",

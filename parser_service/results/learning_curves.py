@@ -14,9 +14,10 @@ from django.utils.http import urlencode
 from annotations.models import Split, World
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.parsers.conditions import SETTINGS, Setting
-from parser_service.results.accuracy import Changes, Column, TableMaker, rank_of, title_of
+from parser_service.results.accuracy import TableMaker, rank_of
 from parser_service.results.cells import Cell
 from parser_service.results.measures import Measure
+from parser_service.results.tables import Changes, Column, title_of
 from parser_service.runs.learning_curve import MOST_SEEDS, SHARES, points_of
 
 _SEEDS = (1, 3, MOST_SEEDS)  # what is offered

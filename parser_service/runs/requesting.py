@@ -44,22 +44,22 @@ def request(
     values = _whole_config(parser, config, anywhere)
     _refuse_what_cannot_be_trained(world, split, parser, protocol, train_sources, seed)
     _refuse_share(train_share)
+    asked = {
+        "split": split,
+        "parser": parser,
+        "config": values,
+        "protocol": protocol,
+        "train_sources": train_sources,
+        "seed": seed,
+        "train_share": train_share,
+    }
+    entry = registry.entry(parser)
+    made = {"parser_version": entry.version, "queue": entry.queue, "created_by": by}
     run, created = TrainingRun.objects.get_or_create(
         world=world,
-        content_key=content_key(split, parser, values, protocol, train_sources, seed, train_share),
+        content_key=content_key(**asked),
         status__in=[Status.QUEUED, Status.RUNNING, Status.SUCCEEDED],
-        defaults={
-            "split": split,
-            "parser": parser,
-            "parser_version": registry.entry(parser).version,
-            "config": values,
-            "protocol": protocol,
-            "train_sources": train_sources,
-            "train_share": train_share,
-            "seed": seed,
-            "queue": registry.entry(parser).queue,
-            "created_by": by,
-        },
+        defaults={**asked, **made},
     )
     if created and send:
         wake(run)

@@ -91,13 +91,26 @@ def split(
     targets = _targets(proportions)
     if not items:
         raise LanguageError("there is nothing to split", hint="generate or import commands first")
-    totals = Counter(item.source for item in items)
     weights: dict[str, Counter[str]] = {}
     for item in items:
         weights.setdefault(item.key(criterion), Counter())[item.source] += 1
     keys = sorted(weights.keys() - kept.keys())
     Random(seed).shuffle(keys)
     keys = [*sorted(weights.keys() & kept.keys()), *keys]
+    parts = _deal(keys, weights, targets, kept)
+    return tuple(parts[item.key(criterion)] for item in items)
+
+
+def _deal(
+    keys: Sequence[str],
+    weights: Mapping[str, Counter[str]],
+    targets: Mapping[Part, float],
+    kept: Mapping[str, Part],
+) -> dict[str, Part]:
+    """Return the part of each key, given in the order of ``keys``; ``weights`` are its items by source."""
+    totals: Counter[str] = Counter()
+    for weight in weights.values():
+        totals += weight
     missing = {
         part: {source: share * total for source, total in totals.items()}
         for part, share in targets.items()
@@ -113,7 +126,7 @@ def split(
         empty = [part for part in empty if part is not chosen]
         for source, count in weights[key].items():
             missing[chosen][source] -= count
-    return tuple(parts[item.key(criterion)] for item in items)
+    return parts
 
 
 def content_hash(examples: Iterable[FrozenExample]) -> str:
