@@ -106,8 +106,8 @@ def measure(commands: int, predictions: int, database: str) -> None:
             target = str(folder / form)
             exported = site.run("export_split", WORLD, "all", "--as", form, "--output", target)
             say(f"export {form}", exported, commands)
-        stored = run_here(site, predictions)
-        say("predictions", stored, commands * predictions)
+        if predictions:
+            say("predictions", run_here(site, predictions), commands * predictions)
         rows = commands * (2 + predictions)
         backup = folder / "backup.zip"
         say("backup", site.run("backup", str(backup)), rows)
