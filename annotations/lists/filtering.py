@@ -12,6 +12,8 @@ from django.db.models import Q, QuerySet, TextField
 from django.db.models.functions import Cast
 from django.db.models.lookups import IContains
 
+from annotations.lists.paging import LARGEST_INTEGER
+
 
 class ChoicesLater:
     """Choices that are looked up where a form is shown or has a value to check, not before."""
@@ -85,6 +87,15 @@ class EntitySearch(Search):
         for written in {value, json.dumps(value)[1:-1]}:  # PostgreSQL's JSON, and SQLite's
             condition |= Q(IContains(column, written))
         return condition
+
+
+class Key(django_filters.NumberFilter):
+    """Rows that refer to another one, by its key."""
+
+    field_class = forms.IntegerField
+
+    def __init__(self, *args: Any, **kwargs: Any):
+        super().__init__(*args, min_value=1, max_value=LARGEST_INTEGER, **kwargs)
 
 
 class Head(django_filters.ChoiceFilter):

@@ -15,7 +15,7 @@ from annotations.lists.choices import (
     task_category_choices,
     template_file_choices,
 )
-from annotations.lists.filtering import EntitySearch, Head, Mentions, PageFilters, Search
+from annotations.lists.filtering import EntitySearch, Head, Key, Mentions, PageFilters, Search
 from annotations.models import (
     Production,
     SemanticTemplate,
@@ -85,9 +85,7 @@ class CommandFilters(CommandsOfLogicalFormFilters):
         label="Grammar",
         choices=[("True", "in the grammar"), ("False", "outside it")],
     )
-    template = django_filters.NumberFilter(
-        "template_id", label="Template", widget=forms.HiddenInput
-    )
+    template = Key("template_id", label="Template", widget=forms.HiddenInput)
     world_choices = CHOICES_OF_FORMS
 
 

@@ -17,6 +17,7 @@ from annotations.api.once import once
 from annotations.api.problems import Refused
 from annotations.api.reading import Fields, FiniteField, LineField
 from annotations.api.routes import RowRoute, RowsRoute, WorldRoute
+from annotations.lists.filtering import Key
 from annotations.models import Duty, Split
 from annotations.queueing import send_examples
 from annotations.views.queueing.queue_forms import LONGEST_REASON
@@ -41,8 +42,8 @@ class EvaluationSerializer(serializers.ModelSerializer):
 
 
 class EvaluationQuery(django_filters.FilterSet):
-    run = django_filters.NumberFilter("run_id")
-    split = django_filters.NumberFilter("run__split_id")
+    run = Key("run_id")
+    split = Key("run__split_id")
     parser = django_filters.CharFilter("run__parser")
 
     class Meta:
@@ -150,7 +151,7 @@ class SendPredictions(Predictions):
 
 
 class CandidateQuery(django_filters.FilterSet):
-    example = django_filters.NumberFilter("example_id")
+    example = Key("example_id")
 
     class Meta:
         model = Prediction

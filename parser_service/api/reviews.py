@@ -18,6 +18,7 @@ from annotations.api.problems import Refused
 from annotations.api.reading import Fields, LineField
 from annotations.api.routes import RowRoute, RowsRoute
 from annotations.language.limits import MAX_FORM
+from annotations.lists.filtering import Key
 from annotations.models import Duty, Example
 from parser_service.models import Review, TrainingRun
 from parser_service.reviewing.categories import ensure_categories
@@ -43,8 +44,8 @@ class ReviewSerializer(serializers.ModelSerializer):
 
 
 class ReviewQuery(django_filters.FilterSet):
-    run = django_filters.NumberFilter("run_id")
-    example = django_filters.NumberFilter("example_id")
+    run = Key("run_id")
+    example = Key("example_id")
     category = django_filters.CharFilter("category__code")
     reviewer = django_filters.CharFilter("reviewer__username")
 

@@ -40,6 +40,13 @@ def test_what_the_address_gets_wrong_is_a_problem(read, query):
     assert answer.json()["problems"][0]["field"] == query.partition("=")[0]
 
 
+@pytest.mark.parametrize("key", ["9.223372036854776e18", str(2**63), "1.5", "0", "x"])
+def test_keys_that_no_row_can_have_are_refused(read, anna, key):
+    for noun, name in (("commands", "template"), ("evaluations", "run"), ("reviews", "example")):
+        assert read(f"/api/v1/worlds/home/{noun}/?{name}={key}").status_code == 400
+    assert anna.get(f"/w/home/commands/?template={key}").status_code == 200
+
+
 def test_filters_are_those_of_the_pages(read, anna):
     for query in ("entity_class=room", "q=milk"):
         listed = anna.get(f"/w/home/ontology/?{query}").context["listing"].rows
