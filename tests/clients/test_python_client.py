@@ -31,6 +31,15 @@ def test_an_utterance_is_parsed(home):
     assert parse.best.plan.steps[0].action == "find"
 
 
+def test_a_form_becomes_a_plan_and_a_behaviour_tree(home):
+    best = home.parse("find the red cup").best
+    assert home.plan(best.grounded) == best.plan
+    assert home.behavior_tree(best.grounded).startswith("<?xml")
+    with pytest.raises(Refused) as refused:
+        home.behavior_tree("( find")
+    assert refused.value.status == 400
+
+
 def test_many_utterances_are_parsed_in_order(home):
     said = ["find the red cup", "bring me the bowl", "bring me the flurb"]
     parses = list(home.parse_many(said))

@@ -10,7 +10,7 @@ from pathlib import Path
 from urllib.parse import quote
 from uuid import uuid4
 
-from gpsr_client.answers import Parse
+from gpsr_client.answers import Parse, Plan
 from gpsr_client.dialogue import Dialogue
 from gpsr_client.errors import Away, WorkbenchError
 from gpsr_client.transport import Transport
@@ -60,6 +60,19 @@ class Workbench:
                     yield Parse.from_json(value)
             except (HTTPException, OSError, ValueError) as error:
                 raise Away(f"The answer broke off: {error}") from error
+
+    def plan(self, form: str) -> Plan:
+        """Return the plan of a form with entities, such as ``grounded`` of a candidate."""
+        return Plan.from_json(self._transport.post(f"{self._path}plan/", {"form": form}))
+
+    def behavior_tree(self, form: str) -> str:
+        """Return the plan of a form as XML for BehaviorTree.CPP 4."""
+        body = json.dumps({"form": form, "as": "xml"}).encode()
+        try:
+            with self._transport.open("POST", f"{self._path}plan/", body) as answer:
+                return answer.read().decode("utf-8")
+        except (HTTPException, OSError) as error:
+            raise Away(f"The answer broke off: {error}") from error
 
     def dialogue(self, utterance: str) -> Dialogue:
         """Start a dialogue about an utterance."""
