@@ -104,7 +104,7 @@ class Times:
     def request(self, client: Any, address: str) -> None:
         """Request a page. Exits where it is not answered."""
         began, used = time.perf_counter(), time.process_time()
-        answer = client.get(address)
+        answer = client.get(address, follow=True)  # the next example that differs is one
         self.wall.append(1000 * (time.perf_counter() - began))
         self.processor.append(1000 * (time.process_time() - used))
         if answer.status_code != 200:
