@@ -8,6 +8,7 @@ from parser_service.api import (
     dialogues,
     error_categories,
     predictions,
+    promotions,
     reviews,
     robots,
     runs,
@@ -18,6 +19,13 @@ from parser_service.api.parsing import ParseRoute
 ANSWER = "runs/<int:run>/examples/<int:pk>"
 of_runs = [
     path("parse/", ParseRoute.as_view(), name="parse"),
+    path("promotions/", promotions.Promotions.as_view(), name="promotions"),
+    path("promotions/roll-back/", promotions.RollBack.as_view(), name="promotion-roll-back"),
+    path(
+        "promotions/<int:pk>/decline/",
+        promotions.DeclinePromotion.as_view(),
+        name="promotion-decline",
+    ),
     path("runs/", runs.Runs.as_view(), name="runs"),
     path("runs/<int:pk>/", runs.OneRun.as_view(), name="run"),
     path("runs/<int:pk>/cancel/", runs.CancelRun.as_view(), name="run-cancel"),

@@ -305,5 +305,5 @@ KEYS: dict[str, RouteKeys] = {
     "plan_schema": lambda _: {"name": "plan.schema.json"},
     "queue_ask": pk_of(utterance, kind="utterance"),
     **dict.fromkeys(("slice_rename", "slice_delete", "api:slice"), pk_of(saved_slice)),
-    "promotion_decline": pk_of(proposal),
+    **dict.fromkeys(("promotion_decline", "api:promotion-decline"), pk_of(proposal)),
 }

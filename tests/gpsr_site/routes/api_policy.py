@@ -88,6 +88,10 @@ API_POLICY = [
     Rule("api:work-item-finish", NO_TOKEN, NOWHERE, *[CLASH] * 3, method="post"),
     Rule("api:work-item-give-back", NO_TOKEN, NOWHERE, *[CLASH] * 3, method="post"),
     Rule("api:parse", NO_TOKEN, NOWHERE, *[NO_JSON] * 3, method="post"),
+    Rule("api:promotions", *READ),
+    Rule("api:promotions", *admins(NO_JSON), method="post"),
+    Rule("api:promotion-roll-back", *admins(NO_JSON), method="post"),
+    Rule("api:promotion-decline", *admins(YES), method="post"),
     # Who may see a world may talk about its commands; only annotators label what comes of it.
     Rule("api:dialogues", *READ),
     Rule("api:dialogue", *READ),
@@ -106,6 +110,7 @@ API_ONLY_POSTED = {"api:work-item-finish", "api:work-item-give-back", "api:split
     *("api:job-cancel", "api:job-answer", "api:rename", "api:comment-restore"),
     *("api:learning-curve", "api:run-analyse", "api:predictions-send"),
     *("api:dialogue-answer", "api:dialogue-keep", "api:offered-entity-decide"),
+    "api:promotion-decline",
 }
 
 API_READ_AND_POSTED = {"api:history", "api:comments"}

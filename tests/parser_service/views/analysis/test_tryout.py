@@ -7,8 +7,11 @@ import pytest
 from annotations.models import Job
 from parser_service.analysing.trying import MOST_TEXT, answer_jobs
 from parser_service.models import Tryout
+from parser_service.promotion import promote
 from tests.parser_service.analysing.conftest import done, home, train_one  # noqa: F401
 from tests.parser_service.analysing.made_parsers import DEFAULT
+from tests.parser_service.live_server import parse_server  # noqa: F401
+from tests.parser_service.served import make_home, trained_run
 from tests.sample_world import scored_run
 
 
@@ -93,3 +96,13 @@ def test_what_somebody_types_is_no_script(sample, anna):
     text = "<script>alert(1)</script>"
     assert text not in ask_for(anna, text, sample.run.pk).content.decode()
     assert text not in anna.get("/w/home/try/", {"text": text}).content.decode()
+
+
+def test_the_parse_server_answers_where_there_is_one(world, anna, parse_server):  # noqa: F811
+    run = trained_run(make_home(world))
+    promote(run, None)
+    parse_server.update()
+    page = ask_for(anna, "find the bowl", run.pk).content.decode()
+    assert "waiting for the answer" not in page and "every 500ms" not in page
+    assert Tryout.objects.get().answers[str(run.pk)]["answers"][0]["form"].startswith("( find")
+    assert not Job.objects.filter(kind="answer").exists()
