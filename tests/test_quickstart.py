@@ -29,7 +29,8 @@ class Installation:
     def __init__(self, folder: Path):
         self.folder = folder
         self.port = free_port()
-        given = {key: value for key, value in os.environ.items() if key != "DATABASE_URL"}
+        elsewhere = ("DATABASE_URL", "PARSER_PORT")
+        given = {key: value for key, value in os.environ.items() if key not in elsewhere}
         self.environment = {**given, "GPSR_VAR_DIR": str(folder), "PORT": str(self.port)}
         self.process: subprocess.Popen[bytes] | None = None
         self.log = folder.parent / "log"
