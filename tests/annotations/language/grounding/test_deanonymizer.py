@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from random import Random
 
@@ -28,7 +28,7 @@ from annotations.language.grounding import (
 )
 from annotations.language.grounding.deanonymizer import Deanonymized
 from annotations.language.symbols import Text, read_wildcard
-from annotations.language.templates import TemplateExpander, read_generator_folder
+from annotations.language.templates import Derivation, TemplateExpander, read_generator_folder
 from annotations.language.templates.filling import fill_anonymized
 from tests.annotations.language.ontology_files import read_ontology_folder
 from tests.annotations.language.published import SHARED, needs_corpus
@@ -182,18 +182,25 @@ def test_anonymizing_and_back_restores_unambiguous_commands(
     assert deanonymize(fill_anonymized(form, {}), anonymized, HOME).form == made.form
 
 
-@needs_corpus
-def test_every_form_of_the_2018_generator_is_right_with_and_without_its_grammar() -> None:
-    folder = SHARED / "generator-2018"
-    ontology, _ = read_ontology_folder(folder)
-    anonymizer, random = Anonymizer(ontology), Random(1)
-    derivations = [
+def derivations_of_2018() -> list[Derivation]:
+    return [
         derivation
-        for category in read_generator_folder(folder).categories()
+        for category in read_generator_folder(SHARED / "generator-2018").categories()
         for template in category.templates
         for derivation in TemplateExpander(category.grammar).derivations(template)
     ]
-    grammar = Evidence((each.symbols, each.form) for each in derivations)
+
+
+def evidence_of_2018() -> Evidence:
+    return Evidence((each.symbols, each.form) for each in derivations_of_2018())
+
+
+@needs_corpus
+def test_every_form_of_the_2018_generator_is_right_with_and_without_its_grammar() -> None:
+    ontology, _ = read_ontology_folder(SHARED / "generator-2018")
+    anonymizer, random = Anonymizer(ontology), Random(1)
+    derivations = derivations_of_2018()
+    grammar = evidence_of_2018()
     same_text = certain = 0
     for derivation in derivations:
         made = ground(derivation.symbols, derivation.form, ontology, random)
@@ -210,8 +217,17 @@ def test_every_form_of_the_2018_generator_is_right_with_and_without_its_grammar(
 
 
 @needs_corpus
-def test_what_people_say_is_put_back_as_the_published_forms_have_it() -> None:
+@pytest.mark.parametrize(
+    ("evidence", "expected"),
+    # In the two records that count as wrong the published form has the places swapped.
+    [(lambda: None, (66, 2, 12)), (evidence_of_2018, (68, 0, 12))],
+    ids=["English alone", "with the grammar"],
+)
+def test_what_people_say_is_put_back_as_the_published_forms_have_it(
+    evidence: Callable[[], Evidence | None], expected: tuple[int, int, int]
+) -> None:
     """Utterances with several entities of a class, without the records that have one entity twice."""
+    known = evidence()
     ontology, _ = read_ontology_folder(SHARED / "generator-2018")
     anonymizer = Anonymizer(ontology)
     classes = {each.text.casefold(): each.entity_class for each in ontology.entities}
@@ -220,7 +236,7 @@ def test_what_people_say_is_put_back_as_the_published_forms_have_it() -> None:
     for utterance, text in zip(lines[::3], lines[2::3], strict=True):
         published = read_form(text)
         label = with_tokens(published, classes)
-        result = deanonymize(label, anonymizer.anonymize(utterance), ontology)
+        result = deanonymize(label, anonymizer.anonymize(utterance), ontology, known)
         tokens = [slot.token for slot in result.slots if slot.entity_class]
         values = {str(each.value) for each in walk(published) if isinstance(each, Constant)}
         if len(set(tokens)) == len(tokens) or len(values) < len(tokens):
@@ -233,8 +249,7 @@ def test_what_people_say_is_put_back_as_the_published_forms_have_it() -> None:
             right += 1
         else:
             wrong += 1
-    assert (right, wrong) == (66, 2)  # in both records the published form has the places swapped
-    assert asked == 12
+    assert (right, wrong, asked) == expected
 
 
 def with_tokens(form: Form, classes: Mapping[str, str]) -> Form:
