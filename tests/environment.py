@@ -7,6 +7,7 @@ var = tempfile.mkdtemp(prefix="gpsr-tests-")
 os.mkdir(os.path.join(var, "static"))  # where collectstatic would write, and whitenoise looks
 os.environ["GPSR_VAR_DIR"] = var
 os.environ["DEBUG"] = "false"
+os.environ.setdefault("OMP_NUM_THREADS", "1")  # tests run beside each other
 os.environ["HOST"] = "127.0.0.1"
 os.environ["PARSER_PORT"] = "1"  # nobody answers there
 os.environ["GPSR_QUEUE_PREFIX"] = f"{os.path.basename(var)}-"  # processes of tests share a broker

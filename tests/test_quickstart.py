@@ -15,6 +15,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.migrated import copy_installation
 from tests.waiting import PATIENCE_SECONDS, wait_for
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -121,7 +122,8 @@ def test_it_serves_trains_and_stops_twice_over(installation):
 
 
 @pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="Linux ends them")
-def test_what_it_started_ends_with_it_even_when_it_is_killed(installation):
+def test_what_it_started_ends_with_it_even_when_it_is_killed(installation, migrated_database):
+    copy_installation(migrated_database, installation.folder)
     installation.start()
     assert len(installation.remaining_processes()) >= 4
     installation.process.kill()

@@ -46,7 +46,7 @@ def free_port() -> int:
 
 
 class KillableSite:
-    """A SQLite database in ``folder`` with a world of so many ``templates``."""
+    """A migrated installation in ``folder`` with a world of so many ``templates``."""
 
     def __init__(self, folder: Path, templates: int) -> None:
         self.folder = folder
@@ -57,7 +57,6 @@ class KillableSite:
             "LOG_LEVEL": "ERROR",
         }
         self._environment.pop("DATABASE_URL", None)
-        self._manage("migrate", "-v0")
         filled = json.loads(self._manage("shell", "-v0", "-c", FILL.format(templates=templates)))
         self.user, self.templates = filled["user"], filled["templates"]
         self._cookies = f"sessionid={filled['session']}; csrftoken={CSRF}"

@@ -15,6 +15,7 @@ from threading import Event, Lock, Thread
 import pytest
 
 from tests.durability.site import KillableSite
+from tests.migrated import copy_installation
 
 pytestmark = pytest.mark.processes
 
@@ -78,8 +79,9 @@ class Round:
 
 
 @pytest.fixture(scope="module")
-def site(tmp_path_factory) -> KillableSite:
-    return KillableSite(tmp_path_factory.mktemp("site"), templates=SAVERS + DRAFTERS)
+def site(migrated_database, tmp_path_factory) -> KillableSite:
+    folder = copy_installation(migrated_database, tmp_path_factory.mktemp("site"))
+    return KillableSite(folder, templates=SAVERS + DRAFTERS)
 
 
 @pytest.mark.parametrize("number", range(KILLS))

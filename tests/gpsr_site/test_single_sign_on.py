@@ -19,8 +19,8 @@ def test_without_a_server_there_is_none(db, client):
 
 
 @pytest.mark.processes
-def test_with_a_server_people_sign_on(tmp_path):
+def test_with_a_server_people_sign_on(migrated_folder):
     pytest.importorskip("allauth")
-    walk = [sys.executable, "-m", "tests.gpsr_site.sign_on_walk", str(tmp_path)]
+    walk = [sys.executable, "-m", "tests.gpsr_site.sign_on_walk", str(migrated_folder)]
     done = subprocess.run(walk, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr

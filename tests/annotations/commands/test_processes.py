@@ -9,15 +9,13 @@ import pytest
 
 from tests.annotations.commands.bad_inputs import FAULTS
 from tests.annotations.commands.run_command import run_process
+from tests.migrated import copy_installation
 
 
 @pytest.fixture(scope="module")
-def var_dir(tmp_path_factory):
+def var_dir(migrated_database, tmp_path_factory):
     """A fresh installation's folder, its database migrated."""
-    folder = tmp_path_factory.mktemp("var")
-    migrated = run_process(folder, "migrate", "--verbosity", "0")
-    assert migrated.returncode == 0, migrated.stderr
-    return folder
+    return copy_installation(migrated_database, tmp_path_factory.mktemp("var"))
 
 
 def test_2018_imports_and_generates(var_dir, shared_data):

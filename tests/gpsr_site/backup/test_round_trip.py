@@ -21,6 +21,7 @@ from parser_service.models import TrainingRun
 from tests.annotations.commands.run_command import run, run_process
 from tests.conftest import client_of, member
 from tests.filled_world import leave_traces
+from tests.migrated import copy_installation
 from tests.sample_world import fill_world
 
 
@@ -65,12 +66,13 @@ def backup_of(path: Path):
 
 
 @pytest.mark.processes
-def test_an_installation_moves_to_another_database_and_back(filled, var, tmp_path):
+def test_an_installation_moves_to_another_database_and_back(
+    filled, var, migrated_database, tmp_path
+):
     before = backup_of(tmp_path / "one.zip")
     assert sum(rows for rows, _ in before[0].values()) > 100 and before[1]
-    elsewhere = tmp_path / "elsewhere"
+    elsewhere = copy_installation(migrated_database, tmp_path / "elsewhere")
     for command in (
-        ("migrate", "--verbosity", "0"),
         ("restore", tmp_path / "one.zip"),
         ("backup", tmp_path / "two.zip"),
     ):
