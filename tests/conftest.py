@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+import shutil
 import signal
 from collections.abc import Iterator
 from pathlib import Path
@@ -78,11 +79,19 @@ def no_earlier_attempts(request):
 
 
 @pytest.fixture(scope="session")
-def django_db_modify_db_settings(django_db_modify_db_settings_parallel_suffix):
-    """SQLite's test database is a file, which the workers and servers of a test can open too."""
+def django_db_modify_db_settings(django_db_modify_db_settings_parallel_suffix, request):
+    """SQLite's test database is a file, which the workers and servers of a test can open too: a copy
+    of one that is migrated."""
     database = connection.settings_dict
     if connection.vendor == "sqlite" and not database["TEST"]["NAME"]:
         database["TEST"]["NAME"] = str(site.VAR_DIR / "test.sqlite3")
+        shutil.copy(request.getfixturevalue("migrated_database"), database["TEST"]["NAME"])
+
+
+@pytest.fixture(scope="session")
+def django_db_keepdb(request) -> bool:
+    """Whether the database that is there is used; SQLite's was copied a moment ago."""
+    return connection.vendor == "sqlite" or request.config.getvalue("reuse_db")
 
 
 @pytest.fixture(scope="session")

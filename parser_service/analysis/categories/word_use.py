@@ -7,15 +7,18 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import chain
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
 
 from annotations.language.english import ARTICLES
 from annotations.language.forms import head_predicate, predicates
 from parser_service.analysis.arrays import Bools, Floats, Ints
 from parser_service.analysis.reading import read_or_none
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
 
 LEAST_PAIRS = 5  # of training, that have the word and go with the one side
 STRONG = 3.0  # log odds: a word is 20 times as frequent on one side as on the other
@@ -145,6 +148,8 @@ def _content(words: Iterable[str]) -> set[str]:
 
 def _count(of_forms: Sequence[Counter[str]]) -> tuple[dict[str, int], csr_array]:
     """Return the place of each word that is frequent enough, and the counts of words, [forms, words]."""
+    from scipy.sparse import csr_array  # half a second at the start of every process
+
     together: Counter[str] = Counter()
     for counts in of_forms:
         together.update(counts)
