@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 from annotations.models import ApiToken
 from tests.gpsr_site.routes.addresses import KEYS
 
-CASES = int(os.environ.get("TEST_SCHEMA_CASES", "120"))
+CASES = int(os.environ.get("TEST_SCHEMA_CASES", "60"))
 NAMES_IN_THE_SCHEMA = {"pk": "id"}
 WRITES = {"post": 4, "patch": 4, "delete": 1, "get": 2}  # how often one is tried beside the others
 # What the parse server answers, which is away here: 503.
