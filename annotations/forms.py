@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from django import forms
+from django.db import IntegrityError, transaction
 from django.http import HttpRequest, QueryDict
 
 from annotations.checking import Checked, check_template
@@ -165,6 +166,15 @@ class WorldForm(forms.ModelForm):
             "name": "Lower-case letters, digits, _ and -. Used in URLs and commands.",
             "description": "One sentence, shown in the list of worlds.",
         }
+
+    def create(self) -> World | None:
+        """Store the world that a valid form describes; None, with an error, where somebody was quicker."""
+        try:
+            with transaction.atomic():
+                return self.save()
+        except IntegrityError:
+            self.add_error("name", "There is a world of this name already. Choose another name.")
+            return None
 
 
 class SplitForm(forms.Form):

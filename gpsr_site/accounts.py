@@ -8,12 +8,20 @@ import unicodedata
 
 from django import forms
 from django.contrib import messages
-from django.contrib.auth.forms import AuthenticationForm
+from django.contrib.auth.forms import (
+    AuthenticationForm,
+    PasswordChangeForm,
+    SetPasswordForm,
+)
 from django.contrib.auth.views import LoginView, PasswordChangeView, PasswordResetConfirmView
 from django.core.exceptions import ValidationError
 from django.http import HttpRequest, HttpResponse
 from django.urls import reverse_lazy
+from django.utils.decorators import method_decorator
+from django.views.decorators.http import require_http_methods
 
+from annotations.people.access import READ_AND_WRITE
+from annotations.people.passwords import MOST_CHARACTERS, ask_twice
 from annotations.people.rate_limits import Rate
 from annotations.people.sessions import remember_device
 
@@ -35,12 +43,29 @@ TOO_OFTEN = (
 TOO_MANY_AT_ONCE = "Too many attempts for this name just now. Try again in a few seconds."
 
 
+# What the pages below take, before they look at anything else: Django's views of forms read a PUT too.
+reads_forms = method_decorator(require_http_methods(READ_AND_WRITE), "dispatch")
+
+
 class LogInForm(AuthenticationForm):
     """Name and password, of a length that is cheap to hash."""
 
-    password = forms.CharField(strip=False, max_length=1000, widget=forms.PasswordInput)
+    password = forms.CharField(strip=False, max_length=MOST_CHARACTERS, widget=forms.PasswordInput)
 
 
+class NewPasswordForm(SetPasswordForm):
+    """A new password, twice."""
+
+    def __init__(self, *args: object, **kwargs: object) -> None:
+        super().__init__(*args, **kwargs)
+        ask_twice(self, "new_password1", "new_password2")
+
+
+class ChangePasswordForm(NewPasswordForm, PasswordChangeForm):
+    """The old password, and a new one twice."""
+
+
+@reads_forms
 class LogIn(LoginView):
     """The one page for logging in; Django's admin leads here, too."""
 
@@ -78,9 +103,11 @@ class LogIn(LoginView):
         return response
 
 
+@reads_forms
 class ChangePassword(PasswordChangeView):
     """Whoever is logged in changes their own password, and stays logged in here but nowhere else."""
 
+    form_class = ChangePasswordForm
     template_name = "registration/password.html"
     success_url = reverse_lazy("account")
 
@@ -92,9 +119,11 @@ class ChangePassword(PasswordChangeView):
         return response
 
 
+@reads_forms
 class SetPassword(PasswordResetConfirmView):
     """Whoever has the link that an administrator has made sets a new password by it, once."""
 
+    form_class = NewPasswordForm
     template_name = "registration/password_set.html"
     success_url = reverse_lazy("login")
 

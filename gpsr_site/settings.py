@@ -46,6 +46,11 @@ def _required_when_served(name: str, example: str) -> None:
         )
 
 
+try:
+    import annotations.language.english  # noqa: F401  it reads GPSR_ENGLISH_DIR
+except ValueError as error:
+    raise ImproperlyConfigured(str(error)) from error
+
 _required_when_served("SECRET_KEY", "$(openssl rand -hex 32)")
 _required_when_served("ALLOWED_HOSTS", "workbench.example.org")
 SECRET_KEY = env.str("SECRET_KEY", default="") or read_or_make_secret_key(VAR_DIR / "secret_key")
@@ -66,6 +71,7 @@ WEB_PROCESSES = env.int("WEB_PROCESSES", default=1)
 # --- applications -------------------------------------------------------------------------------
 
 INSTALLED_APPS = [
+    "gpsr_site",  # its commands stand before Django's of the same name
     "django.contrib.admin",
     "django.contrib.auth",
     "django.contrib.contenttypes",
@@ -78,7 +84,6 @@ INSTALLED_APPS = [
     "rest_framework",
     "drf_spectacular",
     "csp",
-    "gpsr_site",
     "annotations",
     "parser_service",
 ]
@@ -196,6 +201,14 @@ PARSER_SECRET = env.str("PARSER_SECRET", default="") or read_or_make_secret_key(
 # What runs that were asked but not promoted may take in the server's memory.
 PARSER_MEMORY_MB = env.int("PARSER_MEMORY_MB", default=2_000)
 
+# --- a language model's server --------------------------------------------------------------------
+
+# What the parser "llm" asks. The key is read here, and stands in no row and no log.
+LLM_URL = env.str("GPSR_LLM_URL", default="").strip()
+LLM_KEY = env.str("GPSR_LLM_KEY", default="").strip()
+LLM_MAY_BE_REMOTE = env.bool("GPSR_LLM_REMOTE", default=False)
+LLM_SECONDS = env.float("GPSR_LLM_SECONDS", default=120)
+
 # --- people -------------------------------------------------------------------------------------
 
 AUTH_USER_MODEL = "annotations.User"
@@ -279,7 +292,9 @@ SPECTACULAR_SETTINGS = {
         "ParaphraseStatus": "annotations.models.corpus.paraphrase_status_choices",
         "UtteranceStatus": "annotations.models.utterances.utterance_status_choices",
         "FindingStatus": "annotations.models.audit.finding_status_choices",
+        "LabelDecision": "annotations.models.audit.decision_choices",
         "PredicateKind": "annotations.models.predicates.predicate_kind_choices",
+        "Role": "annotations.models.worlds.role_choices",
         "WorkStatus": "annotations.models.background.status_choices",
         "WorkKind": "annotations.models.work_items.work_kind_choices",
         "WorkSubjectKind": ["utterance", "template", "paraphrase"],

@@ -43,9 +43,14 @@ class Workers:
         return TAKEN_BY[self.missing[0]] if self.served else "worker"
 
     @property
+    def _left_behind(self) -> int:
+        """How much work has begun although no worker lives: it waits for one to take it up again."""
+        return 0 if self.served else self.running
+
+    @property
     def summary(self) -> str:
         """The state in two or three words, for the top bar."""
-        queued = sum(self.waiting.values())
+        queued = sum(self.waiting.values()) + self._left_behind
         waiting = f", {queued} waiting" if queued else ""
         if self.missing:
             return f"No {self._missing_worker}{waiting}"
@@ -61,9 +66,7 @@ class Workers:
         """How much work waits for the missing worker; empty where all is well."""
         if not self.missing:
             return ""
-        waiting = sum(self.waiting.get(queue, 0) for queue in self.missing)
-        if not self.served:
-            waiting += self.running
+        waiting = sum(self.waiting.get(queue, 0) for queue in self.missing) + self._left_behind
         if not waiting:
             return "A run that is started now would wait."
         return f"{waiting} {self.noun}{' waits' if waiting == 1 else 's wait'} for one."

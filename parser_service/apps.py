@@ -2,6 +2,7 @@ from django.apps import AppConfig
 from django.conf import settings
 
 from parser_service.parsers.encoder_places import keep_encoders_in
+from parser_service.parsers.llm.places import Patience, Server, use_server
 
 
 class ParserServiceConfig(AppConfig):
@@ -14,6 +15,7 @@ class ParserServiceConfig(AppConfig):
         from annotations.jobs.kinds import register_verb
         from annotations.models import JobKind
         from annotations.splits.stale import register_results
+        from annotations.worlds.parts import register_part
         from parser_service.models import TrainingRun
 
         register(TrainingRun, "parser_service.runs.training.train")
@@ -21,7 +23,17 @@ class ParserServiceConfig(AppConfig):
         register_verb(JobKind.PROPOSE, "parser_service.candidates.proposing.propose")
         register_verb(JobKind.ANALYSE, "parser_service.analysing.carrying_out.analyse")
         register_verb(JobKind.ANSWER, "parser_service.analysing.answering.answer")
+        register_part("parser_service.robots.archived.ACTION_NAMES")
         register_results("run", lambda keys: TrainingRun.objects.filter(split__in=keys).count())
         keep_encoders_in(
             settings.ENCODERS_DIR, settings.VAR_DIR / "vectors", settings.ENCODER_PACKAGES
+        )
+        use_server(
+            Server(
+                settings.LLM_URL,
+                settings.LLM_KEY,
+                settings.LLM_MAY_BE_REMOTE,
+                Patience(answer=settings.LLM_SECONDS),
+                settings.VAR_DIR / "llm",
+            )
         )

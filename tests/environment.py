@@ -11,6 +11,8 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")  # tests run beside each other
 os.environ["HOST"] = "127.0.0.1"
 os.environ["PARSER_PORT"] = "1"  # nobody answers there
 os.environ["GPSR_QUEUE_PREFIX"] = f"{os.path.basename(var)}-"  # processes of tests share a broker
+for name in ("GPSR_LLM_URL", "GPSR_LLM_KEY", "GPSR_LLM_REMOTE"):
+    os.environ.pop(name, None)  # tests ask no server but those that they start
 if url := os.environ.get("TEST_BROKER_URL"):
     os.environ["CELERY_BROKER_URL"] = url
 else:

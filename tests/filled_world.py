@@ -133,6 +133,7 @@ def _talk(world: World, annotator: User) -> None:
 def _review(world: World, *reviewers: User) -> None:
     """Let people differ about why the answers of the world's runs are wrong."""
     saved, _ = Slice.objects.get_or_create(world=world, name="short", query="max_words=5")
+    Slice.objects.create(world=world, name="a slice with a name " * 4, query="source=generated")
     categories = ensure_categories(world)
     categories["overly_sensitive"].slice = saved
     categories["overly_sensitive"].save()

@@ -16,9 +16,12 @@ from annotations.models import (
     Split,
     World,
 )
+from parser_service.analysis.outcomes import outcomes_of
+from parser_service.analysis.scores import Judgement
 from parser_service.models import EpochMetric, Evaluation, Prediction, TrainingRun
 from parser_service.models.runs import Status
 from parser_service.runs import requesting
+from parser_service.runs.examples import cluster_of
 from tests.annotations.conftest import TINY, as_bytes
 from tests.parser_service.made_up import make_split
 
@@ -58,6 +61,8 @@ def scored_run(
     run, _ = requesting.request(world, split, parser, seed=seed, send=False)
     TrainingRun.objects.filter(pk=run.pk).update(status=Status.SUCCEEDED, progress=1)
     examples = list(split.examples.filter(part="validation"))
+    clusters = [cluster_of(example, split.criterion) for example in examples]
+    judgements = [Judgement(n < right, n < right, True) for n in range(len(examples))]
     for number, example in enumerate(examples):
         answer(run, example, example.logical_form if number < right else '( go " <room> " )')
     Evaluation.objects.create(
@@ -71,6 +76,7 @@ def scored_run(
         interval_high=0.6,
         equivalent=right / len(examples),
         well_formed=1,
+        outcomes=outcomes_of(clusters, judgements),
     )
     EpochMetric.objects.create(
         run=run, epoch=1, train_loss=2.5, validation_loss=2.0, validation_accuracy=0.25, seconds=1

@@ -26,14 +26,15 @@ def examples(language: str) -> str:
 
 
 @pytest.fixture
-def run(transactional_db, live_server, world, admin, tmp_path):
-    """A function that runs a program with BASE and TOKEN of a tiny world; it has to succeed."""
+def run(transactional_db, live_server, world, admin, superuser, tmp_path):
+    """A function that runs a program with BASE and tokens of a tiny world; it has to succeed."""
     if not (shutil.which("curl") and shutil.which("jq")):
         pytest.skip("needs curl and jq")
     assert not import_generator(world.name, as_bytes(TINY)).is_refused
     _, key = ApiToken.issue(admin, "notebook")
+    _, site_key = ApiToken.issue(superuser, "site")
     base = f"{live_server.url}/api/v1/worlds/{world.name}"
-    environment = {**os.environ, "BASE": base, "TOKEN": key}
+    environment = {**os.environ, "BASE": base, "TOKEN": key, "SITE_TOKEN": site_key}
 
     def go(*command: str) -> None:
         done = subprocess.run(
@@ -58,6 +59,7 @@ def test_the_table_names_every_route():
     table = TEXT[TEXT.index("## Routes") :]
     paths = [path for name, path in ALL_ROUTES.items() if name.startswith("api:")]
     for path in paths:
-        nouns = re.sub(r"<[^>]+>", "", path.partition("<slug:world>/")[2]).strip("/").split("/")
+        below = path.removeprefix("api/v1/worlds/<slug:world>/").removeprefix("api/v1/")
+        nouns = re.sub(r"<[^>]+>", "", below).strip("/").split("/")
         for noun in filter(None, nouns):
             assert f"{noun}/" in table, path

@@ -44,11 +44,12 @@ ROOMS = {
     ),
     "parser_service/neural": (
         "device", "weights", "pretrained", "training", "word_vectors", "sentence_encoder", "seq2seq",
-        "ranker",
+        "ranker", "t5",
     ),
     "parser_service/analysis": (
-        "arrays", "labels", "reading", "proportions", "resampling", "scores", "seeds", "comparing", "slicing",
-        "confusions", "categories", "attractors", "risk_coverage", "edits", "sensitivity", "probing",
+        "arrays", "labels", "reading", "proportions", "resampling", "folds", "clustered", "scores", "outcomes",
+        "seeds", "comparing", "slicing", "confusions", "categories", "attractors", "risk_coverage", "probabilities",
+        "edits", "sensitivity", "probing",
     ),
     "parser_service": (
         "parsers", "neural", "analysis", "models", "promotion", "runs", "robots", "serving", "conversing",
@@ -130,7 +131,7 @@ def test_a_room_of_the_language_core_is_entered_by_its_front_door():
 
 
 def test_a_network_imports_nothing_of_another_one():
-    networks = {"seq2seq", "ranker"}
+    networks = {"seq2seq", "ranker", "t5"}
     for network in networks:
         for path in modules_below(f"parser_service/neural/{network}"):
             for name in imports_of(path):

@@ -13,6 +13,7 @@ SETTINGS = (ROOT / "gpsr_site" / "settings.py").read_text(encoding="utf-8")
 TABLE_ROW = re.compile(r"^\| `([A-Z_]+)` \|", re.MULTILINE)
 # Django's and Celery's own; read by the shell, the tests or a library rather than by the settings.
 READ_ELSEWHERE = {
+    "GPSR_ENGLISH_DIR",
     "GPSR_SHARED_DATA",
     "TEST_DATABASE_URL",
     "TEST_BROKER_URL",

@@ -84,3 +84,16 @@ def test_lines_of_a_template_can_be_read(template):
     lines = enumerate(read(template).splitlines(), start=1)
     long = {number: len(line) for number, line in lines if len(line) > LONGEST_LINE}
     assert not long
+
+
+def test_every_colour_and_measure_that_a_style_names_is_there():
+    styles = "".join(COMMENT.sub("", read(path)) for path in STYLES)
+    elsewhere = "".join(read(path) for path in [*SCRIPTS, *TEMPLATES])
+    given = set(re.findall(r"(--[\w-]+)\s*:", styles + elsewhere))
+    assert set(re.findall(r"var\((--[\w-]+)", styles)) <= given
+
+
+@pytest.mark.parametrize("template", TEMPLATES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_figures_are_rounded_by_one_filter(template):
+    """Pages, reports and downloads round 66.25 alike, which Django's ``floatformat`` does not."""
+    assert not re.findall(r"floatformat:[1-9]", read(template))

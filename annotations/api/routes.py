@@ -23,7 +23,7 @@ from annotations.api.matching import etag_of, require_match
 from annotations.api.once import once, slot_of
 from annotations.api.paging import Keyset
 from annotations.api.parsing import BoundedJSONParser
-from annotations.api.permissions import HasDuty
+from annotations.api.permissions import HasDuty, HasScope
 from annotations.api.problems import refusal_of_form
 from annotations.editing.edits import add, change, delete
 from annotations.language.errors import Problem
@@ -31,27 +31,16 @@ from annotations.models import Duty, Editable, World
 from annotations.rows.problems import as_json
 
 
-class WorldRoute(GenericAPIView):
-    """A route below a world. ``duties`` says what each method needs; reading needs ``Duty.VIEW``."""
+class Route(GenericAPIView):
+    """A route outside of any world. ``duty`` says which scope a token needs, as it does below a world."""
 
-    permission_classes = [HasDuty]
+    permission_classes = [HasScope]
     parser_classes = [BoundedJSONParser]
-    duties: ClassVar[Mapping[str, Duty]] = {}
     conditional_methods: ClassVar[tuple[str, ...]] = ()
     model: ClassVar[type[Model]]
-    world: World
-
-    @property
-    def duty(self) -> Duty:
-        """What the method of the request needs."""
-        return self.duties.get(self.request.method, Duty.VIEW)
-
-    def initial(self, request: Request, *args: Any, **kwargs: Any) -> None:
-        super().initial(request, *args, **kwargs)
-        request.world = self.world  # filters look there for the choices of the world
 
     def rows(self) -> QuerySet[Any]:
-        """Return the rows of the world that the route is about."""
+        """Return the rows that the route is about, as far as the caller sees them."""
         raise NotImplementedError
 
     def get_queryset(self) -> QuerySet[Any]:
@@ -65,7 +54,25 @@ class WorldRoute(GenericAPIView):
         return dict(sent.validated_data)
 
 
-class RowsRoute(ListModelMixin, WorldRoute):
+class WorldRoute(Route):
+    """A route below a world. ``duties`` says what each method needs; reading needs ``Duty.VIEW``."""
+
+    permission_classes = [HasDuty]
+    duties: ClassVar[Mapping[str, Duty]] = {}
+    world: World
+
+    @property
+    def duty(self) -> Duty:
+        """What the method of the request needs."""
+        method = "GET" if self.request.method == "HEAD" else self.request.method
+        return self.duties.get(method, Duty.VIEW)
+
+    def initial(self, request: Request, *args: Any, **kwargs: Any) -> None:
+        super().initial(request, *args, **kwargs)
+        request.world = self.world  # filters look there for the choices of the world
+
+
+class ManyRows(ListModelMixin, Route):
     """A list, filtered, sorted and paged by its address."""
 
     pagination_class = Keyset
@@ -75,7 +82,7 @@ class RowsRoute(ListModelMixin, WorldRoute):
         return self.list(request)
 
 
-class RowRoute(WorldRoute):
+class SingleRow(Route):
     """One row, with the tag of its version."""
 
     filter_backends: ClassVar[list[type[BaseFilterBackend]]] = []
@@ -92,6 +99,14 @@ class RowRoute(WorldRoute):
         row = self.get_object()
         require_match(self.request, row, self.get_serializer(row).data)
         return row
+
+
+class RowsRoute(ManyRows, WorldRoute):
+    """A list of rows of a world."""
+
+
+class RowRoute(SingleRow, WorldRoute):
+    """One row of a world."""
 
 
 class Noun:

@@ -1,18 +1,26 @@
-"""The worlds that the caller sees."""
+"""The worlds that the caller sees: made, described and deleted as on the pages."""
 
 from __future__ import annotations
 
+from http import HTTPStatus
+
+from django.db import transaction
 from django.db.models import QuerySet
+from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
-from rest_framework.generics import GenericAPIView
-from rest_framework.mixins import ListModelMixin
+from rest_framework.exceptions import PermissionDenied
 from rest_framework.request import Request
 from rest_framework.response import Response
 
-from annotations.api.paging import Keyset
-from annotations.api.permissions import HasScope
-from annotations.api.routes import RowRoute
-from annotations.models import World
+from annotations.api.jobs.jobs import JobSerializer, address_of_job
+from annotations.api.once import once
+from annotations.api.permissions import ChangedBySiteAdmins, ForSiteAdmins
+from annotations.api.problems import refusal_of_form
+from annotations.api.reading import Fields
+from annotations.api.routes import ManyRows, RowRoute
+from annotations.forms import WorldForm
+from annotations.jobs.starting import start_deletion
+from annotations.models import Duty, Job, World
 
 
 class WorldSerializer(serializers.ModelSerializer):
@@ -30,6 +38,19 @@ class WorldSerializer(serializers.ModelSerializer):
         return sorted(by_world.get(world.pk, ()))
 
 
+class WorldChange(Fields):
+    """The name of a world is in addresses and never changes."""
+
+    description = serializers.CharField(max_length=10_000, allow_blank=True)
+
+
+class NewWorld(Fields):
+    """An empty world; its files are imported next."""
+
+    name = serializers.CharField(max_length=60)
+    description = serializers.CharField(max_length=10_000, allow_blank=True, default="")
+
+
 class WorldNoun:
     model = World
     serializer_class = WorldSerializer
@@ -42,23 +63,69 @@ class WorldNoun:
         return {**context, "duties": duties}
 
 
-class Worlds(WorldNoun, ListModelMixin, GenericAPIView):
-    """Lists the worlds that the caller is a member of."""
+class Worlds(WorldNoun, ManyRows):
+    """Lists the worlds that the caller is a member of; administrators of the site make another one."""
 
-    permission_classes = [HasScope]
-    pagination_class = Keyset
+    permission_classes = [ChangedBySiteAdmins]
     filter_backends = []
     sorts = {"name": "name"}
 
-    def get_queryset(self) -> QuerySet[World]:
+    @property
+    def duty(self) -> Duty:
+        return Duty.MANAGE if self.request.method == "POST" else Duty.VIEW
+
+    def rows(self) -> QuerySet[World]:
         return World.objects.visible_to(self.request.user)
 
-    def get(self, request: Request) -> Response:
-        return self.list(request)
+    @extend_schema(request=NewWorld, responses={201: WorldSerializer})
+    @once
+    def post(self, request: Request) -> Response:
+        form = WorldForm(self.read(NewWorld))
+        created = form.create() if form.is_valid() else None
+        if created is None:
+            raise refusal_of_form(form)
+        response = RowRoute.show(self, created, HTTPStatus.CREATED)
+        response["Location"] = request.build_absolute_uri(f"{request.path}{created.name}/")
+        return response
 
 
 class OneWorld(WorldNoun, RowRoute):
-    """Shows a world."""
+    """Shows a world; its admins describe it, administrators of the site delete it."""
+
+    duties = {"PATCH": Duty.MANAGE, "DELETE": Duty.MANAGE}
+    conditional_methods = ("PATCH", "DELETE")
 
     def get_object(self) -> World:
         return self.world
+
+    @extend_schema(request=WorldChange, responses={200: WorldSerializer})
+    def patch(self, request: Request, **kwargs: object) -> Response:
+        with transaction.atomic():
+            row = self._locked()
+            sent = self.read(WorldChange, partial=True)
+            form = WorldForm(
+                {"name": row.name, "description": row.description, **sent}, instance=row
+            )
+            if not form.is_valid():
+                raise refusal_of_form(form)
+            form.save()
+        return self.show(row)
+
+    @extend_schema(request=None, responses={202: JobSerializer, 204: None})
+    def delete(self, request: Request, **kwargs: object) -> Response:
+        """Delete the world with all that is in it: at once where it is small, otherwise by a job."""
+        if not request.user.is_superuser:
+            raise PermissionDenied(ForSiteAdmins.message)
+        with transaction.atomic():
+            row = self._locked()
+        started = start_deletion(row, request.user)
+        if not isinstance(started, Job):
+            return Response(status=HTTPStatus.NO_CONTENT)
+        location = {"Location": address_of_job(request, started)}
+        shown = JobSerializer(started).data
+        return Response(shown, status=HTTPStatus.ACCEPTED, headers=location)
+
+    def _locked(self) -> World:
+        """Return the world, held until the transaction is over, if it is as the request says."""
+        self.world = World.objects.select_for_update().get(pk=self.world.pk)
+        return self.matched()

@@ -14,7 +14,7 @@ from annotations.language.corpus import (
     read_pairs,
     read_triples,
 )
-from annotations.language.decoding import read_folder
+from annotations.language.decoding import MAX_FILE_BYTES, read_folder
 from annotations.language.errors import LanguageError, Position, Problem, error_at, warning_at
 from annotations.language.grammar import TRIPLE_FILES
 
@@ -34,15 +34,15 @@ class PairFolder:
         return tuple(dict.fromkeys(criterion for criterion, _, _ in self.pairs))
 
 
-def read_pair_folder(folder: Path) -> PairFolder:
+def read_pair_folder(folder: Path, most_bytes: int = MAX_FILE_BYTES) -> PairFolder:
     """Read ``gen para gen_logical para_logical`` and the grounded triples, those that are there.
 
-    Nothing is raised; a folder with none of them is a problem too.
+    A file with more than ``most_bytes`` is a problem. Nothing is raised; a folder with none of them is a problem too.
     """
     pairs: dict[tuple[str, str, str], tuple[WrittenPair, ...]] = {}
     triples: list[GroundedTriple] = []
     problems: list[Problem] = []
-    for path, data in _contents(folder, problems):
+    for path, data in _contents(folder, most_bytes, problems):
         directory, _, name = path.rpartition("/")
         if not directory:
             records = read_triples(data, path)
@@ -64,15 +64,18 @@ def read_pair_folder(folder: Path) -> PairFolder:
     return PairFolder(pairs, tuple(triples), tuple(sorted(problems)))
 
 
-def _contents(folder: Path, problems: list[Problem]) -> Iterator[tuple[str, bytes]]:
+def _contents(
+    folder: Path, most_bytes: int, problems: list[Problem]
+) -> Iterator[tuple[str, bytes]]:
     """Yield path inside the folder → bytes, for every file that may be one of a corpus."""
     try:
-        for name, data in read_folder(folder, "paraphras*.txt").items():
+        for name, data in read_folder(folder, "paraphras*.txt", most_bytes).items():
             if name in TRIPLE_FILES:
                 yield name, data
         for directory in CORPUS_FOLDERS:
             if (folder / directory).is_dir():
-                for name, data in read_folder(folder / directory, "*.txt").items():
+                files = read_folder(folder / directory, "*.txt", most_bytes)
+                for name, data in files.items():
                     yield f"{directory}/{name}", data
     except LanguageError as error:
         problems.append(error.problem)

@@ -15,6 +15,7 @@ from annotations.importing.prompts import Source, SourceFinder
 from annotations.importing.report import PairsReport
 from annotations.importing.worlds import locked_world, require_world_name
 from annotations.language.corpus import GroundedTriple, WrittenPair
+from annotations.language.decoding import MAX_FILE_BYTES
 from annotations.language.errors import LanguageError
 from annotations.models import Example, User, World
 from annotations.rows.problems import first_problems
@@ -30,6 +31,7 @@ def import_pairs(
     by: User | None = None,
     progress: Progress = UNWATCHED,
     brings_back: bool = False,
+    most_bytes: int = MAX_FILE_BYTES,
 ) -> PairsReport:
     """Take the splits and paraphrases of ``folder`` into a world, all of them or nothing.
 
@@ -37,13 +39,14 @@ def import_pairs(
         world_name: made where there is none.
         name: of the splits: ``name-command`` and ``name-logical_form``.
         folder: with any of ``gen para gen_logical para_logical`` and ``paraphrasings.txt``.
+        most_bytes: of one file. What is uploaded packs well, so the default is small.
 
     A split that is there already with the same pairs is left alone; one with other pairs is an
     error, since a frozen split never changes. A paraphrase that is there already is not doubled, and one
     that people have deleted stays away unless ``brings_back``.
     """
     progress.report(0, "reading the pairs")
-    files = read_pair_folder(Path(folder))
+    files = read_pair_folder(Path(folder), most_bytes)
     report = _report(world_name, name, files)
     try:
         require_world_name(world_name)
@@ -117,13 +120,16 @@ def _prepare_splits(
     progress: Progress,
 ) -> Iterator[PreparedSplit]:
     behind = _by_utterance(files.triples, sources)
+    canonical: dict[str, str] = {}  # form as it is written → canonical text
     for criterion in files.criteria:
         examples = []
         for (of, source, part), pairs in files.pairs.items():
             if of == criterion:
                 for position, pair in enumerate(pairs):
                     progress.check()
-                    examples.append(_example(pair, position, part, source, behind, finder))
+                    if (form := canonical.get(pair.written_form)) is None:
+                        form = canonical[pair.written_form] = pair.canonical_form
+                    examples.append(_example(pair, form, position, part, source, behind, finder))
         yield PreparedSplit(f"{name}-{criterion}", criterion, examples)
 
 
@@ -139,9 +145,14 @@ def _by_utterance(triples: Sequence[GroundedTriple], sources: Sequence[Source]) 
 
 
 def _example(
-    pair: WrittenPair, position: int, part: str, source: str, behind: Behind, finder: SourceFinder
+    pair: WrittenPair,
+    form: str,
+    position: int,
+    part: str,
+    source: str,
+    behind: Behind,
+    finder: SourceFinder,
 ) -> Example:
-    form = pair.canonical_form
     example = Example(
         position=position,
         part=part,

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
+from annotations.language.english import ANY_OBJECT
 from annotations.language.forms import Application, Constant, Form, Lambda, canonical_text
 from annotations.language.grounding import Anonymizer
 from annotations.language.ontology import Ontology
 from annotations.models import Command, World
 from annotations.rows.from_rows import ontology_of
 
-# What ``{category?}`` says; it is the name of no entity, so no anonymizer finds it.
-ANY_CATEGORY, CATEGORY_TOKEN = "objects", "<category>"
-_ANY_CATEGORY = re.compile(rf"\b{ANY_CATEGORY}\b")
+CATEGORY_TOKEN = "<category>"
+_ANY_OBJECT = re.compile(rf"\b{ANY_OBJECT}\b")
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,16 +31,35 @@ class Source:
 
 
 class SourceFinder:
-    """Finds the sources of prompts in one world, or in none. Two queries, however many prompts."""
+    """Finds the sources of prompts in one world, or in none. Two queries, however many prompts.
 
-    def __init__(self, world: World | None) -> None:
+    ``further`` are generated commands that the world may lack.
+    """
+
+    def __init__(self, world: World | None, further: Iterable[str] = ()) -> None:
         self._anonymizer = Anonymizer(ontology_of(world) if world else Ontology(()))
         commands = world.commands.all() if world else ()
         self._commands = {row.anonymized_text: row for row in commands}
+        self._texts = {*self._commands, *further}
 
     def command(self, anonymized_text: str) -> Command | None:
         """Return the generated command of this very text."""
         return self._commands.get(anonymized_text)
+
+    def is_command(self, text: str) -> bool:
+        """Return whether ``text`` is a generated command."""
+        return text in self._texts
+
+    def text(self, prompt: str) -> str:
+        """Return the text of the generated command that ``prompt`` grounds, or else the prompt with class
+        tokens, which then is no generated command."""
+        return self._text(prompt, self._anonymizer.anonymize(prompt).command)
+
+    def _text(self, prompt: str, anonymized: str) -> str:
+        # Some generated commands name entities: these are their own prompts.
+        obfuscated = _ANY_OBJECT.sub(CATEGORY_TOKEN, anonymized)
+        readings = (anonymized, obfuscated, prompt)
+        return next((text for text in readings if text in self._texts), anonymized)
 
     def source(self, prompt: str, grounded_form: Form) -> Source:
         """Return the source of a prompt with its grounded form.
@@ -50,11 +69,8 @@ class SourceFinder:
         """
         anonymized = self._anonymizer.anonymize(prompt)
         tokens = {span.value: span.token for span in anonymized.spans}
-        text = anonymized.command
-        if text not in self._commands:
-            obfuscated = _ANY_CATEGORY.sub(CATEGORY_TOKEN, text)
-            text = obfuscated if obfuscated in self._commands else text
-        form = _with_tokens(grounded_form, {ANY_CATEGORY: CATEGORY_TOKEN, **tokens})
+        text = self._text(prompt, anonymized.command)
+        form = _with_tokens(grounded_form, {ANY_OBJECT: CATEGORY_TOKEN, **tokens})
         return Source(self._commands.get(text), text, canonical_text(form))
 
 

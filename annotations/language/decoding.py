@@ -14,12 +14,14 @@ MAX_FILES = 200
 MAX_FILE_BYTES = 20_000_000
 
 
-def read_folder(folder: Path, pattern: str = "*") -> dict[str, bytes]:
+def read_folder(
+    folder: Path, pattern: str = "*", most_bytes: int = MAX_FILE_BYTES
+) -> dict[str, bytes]:
     """Return the files directly in ``folder`` whose names match ``pattern``: name → bytes.
 
     Raises:
         LanguageError: there is no such folder, a file cannot be read or is larger than
-            ``MAX_FILE_BYTES``, there are more than ``MAX_FILES``, or a link points outside the folder.
+            ``most_bytes``, there are more than ``MAX_FILES``, or a link points outside the folder.
     """
     if not folder.is_dir():
         raise LanguageError("there is no such folder", Position(folder.name))
@@ -28,18 +30,18 @@ def read_folder(folder: Path, pattern: str = "*") -> dict[str, bytes]:
         raise LanguageError(
             f"the folder holds {len(paths)} files; {MAX_FILES} is the limit", Position(folder.name)
         )
-    return {path.name: _bytes_of(path, folder) for path in paths}
+    return {path.name: _bytes_of(path, folder, most_bytes) for path in paths}
 
 
-def _bytes_of(path: Path, folder: Path) -> bytes:
+def _bytes_of(path: Path, folder: Path, most_bytes: int) -> bytes:
     place = Position(path.name)
     if not path.resolve().is_relative_to(folder.resolve()):
         raise LanguageError(
             "this link points outside its folder", place, "put the file itself here"
         )
     try:
-        if path.stat().st_size > MAX_FILE_BYTES:
-            raise LanguageError(f"the file is larger than {MAX_FILE_BYTES:,} bytes", place)
+        if path.stat().st_size > most_bytes:
+            raise LanguageError(f"the file is larger than {most_bytes:,} bytes", place)
         return path.read_bytes()
     except OSError as error:
         raise LanguageError(f"the file cannot be read: {error.strerror}", place) from error

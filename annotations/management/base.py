@@ -14,6 +14,7 @@ from annotations.language.decoding import decode
 from annotations.language.errors import LanguageError, Problem
 from annotations.models import Split, World
 from annotations.models.splits import Criterion
+from annotations.people.audit_log import record_command
 from annotations.rows.problems import from_json
 
 MOST_EXCERPTS = 20  # errors that are shown with their line
@@ -41,7 +42,12 @@ class ReportingCommand(BaseCommand):
     A subclass gives ``add_options`` and ``report(**options)``, which returns a JSON-ready mapping or
     raises ``Refused``, ``LanguageError`` or ``ValueError``. With ``--json`` the report is the only
     thing on standard output. Errors go to standard error as sentences, and the exit status is 1.
+
+    What a command with ``audited`` has done goes into the audit log under these words, for the world that
+    its option ``world`` names; ``audit_subject`` says what it was about.
     """
+
+    audited = ""
 
     # The checks read every URL and view; a script that runs often should not pay for them.
     requires_system_checks: list[str] = []
@@ -63,6 +69,10 @@ class ReportingCommand(BaseCommand):
         """Do the work and say what came of it."""
         raise NotImplementedError
 
+    def audit_subject(self, report: Mapping[str, Any], options: Mapping[str, Any]) -> str:
+        """Return what the work was about, never a secret."""
+        return ""
+
     def describe(self, report: Mapping[str, Any]) -> str:
         """Return the report for a person: one figure a line, then the problems, one a line."""
         figures = [f"{key}: {_in_words(value)}" for key, value in report.items()]
@@ -83,6 +93,9 @@ class ReportingCommand(BaseCommand):
             raise CommandError(_sentence(error)) from error
         except (ValueError, OSError) as error:
             raise CommandError(str(error)) from error
+        if self.audited:
+            world = World.objects.filter(name=options.get("world") or "").first()
+            record_command(self.audited, self.audit_subject(report, options), world)
         self._print(report, options["json"])
 
     def _print(self, report: Mapping[str, Any], as_json: bool) -> None:

@@ -10,7 +10,7 @@ from annotations.models.worlds import World
 
 
 class AuditEntry(models.Model):
-    """Something that somebody did over a page or the API. It outlives the person and the world.
+    """Something that somebody did over a page, the API or the command line. It outlives person and world.
 
     ``subject`` names the row, as ``template 12``, or says in short what was done; ``through`` is the
     name of the token that a program used. No value that somebody typed as a secret stands here.

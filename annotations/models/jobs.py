@@ -72,6 +72,12 @@ class Job(BackgroundWork):
 
     objects = JobQuerySet.as_manager()
 
+    @property
+    def title(self) -> str:
+        """What the job does, in words: of an error analysis also of which run."""
+        run = self.arguments.get("run") if self.kind == JobKind.ANALYSE else None
+        return f"Error analysis of run {run}" if run else self.get_kind_display()
+
     class Meta:
         ordering = ["-id"]
         indexes = [

@@ -69,11 +69,20 @@ class ApiToken(models.Model):
 
     @classmethod
     def issue(
-        cls, user: User, name: str, days: int = 90, scope: Scope = Scope.ADMIN
+        cls,
+        user: User,
+        name: str,
+        days: int = 90,
+        scope: Scope = Scope.ADMIN,
+        by: ApiToken | None = None,
     ) -> tuple[ApiToken, str]:
-        """Issue a token and return it with its secret, which cannot be retrieved later."""
+        """Issue a token and return it with its secret, which cannot be retrieved later.
+
+        One that a program makes by another token expires with that one, at the latest.
+        """
         key = secrets.token_urlsafe(32)
         expires_at = timezone.now() + timedelta(days=days)
+        expires_at = min(expires_at, by.expires_at) if by else expires_at
         token = cls.objects.create(
             user=user, name=name, scope=scope, digest=digest_of(key), expires_at=expires_at
         )

@@ -10,7 +10,7 @@ from annotations.models.worlds import World
 
 
 def predicate_kind_choices() -> list[tuple[str, str]]:
-    return [("action", "action"), ("description", "description")]
+    return [("action", "action"), ("sequence", "sequence"), ("description", "description")]
 
 
 class Predicate(Editable):

@@ -1,23 +1,31 @@
 """Writes the audit log: one entry for each request that has changed something.
 
 Middleware of the site calls ``record`` in one place, so that no page or route can be forgotten. A view
-may say with ``note`` what its address does not.
+may say with ``note`` what its address does not. Commands that change something call ``record_command``.
 """
 
 from __future__ import annotations
 
+import logging
 import re
+from datetime import datetime
 
+from django.db import DatabaseError, transaction
 from django.http import HttpRequest, HttpResponse
 
 from annotations.models import ApiToken, AuditEntry, Scope, World
 
+logger = logging.getLogger(__name__)
+
+# Who does what a management command does, and what nobody has asked for.
+COMMAND_LINE, RULE = "command line", "rule"
+MOST_AT_ONCE = 5_000  # entries that are deleted in one transaction
 SAFE_METHODS = ("GET", "HEAD", "OPTIONS", "TRACE")
 MOST_SUBJECT_CHARACTERS = 200
 # Routes that are posted to and change nothing that others see.
 UNRECORDED = re.compile(
     r"_(check|preview|suggestions|completion|consequences)$"
-    r"|^(draft|inbox|notice_open|queue_next|work-item-next|tryout_ask|playground_ask)$"
+    r"|^(draft|inbox|notice_open|notices-read|notice-read|queue_next|work-item-next|tryout_ask|playground_ask)$"
 )
 VERBS = {"POST": "create", "PUT": "change", "PATCH": "change", "DELETE": "delete"}
 # What a route does where its name does not say it.
@@ -25,11 +33,14 @@ WHAT = {
     "login": "log in",
     "join": "join",
     "password": "change password",
+    "password_set": "set password",
     "account_close": "close or open an account",
     "account_link": "make a link for a new password",
     "token_new": "make a token",
     "token_revoke": "revoke a token",
+    "logout": "log out",
     "session_end": "log out elsewhere",
+    "sessions_end": "log out everywhere",
     "people": "add a member",
     "member": "change roles",
     "invite": "invite",
@@ -40,29 +51,70 @@ WHAT = {
     "import": "import files",
     "import_pairs": "import pairs",
     "generate": "generate commands",
+    "job_answer": "answer a job",
+    "job_cancel": "cancel a job",
+    "rename": "rename everywhere",
     "history": "restore a version",
     "deleted": "restore a deleted row",
     "delete_row": "delete",
     "comments": "comment",
     "comment": "change a comment",
+    "comment_delete": "delete a comment",
+    "comment_restore": "restore a comment",
     **{name: f"change {name}" for name in ("template", "entity", "predicate", "production")},
     **{f"{name}_new": f"new {name}" for name in ("template", "entity", "predicate", "production")},
+    "entities_new": "add entities",
+    "offered_entity_decide": "decide about a word from dialogues",
+    "robot": "name actions",
+    "template_duplicate": "copy a template",
+    "template_repair": "repair a template",
+    "utterances_new": "add utterances",
+    "paraphrase_label": "label a paraphrase",
     "split_new": "freeze a split",
+    "split_renew": "freeze a split anew",
     "run_new": "start a run",
     "run_cancel": "cancel a run",
+    "run_retrain": "retrain a run",
+    "learning_curve_start": "start runs of a learning curve",
+    "analysis_start": "analyse errors",
+    "analysis_cancel": "cancel an error analysis",
+    "review_tag": "tag an answer",
+    "review_note": "write a note on an answer",
+    "review_doubt": "doubt a label",
+    "error_categories": "add an error category",
+    "error_category": "change an error category",
+    "error_category_delete": "delete an error category",
+    "error_category_move": "move an error category",
+    "slices": "save a slice",
+    "slice_rename": "rename a slice",
+    "slice_delete": "delete a slice",
+    "example_send": "send an example to the work queue",
+    "predictions_send": "send answers to the work queue",
     "promotion_promote": "promote a run",
     "promotion_roll_back": "roll back to the run before",
     "promotion_decline": "decline a proposed run",
     "playground_wrong": "report a wrong answer",
+    "dialogues": "begin a dialogue",
+    "dialogue": "answer in a dialogue",
+    "dialogue_keep": "keep a dialogue as an utterance",
     "label_answer": "label",
+    "label_mend": "correct what names an entity",
+    "label_send": "send an utterance to be labelled",
     "label_take_back": "take a label back",
+    "audit_start": "start a label audit",
+    "audit_decide": "decide about a label",
+    "audit_take_back": "take a decision back",
     "queue_settings": "set shares",
+    "queue_act": "work on an item",
+    "queue_ask": "ask for a look",
+    "queue_assign": "assign an item",
+    "queue_settle": "settle two labels",
 }
 
 
 def note(request: HttpRequest, sentence: str) -> None:
-    """Say in the audit log what the request was about; never a secret."""
-    request.audit_note = sentence
+    """Say in the audit log what the request was about, of a page or of the API; never a secret."""
+    getattr(request, "_request", request).audit_note = sentence
 
 
 def record(request: HttpRequest, response: HttpResponse) -> AuditEntry | None:
@@ -79,6 +131,38 @@ def record(request: HttpRequest, response: HttpResponse) -> AuditEntry | None:
         what=_what(request)[:80],
         subject=_subject(request)[:MOST_SUBJECT_CHARACTERS],
     )
+
+
+def record_command(
+    what: str, subject: str = "", world: World | None = None, who: str = COMMAND_LINE
+) -> None:
+    """Write down what a management command or a rule has done; it stays done where that fails."""
+    try:
+        with transaction.atomic():
+            AuditEntry.objects.create(
+                world=world,
+                world_name=world.name if world else "",
+                who_name=who,
+                what=what[:80],
+                subject=subject[:MOST_SUBJECT_CHARACTERS],
+            )
+    except DatabaseError:
+        logger.exception("An entry of the audit log could not be written.")
+
+
+def prune(before: datetime, world: World | None = None) -> int:
+    """Delete the entries from before a moment, of one world or of all, and return how many they were.
+
+    In short transactions, so that people work meanwhile.
+    """
+    old = AuditEntry.objects.filter(at__lt=before).order_by("pk")
+    if world is not None:
+        old = old.filter(world=world)
+    count = 0
+    while keys := list(old.values_list("pk", flat=True)[:MOST_AT_ONCE]):
+        AuditEntry.objects.filter(pk__in=keys).delete()
+        count += len(keys)
+    return count
 
 
 def _has_done_something(request: HttpRequest, response: HttpResponse) -> bool:

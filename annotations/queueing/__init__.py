@@ -5,10 +5,12 @@ they hold or the most urgent free one, under a lease; ``finish``, ``skip``, ``gi
 end and reopen their part of it; ``settle`` and ``unsettle`` do so for what is decided elsewhere.
 ``send_examples`` asks about what examples of splits were copied from. A share
 of the utterances goes to two people, who do not see each other's labels; where these differ a third person
-compares them. ``answer`` labels an utterance and ends the part in one transaction.
+compares them. ``answer`` labels an utterance and ends the part in one transaction. ``ask_about`` asks for
+a look at a row, ``assign_first`` gives several items to one person.
 """
 
 from annotations.queueing.answering import answer, part_in, take_answer_back
+from annotations.queueing.asking import ASKABLE, ask_about, assign_first
 from annotations.queueing.enqueuing import WantedItem, enqueue
 from annotations.queueing.finishing import finish, give_back, skip
 from annotations.queueing.giving import (
@@ -26,13 +28,16 @@ from annotations.queueing.settling import settle, unsettle
 from annotations.queueing.shares import DOUBLE_KINDS, set_share, shares_of
 
 __all__ = [
+    "ASKABLE",
     "DOUBLE_KINDS",
     "NoLongerYours",
     "NotForThem",
     "Wanted",
     "WantedItem",
     "answer",
+    "ask_about",
     "assign",
+    "assign_first",
     "enqueue",
     "finish",
     "give_back",

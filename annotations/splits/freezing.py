@@ -64,8 +64,32 @@ def plan_split(
 ) -> list[Example]:
     """Return the examples that ``freeze_split`` would store, each with its part and position. Raises likewise."""
     examples = list(candidates(world))
-    assign_parts(examples, split(as_items(examples), Criterion(criterion), proportions, seed))
+    items = as_items(examples)
+    kept = kept_in_training(items, criterion)
+    assign_parts(examples, split(items, Criterion(criterion), proportions, seed, kept))
     return examples
+
+
+def unresolved_prompts(items: Iterable[SplitItem]) -> dict[str, str]:
+    """Return key → text of the source commands that are no generated command, of paraphrases that say one
+    at all; none where nothing is generated."""
+    generated: set[str] = set()
+    said: dict[str, str] = {}
+    for item in items:
+        key = item.key(Criterion.SOURCE_COMMAND)
+        if item.source == Source.GENERATED:
+            generated.add(key)
+        elif item.source_command not in ("", item.utterance):
+            said[key] = item.source_command
+    return {key: text for key, text in said.items() if generated and key not in generated}
+
+
+def kept_in_training(items: Sequence[SplitItem], criterion: str) -> dict[str, Part]:
+    """Return key → training part for what has to go there: by source command, paraphrases of prompts that are no
+    generated command, since nobody can tell what else they share."""
+    if criterion != Criterion.SOURCE_COMMAND:
+        return {}
+    return dict.fromkeys(unresolved_prompts(items), Part.TRAIN)
 
 
 def as_items(examples: Iterable[Example]) -> list[SplitItem]:

@@ -21,7 +21,13 @@ from annotations.models.splits import Source
 from annotations.models.utterances import UtteranceStatus
 from annotations.rows.history import DELETED, history_of
 from annotations.rows.synchronise import BATCH
-from annotations.splits.freezing import PreparedSplit, as_items, assign_parts, candidates
+from annotations.splits.freezing import (
+    PreparedSplit,
+    as_items,
+    assign_parts,
+    candidates,
+    kept_in_training,
+)
 
 LONGEST_NAME = 80
 
@@ -95,7 +101,7 @@ def plan_anew(old: Split) -> list[Example]:
     criterion = Criterion(old.criterion)
     examples = _examples_of_today(old)
     items = as_items(examples)
-    kept = _parts_to_keep(old, items, criterion)
+    kept = {**kept_in_training(items, criterion), **_parts_to_keep(old, items, criterion)}
     parts = split(items, criterion, proportions_of(old), old.seed or 0, kept)
     # A published part may share something with another one; it stays as it was published.
     as_published = (Part(each.part) if each.part else None for each in examples)

@@ -15,3 +15,12 @@ def refresh_every(seconds: int, url: str) -> SafeString:
     return format_html(
         'hx-get="{}" hx-trigger="every {}s" hx-swap="outerHTML" data-swap-if-changed', url, seconds
     )
+
+
+@register.simple_tag
+def ask_with(form: str, url: str, trigger: str) -> SafeString:
+    """Return the attributes of an element that is replaced by what ``url`` answers to the fields of the
+    form with the id ``form``, whenever ``trigger`` says so."""
+    return format_html(
+        'hx-post="{}" hx-include="#{}" hx-trigger="{}" hx-swap="outerHTML"', url, form, trigger
+    )

@@ -7,6 +7,7 @@ for people and other programs: ``generator/`` (the files of a command generator 
 """
 
 from annotations.world_archive.reading import ImportedWorld, import_world
+from annotations.world_archive.tables import Table
 from annotations.world_archive.writing import archive_name, world_archive
 
-__all__ = ["ImportedWorld", "archive_name", "import_world", "world_archive"]
+__all__ = ["ImportedWorld", "Table", "archive_name", "import_world", "world_archive"]

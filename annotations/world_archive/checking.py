@@ -16,6 +16,8 @@ from annotations.language.predicates import ArgumentKind
 from annotations.rows.template_problems import is_stored_problems
 from annotations.world_archive.tables import Table
 
+Shapes = Mapping[str, Callable[[Any], bool]]
+
 # Columns that name a file, by table; and those that hold a logical form.
 FILE_NAMES = {
     "entities": ("source",),
@@ -75,7 +77,7 @@ def check_row(table: Table, values: Mapping[str, Any], place: Position) -> None:
     for column in table.columns:
         if column.name not in values:
             continue
-        check_value(column, values[column.name], place)
+        check_value(column, values[column.name], place, table.shapes or SHAPES)
     for name in table.people:
         if not isinstance(values.get(name), str | None):
             raise LanguageError(f"{name} is not the name of an account", place)
@@ -87,12 +89,17 @@ def check_row(table: Table, values: Mapping[str, Any], place: Position) -> None:
         _check_form(values[name], name, place)
 
 
-def check_value(column: models.Field, value: Any, place: Position) -> None:
-    """Raises LanguageError where ``value`` is nothing that ``column`` may hold."""
+def check_value(
+    column: models.Field, value: Any, place: Position, shapes: Shapes | None = None
+) -> None:
+    """Raises LanguageError where ``value`` is nothing that ``column`` may hold.
+
+    ``shapes`` says what JSON columns may hold; those of our own tables unless it is given.
+    """
     if value is None and column.null:
         return
     if isinstance(column, models.JSONField):
-        if not SHAPES[column.name](value):
+        if not (shapes or SHAPES)[column.name](value):
             raise LanguageError(f"{column.name} has the wrong shape", place)
         for name in _file_names_in(column.name, value):
             _check_file_name(name, place)
@@ -161,7 +168,7 @@ def _is_shares(value: Any) -> bool:
     return is_numbers and len(value) in (0, 3) and all(0 <= each <= 1 for each in value)
 
 
-SHAPES: dict[str, Callable[[Any], bool]] = {
+SHAPES: Shapes = {
     "aliases": _is_texts,
     "attributes": _is_text_by_text,
     "rule_sources": _is_some_texts,

@@ -11,7 +11,7 @@ from annotations.importing.archives import MANIFEST, manifests_in, read_member
 from annotations.language.errors import LanguageError, Position
 from annotations.models import World
 from annotations.world_archive.checking import check_value, parse_object
-from annotations.world_archive.tables import FORMAT, TABLES, VERSION, WORLD_FIELDS
+from annotations.world_archive.tables import FORMAT, VERSION, WORLD_FIELDS, tables
 
 MOST_BYTES = 1_000_000
 
@@ -50,7 +50,7 @@ def read_manifest(archive: zipfile.ZipFile, name: str) -> Manifest:
     _refuse_changed_files(archive, prefix, rows.keys(), files)
     return Manifest(
         prefix,
-        {table.name: rows[table.name] for table in TABLES if table.name in rows},
+        {table.name: rows[table.name] for table in tables() if table.name in rows},
         values["has_grammar"],
         values["has_ontology"],
         {field: values[field] for field in WORLD_FIELDS},
@@ -92,7 +92,7 @@ def _refuse_changed_files(
 ) -> None:
     """``announced`` are the tables that the archive has: an older one lacks some of today's."""
     members = {member.filename: member for member in archive.infolist()}
-    for path in {table.path for table in TABLES if table.name in announced} | files.keys():
+    for path in {table.path for table in tables() if table.name in announced} | files.keys():
         member = members.get(prefix + path)
         if member is None or path not in files:
             raise LanguageError("this file is missing from the archive", Position(path))

@@ -24,7 +24,7 @@ from annotations.rows.synchronise import BATCH, batches
 from annotations.splits.freezing import content_hash_of
 from annotations.world_archive.checking import check_row, parse_object
 from annotations.world_archive.manifest import Manifest, read_manifest
-from annotations.world_archive.tables import TABLES, Table
+from annotations.world_archive.tables import Table, tables
 from annotations.worlds.world_deletion import delete_world
 
 LONGEST_LINE = 1_000_000
@@ -136,7 +136,7 @@ class _Loader:
 
     def load(self) -> dict[str, int]:
         """Store the rows of all tables; return how many by table. Raises LanguageError."""
-        for table in TABLES:
+        for table in tables():
             self._keys[table.name] = keys = []
             if table.name not in self._manifest.rows:
                 continue

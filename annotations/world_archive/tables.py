@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
+from typing import Any
 
 from django.db import models
+from django.utils.module_loading import import_string
 
 from annotations.models import (
     Assignment,
@@ -32,6 +34,7 @@ from annotations.models import (
     WorkShare,
     World,
 )
+from annotations.worlds.parts import registered_parts
 
 FORMAT, VERSION = "gpsr-workbench-world", 1
 WORLD_FIELDS = ("description", "revision", "generated_revision")
@@ -46,7 +49,8 @@ class Table:
     fields that refer to rows of other tables, or to earlier ones of this table, by
     line number from 0; ``people`` those that refer to accounts, by user name. Where there are
     ``subjects``, the field ``subject`` refers to a row of the table that is named there for the row's
-    ``kind``, or to none.
+    ``kind``, or to none. ``shapes`` says of each JSON column of another application's table whether a
+    value may stand there.
     """
 
     name: str
@@ -55,6 +59,7 @@ class Table:
     references: Mapping[str, str] = field(default_factory=dict)
     people: tuple[str, ...] = ()
     subjects: Mapping[str, str] = field(default_factory=dict)
+    shapes: Mapping[str, Callable[[Any], bool]] = field(default_factory=dict)
 
     @property
     def path(self) -> str:
@@ -83,7 +88,7 @@ class Table:
 
 
 # Rows stand behind those that they refer to.
-TABLES = (
+OUR_TABLES = (
     Table("entities", Entity, "ontology"),
     Table("task_categories", TaskCategory, "grammar"),
     Table("productions", Production, "grammar"),
@@ -146,3 +151,9 @@ TABLES = (
     ),
     Table("earlier_texts", EarlierText, references={"comment": "comments"}),
 )
+
+
+@cache
+def tables() -> tuple[Table, ...]:
+    """Return all tables of an archive: ours, then those that other applications have registered."""
+    return (*OUR_TABLES, *map(import_string, registered_parts()))

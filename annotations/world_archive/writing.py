@@ -19,7 +19,7 @@ from annotations.models import Split, World
 from annotations.rows.history import what_happened
 from annotations.rows.kinds import KINDS, Kind
 from annotations.rows.synchronise import batches
-from annotations.world_archive.tables import FORMAT, TABLES, VERSION, WORLD_FIELDS, Table
+from annotations.world_archive.tables import FORMAT, VERSION, WORLD_FIELDS, Table, tables
 
 CHUNK = 2000  # rows fetched, and lines packed, at once
 README = """A world of GPSR Workbench.
@@ -56,7 +56,7 @@ def world_archive(world: World) -> Iterator[bytes]:
         counts: dict[str, int] = {}
         numbers: Numbers = {}
         yield from _member(archive, target, "README.txt", [README])
-        for table in TABLES:
+        for table in tables():
             numbers[table.name] = {}
             lines = _lines(table, world, numbers)
             yield from _member(archive, target, table.path, lines)

@@ -3,9 +3,12 @@
     .venv/bin/python -m benchmarks.parsing.accuracy cells.json [--markdown | --latex] [--part validation]
 
 One table per protocol, with a row for each parser and a column for each setting and criterion. A figure is
-exact match in percent, the mean over seeds and over new splits where there are any; ± is their standard
-deviation (n − 1). The best of a column is bold. The paper's figure, always on the test parts, is in
-parentheses.
+exact match in percent, the mean over seeds. By form there are three: on unseen forms, on known ones, and the
+harmonic mean of both, which is the headline. ± is how far the 95 % interval reaches: clusters (forms by
+form, else source commands) and trainings are drawn with replacement. A figure is bold where it is better
+than every other one of its column, by a paired bootstrap with Holm's correction. New splits are rows of
+their own. The standard deviations between trainings stand in a second table. The paper's figure, always
+on the test parts, is in parentheses.
 """
 
 from __future__ import annotations
@@ -18,7 +21,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
-from typing import Any
 
 import django
 import pandas as pd
@@ -26,80 +28,57 @@ import pandas as pd
 os.environ.setdefault("DJANGO_SETTINGS_MODULE", "gpsr_site.settings")
 django.setup()
 
+from benchmarks.parsing.accuracy_figures import (  # noqa: E402
+    ACCURACY,
+    BY_FORM,
+    HARMONIC,
+    KNOWN,
+    ROW,
+    UNSEEN,
+    counts_in_words,
+    is_current,
+    read_figures,
+)
 from parser_service.benchmarking.cells import CellFile  # noqa: E402
 from parser_service.parsers.conditions import SETTINGS, Protocol  # noqa: E402
 from parser_service.parsers.registry import PARSERS  # noqa: E402
 from parser_service.results.published import published_accuracy  # noqa: E402
+from parser_service.results.tables import MARK, MAY_KNOW_CORPORA, may_know_corpora  # noqa: E402
+
+__all__ = ["main", "read_figures", "tables"]
 
 # Criterion → the word for it in a column's head.
-CRITERIA = {"command": "command", "source_command": "source", "logical_form": "form"}
+CRITERIA = {"command": "command", "source_command": "source", BY_FORM: "form"}
+FIGURES = (HARMONIC, UNSEEN, KNOWN, ACCURACY)
 # Rows are in the order of the registry; parsers that it no longer has come last.
 PLACES = {name: place for place, name in enumerate(PARSERS)}
-CONDITIONS = ["protocol", "parser", "configuration", "setting", "criterion"]
+Column = tuple[str, str, str]  # setting, criterion, figure
 
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """One figure of the table, in percent; ``spread`` is None for one seed."""
+    """One figure of the table, in percent. ``reach`` is how far its 95 % interval goes to either side at most, None
+    where that was not measured;
+    ``spread`` the standard deviation between trainings, None for one."""
 
     mean: float
+    reach: float | None
     spread: float | None
     published: float | None
     is_best: bool
 
 
-def read_figures(
-    cells: Sequence[dict[str, Any]], part: str, parsers: Sequence[str]
-) -> pd.DataFrame:
-    """A row for each of the ``CONDITIONS`` measured, with mean, std (NaN for one cell), and the number
-    of ``seeds`` and of new ``splits``.
-
-    A cell measured again, after the code has changed, replaces the older one. Raises ValueError, a
-    sentence, where nothing is left, or where the cells of a column do not belong together.
-    """
-    frame = pd.DataFrame([cell for cell in cells if cell["parser"] in parsers])
-    measured = frame.dropna(subset=[f"accuracy_{part}"]) if len(frame) else frame
-    if measured.empty:
-        raise ValueError(f"No cell of these parsers has an accuracy on a {part} part.")
-    if "split" not in measured:
-        measured = measured.assign(split=None)
-    measured = measured.assign(
-        configuration=measured["configuration"].map(lambda each: json.dumps(each, sort_keys=True)),
-        percent=100 * measured[f"accuracy_{part}"].astype(float),
-    ).drop_duplicates([*CONDITIONS, "seed", "split"], keep="last")
-    _check_together(measured, part)
-    figures = measured.groupby(CONDITIONS).agg(
-        mean=("percent", "mean"),
-        std=("percent", "std"),
-        seeds=("seed", "nunique"),
-        splits=("split", "nunique"),
-    )
-    return figures.reset_index()
-
-
-def _check_together(measured: pd.DataFrame, part: str) -> None:
-    for (setting, criterion), cells in measured.groupby(["setting", "criterion"]):
-        if cells["split"].isna().any() and cells["split"].notna().any():
-            raise ValueError(
-                f"{setting} by {criterion} was measured on the published split and on new ones; keep a "
-                "file for each."
-            )
-        for _, numbers in cells.groupby("split", dropna=False)[f"n_{part}"].unique().items():
-            if len(numbers) > 1:
-                counts = " and ".join(str(count) for count in sorted(numbers))
-                raise ValueError(
-                    f"{setting} by {criterion} was tested on {counts} pairs: "
-                    "these cells are of different folders; keep a file for each."
-                )
-
-
 @dataclass(frozen=True, slots=True)
 class Table:
-    """One protocol. ``columns`` are (setting, criterion); ``rows`` name, then a figure or None each."""
+    """One protocol. ``rows`` name, then a figure or None for each of ``columns``."""
 
     protocol: str
-    columns: tuple[tuple[str, str], ...]
+    columns: tuple[Column, ...]
     rows: tuple[tuple[str, tuple[Figure | None, ...]], ...]
+
+    @property
+    def has_spread(self) -> bool:
+        return any(each and each.spread is not None for _, row in self.rows for each in row)
 
 
 def tables(figures: pd.DataFrame) -> list[Table]:
@@ -113,56 +92,89 @@ def tables(figures: pd.DataFrame) -> list[Table]:
 
 def _table(protocol: str, figures: pd.DataFrame) -> Table:
     measured = set(zip(figures["setting"], figures["criterion"], strict=True))
-    columns = tuple(each for each in product(map(str, SETTINGS), CRITERIA) if each in measured)
-    best = figures.groupby(["setting", "criterion"])["mean"].max()
-    by_row = dict(list(figures.groupby(["parser", "configuration"])))
+    columns = tuple(
+        (setting, by, figure)
+        for setting, by, figure in product(map(str, SETTINGS), CRITERIA, FIGURES)
+        if (setting, by) in measured and (figure == ACCURACY) == (by != BY_FORM)
+    )
+    by_row = dict(list(figures.groupby(ROW)))
     order = sorted(by_row, key=lambda key: (PLACES.get(key[0], len(PLACES)), key))
     rows = []
-    for parser, configuration in order:
-        own = by_row[parser, configuration].set_index(["setting", "criterion"])
-        name = _row_name(parser, configuration, [other for each, other in order if each == parser])
+    for key in order:
+        own = by_row[key].set_index(["setting", "criterion", "figure"])
         row = [
-            _figure(parser, column, own.loc[column], best[column]) if column in own.index else None
+            _figure(key[0], column, own.loc[column]) if column in own.index else None
             for column in columns
         ]
-        rows.append((name, tuple(row)))
+        rows.append((_row_name(key, order), tuple(row)))
     return Table(protocol, columns, tuple(rows))
 
 
-def _row_name(parser: str, configuration: str, configurations: Sequence[str]) -> str:
-    """The parser; with what distinguishes this one of its ``configurations``, if there are several."""
-    values = [json.loads(each) for each in configurations]
+def _row_name(row: tuple[str, str, str, bool], rows: Sequence[tuple[str, str, str, bool]]) -> str:
+    """The parser, with what distinguishes this one of its configurations if there are several, and what it was
+    measured on if that is not the usual."""
+    parser, configuration, declared, on_new = row
+    values = [json.loads(other) for each, other, *_ in rows if each == parser]
     mine = json.loads(configuration)
     differing = [key for key in mine if any(each.get(key) != mine[key] for each in values)]
-    return " ".join([parser, *(f"{key}={mine[key]}" for key in differing)])
+    mark = MARK if may_know_corpora(parser) else ""
+    name = " ".join([parser + mark, *(f"{key}={mine[key]}" for key in differing)])
+    name += ", declared by training" if declared != "all" else ""
+    return name + (", new splits" if on_new else "")
 
 
-def _figure(parser: str, column: tuple[str, str], row: pd.Series, best: float) -> Figure:
-    setting, criterion = column
+def _figure(parser: str, column: Column, row: pd.Series) -> Figure:
+    setting, criterion, figure = column
     train, _, test = setting.rpartition("-")
+    mean, low, high = (float(row[name]) for name in ("mean", "low", "high"))
+    reach = None if pd.isna(low) else max(high - mean, mean - low)
     spread = None if pd.isna(row["std"]) else float(row["std"])
-    published = published_accuracy(parser, (train, test), criterion)
-    return Figure(float(row["mean"]), spread, published, bool(row["mean"] == best))
+    is_papers = figure in (ACCURACY, UNSEEN) and not row["on_new"]
+    published = published_accuracy(parser, (train, test), criterion) if is_papers else None
+    return Figure(mean, reach, spread, published, bool(row["is_best"]))
+
+
+def _heads(table: Table) -> list[str]:
+    return [
+        f"{CRITERIA[by]}{'' if figure == ACCURACY else f', {figure}'}"
+        for _, by, figure in table.columns
+    ]
 
 
 def to_markdown(table: Table) -> str:
-    head = ["parser", *(f"{setting} {CRITERIA[by]}" for setting, by in table.columns)]
-    rows = [[f"`{name}`", *map(_in_markdown, row)] for name, row in table.rows]
-    lines = [head, ["---", *["---:"] * len(table.columns)], *rows]
-    return "\n".join([f"### {table.protocol}", "", *(f"| {' | '.join(line)} |" for line in lines)])
+    settings = (setting for setting, _, _ in table.columns)
+    head = ["parser", *map(" ".join, zip(settings, _heads(table), strict=True))]
+    rule = ["---", *["---:"] * len(table.columns)]
+    text = f"### {table.protocol}\n\n" + _lines([head, rule, *_cells(table, _in_markdown)])
+    if not table.has_spread:
+        return text
+    spreads = _lines([head, rule, *_cells(table, _spread_of)])
+    return f"{text}\n\nStandard deviations between trainings:\n\n{spreads}"
+
+
+def _lines(rows: Sequence[Sequence[str]]) -> str:
+    return "\n".join(f"| {' | '.join(row)} |" for row in rows)
+
+
+def _cells(table: Table, write: Callable[[Figure | None], str]) -> list[list[str]]:
+    return [[f"`{name}`", *map(write, row)] for name, row in table.rows]
+
+
+def _spread_of(figure: Figure | None) -> str:
+    return "–" if figure is None or figure.spread is None else f"{figure.spread:.1f}"
 
 
 def to_latex(table: Table) -> str:
     """A booktabs tabular; a setting spans its criteria, as in the paper."""
-    settings = list(dict.fromkeys(setting for setting, _ in table.columns))
-    spans = [sum(setting == each for each, _ in table.columns) for setting in settings]
+    settings = list(dict.fromkeys(setting for setting, _, _ in table.columns))
+    spans = [sum(setting == each for each, _, _ in table.columns) for setting in settings]
     heads = [
         rf"\multicolumn{{{span}}}{{c}}{{{setting}}}"
         for setting, span in zip(settings, spans, strict=True)
     ]
     lines = [
         [table.protocol, *heads],
-        ["", *(CRITERIA[by] for _, by in table.columns)],
+        ["", *_heads(table)],
         *([rf"\texttt{{{_escape(name)}}}", *map(_in_latex, row)] for name, row in table.rows),
     ]
     first, second, *body = [rf"{' & '.join(line)} \\" for line in lines]
@@ -176,44 +188,63 @@ def _in_markdown(figure: Figure | None) -> str:
     if figure is None:
         return "–"
     mean = f"**{figure.mean:.1f}**" if figure.is_best else f"{figure.mean:.1f}"
-    spread = "" if figure.spread is None else f" ± {figure.spread:.1f}"
-    return mean + spread + ("" if figure.published is None else f" ({figure.published:.1f})")
+    reach = "" if figure.reach is None else f" ± {figure.reach:.1f}"
+    return mean + reach + ("" if figure.published is None else f" ({figure.published:.1f})")
 
 
 def _in_latex(figure: Figure | None) -> str:
     if figure is None:
         return "--"
     mean = rf"\textbf{{{figure.mean:.1f}}}" if figure.is_best else f"{figure.mean:.1f}"
-    spread = "" if figure.spread is None else rf" $\pm$ {figure.spread:.1f}"
+    reach = "" if figure.reach is None else rf" $\pm$ {figure.reach:.1f}"
     paper = "" if figure.published is None else rf" \textcolor{{gray}}{{({figure.published:.1f})}}"
-    return mean + spread + paper
+    return mean + reach + paper
 
 
 def _escape(name: str) -> str:
-    return name.replace("_", r"\_").replace("%", r"\%").replace("#", r"\#")
-
-
-def note(figures: pd.DataFrame, part: str) -> str:
-    """What the figures are, in sentences."""
-    new = [_count(figures[figures["criterion"] == each], "splits") for each in CRITERIA]
-    on_new = [f"{how} by {by}" for how, by in zip(new, CRITERIA.values(), strict=True) if how]
     return (
-        f"Exact match in percent on the {part} parts, mean ± standard deviation over "
-        f"{_count(figures, 'seeds')}{''.join(f', {each}' for each in on_new)}; "
-        "bold: the best of its column; in parentheses: the paper's figures, on its test parts."
+        name.replace(MARK, r"\textdagger{}")
+        .replace("_", r"\_")
+        .replace("%", r"\%")
+        .replace("#", r"\#")
     )
 
 
-def _count(figures: pd.DataFrame, what: str) -> str:
-    """``1 or 3 seeds``; nothing where there are none."""
-    counts = [count for count in sorted(figures[what].unique()) if count]
-    word = what.removesuffix("s") if counts == [1] else what
-    numbers = " or ".join(map(str, counts))
-    return f"{numbers} {'new ' if what == 'splits' else ''}{word}" if counts else ""
+def note(figures: pd.DataFrame, part: str, left_out: int) -> str:
+    """What the figures are, in sentences."""
+    new = figures[figures["on_new"]]
+    on_new = [
+        f"{counts_in_words(new[new['criterion'] == each], 'splits')} by {by}"
+        for each, by in CRITERIA.items()
+        if each in set(new["criterion"])
+    ]
+    seeds = counts_in_words(figures, "seeds")
+    sentences = [
+        f"Exact match in percent on the {part} parts, mean over {', '.join([seeds, *on_new])}; "
+        "±: how far the 95 % interval reaches, by a bootstrap of clusters (forms by form, else source commands) and "
+        "trainings; bold: better than every other row of its column, by a paired bootstrap with Holm's "
+        "correction; in parentheses: the paper's figures, on its test parts."
+    ]
+    if BY_FORM in set(figures["criterion"]):
+        sentences.append(
+            "By form: unseen forms, known ones (utterances of training forms, held out by source command) and "
+            "their harmonic mean."
+        )
+        if Protocol.GRAMMAR in set(figures["protocol"]):
+            sentences.append(
+                "Under grammar, training has the prompts of the paraphrases of unseen forms, with their forms."
+            )
+    if figures["low"].isna().any():
+        sentences.append("Figures without ± were measured before cells kept their outcomes.")
+    if any(map(may_know_corpora, figures["parser"])):
+        sentences.append(f"{MARK} {MAY_KNOW_CORPORA}")
+    if left_out:
+        sentences.append(f"{left_out} cells of other versions of these parsers are left out.")
+    return " ".join(sentences)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("cells", type=Path)
     parser.add_argument("--parsers", help="names with commas between them; all by default")
     parser.add_argument("--part", choices=["validation", "test"], default="validation")
@@ -230,8 +261,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
         figures = read_figures(cells, given.part, names)
     except ValueError as error:
         sys.exit(str(error))
+    left_out = sum(cell["parser"] in names and not is_current(cell) for cell in cells)
     comment = "% " if show is to_latex else ""
-    print(*map(show, tables(figures)), comment + note(figures, given.part), sep="\n\n")
+    print(*map(show, tables(figures)), comment + note(figures, given.part, left_out), sep="\n\n")
 
 
 if __name__ == "__main__":

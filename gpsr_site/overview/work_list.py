@@ -177,10 +177,10 @@ class WorkList:
             if job.duty == ROLES[role]:
                 url = reverse("job", kwargs={"pk": job.pk})
                 if job.is_waiting_for_answer:
-                    sentence = f"{job.get_kind_display()} waits for an answer"
+                    sentence = f"{job.title} waits for an answer"
                     yield Task(1, sentence, "Answer", url, "warn")
                 else:
-                    yield Task(1, f"{job.get_kind_display()}: {job.status}", "Watch", url)
+                    yield Task(1, f"{job.title}: {job.status}", "Watch", url)
 
     def _stale(self) -> Iterator[Task]:
         """Yield one item: a single button brings all commands up to date."""

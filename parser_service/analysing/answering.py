@@ -9,14 +9,11 @@ from django.conf import settings
 
 from annotations.background import kinds
 from annotations.background.progress import Progress
-from annotations.language.grounding import Anonymizer
 from annotations.models import Job, World
-from annotations.rows.from_rows import ontology_of
 from parser_service.models import TrainingRun, Tryout, Worker
 from parser_service.parsers.interface import Parser
 from parser_service.runs.evaluating import BEAM_WIDTH
 from parser_service.serving.loading import load_parser
-from parser_service.serving.preparing import text_for
 
 STAY_SECONDS = 20.0  # after the last text
 LONGEST_SECONDS = 600.0
@@ -63,7 +60,6 @@ class _Answering:
         self.count = 0
         self._world = world
         self._progress = progress
-        self._anonymizer = Anonymizer(ontology_of(world))
         self._parsers: dict[int, Parser] = {}
 
     def answer(self, tryout: Tryout) -> None:
@@ -81,8 +77,7 @@ class _Answering:
             parser = self._parser_of(run)
         except ValueError as error:
             return _problem(str(error))
-        given = text_for(run, self._anonymizer.anonymize(text))
-        (candidates,) = parser.predict([given], BEAM_WIDTH, self._progress.check)
+        (candidates,) = parser.predict([text], BEAM_WIDTH, self._progress.check)
         return {"answers": [{"form": each.form, "score": each.score} for each in candidates]}
 
     def _parser_of(self, run: TrainingRun) -> Parser:

@@ -6,8 +6,6 @@ from collections.abc import Sequence
 
 from annotations.background.progress import Progress
 from annotations.language.forms import UNKNOWN, canonical_text
-from annotations.language.grounding import Anonymizer
-from annotations.rows.from_rows import ontology_of
 from annotations.rows.synchronise import batches
 from parser_service.analysing.target import Target
 from parser_service.analysis.reading import is_same_answer
@@ -15,7 +13,6 @@ from parser_service.models import Expectation, Probe, ProbeAnswer
 from parser_service.parsers.interface import Candidate
 from parser_service.runs.evaluating import AT_ONCE, BEAM_WIDTH
 from parser_service.serving.loading import load_parser
-from parser_service.serving.preparing import text_for
 
 REFUSALS = ("", canonical_text(UNKNOWN))
 
@@ -23,8 +20,7 @@ REFUSALS = ("", canonical_text(UNKNOWN))
 def answer_findings(target: Target, progress: Progress) -> dict[str, int]:
     """Store an answer for each probe. Returns how many there are.
 
-    A probe made of an example is handed over as written, as the example was; any other like a text that
-    somebody types. Raises ValueError, a sentence, where the parser cannot be loaded.
+    Raises ValueError, a sentence, where the parser cannot be loaded.
     """
     run = target.run
     waiting = list(run.probes.filter(answer__isnull=True).order_by("position"))
@@ -32,16 +28,10 @@ def answer_findings(target: Target, progress: Progress) -> dict[str, int]:
     if waiting:
         progress.report(0, "loading the parser")
         parser = load_parser(run)
-        anonymizer = Anonymizer(ontology_of(run.world))
         for some in batches(waiting, AT_ONCE):
             done = total - len(waiting) + some[0].position - waiting[0].position
             progress.report(min(done / total, 1.0), "asking the parser its probes")
-            texts = [
-                probe.utterance
-                if probe.base_id
-                else text_for(run, anonymizer.anonymize(probe.utterance))
-                for probe in some
-            ]
+            texts = [probe.utterance for probe in some]
             _store(some, parser.predict(texts, BEAM_WIDTH, progress.check), progress)
     return {"answered": total}
 

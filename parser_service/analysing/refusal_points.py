@@ -13,11 +13,13 @@ from annotations.language.english import say_count
 class RefusalPoint:
     """What happens where answers with a score below ``bound`` become UNKNOWN.
 
-    ``bound`` is a number as text, empty where nothing is answered. ``facts`` are texts in the order of
-    ``FACTS``; ``coverage`` and ``risk`` are in percent, the latter None without an answer.
+    ``bound`` is a number as addresses have it, empty where nothing is answered; ``shown`` is the same as
+    people read it. ``facts`` are texts in the order of ``FACTS``; ``coverage`` and ``risk`` are in percent,
+    the latter None without an answer.
     """
 
     bound: str
+    shown: str
     sentence: str
     facts: tuple[str, ...]
     coverage: float
@@ -54,6 +56,7 @@ def place_of(points: list[RefusalPoint], bound: str) -> int:
 
 def curve_chart(points: list[RefusalPoint], mark: int) -> dict[str, Any]:
     """Return the chart of risk by coverage; the point ``mark`` is marked."""
+    most = max((point.risk for point in points if point.risk is not None), default=0.0)
     return {
         "kind": "lines",
         "x": {
@@ -61,7 +64,7 @@ def curve_chart(points: list[RefusalPoint], mark: int) -> dict[str, Any]:
             "values": [f"{point.coverage:.0f}" for point in points],
             "ticks": [100, 75, 50, 25, 0],
         },
-        "y": {"label": "wrong", "unit": "%"},
+        "y": {"label": "wrong", "unit": "%", **({"max": 100} if most > 75 else {})},
         "series": [{"name": "wrong", "values": [point.risk for point in points]}],
         "mark": mark,
         "done": True,
@@ -76,7 +79,8 @@ def _point(curve: Mapping[str, Any], place: int) -> RefusalPoint:
     risk = 100 * wrong / answered if answered else None
     before, after = curve["correct"], curve["correct"] - lost + gained
     return RefusalPoint(
-        bound="" if bound is None else f"{bound:.4g}",
+        bound=_number(bound),
+        shown=_with_minus(bound) or "any score",
         sentence=_sentence(bound, answered == count, lost, gained, spared),
         facts=(
             f"{answered:,} of {count:,} ({100 * answered / count:.1f} %)",
@@ -94,9 +98,18 @@ def _point(curve: Mapping[str, Any], place: int) -> RefusalPoint:
 def _sentence(bound: float | None, is_all: bool, lost: int, gained: int, spared: int) -> str:
     if is_all:
         return "Everything is answered: nothing is lost, and no wrong answer is withheld."
-    where = "to everything" if bound is None else f"below a score of {bound:.4g}"
+    where = "to everything" if bound is None else f"below a score of {_with_minus(bound)}"
     right = f" and makes {say_count(gained, 'utterance')} right" if gained else ""
     return (
         f"Answering UNKNOWN {where} withholds {say_count(spared, 'wrong answer')}{right}, and loses "
         f"{say_count(lost, 'right answer')}."
     )
+
+
+def _number(bound: float | None) -> str:
+    return "" if bound is None else f"{bound:.4g}"
+
+
+def _with_minus(bound: float | None) -> str:
+    """Write a bound as pages show it, with a minus sign rather than a hyphen."""
+    return _number(bound).replace("-", "−")

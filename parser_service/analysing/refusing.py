@@ -9,7 +9,8 @@ import numpy as np
 from annotations.background.progress import Progress
 from annotations.language.forms import UNKNOWN, canonical_text
 from parser_service.analysing.target import Target
-from parser_service.analysis.arrays import Bools
+from parser_service.analysis.arrays import Bools, Floats
+from parser_service.analysis.probabilities import NO_PROBABILITY, calibration, probability_of
 from parser_service.analysis.risk_coverage import risk_coverage
 
 MOST_POINTS = 200
@@ -49,4 +50,14 @@ def _curve(target: Target, mask: Bools) -> dict[str, Any] | None:
         "best_area": curve.best_area,
         "bounds": [None, *curve.bounds[1:].tolist()],
         **{name: getattr(curve, name).tolist() for name in _COUNTS},
+        **_calibration(scores, answers.is_right[chosen], target.run.score_kind),
     }
+
+
+def _calibration(scores: Floats, is_right: Bools, kind: str) -> dict[str, Any]:
+    """Return expected calibration error and Brier score of the answers, or the sentence why they have none."""
+    probabilities = [probability_of(score, kind) for score in scores.tolist()]
+    if None in probabilities:
+        return {"no_probability": NO_PROBABILITY}
+    measured = calibration(probabilities, is_right)  # type: ignore[arg-type]
+    return {"calibration_error": measured.error, "brier_score": measured.brier}

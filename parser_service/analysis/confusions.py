@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from annotations.language.forms import (
+    CONJUNCTION,
     Application,
     Difference,
     Form,
@@ -169,7 +170,7 @@ def _slots(node: Difference) -> Iterator[tuple[str, int, str, str]]:
     if (
         isinstance(left, Application)
         and isinstance(right, Application)
-        and left.predicate == right.predicate != "and"
+        and left.predicate == right.predicate != CONJUNCTION
     ):
         for place in range(max(len(left.arguments), len(right.arguments))):
             gold, predicted = _filler(left, place), _filler(right, place)

@@ -12,7 +12,7 @@ from enum import StrEnum
 from itertools import islice
 from random import Random
 
-from annotations.language.english import UNRELATED_SENTENCES
+from annotations.language.english import unrelated_sentences
 
 FEWEST_WORDS = 4  # of an utterance that is shuffled or truncated
 EMPTY_TEXTS = ("", " ", ".", "?", "…")
@@ -65,7 +65,7 @@ def make_probes(utterances: Sequence[str], count: int, seed: int = 0) -> tuple[P
     order = random.sample(range(len(utterances)), len(utterances))
     shuffled = islice(_shuffle(utterances, order, known, random), count)
     truncated = islice(_truncate(utterances, order, known, random), count)
-    unrelated = random.sample(UNRELATED_SENTENCES, min(count, len(UNRELATED_SENTENCES)))
+    unrelated = random.sample(unrelated_sentences(), min(count, len(unrelated_sentences())))
     return (
         *PAPER_PROBES,
         *(Probe(ProbeKind.EMPTY, text, expects_unknown=True) for text in EMPTY_TEXTS[:count]),

@@ -14,13 +14,11 @@ from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.api.once import once
-from annotations.api.problems import Refused
-from annotations.api.reading import Fields, FiniteField, LineField
+from annotations.api.queueing.sending import Sending, SentSerializer, WhatToLookAt
+from annotations.api.reading import FiniteField
 from annotations.api.routes import RowRoute, RowsRoute, WorldRoute
 from annotations.lists.filtering import Key
-from annotations.models import Duty, Split
-from annotations.queueing import send_examples
-from annotations.views.queueing.queue_forms import LONGEST_REASON
+from annotations.models import Split
 from parser_service.api.runs import OfRun
 from parser_service.models import Evaluation, Prediction
 from parser_service.results.choices import read_choices, scored_splits
@@ -116,38 +114,14 @@ class Predictions(OfRun):
         return self.run().predictions.best().select_related("example")
 
 
-class WhatToLookAt(Fields):
-    """What annotators are to look at, as they read it in the queue."""
-
-    reason = LineField(max_length=LONGEST_REASON)
-
-
-class SentSerializer(serializers.Serializer):
-    """What became of the examples: different texts, the rows behind them, and how many are in the queue now."""
-
-    utterances = serializers.IntegerField()
-    subjects = serializers.IntegerField()
-    queued = serializers.IntegerField()
-    left_out = serializers.IntegerField()
-
-
-class SendPredictions(Predictions):
+class SendPredictions(Sending, Predictions):
     """Sends what is behind the answers that the filters choose to the work queue."""
-
-    http_method_names = ["post", "options"]
-    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.REVIEW}
 
     @extend_schema(request=WhatToLookAt, responses={200: SentSerializer})
     @once
     def post(self, request: Request, **kwargs: object) -> Response:
         rows = self.filter_queryset(self.get_queryset()).order_by("example_id")
-        examples = (row.example for row in rows.iterator(chunk_size=500))
-        reason = self.read(WhatToLookAt)["reason"]
-        try:
-            sent = send_examples(self.world, examples, reason, request.user)
-        except ValueError as error:
-            raise Refused(str(error)) from error
-        return Response(SentSerializer(sent).data)
+        return self.send(row.example for row in rows.iterator(chunk_size=500))
 
 
 class CandidateQuery(django_filters.FilterSet):

@@ -45,7 +45,7 @@ class RunSerializer(serializers.ModelSerializer):
             *("id", "parser", "parser_version", "config", "protocol", "train_sources"),
             *("train_share", "train_pairs", "seed", "split", "split_name", "status", "progress"),
             *("activity", "failure", "cancel_requested", "parameters", "seconds_trained"),
-            *("score_kind", "content_key", "created_by"),
+            *("score_kind", "answered_by", "content_key", "created_by"),
             *("queued_at", "started_at", "finished_at"),
         ]
 

@@ -5,6 +5,9 @@ from __future__ import annotations
 from django.urls import include, path
 
 from parser_service.api import (
+    analyses,
+    answers,
+    audit,
     dialogues,
     error_categories,
     predictions,
@@ -19,6 +22,14 @@ from parser_service.api.parsing import ParseRoute
 ANSWER = "runs/<int:run>/examples/<int:pk>"
 of_runs = [
     path("parse/", ParseRoute.as_view(), name="parse"),
+    path("parse/wrong/", answers.ReportWrong.as_view(), name="parse-wrong"),
+    path(
+        "utterances/<int:pk>/candidates/",
+        answers.CandidatesOfUtterance.as_view(),
+        name="utterance-candidates",
+    ),
+    path("suggestions/", answers.SuggestForms.as_view(), name="suggestions"),
+    path("audit/", audit.LabelAudit.as_view(), name="audit"),
     path("promotions/", promotions.Promotions.as_view(), name="promotions"),
     path("promotions/roll-back/", promotions.RollBack.as_view(), name="promotion-roll-back"),
     path(
@@ -31,6 +42,8 @@ of_runs = [
     path("runs/<int:pk>/cancel/", runs.CancelRun.as_view(), name="run-cancel"),
     path("runs/<int:pk>/retrain/", runs.RetrainRun.as_view(), name="run-retrain"),
     path("runs/<int:pk>/learning-curve/", runs.LearningCurve.as_view(), name="learning-curve"),
+    path("runs/<int:pk>/findings/", analyses.RunFindings.as_view(), name="run-findings"),
+    path("runs/<int:pk>/probes/", analyses.RunProbes.as_view(), name="run-probes"),
     path("runs/<int:pk>/analysis/", runs.Analyse.as_view(), name="run-analyse"),
     path(
         "runs/<int:pk>/predictions/send/",

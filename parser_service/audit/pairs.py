@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from annotations.importing.prompts import ANY_CATEGORY, CATEGORY_TOKEN
+from annotations.importing.prompts import CATEGORY_TOKEN
 from annotations.labelling.spans import anonymizer_of
 from annotations.language.auditing import LabelledPair
+from annotations.language.english import ANY_OBJECT
 from annotations.models import World
 from annotations.rows.synchronise import BATCH
 from parser_service.parsers.interface import Check, keep_going
@@ -52,7 +53,7 @@ def _paraphrases(world: World, forms: Mapping[str, str], check: Check) -> Iterat
 def _behind(source: str, label: str, forms: Mapping[str, str]) -> str:
     """Return the form of the command. A prompt that says "objects" may come from two commands, and the
     import cannot tell which: then it is that of either, the label's if it is one of them."""
-    either = (source, source.replace(ANY_CATEGORY, CATEGORY_TOKEN))
+    either = (source, source.replace(ANY_OBJECT, CATEGORY_TOKEN))
     known = [forms[text] for text in either if text in forms]
     return label if label in known else next(iter(known), "")
 

@@ -5,105 +5,27 @@ from __future__ import annotations
 import json
 import os
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass, replace
 from functools import cache
 from hashlib import sha256
-from itertools import product
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
-from annotations.language.corpus import Criterion
-from parser_service.analysis.scores import NO_ANSWER, Judgement, judge, score
+from annotations.language.corpus import KNOWN, harmonic_mean
+from annotations.language.forms import read_form
+from annotations.language.predicates import infer_signatures
+from parser_service.analysis.scores import score
+from parser_service.benchmarking.answers import Answers, ask, ask_cross_fitted, intervals
 from parser_service.benchmarking.code_version import code_version
 from parser_service.benchmarking.corpus import Corpus
-from parser_service.parsers.conditions import TEST_SOURCES, Setting
+from parser_service.benchmarking.jobs import Column, Declared, Job, jobs
 from parser_service.parsers.interface import Knowledge, Pair, Parser
-from parser_service.parsers.registry import config_values, entry, load_class, make_config
-from parser_service.runs.evaluating import BEAM_WIDTH
+from parser_service.parsers.registry import entry, load_class, make_config
+
+__all__ = ["Cell", "CellFile", "Column", "Group", "Job", "cell_key", "jobs", "measure_cell"]
 
 Cell = dict[str, Any]
-
-
-class Column(NamedTuple):
-    """A column of the table. ``setting`` is train sources and test source, as in ``gen+para-mixed``."""
-
-    setting: str
-    criterion: str
-    protocol: str
-
-
-@dataclass(frozen=True, slots=True)
-class Job:
-    """What one cell measures: a parser in a column, with a seed.
-
-    ``split`` is the seed of a new split of the train and validation pairs; None is the published split.
-    """
-
-    parser: str
-    configuration: tuple[tuple[str, Any], ...]
-    setting: str
-    criterion: str
-    protocol: str
-    seed: int
-    split: int | None = None
-
-    @property
-    def training(self) -> tuple[Any, ...]:
-        """Return everything that decides the training; jobs with the same value can share one."""
-        trained_on = (
-            _train_sources(self.setting),
-            self.criterion,
-            self.protocol,
-            self.seed,
-            self.split,
-        )
-        return self.parser, self.configuration, *trained_on
-
-    @property
-    def train_sources(self) -> tuple[str, ...]:
-        return Setting.read(self.setting).train_sources.sources
-
-    @property
-    def test_sources(self) -> tuple[str, ...]:
-        return TEST_SOURCES[Setting.read(self.setting).test_source]
-
-    def refuse(self, why: str) -> str:
-        """Return the sentence that replaces the cell; jobs refused for the same reason share it."""
-        return f"{self.parser}, {self.protocol}: {why}"
-
-
-def jobs(
-    parsers: Sequence[str],
-    columns: Sequence[Column],
-    seeds: int,
-    configurations: Mapping[str, Mapping[str, Any]] | None = None,
-    new_splits: Sequence[int] = (),
-) -> Iterator[Job]:
-    """Yield all jobs; a parser only has those of the protocols that it supports.
-
-    Jobs of the same ``training`` follow each other. ``configurations`` changes hyperparameters of some
-    parsers. ``new_splits`` are the seeds of splits that replace the published one, or the one of seed 0
-    by source command, of which none was published. Raises ValueError, a sentence.
-    """
-    changed = configurations or {}
-    configured = {
-        name: tuple(config_values(make_config(name, changed.get(name))).items()) for name in parsers
-    }
-    settings, criteria, protocols = (dict.fromkeys(parts) for parts in zip(*columns, strict=True))
-    # Settings last, so that those with the same training follow each other.
-    for criterion, name, protocol, seed in product(criteria, configured, protocols, range(seeds)):
-        if protocol not in entry(name).protocols:
-            continue
-        for split, setting in product(
-            _splits(criterion, new_splits), sorted(settings, key=_train_sources)
-        ):
-            if Column(setting, criterion, protocol) in columns:
-                yield Job(name, configured[name], setting, criterion, protocol, seed, split)
-
-
-def _splits(criterion: str, new_splits: Sequence[int]) -> Sequence[int | None]:
-    return new_splits or [0 if criterion == Criterion.SOURCE_COMMAND else None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,63 +70,92 @@ class Group:
                 yield cell
 
 
-def _train_sources(setting: str) -> str:
-    return Setting.read(setting).train_sources
-
-
 def _fit(job: Job, corpus: Corpus, knowledge: Knowledge) -> Fitted:
     train = corpus.pairs("train", job.train_sources)
     if not train:
         raise ValueError(f"{job.setting} by {job.criterion}: the folder has no pairs to train on.")
     config = make_config(job.parser, dict(job.configuration))
-    parser = load_class(job.parser)(config, job.seed, knowledge.limited_to(job.protocol))
+    allowed = knowledge.limited_to(job.protocol)
+    if job.declared == Declared.TRAINING:
+        allowed = declared_by(train, allowed)
+    parser = load_class(job.parser)(config, job.seed, allowed)
     began = time.perf_counter()
     parser.fit(train, corpus.pairs("validation", job.train_sources))
     return Fitted(parser, time.perf_counter() - began, len(train))
 
 
-def measure_cell(job: Job, corpus: Corpus, training: Callable[[], Fitted]) -> Cell:
-    """Test the parser of ``training``. Accuracies are fractions of 1; that of an absent test part is None.
+def declared_by(train: Sequence[Pair], knowledge: Knowledge) -> Knowledge:
+    """Return ``knowledge`` with only the predicates, and only the signatures of them, that the forms of training
+    pairs have. They keep their glosses."""
+    seen = infer_signatures(read_form(form) for form in {pair.form for pair in train})
+    declared = knowledge.predicates or {}
+    kept = {
+        name: replace(declared[name], signatures=each.signatures) if name in declared else each
+        for name, each in seen.items()
+    }
+    return replace(knowledge, predicates=kept)
 
-    Well-formedness and speed are those of the test part, or of the validation part where there is
-    none. Raises ValueError, a sentence, where there is nothing to train on or to test on.
+
+def measure_cell(job: Job, corpus: Corpus, training: Callable[[], Fitted]) -> Cell:
+    """Test the parser of ``training``. Accuracies are fractions of 1; that of an absent part is None.
+
+    The validation part is cross-fitted: what answers a pair was not calibrated on its cluster. Of the
+    part ``known`` (by form) only pairs count whose form is in training. Well-formedness and speed are
+    those of the test part, or of the validation part where there is none. Raises ValueError, a
+    sentence, where there is nothing to train on or to test on.
     """
-    asked = {part: corpus.pairs(part, job.test_sources) for part in ("validation", "test")}
+    job.require_unseen()
+    parts = ("validation", KNOWN, "test") if job.by_form else ("validation", "test")
+    asked = {part: corpus.pairs(part, job.test_sources) for part in parts}
     if not asked["validation"]:
         raise ValueError(f"{job.setting} by {job.criterion}: there are no pairs to validate with.")
+    trained = {pair.form for pair in corpus.pairs("train", job.train_sources)}
+    if KNOWN in asked:
+        asked[KNOWN] = [pair for pair in asked[KNOWN] if pair.form in trained]
     fitted = training()
-    parser = fitted.parser
-    on_validation, validation_ms = _judge_all(parser, asked["validation"])
-    validation = corpus.pairs("validation", job.train_sources)
-    on_test, test_ms = _judge_all(parser.for_test_part(validation), asked["test"])
+    answers = _ask_all(fitted.parser, asked, corpus.pairs("validation", job.train_sources), corpus)
+    last = answers["test"] if asked["test"] else answers["validation"]
     return {
         **asdict(job),
         "configuration": dict(job.configuration),
+        "version": entry(job.parser).version,
         "n_train": fitted.n_train,
-        "n_test": len(asked["test"]),
-        "n_validation": len(asked["validation"]),
-        "accuracy_validation": score(on_validation).accuracy,
-        "accuracy_test": score(on_test).accuracy if on_test else None,
-        "well_formed": score(on_test or on_validation).well_formed,
+        **{f"n_{part}": len(pairs) for part, pairs in asked.items()},
+        **{f"accuracy_{part}": each.accuracy for part, each in answers.items()},
+        **(_over_unseen_and_known(answers) if job.by_form else {}),
+        **dict(intervals(answers)),
+        "outcomes": {part: each.tally() for part, each in answers.items() if each.of},
+        "score_kind": fitted.parser.score_kind,
+        "calibration": {part: each.calibration() for part, each in answers.items() if each.of},
+        "well_formed": score(last.judgements).well_formed,
         "seconds_train": round(fitted.seconds, 3),
-        "milliseconds_per_command": round(test_ms if on_test else validation_ms, 3),
-        "parameters": parser.parameters(),
+        "milliseconds_per_command": round(last.milliseconds, 3),
+        "parameters": fitted.parser.parameters(),
+        "answered_by": fitted.parser.answered_by,
         "code_version": code_version(),
     }
 
 
-def _judge_all(parser: Parser, pairs: Sequence[Pair]) -> tuple[list[Judgement], float]:
-    """Compare the first answers with the forms; return the judgements and the milliseconds per answer."""
-    if not pairs:
-        return [], 0.0
-    began = time.perf_counter()
-    answers = parser.predict([pair.utterance for pair in pairs], BEAM_WIDTH)
-    milliseconds = (time.perf_counter() - began) * 1000 / len(pairs)
-    judgements = [
-        judge(ranked[0].form, pair.form) if ranked else NO_ANSWER
-        for ranked, pair in zip(answers, pairs, strict=True)
-    ]
-    return judgements, milliseconds
+def _ask_all(
+    parser: Parser,
+    asked: dict[str, list[Pair]],
+    calibrating: Sequence[Pair],
+    corpus: Corpus,
+) -> dict[str, Answers]:
+    """Return the answers to each part of ``asked``."""
+    answering = {KNOWN: parser, "test": parser.for_test_part(calibrating)}
+    return {
+        part: ask_cross_fitted(parser, pairs, calibrating, corpus.cluster)
+        if part == "validation"
+        else ask(answering[part], pairs, corpus.cluster)
+        for part, pairs in asked.items()
+    }
+
+
+def _over_unseen_and_known(answers: dict[str, Answers]) -> Cell:
+    """Return the harmonic mean of the accuracies on the unseen forms of the validation part and on known ones."""
+    unseen, known = answers["validation"].accuracy, answers[KNOWN].accuracy
+    return {"harmonic_mean": None if None in (unseen, known) else harmonic_mean(unseen, known)}  # type: ignore[arg-type]
 
 
 def cell_key(job: Job, corpus: Corpus, knowledge_hash: str) -> str:
@@ -212,10 +163,12 @@ def cell_key(job: Job, corpus: Corpus, knowledge_hash: str) -> str:
     used = {*job.train_sources, *job.test_sources}
     pairs = [
         [part, pair.source, pair.utterance, pair.form, pair.task_category]
-        for part in ("train", "validation", "test")
+        for part in ("train", "validation", KNOWN, "test")
         for pair in corpus.pairs(part, sorted(used))
     ]
+    clusters = sorted({corpus.cluster(pair) for pair in corpus.pairs("validation", sorted(used))})
     conditions = [asdict(job), entry(job.parser).version, knowledge_hash, code_version(), pairs]
+    conditions.append(clusters)
     return sha256(json.dumps(conditions, ensure_ascii=False).encode()).hexdigest()
 
 

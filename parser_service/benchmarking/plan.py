@@ -8,14 +8,15 @@ from functools import cache
 from itertools import groupby
 from pathlib import Path
 
-from annotations.language.corpus import Criterion
+from annotations.language.corpus import TRIPLES_FILE, Criterion
 from annotations.models import World
 from parser_service.benchmarking.cells import Cell, CellFile, Group, Job
-from parser_service.benchmarking.corpus import Corpus, new_split, read_corpus, source_commands
+from parser_service.benchmarking.corpus import Corpus, new_split, read_corpus
 from parser_service.benchmarking.in_parallel import measure_in_parallel
+from parser_service.benchmarking.sources import Sources, find_sources
 from parser_service.parsers.interface import Knowledge
 from parser_service.runs.content_key import knowledge_hash
-from parser_service.runs.knowledge import anonymizer_of, knowledge_of
+from parser_service.runs.knowledge import knowledge_of
 
 
 def find_missing(
@@ -31,14 +32,17 @@ def find_missing(
         world: whose predicates, ontology and grammar may be known, if any.
     """
     groups, failures = [], []
-    corpora = cache(lambda criterion, split: load_corpus(folder, criterion, split, world))
+    sources = cache(lambda: find_sources(folder, world))
+    corpora = cache(
+        lambda criterion, split: load_corpus(folder, criterion, split, world, sources())
+    )
     known = cache(lambda protocol: _find_knowledge(world, protocol))
     for _, alike in groupby(jobs, key=lambda job: job.training):
         first, *others = alike
         try:
-            group = Group(
-                (first, *others), corpora(first.criterion, first.split), *known(first.protocol)
-            )
+            corpus = corpora(first.criterion, first.split)
+            corpus = corpus.with_known(first.seed) if first.by_form else corpus
+            group = Group((first, *others), corpus, *known(first.protocol))
         except ValueError as error:
             failures.append(first.refuse(str(error)))
             continue
@@ -55,18 +59,25 @@ def measure_all(groups: Iterable[Group], at_once: int) -> Generator[Cell | str, 
     return (answer for group in groups for answer in group.measure())
 
 
-def load_corpus(folder: Path, criterion: str, split: int | None, world: World | None) -> Corpus:
+def load_corpus(
+    folder: Path,
+    criterion: str,
+    split: int | None,
+    world: World | None,
+    sources: Sources | None = None,
+) -> Corpus:
     """Return the pairs of ``folder`` by ``criterion``: the published split, or a new one of the seed
-    ``split``. Raises ValueError, a sentence."""
+    ``split``. ``sources`` are found unless given. Raises ValueError, a sentence."""
     if not folder.is_dir():
         raise ValueError(f"{folder} is not a folder.")
-    if split is None:
-        return read_corpus(folder, criterion)
-    if criterion != Criterion.SOURCE_COMMAND:
-        return new_split(folder, criterion, split)
-    if world is None:
+    if criterion == Criterion.SOURCE_COMMAND and world is None:
         raise ValueError("The split by source_command needs the ontology of a --world.")
-    return new_split(folder, criterion, split, source_commands(folder, anonymizer_of(world)))
+    found = sources or find_sources(folder, world)
+    if split is None:
+        return read_corpus(folder, criterion, found.source_of)
+    if criterion == Criterion.SOURCE_COMMAND and not found.source_of:
+        raise ValueError(f"{folder} has no {TRIPLES_FILE}, so no source command is known.")
+    return new_split(folder, criterion, split, found.source_of, found.unresolved)
 
 
 def _find_knowledge(world: World | None, protocol: str) -> tuple[Knowledge, str]:

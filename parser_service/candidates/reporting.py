@@ -11,6 +11,7 @@ from annotations.models import Origin, Proposal, User, Utterance, WorkKind, Worl
 from annotations.models.utterances import UtteranceStatus
 from annotations.queueing import WantedItem, enqueue
 from parser_service.candidates.composing import PERSON
+from parser_service.models import TrainingRun
 
 FIRST = 0  # before what parsers propose
 NO_RUN = 0
@@ -50,6 +51,11 @@ def report_wrong(
         is_new = enqueue(world, WorkKind.REQUESTED, [WantedItem(row, f"{by} says: {why}")], by)
     where = "In the work queue" if is_new else "It was in the work queue already"
     return f"{where}." if not form or is_unknown else f"{where}, with your form offered first."
+
+
+def say_parser(run: TrainingRun | None) -> str:
+    """Return what people read in the queue of the parser that answered."""
+    return f"{run.parser} (run {run.pk})" if run else "a parser"
 
 
 def _find_or_collect(world: World, text: str, by: User) -> Utterance:

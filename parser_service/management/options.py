@@ -8,7 +8,7 @@ from itertools import product
 from typing import Any
 
 from annotations.language.corpus import Criterion
-from parser_service.benchmarking.cells import Column
+from parser_service.benchmarking.jobs import Column, Declared
 from parser_service.parsers.conditions import SETTINGS, Protocol, TrainSources
 from parser_service.parsers.registry import PARSERS, config_fields
 
@@ -42,8 +42,17 @@ def read_columns(
 
 
 def read_column(text: str) -> Column:
-    """Read ``TRAIN-TEST:CRITERION:PROTOCOL``. Raises ValueError."""
-    parts = text.split(":")
+    """Read ``TRAIN-TEST:CRITERION:PROTOCOL`` or, under *domain*, ``…:DECLARED``. Raises ValueError."""
+    *parts, last = text.split(":")
+    declared = Declared.ALL
+    if len(parts) == len(COLUMN_PARTS):
+        (declared,) = read_names(last, list(Declared))
+        if declared != Declared.ALL and parts[-1].strip() != Protocol.DOMAIN:
+            raise ValueError(
+                f"--columns {text!r}: which forms declare the predicates matters under domain alone."
+            )
+    else:
+        parts.append(last)
     if len(parts) != len(COLUMN_PARTS):
         settings, criteria, protocols = COLUMN_PARTS
         raise ValueError(
@@ -51,7 +60,7 @@ def read_column(text: str) -> Column:
             f"{settings[-1]}:{criteria[0]}:{protocols[0]}."
         )
     named = zip(parts, COLUMN_PARTS, strict=True)
-    return Column(*(read_names(part, known)[0] for part, known in named))
+    return Column(*(read_names(part, known)[0] for part, known in named), declared)
 
 
 def read_split_seeds(text: str) -> range:

@@ -14,7 +14,9 @@ models.TextField.register_lookup(Length)
 class Evaluation(models.Model):
     """Exact match of one run on one test source (``gen``, ``para`` or ``mixed``) of one part.
 
-    Fractions of 1; the interval is Wilson's at 95 %.
+    Fractions of 1; the interval at 95 % is that of a bootstrap of clusters, which ``outcomes`` counts
+    (``analysis.outcomes``). Of a split by form, ``known`` is a part too: pairs held out of the training
+    part, whose forms stay there.
     """
 
     run = models.ForeignKey(TrainingRun, on_delete=models.CASCADE, related_name="evaluations")
@@ -27,6 +29,7 @@ class Evaluation(models.Model):
     interval_high = models.FloatField()
     equivalent = models.FloatField()
     well_formed = models.FloatField()
+    outcomes = models.JSONField(default=dict, blank=True)
 
     class Meta:
         ordering = ["run", "part", "test_source"]
@@ -64,7 +67,8 @@ class Prediction(models.Model):
     ``answer_in_training`` and ``label_in_training`` count the training pairs that have this form and the
     example's, None where it is not known and for the empty form. ``origin`` says where the parser has the
     form from: ``training`` unless the parser tells something else; ``score_parts`` says what its score is
-    made of. Both are empty where that is not known.
+    made of. Both are empty where that is not known. ``is_cut`` says that the parser read only the beginning of
+    the utterance, which is longer than it reads.
     """
 
     run = models.ForeignKey(TrainingRun, on_delete=models.CASCADE, related_name="predictions")
@@ -79,6 +83,7 @@ class Prediction(models.Model):
     label_in_training = models.PositiveIntegerField(null=True, blank=True)
     origin = models.CharField(max_length=20, blank=True)
     score_parts = models.JSONField(default=dict, blank=True)
+    is_cut = models.BooleanField(default=False, db_default=False)
 
     objects = PredictionQuerySet.as_manager()
 

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from django.apps import apps
 from django.db import models
 from django.utils import timezone
 
+from annotations.language.corpus import KNOWN
 from annotations.models import Split, World
 from annotations.models.background import BackgroundWork, Status, WorkQuerySet
 from annotations.models.background import queue_choices as queue_choices  # for the migrations
 from annotations.models.background import status_choices as status_choices
-from parser_service.parsers.conditions import Protocol
+from parser_service.parsers.conditions import TEST_SOURCES, Protocol
 from parser_service.parsers.interface import ScoreKind
 from parser_service.parsers.registry import PARSERS, config_fields
 
@@ -68,7 +70,9 @@ class TrainingRunQuerySet(WorkQuerySet):
 
     def for_table(self) -> TrainingRunQuerySet:
         """Prefetch what a list shows of each run: its split, who requested it, its scores."""
-        return self.select_related("split", "created_by").prefetch_related("evaluations")
+        scores = apps.get_model("parser_service", "Evaluation").objects.defer("outcomes")
+        of_each = models.Prefetch("evaluations", scores)
+        return self.select_related("split", "created_by").prefetch_related(of_each)
 
 
 class TrainingRun(BackgroundWork):
@@ -76,7 +80,8 @@ class TrainingRun(BackgroundWork):
 
     ``train_sources`` is ``gen``, ``para`` or ``gen+para``. ``train_share`` is the share of their training
     pairs that the seed draws, above 0 and up to 1, and ``train_pairs`` how many that are, None before
-    the run is scored. ``content_key`` hashes all that decides the result; a second request for the same
+    the run is scored. ``answered_by`` is the model that answered, as its server reports it, empty where
+    the parser answers itself. ``content_key`` hashes all that decides the result; a second request for the same
     is answered with this row. ``score_kind`` is empty where the scores of its answers only order them.
     """
 
@@ -98,6 +103,7 @@ class TrainingRun(BackgroundWork):
     parameters = models.PositiveBigIntegerField(null=True, blank=True)
     seconds_trained = models.FloatField(default=0)
     score_kind = models.CharField(max_length=20, choices=score_kind_choices, blank=True)
+    answered_by = models.CharField(max_length=200, blank=True)
 
     objects = TrainingRunQuerySet.as_manager()
 
@@ -123,15 +129,25 @@ class TrainingRun(BackgroundWork):
         """``25 %`` of the training pairs; empty where the run learns from all."""
         return "" if self.train_share == 1 else f"{100 * self.train_share:g} %"
 
+    @property
+    def trained_on(self) -> str:
+        """What tells the run from others of its parser: ``25 % of gen+para of mine, seed 1``."""
+        share = f"{self.share_in_words} of " if self.share_in_words else ""
+        seed = f", seed {self.seed}" if self.seed else ""
+        return f"{share}{self.train_sources} of {self.split.name}{seed}"
+
     def note(self, message: str) -> None:
         """Add a line to the run's log."""
         RunEvent.objects.create(run=self, attempt=self.attempt, message=message)
 
     @property
     def scores_shown(self) -> dict[str, Evaluation]:
-        """Test source → the score on the test part, or on validation where there is no test part."""
-        test_part_last = sorted(self.evaluations.all(), key=lambda each: each.part == "test")
-        return {each.test_source: each for each in test_part_last}
+        """Test source, in their usual order → the score on the test part, or on validation where there is no
+        test part."""
+        of_parts = (each for each in self.evaluations.all() if each.part != KNOWN)
+        test_part_last = sorted(of_parts, key=lambda each: each.part == "test")
+        scores = {each.test_source: each for each in test_part_last}
+        return {source: scores[source] for source in TEST_SOURCES if source in scores}
 
     def changed_hyperparameters(self) -> tuple[tuple[str, Any], ...]:
         """Return name and value of each hyperparameter that is not at the parser's default, in order."""

@@ -5,16 +5,18 @@ Nothing is downloaded, only safetensors are read, and no code that comes with we
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from parser_service.parsers.encoder_places import CONFIG, TOKENIZERS, WEIGHTS, find_encoder
 from parser_service.parsers.storage import file_hash
 
 if TYPE_CHECKING:
+    from tokenizers import Tokenizer
     from transformers import PreTrainedModel, PreTrainedTokenizerFast
 
 UNUSED = "pooler."  # a layer above the last one, which nothing here reads
@@ -29,34 +31,77 @@ class Pretrained:
     folder: Path
 
 
+@dataclass(frozen=True, slots=True)
+class PretrainedWriter:
+    """A published encoder–decoder: its network, and its tokenizer as ``tokenizer.json`` holds it."""
+
+    model: PreTrainedModel
+    tokenizer: Tokenizer
+    folder: Path
+
+
 def load_encoder(name: str, encoders: Path | None = None) -> Pretrained:
     """Load the encoder ``name``, from where ``find_encoder`` finds it. Raises ValueError, a sentence."""
     folder = find_encoder(name, encoders)
     # Importing it takes seconds, and a saved ranker answers without it.
     from transformers import AutoModel, AutoTokenizer, PreTrainedTokenizerFast
-    from transformers.utils import logging
 
-    # What matters in a load report is raised below; the rest and the bars would fill the log of a run.
-    logging.disable_progress_bar()  # type: ignore[no-untyped-call]
-    logging.set_verbosity_error()  # type: ignore[no-untyped-call]
-    try:
+    with _read_or_refused(folder, "encoder"):
         tokenizer = AutoTokenizer.from_pretrained(
             folder, local_files_only=True, trust_remote_code=False
         )
-        model, report = AutoModel.from_pretrained(
-            folder,
-            local_files_only=True,
-            trust_remote_code=False,
-            use_safetensors=True,
-            output_loading_info=True,
-        )
-    except Exception as error:  # transformers raises whatever its parts raise
-        text = " ".join(str(error).split())[:200]
-        raise ValueError(f"{folder} holds no encoder that can be read: {text}") from error
+        model, report = _read_model(AutoModel, folder)
     if not isinstance(tokenizer, PreTrainedTokenizerFast):
         raise ValueError(f"{folder} holds no tokenizer.json that can be read. Put that file there.")
     _refuse_gaps(folder, report["missing_keys"])
     return Pretrained(model, tokenizer, folder)
+
+
+def load_encoder_decoder(name: str, encoders: Path | None = None) -> PretrainedWriter:
+    """Load the encoder–decoder ``name`` (T5, FLAN-T5, BART and their like) in single precision, from where
+    ``find_encoder`` finds it. Raises ValueError, a sentence."""
+    folder = find_encoder(name, encoders)
+    import torch
+    from tokenizers import Tokenizer
+    from transformers import AutoModelForSeq2SeqLM
+
+    if not (folder / TOKENIZERS[0]).is_file():
+        raise ValueError(f"{folder} holds no {TOKENIZERS[0]}. Put the one of the same model there.")
+    with _read_or_refused(folder, "encoder–decoder"):
+        tokenizer = Tokenizer.from_file(str(folder / TOKENIZERS[0]))
+        model, report = _read_model(AutoModelForSeq2SeqLM, folder, dtype=torch.float32)
+    _refuse_gaps(folder, report["missing_keys"])
+    return PretrainedWriter(model, tokenizer, folder)
+
+
+def _read_model(
+    factory: Any, folder: Path, **options: Any
+) -> tuple[PreTrainedModel, dict[str, Collection[str]]]:
+    """Return the network in ``folder``, and which weights its file lacks, among others."""
+    from transformers.utils import logging
+
+    # What matters in a load report is raised later; the rest and the bars would fill the log of a run.
+    logging.disable_progress_bar()  # type: ignore[no-untyped-call]
+    logging.set_verbosity_error()  # type: ignore[no-untyped-call]
+    model, report = factory.from_pretrained(
+        folder,
+        local_files_only=True,
+        trust_remote_code=False,
+        use_safetensors=True,
+        output_loading_info=True,
+        **options,
+    )
+    return model, report
+
+
+@contextmanager
+def _read_or_refused(folder: Path, what: str) -> Iterator[None]:
+    """Make a sentence, a ValueError, of whatever transformers and its parts raise inside the block."""
+    try:
+        yield
+    except Exception as error:
+        text = " ".join(str(error).split())[:200]
+        raise ValueError(f"{folder} holds no {what} that can be read: {text}") from error
 
 
 def encoder_hash(folder: Path) -> str:

@@ -12,7 +12,11 @@ Value: TypeAlias = "bool | int | float | str"
 
 @dataclass(frozen=True, slots=True)
 class ConfigField:
-    """One hyperparameter as a form shows it. ``type`` is bool, int, float or str."""
+    """One hyperparameter as a form shows it. ``type`` is bool, int, float or str.
+
+    ``is_required`` marks a text that has no default and has to be given before a parser can be trained;
+    ``longest`` is the most characters of a text.
+    """
 
     name: str
     type: type
@@ -21,6 +25,8 @@ class ConfigField:
     minimum: float | None = None
     maximum: float | None = None
     choices: tuple[str, ...] = ()
+    is_required: bool = False
+    longest: int | None = None
 
 
 def hyperparameter(
@@ -29,10 +35,13 @@ def hyperparameter(
     minimum: float | None = None,
     maximum: float | None = None,
     choices: tuple[str, ...] = (),
+    is_required: bool = False,
+    longest: int | None = None,
 ) -> Any:
     """Declare a dataclass field with its description and its bounds (both included)."""
     bounds = {"minimum": minimum, "maximum": maximum, "choices": choices}
-    return field(default=default, metadata={"description": description, **bounds})
+    demands = {"is_required": is_required, "longest": longest}
+    return field(default=default, metadata={"description": description, **bounds, **demands})
 
 
 def describe(config_class: type) -> tuple[ConfigField, ...]:
@@ -62,6 +71,13 @@ def refuse_empty(config: Any, field: str) -> None:
         raise ValueError(f"{field} is empty, but this parser needs it. Name the weights to read.")
 
 
+def refuse_unnamed(config: Any) -> None:
+    """Refuse a configuration that lacks a required hyperparameter. Raises ValueError, a sentence."""
+    for declared in describe(type(config)):
+        if declared.is_required and not getattr(config, declared.name).strip():
+            raise ValueError(f"{declared.name} is empty. {declared.description}")
+
+
 def read_config(config_class: type[C], values: Mapping[str, Any]) -> C:
     """Make a config from JSON ``values``, with defaults. Raises ValueError, a sentence."""
     known = [item.name for item in _declared_fields(config_class)]
@@ -87,7 +103,11 @@ def _fault(declared: ConfigField, value: Value) -> str:
         return f"it has to be {kinds[declared.type]}"
     if declared.choices and value not in declared.choices:
         return f"it has to be one of {', '.join(declared.choices)}"
-    return "" if isinstance(value, str) else _out_of_bounds(declared, value)
+    if not isinstance(value, str):
+        return _out_of_bounds(declared, value)
+    if declared.longest is not None and len(value) > declared.longest:
+        return f"it may have at most {declared.longest} characters"
+    return ""
 
 
 def _out_of_bounds(declared: ConfigField, value: float) -> str:

@@ -49,13 +49,15 @@ class Candidate:
 
     ``origin`` names what gave the parser this form: the pairs it learned from (``TRAINING``), a step of
     ``candidates``, or what the parser documents; empty where it does not tell. ``parts`` are the
-    numbers that the score is made of, by name. Neither tells two answers apart.
+    numbers that the score is made of, by name. ``is_cut`` says that the utterance is longer than the parser
+    reads. None of them tells two answers apart.
     """
 
     form: str
     score: float
     origin: str = field(default="", compare=False)
     parts: Mapping[str, float] = field(default_factory=dict, compare=False)
+    is_cut: bool = field(default=False, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,6 +119,11 @@ class Observer:
     def log(self, message: str) -> None:
         """Take one line for the run's log."""
 
+    def is_checkpoint_due(self) -> bool:
+        """Return whether it is time for another checkpoint, for a training that may keep its state at
+        any step."""
+        return True
+
     def checkpoint(self, epoch: int, is_best: bool, write: Callable[[Path], None]) -> None:
         """Keep the state after ``epoch``; ``write`` writes it into an empty folder."""
 
@@ -142,6 +149,7 @@ class Parser(ABC):
     version: ClassVar[int]
     protocols: ClassVar[tuple[Protocol, ...]]
     score_kind: ClassVar[ScoreKind | None] = None
+    asks_a_server: ClassVar[bool] = False  # and waits for its answers, for seconds each
     Config: ClassVar[type]  # a frozen dataclass that validates itself, ValueError sentences
 
     def __init__(self, config: Any = None, seed: int = 0, knowledge: Knowledge | None = None):
@@ -150,6 +158,12 @@ class Parser(ABC):
         self.config = self.Config() if config is None else config
         self.seed = seed
         self.knowledge = knowledge or Knowledge()
+
+    @property
+    def answered_by(self) -> str:
+        """The name of the model behind the answers given so far, as its server reports it; empty where this
+        parser answers itself."""
+        return ""
 
     @abstractmethod
     def fit(
@@ -177,6 +191,25 @@ class Parser(ABC):
 
         It is this one, unless the method also uses the validation pairs for the test part (``knn``,
         as in the paper). The validation part is never scored with it.
+        """
+        return self
+
+    def calibrated(self, pairs: Sequence[Pair]) -> Parser:
+        """Return this parser with what ``fit`` chose by the validation pairs chosen by ``pairs`` instead;
+        this one stays unchanged.
+
+        What calibrates must not be scored, so the validation part is scored in folds, each by the
+        parser calibrated on the others (``analysis.folds``). It is this parser where nothing is
+        calibrated after training.
+        """
+        return self
+
+    def hesitant(self) -> Parser:
+        """Return the parser that people and robots ask; this one stays unchanged.
+
+        It answers UNKNOWN first where an utterance is unlike everything that it has learned, at the price of
+        few right answers on the validation pairs. Accuracy is measured without it. It is this one where
+        the method knows no such bound.
         """
         return self
 

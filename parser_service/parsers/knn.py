@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,7 +23,7 @@ from parser_service.parsers.interface import (
     keep_going,
 )
 from parser_service.parsers.storage import open_sealed, read_json, seal, write_json
-from parser_service.parsers.words import words
+from parser_service.parsers.word_overlap import WordOverlap
 
 PAIRS = "pairs.json"
 VALIDATION = "validation"  # the origin of a form that no training pair has
@@ -118,25 +117,16 @@ class NearestNeighbour(Parser):
         return 0
 
     def _store(self, pairs: list[tuple[str, str]], trained: int | None = None) -> None:
-        """Build the inverted index: for each word, the positions of the pairs that have it. The first
-        ``trained`` pairs, by default all, are training pairs."""
+        """Keep ``pairs``, of which the first ``trained``, by default all, are training pairs."""
         self._pairs = pairs
         self._trained_forms = {form for _, form in pairs[:trained]}
         self._forms = sorted({form for _, form in pairs})
         number = {form: index for index, form in enumerate(self._forms)}
-        postings: dict[str, list[int]] = defaultdict(list)
-        sizes = []
-        for position, (utterance, _) in enumerate(pairs):
-            vocabulary = set(words(utterance))
-            sizes.append(len(vocabulary))
-            for word in vocabulary:
-                postings[word].append(position)
-        self._postings = {word: np.array(places) for word, places in postings.items()}
-        self._sizes = np.array(sizes)  # [pairs]
+        self._overlap = WordOverlap(utterance for utterance, _ in pairs)
         self._form_of = np.array([number[form] for _, form in pairs])  # [pairs]
 
     def _nearest(self, utterance: str, beam_width: int) -> list[Candidate]:
-        overlap = self._overlap(utterance)  # [pairs]
+        overlap = self._overlap.with_all(utterance)  # [pairs]
         best = np.zeros(len(self._forms))  # [forms]
         np.maximum.at(best, self._form_of, overlap)
         at_best = self._form_of[overlap == best[self._form_of]]
@@ -153,12 +143,3 @@ class NearestNeighbour(Parser):
         return Candidate(
             form, similarity, origin, {"similarity": similarity, "neighbours": neighbours}
         )
-
-    def _overlap(self, utterance: str) -> np.ndarray:
-        """Return 1 − the Jaccard distance to every pair. Shape [pairs]; equal ratios are equal floats."""
-        vocabulary = set(words(utterance))
-        postings = [self._postings[word] for word in vocabulary if word in self._postings]
-        positions = np.concatenate(postings) if postings else np.array([], dtype=np.int64)
-        shared = np.bincount(positions, minlength=len(self._pairs))  # [pairs]
-        union = self._sizes + len(vocabulary) - shared  # [pairs]
-        return np.asarray(shared / np.maximum(union, 1))

@@ -22,6 +22,7 @@ class Needs(StrEnum):
     CPU = "minutes on a CPU"
     GPU = "a GPU recommended"
     WEIGHTS = "weights to bring"
+    SERVER = "a server to ask"
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +34,9 @@ class Entry:
     ``dotted`` is the path of its class (which may import torch), ``config`` of its hyperparameters
     (which may not); ``queue`` names the workers that may run it: ``quick`` where training takes seconds and
     needs no torch, otherwise ``cpu`` or ``gpu``. ``loss_unit`` is that of the losses it reports.
+    ``learns`` is False where training pairs change nothing.
+    ``may_know_corpora`` marks figures of a model that may have read a public corpus, test part and all,
+    before anybody trained it here.
     """
 
     dotted: str
@@ -45,6 +49,8 @@ class Entry:
     needs: Needs = Needs.CPU
     queue: str = "cpu"
     loss_unit: str = "nats a token"
+    learns: bool = True
+    may_know_corpora: bool = False
 
 
 PARSERS: dict[str, Entry] = {
@@ -59,6 +65,7 @@ PARSERS: dict[str, Entry] = {
         in_short="Reads a command with the annotated grammar; knows no other way to say it.",
         needs=Needs.NOTHING,
         queue="quick",
+        learns=False,
     ),
     "knn": Entry(
         dotted="parser_service.parsers.knn.NearestNeighbour",
@@ -150,10 +157,33 @@ PARSERS: dict[str, Entry] = {
         title="Form ranker",
         description="A fine-tuned sentence encoder chooses among whole forms, by their examples and "
         "by their English glosses; new forms, made from those of the training pairs, are among them.",
-        version=7,
+        version=9,
         protocols=(Protocol.STRICT, Protocol.DOMAIN, Protocol.GRAMMAR),
         in_short="Chooses the form that fits best among known and new ones; the most accurate on new wording.",
         loss_unit="nats an utterance",
+    ),
+    "t5": Entry(
+        dotted="parser_service.neural.t5.parser.T5",
+        config="parser_service.parsers.t5_config.EncoderDecoderConfig",
+        title="Encoder–decoder (T5, BART)",
+        description="Fine-tunes a pretrained encoder–decoder to write forms; what it may write is "
+        "free, one of a list of forms, or whatever the signatures of predicates allow.",
+        version=1,
+        protocols=(Protocol.STRICT, Protocol.DOMAIN),
+        in_short="Fine-tunes a T5 or BART that you bring to write the form; a GPU is recommended.",
+        needs=Needs.WEIGHTS,
+    ),
+    "llm": Entry(
+        dotted="parser_service.parsers.llm.parser.LanguageModel",
+        config="parser_service.parsers.llm.config.LanguageModelConfig",
+        title="Language model",
+        description="Asks a language model over HTTP, with the nearest training pairs as examples. It "
+        "chooses among their forms, or writes one; it learns nothing here.",
+        version=1,
+        protocols=(Protocol.STRICT, Protocol.DOMAIN),
+        in_short="Shows the most similar training utterances to a language model on a server of yours.",
+        needs=Needs.SERVER,
+        may_know_corpora=True,
     ),
 }
 
@@ -163,6 +193,11 @@ def entry(name: str) -> Entry:
     if name not in PARSERS:
         raise ValueError(f"No parser is called {name!r}; there are: {', '.join(PARSERS)}.")
     return PARSERS[name]
+
+
+def needing(needs: Needs) -> list[str]:
+    """Return the names of the parsers that need this most."""
+    return [name for name, each in PARSERS.items() if each.needs is needs]
 
 
 def load_class(name: str) -> type[Parser]:

@@ -1,6 +1,7 @@
 """Published weights of other kinds than transformers: GloVe's text file, ELMo's options and HDF5 file.
 
-Also tells, without loading torch, whether everything that a configuration needs is there.
+Also tells, without loading torch, whether everything that a configuration needs is there, which may be a
+server too.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from parser_service.parsers.encoder_places import (
     inside,
     refuse_path,
 )
+from parser_service.parsers.llm.places import ADDRESS, problem_of, server
 
 OPTIONS_ENDING = "options.json"
 WEIGHTS_ENDING = "weights.hdf5"
@@ -73,14 +75,14 @@ def missing_weights(config: Any, encoders: Path | None = None, anywhere: bool = 
     None where nothing is missing. ``encoders`` is the installation's folder of encoders unless
     given; ``anywhere`` is False for requests from pages and the REST API, which look there and in
     the listed packages alone. The fields ``glove``, ``elmo`` and ``encoder`` name weights; an empty
-    name needs none.
+    name needs none. A configuration with ``needs_server`` needs one that may be asked.
     """
     return " ".join(each.sentence for each in find_gaps(config, encoders, anywhere)) or None
 
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """Weights that are not there: their name, and a sentence that says what to put where."""
+    """Weights, or a server, that are not there: their name, and a sentence that says what to put where."""
 
     name: str
     sentence: str
@@ -90,6 +92,8 @@ def find_gaps(config: Any, encoders: Path | None = None, anywhere: bool = True) 
     """Return the weights that ``missing_weights`` tells of, one by one."""
     encoders = encoders or encoders_folder()
     gaps = []
+    if getattr(config, "needs_server", False) and (sentence := problem_of(server())):
+        gaps.append(Gap(ADDRESS, sentence))
     for field, find in (("glove", find_glove), ("elmo", find_elmo), ("encoder", find_encoder)):
         if name := getattr(config, field, ""):
             try:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from django.db import transaction
 
 from annotations.models import Split, World
+from annotations.people.audit_log import RULE, record_command
 from parser_service.models import Promotion, PromotionState, TrainingRun
-from parser_service.parsers.registry import PARSERS, Needs
+from parser_service.parsers.registry import PARSERS, Needs, needing
 from parser_service.promotion.evidence import (
     evidence_for,
     is_right_on_paraphrases,
@@ -20,7 +21,8 @@ FIRST = "The first run of this world that was tested on paraphrases."
 def consider(run: TrainingRun) -> Promotion | None:
     """Promote the first run of a world that was tested on paraphrases; propose one after retraining.
 
-    The first one has to be right on some paraphrase. A parser that is trained in seconds, as those are that
+    The first one has to be right on some paraphrase. A parser that asks a server is left for people to
+    promote: what a robot hears would go there. A parser that is trained in seconds, as those are that
     others are compared with, leaves it to others that wait or run in its world. A run is proposed where
     the corpus has changed (its split follows that of the promoted run) and it is not clearly worse on
     validation paraphrases: its accuracy there is within the 95 % interval of the promoted run's, or
@@ -34,8 +36,16 @@ def consider(run: TrainingRun) -> Promotion | None:
         World.objects.select_for_update().get(pk=run.world_id)
         present = promoted_run(run.world)
         if present is None:
-            return None if _leaves_it_to_others(run) else promote(run, None, FIRST)
+            is_for_people = run.parser in needing(Needs.SERVER)
+            is_left = is_for_people or _leaves_it_to_others(run)
+            return None if is_left else _promote_first(run)
         return _propose(run, present)
+
+
+def _promote_first(run: TrainingRun) -> Promotion:
+    row = promote(run, None, FIRST)
+    record_command("promote a run", f"run {run.pk}: {FIRST}", run.world, who=RULE)
+    return row
 
 
 def _leaves_it_to_others(run: TrainingRun) -> bool:

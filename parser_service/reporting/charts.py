@@ -13,6 +13,7 @@ from django.utils.safestring import SafeString
 WIDTH = 720
 LABEL_WIDTH = 220  # of bars, left of the scale
 FIGURES_WIDTH = 120  # right of it
+FIGURE_END = WIDTH - FIGURES_WIDTH + 42  # there figures end, and their intervals begin behind it
 ROW = 24
 HEIGHT = 260  # of a chart of lines
 LEFT, RIGHT, TOP, BOTTOM = 48, 110, 12, 40
@@ -73,13 +74,14 @@ def _draw_bar(place: int, bar: Bar) -> SafeString:
         '<text class="label" x="{}" y="{}" text-anchor="end">{}</text>'
         '<rect class="bar style-{}" x="{}" y="{}" width="{}" height="{}"/>'
         '<line class="interval" x1="{}" x2="{}" y1="{}" y2="{}"/>'
-        '<text class="figure" x="{}" y="{}">{} <tspan class="quiet">{}–{}</tspan></text>',
+        '<text class="figure" x="{}" y="{}" text-anchor="end">{}</text>'
+        '<text class="figure quiet" x="{}" y="{}">{}–{}</text>',
         *(LABEL_WIDTH - 8, middle + 4, _shorten(bar.label)),
         *(bar.style % STYLES, LABEL_WIDTH, top + 5),
         *(_number(_bar_x(bar.value) - LABEL_WIDTH), ROW - 10),
         *(_number(_bar_x(bar.low)), _number(_bar_x(bar.high)), middle, middle),
-        *(WIDTH - FIGURES_WIDTH + 8, middle + 4),
-        *(f"{100 * each:.1f}" for each in (bar.value, bar.low, bar.high)),
+        *(FIGURE_END, middle + 4, f"{100 * bar.value:.1f}"),
+        *(FIGURE_END + 6, middle + 4, f"{100 * bar.low:.1f}", f"{100 * bar.high:.1f}"),
     )
 
 
@@ -93,7 +95,8 @@ def draw_lines(
     if not xs:
         return format_html("")
     first = min(xs) if x_most is None else 0.0
-    across = _Scale(first, x_most or max(xs), LEFT, WIDTH - RIGHT)
+    is_whole = all(float(x).is_integer() for x in xs)  # epochs, such as
+    across = _Scale(first, x_most or max(xs), LEFT, WIDTH - RIGHT, is_whole)
     up = _Scale(0.0, max(ys), HEIGHT - BOTTOM, TOP)
     shown = [(number, some) for number, some in enumerate(points) if some]
     heights = spread([up.place(some[-1][1]) for _, some in shown])
@@ -132,6 +135,7 @@ class _Scale:
     high: float
     start: float
     end: float
+    is_whole: bool = False
 
     def place(self, value: float) -> float:
         width = self.high - self.low
@@ -139,12 +143,13 @@ class _Scale:
         return self.start + share * (self.end - self.start)
 
     def ticks(self) -> list[float]:
-        """Return about five round numbers."""
+        """Return about five round numbers; whole ones on a scale of such."""
         width = self.high - self.low
         if width <= 0:
             return [self.low]
         step = 10.0 ** math.floor(math.log10(width / 4))
         step *= next(each for each in (1, 2, 5, 10) if width / (step * each) <= 5)
+        step = max(step, 1.0) if self.is_whole else step
         first = math.ceil(self.low / step - 1e-9)
         last = math.floor(self.high / step + 1e-9)
         return [step * number for number in range(first, last + 1)]

@@ -7,20 +7,26 @@ row and column: with the newest version of the parser among them, and of each se
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TypeAlias
 
 from django.urls import reverse
 from django.utils.http import urlencode
 
+from annotations.language.corpus import KNOWN, Criterion
 from annotations.models import Split, World
+from parser_service.analysis.comparing import is_better
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.parsers.conditions import SETTINGS, Protocol, only_source
 from parser_service.parsers.registry import PARSERS
-from parser_service.results.cells import Cell, Figure, figure_of, newest_of_each_seed
+from parser_service.results.cells import Cell, newest_of_each_seed
+from parser_service.results.figures import Figure, figure_of
 from parser_service.results.measures import Measure
 from parser_service.results.published import published_accuracy, published_criteria
 from parser_service.results.tables import SHORT_CRITERIA, Changes, Column, Row, Table
+
+Scores: TypeAlias = dict[tuple[int, str], Evaluation]
 
 
 def accuracy_tables(
@@ -38,12 +44,13 @@ def accuracy_tables(
     runs = list(
         world.runs.filter(split__in=splits).scored_or_active().on_all_pairs().order_by("-id")
     )
-    scores = Evaluation.objects.filter(run__in=runs, part=part)
+    scores = Evaluation.objects.filter(run__in=runs, part__in=[part, KNOWN])
     maker = TableMaker(
         world=world,
         part=part,
         columns=tuple(columns_of(runs, splits)),
-        scores={(score.run_id, score.test_source): score for score in scores},
+        scores=by_part(scores, part),
+        known=by_part(scores, KNOWN),
         published=published_criteria(splits),
         measures=measures,
         with_published=with_published,
@@ -74,15 +81,17 @@ def _labels(splits: list[Split]) -> dict[int, str]:
 class TableMaker:
     """Sorts runs, newest first, into tables.
 
-    ``scores`` are by run and test source, ``published`` says which split is which published one.
+    ``scores`` are by run and test source, ``known`` those on the known forms of splits by form;
+    ``published`` says which split is which published one.
     Figures are by ``measures``; that of exact match has the published one beside it where it is wanted.
     """
 
     world: World
     part: str
     columns: tuple[Column, ...]
-    scores: dict[tuple[int, str], Evaluation]
+    scores: Scores
     published: dict[int, str]
+    known: Scores = field(default_factory=dict)
     measures: tuple[Measure, ...] = (Measure.EXACT,)
     with_published: bool = False
 
@@ -108,15 +117,31 @@ class TableMaker:
             return None
         scores = tuple(self.scores[run.pk, column.test_source] for run in counted)
         published = self.published_figure(parser, column)
-        figures = self.figures(scores, published) if scores else ()
-        return Cell(scores, active, published, self.cell_url(counted, active, column), figures)
+        known = self.known_scores(counted, column)
+        figures = self.figures(scores, published, known) if scores else ()
+        names = dict.fromkeys(run.answered_by for run in counted if run.answered_by)
+        address = self.cell_url(counted, active, column)
+        return Cell(scores, active, published, address, figures, ", ".join(names))
+
+    def known_scores(
+        self, counted: list[TrainingRun], column: Column
+    ) -> tuple[Evaluation, ...] | None:
+        """Return the scores on known forms; none where one of the runs has none, None unless by form."""
+        if column.split.criterion != Criterion.LOGICAL_FORM:
+            return None
+        known = [self.known.get((run.pk, column.test_source)) for run in counted]
+        scores = tuple(score for score in known if score is not None)
+        return scores if len(scores) == len(counted) else ()
 
     def figures(
-        self, scores: tuple[Evaluation, ...], published: float | None
+        self,
+        scores: tuple[Evaluation, ...],
+        published: float | None,
+        known: tuple[Evaluation, ...] | None = None,
     ) -> tuple[Figure, ...]:
         """Return the figures over ``scores``, one by each measure."""
         beside = {Measure.EXACT: published} if self.with_published else {}
-        return tuple(figure_of(scores, each, beside.get(each)) for each in self.measures)
+        return tuple(figure_of(scores, each, beside.get(each), known) for each in self.measures)
 
     def cell_url(
         self, counted: list[TrainingRun], active: tuple[TrainingRun, ...], column: Column
@@ -165,16 +190,36 @@ def rank_of(parser: str, changes: Changes) -> tuple[int, int, str]:
     return place, len(changes), str(changes)
 
 
+def by_part(scores: Iterable[Evaluation], part: str) -> Scores:
+    """Return the scores on one part by run and test source."""
+    return {(each.run_id, each.test_source): each for each in scores if each.part == part}
+
+
 def _mark_best(rows: list[Row]) -> Iterator[Row]:
     best = [_best(cells) for cells in zip(*(row.cells for row in rows), strict=True)]
-    for row in rows:
-        marked = (cell and cell.mark_best(top) for cell, top in zip(row.cells, best, strict=True))
+    for number, row in enumerate(rows):
+        marked = (
+            cell and cell.mark_best({at for at, of in enumerate(column) if of == number})
+            for cell, column in zip(row.cells, best, strict=True)
+        )
         yield replace(row, cells=tuple(marked))
 
 
-def _best(cells: Iterable[Cell | None]) -> list[float]:
-    """Return the highest mean of a column by each measure; none where nothing is scored."""
-    means = [
-        [each.over_seeds.mean for each in cell.figures] for cell in cells if cell and cell.figures
-    ]
-    return [max(column) for column in zip(*means, strict=True)]
+def _best(cells: Sequence[Cell | None]) -> list[int | None]:
+    """Return by each measure the place of the cell that is better than all others of a column; None where
+    the difference may be chance, or where one was not counted by cluster."""
+    scored = [(at, cell.figures) for at, cell in enumerate(cells) if cell and cell.figures]
+    if not scored:
+        return []
+    by_measure = zip(*(figures for _, figures in scored), strict=True)
+    return [_best_of([at for at, _ in scored], figures) for figures in by_measure]
+
+
+def _best_of(places: Sequence[int], figures: Sequence[Figure]) -> int | None:
+    ranked = sorted(zip(places, figures, strict=True), key=lambda each: -each[1].percent)
+    counted = [figure.counted for _, figure in ranked]
+    kinds = {len(each) if each else 0 for each in counted}
+    if kinds not in ({1}, {2}):
+        return None
+    best, *others = [each for each in counted if each is not None]
+    return ranked[0][0] if is_better(best, others) else None

@@ -1,72 +1,14 @@
-"""One cell of an accuracy table: the score of one run, or mean and spread over seeds."""
+"""One cell of an accuracy table: the score of one run, or of several seeds."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 from parser_service.analysis.seeds import OverSeeds, over_seeds
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.models.runs import Status
-from parser_service.results.measures import Measure, count_of, interval_of, share_of
-
-
-@dataclass(frozen=True, slots=True)
-class Figure:
-    """What a cell says by one measure.
-
-    ``interval``, fractions of 1, is the 95 % interval of one run; of several seeds it goes from the
-    worst to the best. ``note`` says what the figure means; ``published`` is the paper's figure in
-    percent where it is to be shown.
-    """
-
-    measure: Measure
-    over_seeds: OverSeeds
-    interval: tuple[float, float]
-    note: str
-    published: float | None = None
-    is_best: bool = False
-
-    @property
-    def n_seeds(self) -> int:
-        return self.over_seeds.n_seeds
-
-    @property
-    def percent(self) -> float:
-        return 100 * self.over_seeds.mean
-
-    @property
-    def spread(self) -> float | None:
-        """The standard deviation between several seeds, in percent; None of one run."""
-        spread = self.over_seeds.spread
-        return None if spread is None else 100 * spread
-
-    @property
-    def low(self) -> float:
-        return 100 * self.interval[0]
-
-    @property
-    def high(self) -> float:
-        return 100 * self.interval[1]
-
-
-def figure_of(
-    scores: Sequence[Evaluation], measure: Measure, published: float | None = None
-) -> Figure:
-    """Return the figure over ``scores``, one per seed, of which there is at least one."""
-    shares = [share_of(score, measure) for score in scores]
-    is_one = len(scores) == 1
-    low, high = interval_of(scores[0], measure) if is_one else (min(shares), max(shares))
-    span = f"{100 * low:.1f}–{100 * high:.1f}"
-    if is_one:
-        right = count_of(scores[0], measure)
-        word = "exact" if measure is Measure.EXACT else measure.in_words
-        note = f"{right} of {scores[0].count} {word}; 95 % interval {span}"
-    else:
-        note = f"Mean of {len(scores)} seeds ± standard deviation, from {span}"
-        if measure is not Measure.EXACT:
-            note = f"{measure.in_words.capitalize()}: {note[0].lower()}{note[1:]}"
-    return Figure(measure, over_seeds(shares), (low, high), note, published)
+from parser_service.results.figures import Figure
 
 
 @dataclass(frozen=True)
@@ -74,7 +16,8 @@ class Cell:
     """A parser in a column: its scores, one per seed, newest first, or the runs that will have some.
 
     ``figures`` are by the measures that the table shows; none before there is a score. ``published`` is
-    the paper's figure in percent, whether it is shown or not.
+    the paper's figure in percent, whether it is shown or not. ``answered_by`` names the models behind the
+    scores, as their servers report them.
     """
 
     scores: tuple[Evaluation, ...]
@@ -82,6 +25,7 @@ class Cell:
     published: float | None
     url: str
     figures: tuple[Figure, ...] = ()
+    answered_by: str = ""
 
     @property
     def score(self) -> Evaluation | None:
@@ -115,7 +59,7 @@ class Cell:
 
     @property
     def is_best(self) -> bool:
-        """Whether the first of its figures is the best of its column."""
+        """Whether the first of its figures is better than every other one of its column, beyond chance."""
         return bool(self.figures) and self.figures[0].is_best
 
     @property
@@ -124,8 +68,9 @@ class Cell:
         if not self.figures:
             return ""
         waiting = f"; {len(self.active)} more on the way" if self.active else ""
-        best = "; the best of this column" if self.is_best else ""
-        return "; ".join(figure.note for figure in self.figures) + waiting + best
+        best = "; better than every other one of this column" if self.is_best else ""
+        model = f"; answered by {self.answered_by}" if self.answered_by else ""
+        return "; ".join(figure.note for figure in self.figures) + waiting + best + model
 
     @property
     def status(self) -> str:
@@ -139,12 +84,10 @@ class Cell:
         done = sum(run.progress for run in self.active)
         return 100 * done / len(self.active) if self.active else 0
 
-    def mark_best(self, best: Sequence[float]) -> Cell:
-        """Return the cell with the figures marked whose mean is that of ``best``, one per measure; 0 is
-        never the best."""
+    def mark_best(self, measures: Collection[int]) -> Cell:
+        """Return the cell with the figures at these places marked as the best of their column."""
         marked = tuple(
-            replace(figure, is_best=figure.over_seeds.mean == top > 0)
-            for figure, top in zip(self.figures, best, strict=False)
+            replace(figure, is_best=at in measures) for at, figure in enumerate(self.figures)
         )
         return replace(self, figures=marked)
 

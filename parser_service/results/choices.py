@@ -100,14 +100,21 @@ def read_choices(query: QueryDict, world: World, splits: Sequence[Split]) -> Res
     part = query.get("part", "")
     measure = query.get("measure", "")
     return ResultsChoices(
-        part=part if part in PARTS else default_part(world),
+        part=part if part in PARTS else default_part(world, splits=chosen),
         splits=tuple(chosen),
         measure=measure if measure in MEASURES else "exact",
         published=query.get("published") == "yes",
     )
 
 
-def default_part(world: World) -> str:
-    """Return the test part, unless nothing has been scored on one."""
-    is_tested = world.runs.filter(evaluations__part=Part.TEST).exists()
+def default_part(
+    world: World, keys: Sequence[int] = (), splits: Sequence[Split] | None = None
+) -> str:
+    """Return the test part, unless nothing has been scored on one, or on one of ``splits``; of the runs with
+    ``keys``, unless one of them has not."""
+    runs = world.runs.all() if splits is None else world.runs.filter(split__in=splits)
+    if keys:
+        is_tested = not runs.filter(pk__in=keys).exclude(evaluations__part=Part.TEST).exists()
+    else:
+        is_tested = runs.filter(evaluations__part=Part.TEST).exists()
     return Part.TEST if is_tested else Part.VALIDATION

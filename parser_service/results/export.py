@@ -7,9 +7,10 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from annotations.models import World
-from parser_service.results.cells import Cell, Figure
+from parser_service.results.cells import Cell
 from parser_service.results.choices import ResultsChoices
-from parser_service.results.tables import Column, Row, Table
+from parser_service.results.figures import KNOWN_FORMS, UNSEEN, Figure
+from parser_service.results.tables import Column, Row, Table, may_know_corpora
 
 # Of the newest run of a cell.
 SCORE_FIELDS = (
@@ -25,8 +26,12 @@ SCORE_FIELDS = (
 )
 # Exact match over all seeds of a cell.
 SEED_FIELDS = ("mean", "spread", "n_seeds")
-# The figure that the page shows, in percent.
+# The figure that the page shows, in percent; by form a harmonic mean.
 FIGURE_FIELDS = ("measure", "percent", "plus_minus", "low", "high", "is_best", "published")
+# The model that answered, as its server reports it, and whether it may have read a public corpus.
+MODEL_FIELDS = ("answered_by", "may_know_corpora")
+# By form, what it is the mean of, each with the ends of its interval.
+PART_FIELDS = ("unseen", "unseen_low", "unseen_high", "known", "known_low", "known_high")
 # The columns, in this order in every release.
 HEADER = (
     "parser",
@@ -39,6 +44,8 @@ HEADER = (
     *SCORE_FIELDS,
     *SEED_FIELDS,
     *FIGURE_FIELDS,
+    *MODEL_FIELDS,
+    *PART_FIELDS,
 )
 
 
@@ -46,14 +53,18 @@ def rows_of(tables: Iterable[Table]) -> Iterator[tuple[Any, ...]]:
     """Yield one row per figure of a scored cell; accuracies are fractions of 1.
 
     What the newest run scored comes first, then mean and spread of exact match (the sample standard
-    deviation, empty for one run) over all seeds, then the figure as the page shows it, in percent.
+    deviation, empty for one run) over all seeds, then the figure as the page shows it, in percent, with
+    how far its 95 % interval reaches (``plus_minus``), then ``MODEL_FIELDS``, and by form the figures on
+    unseen and on known forms (``PART_FIELDS``).
     """
     for table in tables:
         for row, cells in table.filled:
             for column, cell in cells:
                 if cell and cell.score:
                     about = (*_about(table, row, column), *_scores(cell))
-                    yield from ((*about, *_shown(figure)) for figure in cell.figures)
+                    model = (cell.answered_by, may_know_corpora(row.parser))
+                    for figure in cell.figures:
+                        yield (*about, *_shown(figure), *model, *_parts(figure))
 
 
 def as_json(world: World, choices: ResultsChoices, tables: Iterable[Table]) -> dict[str, Any]:
@@ -83,9 +94,22 @@ def _shown(figure: Figure) -> tuple[Any, ...]:
     return (
         figure.measure,
         figure.percent,
-        figure.spread,
+        figure.reach,
         figure.low,
         figure.high,
         figure.is_best,
         figure.published,
     )
+
+
+def _parts(figure: Figure) -> tuple[float | None, ...]:
+    return tuple(number for label in (UNSEEN, KNOWN_FORMS) for number in _part(figure, label))
+
+
+def _part(figure: Figure, label: str) -> tuple[float | None, ...]:
+    """Return the figure on unseen or on known forms and its interval; None each where there is none. On unseen
+    forms alone it is the figure itself."""
+    if figure.alone and label == UNSEEN:
+        return figure.percent, figure.low, figure.high
+    parts = {part.label: (part.percent, part.low, part.high) for part in figure.parts}
+    return parts.get(label, (None, None, None))

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import accumulate, pairwise
 
-from parser_service.results.cells import Cell, Figure
+from parser_service.results.cells import Cell
 from parser_service.results.choices import ResultsChoices
-from parser_service.results.tables import Column, Row, Table
+from parser_service.results.figures import Figure
+from parser_service.results.tables import MAY_KNOW_CORPORA, Column, Row, Table
 
 ESCAPES = {
     "\\": r"\textbackslash{}",
@@ -25,6 +26,7 @@ ESCAPES = {
     "|": r"\textbar{}",
     '"': "''",
 }
+SIGN = r"$^\dagger$"  # the mark
 PREAMBLE = r"% Needs \usepackage{booktabs} in the preamble."
 
 
@@ -62,11 +64,19 @@ def _caption(choices: ResultsChoices, table: Table) -> str:
     sentences = [
         f"{measures[0].upper()}{measures[1:]} in percent on the {choices.part} part, "
         f"{table.protocol} protocol.",
-        "Of one run with its 95 % interval, of several seeds as mean ± standard deviation.",
+        "±: how far the 95 % interval reaches, by a bootstrap of clusters and seeds.",
+        "Bold: better than every other row, by a paired bootstrap with Holm's correction.",
     ]
+    if any(figure.parts for figure in _all_figures(table)):
+        sentences.append("By form: the harmonic mean of unseen and known forms.")
     if table.is_published and choices.published:
         sentences.append("In parentheses: Walker, Peng and Cakmak (2019).")
-    return escape(" ".join(sentences)).replace("±", r"$\pm$")
+    caption = escape(" ".join(sentences)).replace("±", r"$\pm$")
+    return f"{caption} {SIGN} {escape(MAY_KNOW_CORPORA)}" if table.is_marked else caption
+
+
+def _all_figures(table: Table) -> Iterator[Figure]:
+    return (figure for row in table.rows for cell in row.cells if cell for figure in cell.figures)
 
 
 def _heads(table: Table) -> Iterator[str]:
@@ -93,7 +103,8 @@ def _line(first: str, others: Iterable[str]) -> str:
 
 def _row_name(row: Row) -> str:
     changes = ", ".join(f"{name} {value}" for name, value in row.changes)
-    return escape(f"{row.title} ({changes})" if changes else row.title)
+    name = escape(f"{row.title} ({changes})" if changes else row.title)
+    return f"{name}{SIGN if row.mark else ''}"
 
 
 def _figures(cells: Iterable[tuple[Column, Cell | None]], table: Table) -> Iterator[str]:
@@ -107,10 +118,12 @@ def _figures(cells: Iterable[tuple[Column, Cell | None]], table: Table) -> Itera
 def _figure(figure: Figure) -> str:
     percent = f"{figure.percent:.1f}"
     parts = [rf"\textbf{{{percent}}}" if figure.is_best else percent]
-    if figure.spread is None:
-        parts.append(rf"{{\scriptsize {figure.low:.1f}--{figure.high:.1f}}}")
-    else:
-        parts.append(rf"{{\scriptsize $\pm$ {figure.spread:.1f}}}")
+    parts.append(rf"{{\scriptsize $\pm$ {figure.reach:.1f}}}")
+    if figure.parts:
+        both = ", ".join(f"{part.label} {part.percent:.1f}" for part in figure.parts)
+        parts.append(rf"{{\scriptsize ({both})}}")
+    if figure.alone:
+        parts.append(r"{\scriptsize (unseen alone)}")
     if figure.published is not None:
         parts.append(rf"{{\scriptsize ({figure.published:.1f})}}")
     return " ".join(parts)

@@ -11,10 +11,11 @@ from typing import Any
 from django.urls import reverse
 from django.utils.http import urlencode
 
+from annotations.language.corpus import KNOWN
 from annotations.models import Split, World
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.parsers.conditions import SETTINGS, Setting
-from parser_service.results.accuracy import TableMaker, rank_of
+from parser_service.results.accuracy import TableMaker, by_part, rank_of
 from parser_service.results.cells import Cell
 from parser_service.results.measures import Measure
 from parser_service.results.tables import Changes, Column, title_of
@@ -118,13 +119,14 @@ def learning_curves(
     ).scored_or_active()
     newest_first = list(runs.order_by("-id"))
     scores = Evaluation.objects.filter(
-        run__in=newest_first, part=part, test_source=setting.test_source
+        run__in=newest_first, part__in=[part, KNOWN], test_source=setting.test_source
     )
     maker = TableMaker(
         world=world,
         part=part,
         columns=(column,),
-        scores={(score.run_id, score.test_source): score for score in scores},
+        scores=by_part(scores, part),
+        known=by_part(scores, KNOWN),
         published={},
         measures=(measure,),
     )

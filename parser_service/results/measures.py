@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from enum import StrEnum
 
+from parser_service.analysis.outcomes import Counted, interval_of_outcomes
 from parser_service.analysis.proportions import wilson_interval
 from parser_service.models import Evaluation
 
@@ -19,6 +20,11 @@ class Measure(StrEnum):
     @property
     def in_words(self) -> str:
         return WORDS[self]
+
+    @property
+    def counted(self) -> Counted:
+        """What outcomes call it."""
+        return self.value  # type: ignore[return-value]
 
     @property
     def sign(self) -> str:
@@ -51,7 +57,10 @@ def count_of(score: Evaluation, measure: Measure) -> int:
 
 
 def interval_of(score: Evaluation, measure: Measure) -> tuple[float, float]:
-    """Return Wilson's interval of the share at 95 %, as fractions of 1."""
+    """Return the 95 % interval of the share, as fractions of 1: Wilson's where answers were not counted by
+    cluster."""
     if measure is Measure.EXACT:
         return score.interval_low, score.interval_high
+    if interval := interval_of_outcomes(score.outcomes, measure.counted):
+        return interval
     return wilson_interval(count_of(score, measure), score.count)

@@ -36,8 +36,16 @@ IN_WORDS = {
 WHAT_IT_KNOWS = {
     Protocol.STRICT: "Training pairs only.",
     Protocol.DOMAIN: "The declared predicates and the ontology are known too, as on a robot.",
-    Protocol.GRAMMAR: "The annotated grammar and all its forms are known too.",
+    Protocol.GRAMMAR: "The annotated grammar and all its forms are known too: also the prompts and the forms of "
+    "the paraphrases that a split by form holds out.",
 }
+
+# A sign behind the names of parsers whose figures it qualifies, and what it says.
+MARK = "†"
+MAY_KNOW_CORPORA = (
+    "Answers of a language model, which may have read a public corpus, its test part too, before it was asked "
+    "here."
+)
 
 Changes: TypeAlias = "tuple[tuple[str, Any], ...]"
 
@@ -90,6 +98,11 @@ class Row:
     def title(self) -> str:
         return title_of(self.parser)
 
+    @property
+    def mark(self) -> str:
+        """The sign that a footnote explains; empty where the figures mean what they say."""
+        return MARK if may_know_corpora(self.parser) else ""
+
 
 @dataclass(frozen=True, slots=True)
 class Table:
@@ -137,6 +150,11 @@ class Table:
         return any(cell and cell.published is not None for cell in cells)
 
     @property
+    def is_marked(self) -> bool:
+        """Whether a row bears the mark."""
+        return any(row.mark for row in self.rows)
+
+    @property
     def filled(self) -> list[tuple[Row, list[tuple[Column, Cell | None]]]]:
         """Each row with its cells beside their columns."""
         return [(row, list(zip(self.columns, row.cells, strict=True))) for row in self.rows]
@@ -145,3 +163,8 @@ class Table:
 def title_of(parser: str) -> str:
     """Return what pages call a parser; its name where the registry no longer has it."""
     return PARSERS[parser].title if parser in PARSERS else parser
+
+
+def may_know_corpora(parser: str) -> bool:
+    """Return whether a parser may have read a public corpus before anybody trained it here."""
+    return parser in PARSERS and PARSERS[parser].may_know_corpora

@@ -23,9 +23,7 @@ class NamesOvertaken(Exception):
 
 def actions_of(world: World) -> list[str]:
     """Return the predicates of a world that are actions, then ``ask_operator``."""
-    rows = Predicate.objects.filter(world=world, kind="action").exclude(
-        name__in=("sequence", "and")
-    )
+    rows = Predicate.objects.filter(world=world, kind="action")
     return [*rows.order_by("name").values_list("name", flat=True), ASK]
 
 
@@ -98,8 +96,13 @@ def write_arguments(name: ActionName) -> str:
     return ", ".join(f"{argument}={its}" for argument, its in sorted(name.arguments.items()))
 
 
+def is_name(name: str) -> bool:
+    """Return whether a robot can have this name for something."""
+    return bool(NAME.fullmatch(name)) and name.casefold() not in _RESERVED
+
+
 def _require_name(name: str) -> None:
-    if not NAME.fullmatch(name) or name.casefold() in _RESERVED:
+    if not is_name(name):
         raise ValueError(
             f"“{name}” is no name for a robot: letters, digits and _, a letter first, "
             f"and none of {', '.join(_RESERVED)}."

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from hashlib import sha256
 from typing import Any
 
+from annotations.language.corpus import KNOWN_SHARE, Criterion
 from annotations.models import Split, World
 from annotations.models.templates import Status
 from parser_service.parsers.registry import entry
@@ -27,6 +28,8 @@ def content_key(
     that they had before there were shares.
     """
     share = {} if train_share == 1 else {"train_share": train_share}
+    # By form, some pairs of known forms are held out; runs on other splits keep their keys.
+    held_out = {"known": KNOWN_SHARE} if split.criterion == Criterion.LOGICAL_FORM else {}
     return _hash(
         {
             "split": split.content_hash,
@@ -38,6 +41,7 @@ def content_key(
             "knowledge": knowledge_hash(split.world, protocol),
             "seed": seed,
             **share,
+            **held_out,
         }
     )
 

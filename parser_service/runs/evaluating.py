@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from annotations.background import outlasting
+from annotations.language.corpus import KNOWN
 from annotations.models import Example
 from annotations.models.splits import Part
-from parser_service.analysis.scores import NO_ANSWER, Score, judge, score
+from parser_service.analysis.outcomes import interval_of_outcomes, outcomes_of
+from parser_service.analysis.scores import NO_ANSWER, judge, score
 from parser_service.models import Evaluation, Prediction, TrainingRun
-from parser_service.parsers.conditions import TEST_SOURCES
+from parser_service.parsers.conditions import TEST_SOURCES, TrainSources
 from parser_service.parsers.interface import TRAINING, Candidate, Pair, Parser
 from parser_service.runs import lifecycle
+from parser_service.runs.cross_fitting import calibrated_folds
+from parser_service.runs.examples import as_pairs, cluster_of
 from parser_service.runs.observing import RunObserver
 
 BEAM_WIDTH = 5
 AT_ONCE = 64
+ASKED_AT_ONCE = 8  # where each answer may take seconds: progress is told after each batch
 ROWS_AT_ONCE = 500
 DECIMALS = 4  # of the parts of a score
 
@@ -27,39 +33,99 @@ def evaluate(
     train: Sequence[Pair],
     validation: Sequence[Pair],
     observe: RunObserver,
+    known: Sequence[Example] = (),
 ) -> None:
     """Predict every validation and test example of the run's split and store the outcomes.
 
-    ``train`` are the pairs that the parser learned from, ``validation`` those that it may consult when
-    the test part is scored. An earlier attempt's predictions are replaced. Raises Cancelled and Fenced.
+    The validation part is cross-fitted: nothing is answered by what its cluster calibrated.
+
+    Args:
+        train: the pairs that the parser learned from.
+        validation: those that calibrated it, and that it may consult when the test part is scored.
+        known: examples held out of the training part. Those whose form is in ``train`` are scored, as
+            the part ``known``, and no answer to them is kept.
+
+    An earlier attempt's predictions are replaced. Raises Cancelled and Fenced.
     """
-    predicted: list[tuple[Example, list[Candidate]]] = []
-    parts = {Part.VALIDATION: parser, Part.TEST: parser.for_test_part(validation)}
-    examples = {part: list(run.split.examples.filter(part=part)) for part in parts}
-    total = sum(map(len, examples.values()))
-    for part, answering in parts.items():
-        for start in range(0, len(examples[part]), AT_ONCE):
-            batch = examples[part][start : start + AT_ONCE]
-            utterances = [example.utterance for example in batch]
-            answers = answering.predict(utterances, BEAM_WIDTH, observe.check)
-            predicted += zip(batch, answers, strict=True)
-            observe.evaluation_progress(len(predicted) / total, f"predicting the {part} part")
-    counts = Counter(pair.form for pair in train)
-    ranked = [_rank_answers(run, example, answers, counts) for example, answers in predicted]
-    _store(run, ranked, score_kind=parser.score_kind or "", train_pairs=len(train))
+    forms = Counter(pair.form for pair in train)
+    asked = [*_asked(run, parser, validation), *_asked_known(parser, known, forms)]
+    total = sum(len(batch.examples) for batch in asked)
+    size = ASKED_AT_ONCE if parser.asks_a_server else AT_ONCE
+    predicted: list[tuple[str, Example, list[Candidate]]] = []
+    for batch in asked:
+        for start in range(0, len(batch.examples), size):
+            examples = batch.examples[start : start + size]
+            utterances = [example.utterance for example in examples]
+            answers = batch.parser.predict(utterances, BEAM_WIDTH, observe.check)
+            predicted += [(batch.part, *each) for each in zip(examples, answers, strict=True)]
+            observe.evaluation_progress(len(predicted) / total, f"predicting the {batch.part} part")
+    _say_what_was_cut(predicted, observe)
+    ranked = [
+        (part, _rank_answers(run, example, answers, forms)) for part, example, answers in predicted
+    ]
+    about = {"score_kind": parser.score_kind or "", "answered_by": parser.answered_by}
+    _store(run, ranked, train_pairs=len(train), **about)
+
+
+def _say_what_was_cut(
+    predicted: Sequence[tuple[str, Example, list[Candidate]]], observe: RunObserver
+) -> None:
+    cut = [example for _, example, answers in predicted if any(each.is_cut for each in answers)]
+    if cut:
+        observe.log(
+            f"{len(cut):,} of {len(predicted):,} utterances are longer than the parser reads; it read the "
+            f'beginning of each, first of "{cut[0].utterance[:60]}…".'
+        )
+
+
+class Asked(NamedTuple):
+    """Examples of one part, and the parser that answers them."""
+
+    part: str
+    parser: Parser
+    examples: Sequence[Example]
+
+
+def _asked(run: TrainingRun, parser: Parser, validation: Sequence[Pair]) -> Iterator[Asked]:
+    """Yield the examples of the validation part, in folds, and those of the test part."""
+    examples = list(run.split.examples.filter(part=Part.VALIDATION))
+    clusters = [cluster_of(each, run.split.criterion) for each in examples]
+    sources = TrainSources(run.train_sources).sources
+    calibrating = [at for at, example in enumerate(examples) if example.source in sources]
+    folds = calibrated_folds(
+        parser,
+        clusters,
+        as_pairs(examples[at] for at in calibrating),
+        [clusters[at] for at in calibrating],
+    )
+    for of_fold, places in folds:
+        yield Asked(Part.VALIDATION, of_fold, [examples[at] for at in places])
+    test = list(run.split.examples.filter(part=Part.TEST))
+    yield Asked(Part.TEST, parser.for_test_part(validation), test)
+
+
+def _asked_known(
+    parser: Parser, known: Sequence[Example], forms: Mapping[str, int]
+) -> Iterator[Asked]:
+    yield Asked(KNOWN, parser, [each for each in known if each.logical_form in forms])
 
 
 @outlasting
-def _store(run: TrainingRun, ranked: Sequence[Sequence[Prediction]], **about: str | int) -> None:
-    """Replace the run's predictions, one list for each example, and its evaluations, and store in the
-    run what is ``about`` them."""
+def _store(
+    run: TrainingRun, ranked: Sequence[tuple[str, Sequence[Prediction]]], **about: str | int
+) -> None:
+    """Replace the run's predictions and its evaluations, and store in the run what is ``about`` them.
+
+    ``ranked`` has for each example its part and its predictions; those of known forms are only counted.
+    """
     with lifecycle.held(run):
         TrainingRun.objects.filter(pk=run.pk).update(**about)
         run.predictions.all().delete()
         run.evaluations.all().delete()
-        rows = [row for rows in ranked for row in rows]
+        rows = [row for part, rows in ranked if part != KNOWN for row in rows]
         Prediction.objects.bulk_create(rows, batch_size=ROWS_AT_ONCE)
-        Evaluation.objects.bulk_create(_make_evaluations(run, [rows[0] for rows in ranked]))
+        best = [(part, rows[0]) for part, rows in ranked]
+        Evaluation.objects.bulk_create(_make_evaluations(run, best))
 
 
 def _rank_answers(
@@ -92,23 +158,30 @@ def _make_prediction(
         label_in_training=counts.get(example.logical_form, 0),
         origin=answer.origin or (TRAINING if answer.form in counts else ""),
         score_parts={name: round(value, DECIMALS) for name, value in answer.parts.items()},
+        is_cut=answer.is_cut,
     )
 
 
-def _make_evaluations(run: TrainingRun, best: Sequence[Prediction]) -> list[Evaluation]:
+def _make_evaluations(run: TrainingRun, best: Sequence[tuple[str, Prediction]]) -> list[Evaluation]:
     """Return one row per part and test source with examples; ``mixed`` where both sources have some."""
     evaluations = []
-    for part in (Part.VALIDATION, Part.TEST):
-        of_part = [row for row in best if row.example.part == part]
+    for part in (Part.VALIDATION, Part.TEST, KNOWN):
+        of_part = [row for of, row in best if of == part]
         sources_there = {row.example.source for row in of_part}
         for name, sources in TEST_SOURCES.items():
             if sources_there.issuperset(sources):
                 chosen = [row for row in of_part if row.example.source in sources]
-                evaluations.append(_make_evaluation(run, part, name, score(chosen)))
+                evaluations.append(_make_evaluation(run, part, name, chosen))
     return evaluations
 
 
-def _make_evaluation(run: TrainingRun, part: str, test_source: str, result: Score) -> Evaluation:
+def _make_evaluation(
+    run: TrainingRun, part: str, test_source: str, best: Sequence[Prediction]
+) -> Evaluation:
+    result = score(best)
+    criterion = run.split.criterion
+    outcomes = outcomes_of([cluster_of(row.example, criterion) for row in best], best)
+    low, high = interval_of_outcomes(outcomes) or result.interval
     return Evaluation(
         run=run,
         test_source=test_source,
@@ -116,8 +189,9 @@ def _make_evaluation(run: TrainingRun, part: str, test_source: str, result: Scor
         count=result.count,
         correct=result.correct,
         accuracy=result.accuracy,
-        interval_low=result.interval[0],
-        interval_high=result.interval[1],
+        interval_low=low,
+        interval_high=high,
         equivalent=result.equivalent,
         well_formed=result.well_formed,
+        outcomes=outcomes,
     )

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
-from annotations.language.corpus import Criterion, SplitItem, draw_share
+from annotations.language.corpus import Criterion, SplitItem, draw_share, hold_out_known
 from annotations.models import Example, Split
 from annotations.models.splits import Part
 from parser_service.parsers.conditions import TrainSources
@@ -18,24 +18,47 @@ def pairs_of(split: Split, part: str, train_sources: str) -> list[Pair]:
 
 
 def training_pairs(
-    split: Split, train_sources: str, share: float = 1.0, seed: int = 0
+    split: Split,
+    train_sources: str,
+    share: float = 1.0,
+    seed: int = 0,
+    without: Collection[int] = (),
 ) -> list[Pair]:
     """Return the ``share``, above 0 and up to 1, of the training pairs that ``seed`` draws, in the order
     of the split.
 
     They are drawn by what the split's criterion keeps together. A smaller share is part of every
-    larger one of the same seed.
+    larger one of the same seed. ``without`` are the keys of examples that are held out.
     """
-    if share == 1:
-        return pairs_of(split, Part.TRAIN, train_sources)
     sources = TrainSources(train_sources).sources
     examples = list(split.examples.filter(part=Part.TRAIN, source__in=sources))
-    items = [
-        SplitItem(each.source, each.utterance, each.source_command, each.logical_form)
-        for each in examples
-    ]
-    drawn = draw_share(items, Criterion(split.criterion), share, seed)
-    return as_pairs(each for each, is_drawn in zip(examples, drawn, strict=True) if is_drawn)
+    left = [each for each in examples if each.pk not in without]
+    if share == 1:
+        return as_pairs(left)
+    drawn = draw_share([item_of(each) for each in left], Criterion(split.criterion), share, seed)
+    return as_pairs(each for each, is_drawn in zip(left, drawn, strict=True) if is_drawn)
+
+
+def known_examples(split: Split, seed: int) -> list[Example]:
+    """Return the training examples that a run with ``seed`` holds out to be asked for known forms; none
+    unless the split is by form."""
+    if split.criterion != Criterion.LOGICAL_FORM:
+        return []
+    examples = list(split.examples.filter(part=Part.TRAIN))
+    held_out = hold_out_known([item_of(each) for each in examples], f"{split.content_hash}:{seed}")
+    return [each for each, is_held_out in zip(examples, held_out, strict=True) if is_held_out]
+
+
+def cluster_of(example: Example, criterion: str) -> str:
+    """Return what examples share that are right or wrong together: the form where a split is by form, else
+    the source command."""
+    by_form = criterion == Criterion.LOGICAL_FORM
+    return item_of(example).key(Criterion.LOGICAL_FORM if by_form else Criterion.SOURCE_COMMAND)
+
+
+def item_of(example: Example) -> SplitItem:
+    texts = (example.source, example.utterance, example.source_command, example.logical_form)
+    return SplitItem(*texts)
 
 
 def as_pairs(examples: Iterable[Example]) -> list[Pair]:

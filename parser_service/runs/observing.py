@@ -20,6 +20,8 @@ from parser_service.runs.checkpoints import (
 )
 
 PROGRESS_EVERY = 1.0
+CHECKPOINT_EVERY = 20.0  # seconds, or longer where writing one takes more than a tenth of them
+WRITING_SHARE = 0.1
 TRAINING_SHARE = 0.9
 
 
@@ -39,6 +41,9 @@ class RunObserver(Observer):
         self.tell = tell
         self._lease = lease
         self._told = 0.0
+        self._checkpoints = 0
+        self._kept = time.monotonic()  # when the last one was written
+        self._writing = 0.0  # the seconds that it took
 
     def check(self) -> None:
         try:
@@ -69,8 +74,15 @@ class RunObserver(Observer):
         lifecycle.log(self.run, message)
         self.tell(message)
 
+    def is_checkpoint_due(self) -> bool:
+        every = max(CHECKPOINT_EVERY, self._writing / WRITING_SHARE)
+        return time.monotonic() - self._kept >= every
+
     def checkpoint(self, epoch: int, is_best: bool, write: Callable[[Path], None]) -> None:
-        name = f"epoch-{epoch:04}-attempt-{self.run.attempt}"
+        began = time.monotonic()
+        self._checkpoints += 1
+        # There may be several of one epoch: none is written over another that a row refers to.
+        name = f"epoch-{epoch:04}-attempt-{self.run.attempt}-{self._checkpoints}"
         folder = run_folder(self.run.pk) / "checkpoints" / name
         digest = write_folder(folder, write)
         try:
@@ -82,6 +94,8 @@ class RunObserver(Observer):
             raise
         for other in forgotten:
             remove_folder(stored_folder(other))
+        self._kept = time.monotonic()
+        self._writing = self._kept - began
 
     def last_checkpoint(self) -> Path | None:
         """Return the newest checkpoint whose files are unaltered; None if there is none."""

@@ -13,6 +13,7 @@ from annotations.models.background import Status
 from parser_service.models import TrainingRun
 from parser_service.parsers import registry
 from parser_service.parsers.conditions import TrainSources
+from parser_service.parsers.config_fields import refuse_unnamed
 from parser_service.parsers.weight_files import refuse_missing_weights
 from parser_service.runs.content_key import content_key
 
@@ -110,6 +111,7 @@ def _whole_config(parser: str, config: Mapping[str, Any] | None, anywhere: bool)
     """Return the configuration with its defaults. Raises ValueError where weights are missing too."""
     made = registry.make_config(parser, config)
     refuse_missing_weights(made, anywhere)
+    refuse_unnamed(made)
     return registry.config_values(made)
 
 

@@ -22,7 +22,7 @@ from parser_service.runs import lifecycle
 from parser_service.runs.analysis_requests import request_analysis
 from parser_service.runs.checkpoints import model_folder, write_folder
 from parser_service.runs.evaluating import evaluate
-from parser_service.runs.examples import pairs_of, training_pairs
+from parser_service.runs.examples import known_examples, pairs_of, training_pairs
 from parser_service.runs.folders import keep_track_of
 from parser_service.runs.knowledge import knowledge_of
 from parser_service.runs.observing import TRAINING_SHARE, RunObserver, tell_nobody
@@ -51,18 +51,23 @@ def train(
 def _fit_and_evaluate(run: TrainingRun, observe: RunObserver) -> None:
     began = time.monotonic()
     keep_track_of(run)
-    train_pairs = training_pairs(run.split, run.train_sources, run.train_share, run.seed)
+    known = known_examples(run.split, run.seed)
+    held_out = {each.pk for each in known}
+    train_pairs = training_pairs(run.split, run.train_sources, run.train_share, run.seed, held_out)
     validation = pairs_of(run.split, Part.VALIDATION, run.train_sources)
     parser = make_parser(run)
     observe.log(f"{len(train_pairs)} pairs to train on, {len(validation)} to choose by.")
+    if known:
+        observe.log(f"{len(known)} pairs of known forms are held out of the training part.")
     parser.fit(train_pairs, validation, observe)
     lifecycle.record_progress(run, TRAINING_SHARE, "saving the parser")
     write_folder(model_folder(run.pk), parser.save)
-    evaluate(run, parser, train_pairs, validation, observe)
+    evaluate(run, parser, train_pairs, validation, observe, known)
     epochs = sum(run.epochs.values_list("seconds", flat=True))
     lifecycle.finish(run, parser.parameters(), epochs or time.monotonic() - began)
     request_proposals(run.world)  # it may be the best parser now
-    request_analysis(run)
+    if not parser.asks_a_server:  # thousands of questions to it, so somebody has to want that
+        request_analysis(run)
     consider(run)
 
 

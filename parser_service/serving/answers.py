@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import json
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -19,21 +20,23 @@ from annotations.language.forms import (
 from annotations.language.grounding import (
     Anonymized,
     Deanonymized,
+    Slot,
     deanonymize,
     open_slots_as_json,
 )
 from annotations.language.ontology import Ontology
-from annotations.language.plans import make_plan
+from annotations.language.plans import Lookup, make_plan
 from annotations.language.predicates import gloss
 from annotations.language.symbols import ENTITY_CLASSES
 from parser_service.models import TrainingRun
 from parser_service.parsers.interface import Candidate
 from parser_service.serving.loading import load_parser
-from parser_service.serving.preparing import WorldLanguage, text_for
+from parser_service.serving.preparing import WorldLanguage
 
 LEAST_SCORE = -1e300  # in place of −∞, which JSON cannot say
 REMEMBERED_FORMS = 4096
 MOST_OFFERED = 20
+_JSON = json.JSONEncoder(ensure_ascii=False, allow_nan=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,60 +113,78 @@ class Parse:
 def parse(run: TrainingRun, utterance: str, beam_width: int = 5) -> Parse:
     """Return the answers of ``run`` to ``utterance``, computed in this process. Raises ValueError where it
     cannot answer."""
-    parser = load_parser(run)
+    parser = load_parser(run).hesitant()
     language = WorldLanguage.of(run.world)
     heard = language.anonymizer.anonymize(utterance)
-    text = text_for(run, heard)
-    return read_answers(heard, text, parser.predict([text], beam_width)[0], language)
+    candidates = parser.predict([utterance], beam_width)[0]
+    return read_answers(heard, utterance, candidates, language)
 
 
 def read_answers(
     heard: Anonymized, text: str, candidates: Sequence[Candidate], language: WorldLanguage
 ) -> Parse:
     """Return what a parser answered to ``text``, with the entities that were heard in its place."""
-    answers = (_read(each, heard, language) for each in candidates)
-    remarks = tuple(_unknown_tokens(heard.original, language.ontology))
-    return Parse(heard, text, tuple(answers), remarks)
+    answers = (answer_of(each, heard, language) for each in candidates)
+    return Parse(heard, text, tuple(answers), unknown_tokens(heard.original, language.ontology))
 
 
-def _read(candidate: Candidate, heard: Anonymized, language: WorldLanguage) -> Answer:
-    score = max(float(candidate.score), LEAST_SCORE)
-    form = _form_of(candidate.form)
+def answer_of(candidate: Candidate, heard: Anonymized, language: WorldLanguage) -> Answer:
+    """Return one candidate with the entities that were heard."""
+    form = form_of(candidate.form)
     if form is None:
-        return Answer(candidate.form, score)
-    deanonymized = deanonymize(form, heard, language.ontology, language.evidence)
-    grounded = deanonymized.form
+        return Answer(candidate.form, score_of(candidate))
+    given = deanonymize(form, heard, language.ontology, language.evidence)
+    return answer_with(candidate, given, language, language.lookup)
+
+
+def answer_with(
+    candidate: Candidate, given: Deanonymized, language: WorldLanguage, lookup: Lookup
+) -> Answer:
+    """Return one well-formed candidate with its entities in it. ``lookup`` finds those of the plan."""
+    plan = make_plan(
+        given.form,
+        language.ontology,
+        language.predicates,
+        language.action_names,
+        slots=given.slots,
+        lookup=lookup,
+    )
     return Answer(
         form=candidate.form,
-        score=score,
+        score=score_of(candidate),
         is_well_formed=True,
-        is_unknown=isinstance(form, Unknown),
-        grounded=to_corpus(grounded),
-        reading=to_reading(grounded),
-        english=gloss(grounded, language.predicates),
-        open_slots=tuple(_ask(deanonymized, language)),
-        remarks=tuple(dict.fromkeys(_open_slots(deanonymized, language.ontology))),
-        plan=make_plan(
-            grounded,
-            language.ontology,
-            language.predicates,
-            language.action_names,
-            slots=deanonymized.slots,
-            lookup=language.lookup,
-        ).as_json(),
+        is_unknown=isinstance(given.form, Unknown),
+        grounded=to_corpus(given.form),
+        reading=to_reading(given.form),
+        english=gloss(given.form, language.predicates),
+        open_slots=tuple(questions_of(given, language)),
+        remarks=remarks_on(given, language.ontology),
+        plan=plan.as_json(),
     )
 
 
-def _ask(deanonymized: Deanonymized, language: WorldLanguage) -> Iterator[dict[str, Any]]:
+def as_json(value: object) -> str:
+    """Return the JSON of a value as it is sent. Raises ValueError for a number that JSON cannot say."""
+    return _JSON.encode(value)
+
+
+def score_of(candidate: Candidate) -> float:
+    """Return the score of a candidate as a number that JSON can say."""
+    return max(float(candidate.score), LEAST_SCORE)
+
+
+def questions_of(
+    given: Deanonymized, language: WorldLanguage, sentence_of: Callable[[Slot], str] | None = None
+) -> Iterator[dict[str, Any]]:
     """Yield the open slots, with at most ``MOST_OFFERED`` choices each where the utterance names none."""
-    for slot in open_slots_as_json(deanonymized, language.predicates):
+    for slot in open_slots_as_json(given, language.predicates, sentence_of):
         if not slot["is_named"]:
             slot["choices"] = slot["choices"][:MOST_OFFERED]
         yield slot
 
 
 @lru_cache(maxsize=REMEMBERED_FORMS)
-def _form_of(text: str) -> Form | None:
+def form_of(text: str) -> Form | None:
     """Return the form, which parsers answer again and again; None for a text that is none."""
     try:
         return read_form(text)
@@ -171,8 +192,17 @@ def _form_of(text: str) -> Form | None:
         return None
 
 
+def unknown_tokens(utterance: str, ontology: Ontology) -> tuple[str, ...]:
+    """Return a sentence for each class token of ``utterance`` that stands for nothing in the world."""
+    return tuple(_unknown_tokens(utterance, ontology))
+
+
+def remarks_on(given: Deanonymized, ontology: Ontology) -> tuple[str, ...]:
+    """Return a sentence for each slot of an answer that no entity fills with certainty, each once."""
+    return tuple(dict.fromkeys(_open_slots(given, ontology)))
+
+
 def _unknown_tokens(utterance: str, ontology: Ontology) -> Iterator[str]:
-    """Yield a sentence for each class token of ``utterance`` that stands for nothing in the world."""
     for token in dict.fromkeys(CLASS_TOKEN.findall(utterance)):
         entity_class = token.rstrip("0123456789")
         if entity_class not in ENTITY_CLASSES:
@@ -182,9 +212,8 @@ def _unknown_tokens(utterance: str, ontology: Ontology) -> Iterator[str]:
             yield f"<{token}>: this world has no entity of the class {entity_class}."
 
 
-def _open_slots(deanonymized: Deanonymized, ontology: Ontology) -> Iterator[str]:
-    """Yield a sentence for each slot of an answer that no entity fills with certainty."""
-    for slot in deanonymized.open_slots:
+def _open_slots(given: Deanonymized, ontology: Ontology) -> Iterator[str]:
+    for slot in given.open_slots:
         if slot.is_ambiguous:
             yield f"{slot.token} stays open: it may be {' or '.join(slot.candidates)}."
         elif slot.entity_class and not ontology.of_class(slot.entity_class):

@@ -17,8 +17,10 @@ from typing import Any
 
 from prometheus_client import CONTENT_TYPE_LATEST
 
+from parser_service.serving.answers import as_json
+from parser_service.serving.batching import one_ahead
 from parser_service.serving.preparing import require_beam, require_utterance
-from parser_service.serving.shelf import NotServed, Service, Shelf
+from parser_service.serving.shelf import Asked, NotServed, Service, Shelf
 
 logger = logging.getLogger(__name__)
 
@@ -26,7 +28,7 @@ JSON, JSON_LINES = "application/json", "application/jsonl"
 PARSE_ADDRESS = re.compile(r"^/api/v1/worlds/(?P<world>[a-z0-9][a-z0-9_-]*)/parse/$")
 USUAL_BEAM = 5
 LOADING_PATIENCE = 20.0  # seconds that a request waits for a parser that is being loaded
-LINES_TOGETHER = 32
+FAILED = "the parser failed. The log of the parse server says why."
 
 REASONS = {
     200: "OK",
@@ -105,7 +107,7 @@ class Application:
         self._count(world, 200)
         self._shelf.metrics.utterances.labels(world=world).inc()
         self._shelf.metrics.seconds.observe(time.perf_counter() - began)
-        return _send_json(start_response, 200, answer)
+        return _send(start_response, 200, JSON, _encode(answer))
 
     def _parse_lines(
         self, world: str, environ: Environment, body: bytes, start_response: StartResponse
@@ -127,10 +129,11 @@ class Application:
 
     def _answer_lines(self, service: Service, lines: list[bytes], beam: int) -> Iterator[bytes]:
         numbered = [(number, line) for number, line in enumerate(lines, 1) if line.strip()]
-        for start in range(0, len(numbered), LINES_TOGETHER):
-            yield _answer_some(service, numbered[start : start + LINES_TOGETHER], beam)
-            size = len(numbered[start : start + LINES_TOGETHER])
-            self._shelf.metrics.utterances.labels(world=service.world).inc(size)
+        together = service.parser.lines_together
+        parts = [numbered[at : at + together] for at in range(0, len(numbered), together)]
+        for answers in one_ahead(lambda part: _ask_some(service, part, beam), parts):
+            yield _write_some(service, answers)
+            self._shelf.metrics.utterances.labels(world=service.world).inc(len(answers))
 
     def _find(self, world: str, run: object) -> Service:
         if run is not None and (not isinstance(run, int) or isinstance(run, bool)):
@@ -141,24 +144,45 @@ class Application:
         self._shelf.metrics.requests.labels(world=world, status=str(status)).inc()
 
 
-def _answer_some(service: Service, lines: list[tuple[int, bytes]], beam: int) -> bytes:
-    """Return a line of JSON for each line; what is wrong with one is said in its place."""
-    answers: dict[int, dict[str, Any]] = {}
+def _ask_some(
+    service: Service, lines: list[tuple[int, bytes]], beam: int
+) -> dict[int, Asked | str]:
+    """Return what the parser answers to each line, by its number; what is wrong with one as JSON."""
+    answers: dict[int, Asked | str] = dict.fromkeys((number for number, _ in lines), "")
     utterances: dict[int, str] = {}
     for number, line in lines:
         try:
             utterances[number] = require_utterance(_read_object(line).get("utterance"))
         except ValueError as error:
-            answers[number] = {"line": number, "detail": f"Line {number}: {error}"}
+            answers[number] = _refuse_line(number, str(error))
     try:
-        parsed = service.parse(list(utterances.values()), beam) if utterances else []
-        answers |= zip(utterances, parsed, strict=True)
+        asked = service.ask(list(utterances.values()), beam) if utterances else []
+        answers |= zip(utterances, asked, strict=True)
+    except NotServed as error:
+        answers |= {number: _refuse_line(number, str(error)) for number in utterances}
     except Exception:
         logger.exception("A batch for %s", service.world)
-        for number in utterances:
-            sentence = f"Line {number}: the parser failed. The log of the parse server says why."
-            answers[number] = {"line": number, "detail": sentence}
-    return b"".join(_as_json(answers[number]) + b"\n" for number, _ in lines)
+        answers |= {number: _refuse_line(number, FAILED) for number in utterances}
+    return answers
+
+
+def _write_some(service: Service, answers: dict[int, Asked | str]) -> bytes:
+    """Return a line of JSON for each line; what is wrong with one is said in its place."""
+    return _encode("".join(f"{_write(service, *answer)}\n" for answer in answers.items()))
+
+
+def _write(service: Service, number: int, answer: Asked | str) -> str:
+    if isinstance(answer, str):
+        return answer
+    try:
+        return service.write(answer)
+    except Exception:
+        logger.exception("Line %s of a batch for %s", number, service.world)
+        return _refuse_line(number, FAILED)
+
+
+def _refuse_line(number: int, sentence: str) -> str:
+    return as_json({"line": number, "detail": f"Line {number}: {sentence}"})
 
 
 def _read_object(body: bytes) -> dict[str, Any]:
@@ -172,12 +196,12 @@ def _read_object(body: bytes) -> dict[str, Any]:
     return value
 
 
-def _as_json(value: object) -> bytes:
-    return json.dumps(value, ensure_ascii=False, allow_nan=False).encode("utf-8", "surrogatepass")
+def _encode(text: str) -> bytes:
+    return text.encode("utf-8", "surrogatepass")
 
 
 def _send_json(start_response: StartResponse, status: int, value: object) -> list[bytes]:
-    return _send(start_response, status, JSON, _as_json(value))
+    return _send(start_response, status, JSON, _encode(as_json(value)))
 
 
 def _send(start_response: StartResponse, status: int, kind: str, body: bytes) -> list[bytes]:

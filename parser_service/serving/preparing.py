@@ -6,15 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Self
 
-from annotations.language.grounding import Anonymized, Anonymizer, Evidence
+from annotations.language.grounding import Anonymizer, Evidence
 from annotations.language.ontology import Ontology
 from annotations.language.plans import ActionName, Lookup
 from annotations.language.predicates import Predicate
 from annotations.models import World
 from annotations.models.utterances import MOST_CHARACTERS
 from annotations.rows.from_rows import ontology_of, predicates_of
-from parser_service.models import TrainingRun
-from parser_service.parsers.conditions import TrainSources
 from parser_service.robots.action_names import names_of
 from parser_service.robots.evidence import evidence_of
 
@@ -43,19 +41,6 @@ class WorldLanguage:
             evidence_of(world),
             names_of(world),
         )
-
-
-def wants_class_tokens(run: TrainingRun) -> bool:
-    """Return whether the parser of ``run`` gets class tokens in place of the entities.
-
-    One that was trained on generated commands alone has only ever seen those.
-    """
-    return run.train_sources == TrainSources.GENERATED
-
-
-def text_for(run: TrainingRun, anonymized: Anonymized) -> str:
-    """Return what the parser of ``run`` is given for an utterance."""
-    return anonymized.command if wants_class_tokens(run) else anonymized.original
 
 
 def require_utterance(text: object) -> str:

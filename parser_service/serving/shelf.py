@@ -10,17 +10,23 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from annotations.language.grounding import Anonymized
 from parser_service.models import TrainingRun
 from parser_service.parsers.conditions import Protocol
-from parser_service.serving.answers import read_answers
+from parser_service.parsers.interface import Candidate, Parser
 from parser_service.serving.batching import Batcher
 from parser_service.serving.loading import load_anew, size_of
 from parser_service.serving.metrics import Metrics
-from parser_service.serving.preparing import WorldLanguage, wants_class_tokens
+from parser_service.serving.preparing import WorldLanguage
+from parser_service.serving.remote import SEATS, TOGETHER, RemoteAsker, Unanswered
 from parser_service.serving.watching import Wanted, read_wanted
+from parser_service.serving.writing import AnswerWriter
 
 logger = logging.getLogger(__name__)
 
+# What was heard, what the parser was given, and its answers.
+Asked = tuple[Anonymized, str, list[Candidate]]
+LINES_TOGETHER = 32  # of a request of many lines
 AGAIN_AFTER = 30.0  # seconds until a parser that could not be loaded is tried again
 
 
@@ -34,39 +40,50 @@ class NotServed(Exception):
 
 @dataclass(frozen=True, slots=True)
 class LoadedParser:
-    """The parser of a run in memory. ``knowledge`` is what of its world it was loaded with."""
+    """The parser of a run in memory. ``knowledge`` is what of its world it was loaded with;
+    ``lines_together`` is how many lines of a longer request it is given at once."""
 
     run: int
     name: str
     score_kind: str
-    gets_class_tokens: bool
     knowledge: tuple[object, ...]
     size: int
-    batcher: Batcher
+    batcher: Batcher | RemoteAsker
+    lines_together: int = LINES_TOGETHER
 
 
 @dataclass(frozen=True, slots=True)
 class Service:
-    """A parser with the language of its world: all that answers a request, unchanged while it does."""
+    """A parser, and a writer with the language of its world: all that answers a request, the same while it does."""
 
     world: str
     parser: LoadedParser
-    language: WorldLanguage
+    writer: AnswerWriter
     wanted: Wanted
 
-    def parse(self, utterances: Sequence[str], beam: int) -> list[dict[str, Any]]:
-        """Return the answer to each utterance, as plain values."""
-        heard = [self.language.anonymizer.anonymize(each) for each in utterances]
-        is_anonymous = self.parser.gets_class_tokens
-        texts = [each.command if is_anonymous else each.original for each in heard]
+    def parse(self, utterances: Sequence[str], beam: int) -> list[str]:
+        """Return the answer to each utterance, as JSON. Raises as ``ask``."""
+        return [self.write(each) for each in self.ask(utterances, beam)]
+
+    def ask(self, utterances: Sequence[str], beam: int) -> list[Asked]:
+        """Return what the parser answers to each utterance, and what was heard. Raises NotServed where the
+        parser asks a server that does not answer in time."""
+        heard = [self.writer.language.anonymizer.anonymize(each) for each in utterances]
+        try:
+            answers = self.parser.batcher.ask(utterances, beam)
+        except Unanswered as error:
+            raise NotServed(503, str(error)) from error
+        return list(zip(heard, utterances, answers, strict=True))
+
+    def write(self, asked: Asked) -> str:
+        """Return an answer as JSON, with who gave it."""
         about = {
             "world": self.world,
             "run": self.parser.run,
             "parser": self.parser.name,
             "score_kind": self.parser.score_kind,
         }
-        asked = zip(heard, texts, self.parser.batcher.ask(texts, beam), strict=True)
-        return [about | read_answers(*each, self.language).as_json() for each in asked]
+        return self.writer.write(about, *asked)
 
 
 class Shelf:
@@ -81,6 +98,7 @@ class Shelf:
         self.metrics = metrics
         self._most_bytes = most_bytes
         self._turn = threading.Lock()
+        self._seats = threading.BoundedSemaphore(SEATS)
         self._loading = threading.Lock()
         self._changed = threading.Condition()
         self._wanted: dict[str, Wanted] | None = None
@@ -133,8 +151,7 @@ class Shelf:
         if run is not None and (service is None or service.parser.run != run):
             return self._other(world, wanted, run)
         if service is None and wanted.run is None:
-            sentence = f"No run of {world} has been promoted yet, so no parser answers there."
-            raise NotServed(409, f"{sentence} Train one on paraphrases, or promote one.")
+            raise NotServed(409, _nobody_answers(world, wanted))
         if service is None:
             service = self._wait_for(world, patience)
         return service
@@ -234,22 +251,26 @@ class Shelf:
         if row is None:
             raise ValueError(f"There is no run {run} in {name}.")
         is_same_language = held is not None and _words(held.wanted) == _words(wanted)
-        language = held.language if is_same_language else WorldLanguage.of(row.world)
+        writer = held.writer if is_same_language else AnswerWriter(WorldLanguage.of(row.world))
         knowledge = _knowledge(row, wanted)
         if held is not None and (held.parser.run, held.parser.knowledge) == (row.pk, knowledge):
-            return Service(name, held.parser, language, wanted)
-        parser = load_anew(row)
-        batcher = Batcher(parser.predict, self._turn, self.metrics.batches.observe)
+            return Service(name, held.parser, writer, wanted)
+        parser = load_anew(row).hesitant()
         loaded = LoadedParser(
             run=row.pk,
             name=row.parser,
             score_kind=str(parser.score_kind or ""),
-            gets_class_tokens=wants_class_tokens(row),
             knowledge=knowledge,
             size=size_of(row),
-            batcher=batcher,
+            batcher=self._make_batcher(parser),
+            lines_together=TOGETHER if parser.asks_a_server else LINES_TOGETHER,
         )
-        return Service(name, loaded, language, wanted)
+        return Service(name, loaded, writer, wanted)
+
+    def _make_batcher(self, parser: Parser) -> Batcher | RemoteAsker:
+        if parser.asks_a_server:
+            return RemoteAsker(parser.predict, self._seats)
+        return Batcher(parser.predict, self._turn, self.metrics.batches.observe)
 
 
 def _words(wanted: Wanted) -> tuple[object, ...]:
@@ -263,3 +284,14 @@ def _knowledge(run: TrainingRun, wanted: Wanted) -> tuple[object, ...]:
         return ()
     is_domain = run.protocol == Protocol.DOMAIN
     return wanted.language if is_domain else (*wanted.language, wanted.revision)
+
+
+def _nobody_answers(world: str, wanted: Wanted) -> str:
+    """Return why no parser answers in a world, and what there is to do."""
+    sentence = f"No run of {world} has been promoted yet, so no parser answers there."
+    if TrainingRun.objects.active().filter(world=wanted.world).exists():
+        return (
+            f"{sentence} Parsers are being trained there; the first that is right on paraphrases will "
+            "answer by itself. Ask again later."
+        )
+    return f"{sentence} Train one on paraphrases, or promote one."

@@ -78,10 +78,10 @@ def choose_runs(world: World, query: QueryDict, part: str) -> RunChoice:
     They have to be of the split of the first one, and to have answers there. Without any, the split is the one that
     ``split`` names, or the newest.
     """
-    keys = list(dict.fromkeys(filter(_is_key, query.getlist("run"))))
+    keys = named_keys(query)
     scored = Evaluation.objects.filter(run__world=world, part=part).order_by()
-    found = world.runs.succeeded().select_related("split").in_bulk([int(key) for key in keys])
-    named = [found[int(key)] for key in keys if int(key) in found]
+    found = world.runs.succeeded().select_related("split").in_bulk(keys)
+    named = [found[key] for key in keys if key in found]
     splits = list(world.splits.filter(runs__evaluations__in=scored).distinct())
     split = named[0].split if named else _split_of(splits, query.get("split", ""))
     scores: dict[int, dict[str, Evaluation]] = {}
@@ -90,10 +90,17 @@ def choose_runs(world: World, query: QueryDict, part: str) -> RunChoice:
     fitting = [run for run in named if run.pk in scores]
     chosen = tuple(fitting[:MOST_RUNS])
     rows = world.runs.succeeded().filter(pk__in=scores).order_by("-pk")
-    offered = [OfferedRun(run, scores[run.pk], run in chosen) for run in rows]
+    others = [run for run in rows if run not in chosen]
+    # Those that are compared come first, so that the form sends them in their order.
+    offered = [OfferedRun(run, scores[run.pk], run in chosen) for run in (*chosen, *others)]
     return RunChoice(
         part, split, splits, chosen, offered, _notes(keys, named, fitting, split, part)
     )
+
+
+def named_keys(query: QueryDict) -> list[int]:
+    """Return the keys of the runs that an address names by ``run``, each once."""
+    return [int(key) for key in dict.fromkeys(filter(_is_key, query.getlist("run")))]
 
 
 def _is_key(text: str) -> bool:
@@ -105,7 +112,7 @@ def _split_of(splits: Sequence[Split], name: str) -> Split | None:
 
 
 def _notes(
-    keys: Sequence[str],
+    keys: Sequence[int],
     named: Sequence[TrainingRun],
     fitting: Sequence[TrainingRun],
     split: Split | None,

@@ -24,6 +24,7 @@ ORIGINS = {
     "retype": "made by changing the kind of an argument",
     "substitution": "made by substitution of a declared description",
     "unseen": "made with a predicate that training lacks",
+    "written": "written by the language model",
     "refusal": "given because no form was probable enough",
 }
 PARTS = {
@@ -31,6 +32,7 @@ PARTS = {
     "neighbours": "Neighbours with this form",
     "log_probability": "Log-probability of its tokens",
     "tokens": "Tokens written",
+    "cut": "Tokens of the utterance not read",
     "examples": "Fits the nearest example",
     "glosses": "Fits its English sentence",
     "slots": "Slots and entities that do not match",

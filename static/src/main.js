@@ -9,6 +9,8 @@ import "./mentions.js";
 import "./copying.js";
 import "./suggestions.js";
 import "./row-search.js";
+import "./filter-addresses.js";
+import "./first-error.js";
 import { onContent } from "./content.js";
 import { enhanceForms } from "./forms.js";
 import { enhanceBy } from "./modules.js";

@@ -15,8 +15,8 @@ export function enhance(panel) {
   const chart = panel.querySelector("[data-chart]");
 
   function show() {
-    const [bound, sentence, ...values] = points[slider.valueAsNumber];
-    panel.querySelector("[data-refusal-bound]").textContent = bound || "any score";
+    const [, shown, sentence, ...values] = points[slider.valueAsNumber];
+    panel.querySelector("[data-refusal-bound]").textContent = shown;
     panel.querySelector("[data-refusal-sentence]").textContent = sentence;
     facts.forEach((fact, at) => (fact.textContent = values[at]));
     slider.setAttribute("aria-valuetext", sentence);

@@ -6,6 +6,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from parser_service.models import Slice, TrainingRun
+from parser_service.slices import save_slice as save_a_slice
 from tests.browser.walking import enter, follow, skip_to_content, tab_to
 from tests.sample_world import scored_run
 
@@ -41,6 +42,20 @@ def test_a_comparison_from_the_results_to_the_wrong_answers(page_of, live_server
     expect(right).to_contain_text("exact")
 
 
+def test_a_slice_is_renamed_where_it_stands(page_of, live_server, sample, reviewer):
+    save_a_slice(sample.world, "said by peple", "source=paraphrased")
+    page = page_of(reviewer)
+    page.goto(f"{live_server.url}/w/home/slices/")
+    page.locator("summary", has_text="Rename").click()
+    box = page.locator(".table-wrap")
+    cut_off = box.evaluate("wrap => wrap.scrollHeight - wrap.clientHeight")
+    assert cut_off <= 1, "the table cuts off what opens in it"
+    page.get_by_label("Name", exact=True).fill("said by people")
+    page.keyboard.press("Enter")
+    expect(page.locator("main")).to_contain_text("said by people")
+    assert Slice.objects.get().name == "said by people"
+
+
 def choose(page: Page, runs: list[TrainingRun]) -> None:
     """Find the runs of one parser among all, and compare two of them."""
     skip_to_content(page)
@@ -67,6 +82,7 @@ def narrow_to_paraphrases(page: Page) -> None:
     tab_to(page, page.get_by_role("button", name="Compare", exact=True))
     enter(page, "Compare")
     expect(page.locator(".filter-chip")).to_contain_text("Source")
+    assert "=&" not in f"{page.url}&", "a filter that is not set stands in the address"
 
 
 def save_slice(page: Page) -> None:

@@ -104,6 +104,14 @@ def test_light_and_dark_are_a_choice_that_stays(page_of, live_server, annotator)
     expect(page.locator("html")).to_have_attribute("data-theme", "dark")
 
 
+def test_the_first_field_of_a_form_with_an_error_has_the_focus(page_of, live_server, admin):
+    page = page_of(admin)
+    page.goto(f"{live_server.url}/w/home/people/")
+    page.get_by_role("button", name="Make a link").click()
+    roles = page.locator(".field", has_text="Choose at least one role.")
+    expect(roles.get_by_label("Annotator")).to_be_focused()
+
+
 def test_without_scripts_one_logs_in_and_filters(browser, live_server, sample, annotator):
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()

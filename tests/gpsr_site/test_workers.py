@@ -44,3 +44,12 @@ def test_a_gpu_worker_is_missed_only_where_work_waits_for_one(sample):
     assert workers_now().is_alive
     TrainingRun.objects.filter(status="queued").update(queue="gpu")
     assert workers_now().headline == "No GPU worker is running."
+
+
+def test_what_a_stopped_worker_left_behind_waits_too(sample):
+    requesting.request(sample.world, sample.split, "seq2seq", send=False)
+    requesting.request(sample.world, sample.split, "knn", seed=7, send=False)
+    TrainingRun.objects.filter(status="queued", parser="knn").update(status="running")
+    workers = workers_now()
+    assert workers.summary == "No worker, 2 waiting"
+    assert workers.sentence == "2 runs wait for one."

@@ -1,13 +1,16 @@
 """Requests at a steady rate while the promoted parser is changed twice, then a parse server that is killed.
 
-    python -m tests.load.parse_server [--requests 2000] [--seconds 20] [--parser ranker] [--database postgres://…]
+    python -m tests.load.parse_server [--requests 2000] [--seconds 20] [--parser ranker] [--folder FOLDER]
+                                      [--database postgres://…]
 
-Trains three runs in the starter world of a fresh database (two nearest neighbours that know different pairs,
-and one of ``--parser`` between them, a ranker with few steps by default), starts ``manage.py parse_server``
+Trains three runs of ``--parser`` in the starter world of a fresh database, on generated pairs, on paraphrases and on
+both, so that their answers tell them apart (rankers with few steps by default: what an answer costs does not
+depend on how well they have learned). Starts ``manage.py parse_server``
 under the supervisor of ``make run`` and asks it over HTTP, ``--requests`` in all, evenly over ``--seconds``.
 After a third and two thirds of the time another run is promoted. Every answer has to be complete, without an
 error, and the very one that the run which it names gives alone. Then the server is killed with SIGKILL: says how
 soon the client says that it is away, and when it answers again. Exits with 1 where any of that does not hold.
+What was trained into ``--folder`` is kept there for the next time.
 """
 
 from __future__ import annotations
@@ -46,12 +49,15 @@ class Outcome:
 
 def make_site(folder: Path, database: str, parser: str) -> Site:
     """Return an installation with three runs. Exits where training fails."""
+    is_new = not (folder / "var").is_dir()
     site = Site(folder / "var", database)
+    if not is_new:
+        return site
     commands: list[tuple[str, ...]] = [("shell", "-c", STARTER)]
-    for name, sources in (("knn", "gen,para"), (parser, "gen"), ("knn", "para")):
+    config = ["--config", *SHORT[parser]] if parser in SHORT else []
+    for sources in ("gen,para", "gen", "para"):
         where = ("--world", WORLD, "--split", SPLIT, "--sources", sources)
-        config = SHORT.get(name, [])
-        commands.append(("train", name, *where, *(["--config", *config] if config else [])))
+        commands.append(("train", parser, *where, *config))
     for command in commands:
         spent = site.run(*command)
         if spent.status:
@@ -74,6 +80,14 @@ def expected_answers(runs: list[Any], utterances: list[str]) -> dict[tuple[int, 
     }
 
 
+def count_told_apart(expected: dict[tuple[int, str], list[str]]) -> int:
+    """Return to how many utterances each run gives another answer than all others."""
+    by_text: dict[str, list[list[str]]] = {}
+    for (_, text), answers in expected.items():
+        by_text.setdefault(text, []).append(answers)
+    return sum(len(set(map(tuple, each))) == len(each) for each in by_text.values())
+
+
 def ask(client: Any, text: str, expected: dict[tuple[int, str], list[str]], into: Outcome) -> None:
     began = time.perf_counter()
     try:
@@ -83,8 +97,9 @@ def ask(client: Any, text: str, expected: dict[tuple[int, str], list[str]], into
         return
     into.seconds.append(time.perf_counter() - began)
     into.answers[answer["run"]] += 1
-    if forms_of(answer["candidates"]) != expected.get((answer["run"], text)):
-        into.problems.append(f"run {answer['run']} answers otherwise alone: {text}")
+    given, alone = forms_of(answer["candidates"]), expected.get((answer["run"], text))
+    if given != alone:
+        into.problems.append(f"run {answer['run']}: {text}: {given}, but alone {alone}")
 
 
 def keep_asking(
@@ -94,6 +109,9 @@ def keep_asking(
     from parser_service.promotion import promote
 
     outcome, expected = Outcome(), expected_answers(runs, texts)
+    print(
+        f"{count_told_apart(expected)} of {len(texts)} utterances have another answer by each run"
+    )
     began = time.perf_counter()
     changes = {given.requests * place // len(runs): runs[place] for place in (1, 2)}
     with ThreadPoolExecutor(64) as threads:
@@ -177,12 +195,13 @@ def main() -> None:
     parser.add_argument("--requests", type=int, default=2000)
     parser.add_argument("--seconds", type=float, default=20.0)
     parser.add_argument("--parser", default="ranker")
+    parser.add_argument("--folder", type=Path, help="where an installation is, or is made and kept")
     parser.add_argument("--database", default="", help="a URL; its database has to be empty")
     given = parser.parse_args()
     os.chdir(ROOT)
     os.environ["PARSER_PORT"] = str(free_port())
     with tempfile.TemporaryDirectory(prefix="gpsr-load-") as folder:
-        make_site(Path(folder), given.database, given.parser).enter()
+        make_site(given.folder or Path(folder), given.database, given.parser).enter()
         is_held = measure(given)
     print("held" if is_held else "MISSED")
     sys.exit(not is_held)

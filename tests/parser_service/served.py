@@ -22,13 +22,16 @@ def make_home(world: World) -> Split:
     return make_split(world)
 
 
-def trained_run(split: Split, seed: int = 0, spoken: float | None = 0.5, **asked) -> TrainingRun:
-    """Train a nearest neighbour; ``spoken`` is its accuracy on paraphrases, None where it was not asked."""
-    run, _ = requesting.request(split.world, split, "knn", seed=seed, send=False, **asked)
+def trained_run(
+    split: Split, seed: int = 0, spoken: float | None = 0.5, parser: str = "knn", **asked
+) -> TrainingRun:
+    """Train a parser, a nearest neighbour unless it is named; ``spoken`` is its accuracy on paraphrases,
+    None where it was not asked."""
+    run, _ = requesting.request(split.world, split, parser, seed=seed, send=False, **asked)
     pairs = training_pairs(split, run.train_sources, run.train_share, run.seed)
-    parser = make_parser(run)
-    parser.fit(pairs)
-    write_folder(model_folder(run.pk), parser.save)
+    made = make_parser(run)
+    made.fit(pairs)
+    write_folder(model_folder(run.pk), made.save)
     TrainingRun.objects.filter(pk=run.pk).update(status=Status.SUCCEEDED, progress=1)
     if spoken is not None:
         score(run, spoken)

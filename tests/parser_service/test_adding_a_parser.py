@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import pytest
 
@@ -63,3 +63,25 @@ def test_a_parser_that_is_registered_trains_and_is_scored(registered, world, tra
     run = trained(make_split(world), "most-frequent")
     assert (run.status, run.failure) == ("succeeded", "")
     assert {each.test_source for each in run.evaluations.all()} >= {"gen"}
+
+
+def test_what_it_did_not_read_to_the_end_is_said(registered, world, transactional_db, monkeypatch):
+    read = MostFrequent.predict
+    monkeypatch.setattr(
+        MostFrequent,
+        "predict",
+        lambda self, utterances, *_: [
+            [replace(answer, is_cut=len(text) > 30) for answer in answers]
+            for text, answers in zip(utterances, read(self, utterances), strict=True)
+        ],
+    )
+    split = make_split(world)
+    long = split.examples.filter(part="test").first()
+    long.utterance = "bring me whatever there is, wherever it may be"
+    long.save()
+    run = trained(split, "most-frequent")
+    cut = run.predictions.filter(is_cut=True)
+    assert {row.example for row in cut} == set(
+        split.examples.filter(utterance__length__gt=30).exclude(part="train")
+    )
+    assert run.events.filter(message__contains="longer than the parser reads").count() == 1

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import django_filters
 from django.db.models import QuerySet
 from rest_framework import serializers
 
@@ -14,8 +15,9 @@ from annotations.api.routes import EditableRow, EditableRows, Noun
 from annotations.forms import TemplateForm
 from annotations.language.limits import MAX_FORM, MAX_PATTERN
 from annotations.lists.filters import TemplateFilters
-from annotations.models import SemanticTemplate, TaskCategory
+from annotations.models import SemanticTemplate, TaskCategory, World
 from annotations.models.templates import Status, template_status_choices
+from annotations.views.templates.template_repairs import with_counts
 from annotations.views.templates.templates import initial_of, values_of
 
 
@@ -42,6 +44,29 @@ class TemplateChange(Fields):
     status = serializers.ChoiceField(choices=template_status_choices(), default=Status.READY)
 
 
+class TemplateQuery(TemplateFilters):
+    """The filters of the page, and ``makes``: ``nothing`` of the grammar, or something ``outside`` of it."""
+
+    makes = django_filters.ChoiceFilter(
+        choices=[("nothing", "nothing"), ("outside", "outside")], method="by_commands"
+    )
+
+    def by_commands(self, rows: QuerySet[Any], name: str, value: str) -> QuerySet[Any]:
+        counts = {"n_inside": 0} if value == "nothing" else {"n_outside__gt": 0}
+        return rows.filter(pk__in=with_counts(self.request.world).filter(**counts).values("pk"))
+
+
+def category_called(world: World, name: str) -> TaskCategory:
+    """Return the task category of this name. Raises Refused, which names those that there are."""
+    categories = TaskCategory.objects.filter(grammar__world=world)
+    category = categories.filter(name=name).first()
+    if category is None:
+        names = ", ".join(categories.values_list("name", flat=True)) or "none"
+        said = f"There is no task category “{name}”; there are: {names}."
+        raise Refused(said, [{"field": "task_category", "message": said}])
+    return category
+
+
 class TemplateNoun(Noun):
     model = SemanticTemplate
     serializer_class = TemplateSerializer
@@ -56,20 +81,11 @@ class TemplateNoun(Noun):
         given = {**stored, **sent}
         category = stored.get("task_category")
         if "task_category" in sent:
-            category = self._category_called(sent["task_category"])
+            category = category_called(self.world, sent["task_category"])
         given["task_category"] = category.pk if category else ""
         form = TemplateForm(self.world, given, initial=stored)
         form.fields["task_category"].required = row is None  # it stays where it is
         return form
-
-    def _category_called(self, name: str) -> TaskCategory:
-        categories = TaskCategory.objects.filter(grammar__world=self.world)
-        category = categories.filter(name=name).first()
-        if category is None:
-            names = ", ".join(categories.values_list("name", flat=True)) or "none"
-            said = f"There is no task category “{name}”; there are: {names}."
-            raise Refused(said, [{"field": "task_category", "message": said}])
-        return category
 
     def unsaved(self, form: TemplateForm) -> SemanticTemplate:
         category = form.cleaned_data["task_category"]
@@ -82,7 +98,7 @@ class TemplateNoun(Noun):
 class Templates(TemplateNoun, EditableRows):
     """Lists the semantic templates, and adds one."""
 
-    filterset_class = TemplateFilters
+    filterset_class = TemplateQuery
     sorts = {"position": "position", "pattern": "pattern", "status": "status", "id": "pk"}
 
 

@@ -7,23 +7,31 @@ from http import HTTPStatus
 from typing import Any, ClassVar
 
 from django import forms
-from django.http import StreamingHttpResponse
+from django.http import HttpResponse, StreamingHttpResponse
 from drf_spectacular.types import OpenApiTypes
-from drf_spectacular.utils import extend_schema
+from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework import serializers
 from rest_framework.parsers import MultiPartParser
 from rest_framework.request import Request
 from rest_framework.response import Response
 
-from annotations.api.jobs.jobs import JobSerializer
+from annotations.api.jobs.jobs import JobSerializer, address_of_job
 from annotations.api.negotiation import AnyType
 from annotations.api.once import once
+from annotations.api.permissions import ForSiteAdmins
 from annotations.api.problems import Refused, refusal_of_form
-from annotations.api.routes import WorldRoute
-from annotations.jobs.starting import start_generation, start_generator_import, start_pairs_import
+from annotations.api.routes import Route, WorldRoute
+from annotations.exporting.generator_export import Part
+from annotations.jobs.starting import (
+    start_generation,
+    start_generator_import,
+    start_pairs_import,
+    start_world_import,
+)
 from annotations.language.english import say_count
 from annotations.models import Duty, Job
-from annotations.upload_forms import ImportForm, PairsForm
+from annotations.upload_forms import ImportForm, PairsForm, WorldArchiveForm
+from annotations.views.worlds.files import file_of
 from annotations.views.worlds.importing import uploads_of
 from annotations.world_archive import archive_name, world_archive
 
@@ -51,7 +59,14 @@ class ImportedPairs(serializers.Serializer):
     brings_back = serializers.BooleanField(default=False)
 
 
-class Doing(WorldRoute):
+class ImportedWorldFile(serializers.Serializer):
+    """The archive that ``download/`` of a world gives, and what the world is to be called here."""
+
+    name = serializers.CharField(max_length=60)
+    archive = serializers.FileField()
+
+
+class Doing(Route):
     """Work that is done at once where it is quick; otherwise the answer is a job (202)."""
 
     model = Job
@@ -61,9 +76,8 @@ class Doing(WorldRoute):
         """Start the work and say what came of it. Raises Refused, with every problem and its place."""
         started = start()
         if isinstance(started, Job):
-            address = f"/api/v1/worlds/{self.world.name}/jobs/{started.pk}/"
             done = {"job": JobSerializer(started).data, "report": None}
-            location = {"Location": self.request.build_absolute_uri(address)}
+            location = {"Location": address_of_job(self.request, started)}
             return Response(done, status=HTTPStatus.ACCEPTED, headers=location)
         report = started.as_json()
         problems = report.get("problems", [])
@@ -79,7 +93,24 @@ class Doing(WorldRoute):
         return form
 
 
-class ImportGenerator(Doing):
+class ImportWorld(Doing):
+    """Makes a world of the archive of another one. For administrators of the site."""
+
+    permission_classes = [ForSiteAdmins]
+    parser_classes = [MultiPartParser]
+    duty = Duty.MANAGE
+
+    @extend_schema(
+        request={"multipart/form-data": ImportedWorldFile},
+        responses={200: DoneSerializer, 202: DoneSerializer},
+    )
+    @once
+    def post(self, request: Request) -> Response:
+        sent = self.valid(WorldArchiveForm(request.data, request.FILES)).cleaned_data
+        return self.answer(lambda: start_world_import(sent["name"], sent["archive"], request.user))
+
+
+class ImportGenerator(Doing, WorldRoute):
     """Imports the files of a generator, all of them or nothing."""
 
     parser_classes = [MultiPartParser]
@@ -98,7 +129,7 @@ class ImportGenerator(Doing):
         )
 
 
-class ImportPairs(Doing):
+class ImportPairs(Doing, WorldRoute):
     """Imports the pairs of a published corpus as frozen splits and paraphrases."""
 
     parser_classes = [MultiPartParser]
@@ -115,7 +146,7 @@ class ImportPairs(Doing):
         return self.answer(lambda: start_pairs_import(self.world, *values))
 
 
-class Generate(Doing):
+class Generate(Doing, WorldRoute):
     """Expands all templates into commands and forms."""
 
     duties: ClassVar[dict[str, Duty]] = {"POST": Duty.ANNOTATE}
@@ -138,3 +169,21 @@ class Archive(WorldRoute):
         headers = {"Content-Disposition": f'attachment; filename="{name}"'}
         content = world_archive(self.world)
         return StreamingHttpResponse(content, content_type="application/zip", headers=headers)
+
+
+class ArchivePart(WorldRoute):
+    """Downloads one part of a world, as a generator has it: a file, or a zip archive of several."""
+
+    model = Job
+    content_negotiation_class = AnyType
+
+    @extend_schema(
+        operation_id="download_part",
+        parameters=[OpenApiParameter("part", OpenApiTypes.STR, "path", enum=Part.values)],
+        responses={
+            (200, "application/zip"): OpenApiTypes.BINARY,
+            (200, "text/plain"): OpenApiTypes.STR,
+        },
+    )
+    def get(self, request: Request, **kwargs: str) -> HttpResponse:
+        return file_of(self.world, kwargs["part"])

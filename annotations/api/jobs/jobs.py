@@ -12,9 +12,9 @@ from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.api.problems import Conflict
-from annotations.api.routes import RowRoute, RowsRoute
+from annotations.api.routes import RowRoute, RowsRoute, SingleRow
 from annotations.jobs import answer_job, cancel_job
-from annotations.models import Duty, Job
+from annotations.models import Duty, Job, World
 
 
 class JobSerializer(serializers.ModelSerializer):
@@ -35,6 +35,13 @@ class JobSerializer(serializers.ModelSerializer):
             *("is_waiting_for_answer", "cancel_requested", "created_by"),
             *("queued_at", "started_at", "finished_at"),
         ]
+
+
+def address_of_job(request: Request, job: Job) -> str:
+    """Return the address at which the caller follows a job: below its world, where there is one."""
+    world = job.world if job.world and job.world.deletion_requested_at is None else None
+    below = f"worlds/{world.name}/jobs" if world else "jobs"
+    return request.build_absolute_uri(f"/api/v1/{below}/{job.pk}/")
 
 
 class JobQuery(django_filters.FilterSet):
@@ -73,8 +80,10 @@ class JobVerb(JobNoun, RowRoute):
         return job.duty if job else Duty.VIEW
 
 
-class CancelJob(JobVerb):
-    """Stops a job within seconds, or drops an import that asks."""
+class Cancelling:
+    """Stops a job, or says why it cannot be stopped."""
+
+    http_method_names = ["post", "options"]
 
     @extend_schema(request=None, responses={200: JobSerializer})
     def post(self, request: Request, **kwargs: object) -> Response:
@@ -83,6 +92,10 @@ class CancelJob(JobVerb):
         except ValueError as error:
             raise Conflict(str(error)) from error
         return self.show(self.get_object())
+
+
+class CancelJob(Cancelling, JobVerb):
+    """Stops a job within seconds, or drops an import that asks."""
 
 
 class AnswerJob(JobVerb):
@@ -95,3 +108,29 @@ class AnswerJob(JobVerb):
         except ValueError as error:
             raise Conflict(str(error)) from error
         return self.show(job, HTTPStatus.ACCEPTED)
+
+
+class SiteJobNoun(SingleRow):
+    """Jobs without a world that anybody sees: its import has not ended, or its deletion has begun."""
+
+    model = Job
+    serializer_class = JobSerializer
+
+    def rows(self) -> QuerySet[Job]:
+        user = self.request.user
+        rows = Job.objects.visible_to(user).select_related("created_by", "world")
+        seen = World.objects.visible_to(user)
+        return rows.exclude(world__in=World.objects.present().exclude(pk__in=seen.values("pk")))
+
+
+class OneSiteJob(SiteJobNoun):
+    """Shows a job, also of a world that is not there yet, or no longer."""
+
+
+class CancelSiteJob(Cancelling, SiteJobNoun):
+    """Stops the import of a world within seconds."""
+
+    duty = Duty.MANAGE
+
+    def rows(self) -> QuerySet[Job]:
+        return super().rows().exclude(world__in=World.objects.present())

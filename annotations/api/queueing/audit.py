@@ -1,20 +1,33 @@
-"""The findings of label audits: the rows that the page shows."""
+"""The findings of label audits: the rows that the page shows, and what people decide about them."""
 
 from __future__ import annotations
 
 from typing import Any
 
 import django_filters
-from drf_spectacular.utils import extend_schema_field
+from django.shortcuts import get_object_or_404
+from drf_spectacular.utils import extend_schema, extend_schema_field
 from rest_framework import serializers
+from rest_framework.exceptions import PermissionDenied
+from rest_framework.request import Request
+from rest_framework.response import Response
 
+from annotations.api.problems import Conflict, Refused, refusal_of_text
+from annotations.api.reading import Fields
 from annotations.api.routes import RowRoute, RowsRoute
+from annotations.auditing import DecidedMeanwhile, decide, take_back
+from annotations.labelling import AnsweredMeanwhile
+from annotations.language.errors import LanguageError
+from annotations.language.limits import MAX_FORM
 from annotations.models import AuditDecision, AuditFinding, AuditReason
 from annotations.models.audit import (
     AuditFindingQuerySet,
     audit_reason_choices,
+    decision_choices,
     finding_status_choices,
 )
+from annotations.models.utterances import MOST_CHARACTERS
+from annotations.queueing import NotForThem
 
 
 class AuditReasonSerializer(serializers.ModelSerializer):
@@ -28,7 +41,7 @@ class AuditDecisionSerializer(serializers.ModelSerializer):
 
     class Meta:
         model = AuditDecision
-        fields = ["decision", "form", "reason", "decided_by", "decided_at", "taken_back_at"]
+        fields = ["id", "decision", "form", "reason", "decided_by", "decided_at", "taken_back_at"]
 
 
 class FindingSubjectSerializer(serializers.Serializer):
@@ -71,6 +84,15 @@ class AuditFindingQuery(django_filters.FilterSet):
         return rows.with_reason(value)
 
 
+class NewDecision(Fields):
+    """What to do with the label: ``kept``, ``corrected`` by a form (the suggested one where it is empty), or
+    ``excluded`` from new splits."""
+
+    decision = serializers.ChoiceField(choices=decision_choices())
+    form = serializers.CharField(max_length=MAX_FORM, allow_blank=True, default="")
+    reason = serializers.CharField(max_length=MOST_CHARACTERS, allow_blank=True, default="")
+
+
 class AuditFindingNoun:
     model = AuditFinding
     serializer_class = AuditFindingSerializer
@@ -88,3 +110,40 @@ class AuditFindings(AuditFindingNoun, RowsRoute):
 
 class OneAuditFinding(AuditFindingNoun, RowRoute):
     """Shows one finding."""
+
+
+class DecideAuditFinding(AuditFindingNoun, RowRoute):
+    """Decides about a label in doubt, once. The work queue knows who may."""
+
+    http_method_names = ["post", "options"]
+
+    @extend_schema(request=NewDecision, responses={200: AuditFindingSerializer})
+    def post(self, request: Request, **kwargs: object) -> Response:
+        row, sent = self.get_object(), self.read(NewDecision)
+        try:
+            decide(row, sent["decision"], request.user, sent["form"], sent["reason"])
+        except NotForThem as error:
+            raise PermissionDenied(str(error)) from error
+        except (AnsweredMeanwhile, DecidedMeanwhile) as error:
+            raise Conflict(str(error)) from error
+        except LanguageError as error:
+            raise refusal_of_text(error, "form") from error
+        except ValueError as error:
+            raise Refused(str(error)) from error
+        return self.show(self.get_object())
+
+
+class TakeBackDecision(AuditFindingNoun, RowRoute):
+    """Undoes a decision of the caller; its label is in doubt again."""
+
+    http_method_names = ["post", "options"]
+
+    @extend_schema(request=None, responses={200: AuditFindingSerializer})
+    def post(self, request: Request, **kwargs: object) -> Response:
+        rows = AuditDecision.objects.filter(finding__world=self.world)
+        made = get_object_or_404(rows, pk=self.kwargs["pk"])
+        try:
+            finding = take_back(made, request.user)
+        except ValueError as error:
+            raise Conflict(str(error)) from error
+        return self.show(self.rows().get(pk=finding.pk))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from http import HTTPStatus
 from typing import Any
 
 import django_filters
@@ -13,16 +14,28 @@ from rest_framework.exceptions import ValidationError
 from rest_framework.request import Request
 from rest_framework.response import Response
 
+from annotations.api.once import once
 from annotations.api.problems import Conflict, refusal_of_text
-from annotations.api.reading import Fields
+from annotations.api.reading import Fields, LineField
 from annotations.api.routes import RowRoute, RowsRoute, WorldRoute
 from annotations.auditing import end_item
 from annotations.labelling import AnsweredMeanwhile
 from annotations.language.errors import LanguageError
-from annotations.models import Assignment, Verdict, WorkItem
+from annotations.models import Assignment, Duty, Label, Verdict, WorkItem, WorkKind
 from annotations.models.utterances import MOST_CHARACTERS, verdict_choices
 from annotations.models.work_items import WorkItemQuerySet, work_kind_choices
-from annotations.queueing import NoLongerYours, answer, finish, give_back, next_item
+from annotations.queueing import (
+    ASKABLE,
+    NoLongerYours,
+    answer,
+    ask_about,
+    finish,
+    give_back,
+    next_item,
+    skip,
+)
+from annotations.views.queueing.queue_forms import LONGEST_REASON
+from annotations.views.queueing.work_queue import labels_to_compare, may_see_labels
 
 PARTS = Prefetch("assignments", Assignment.objects.select_related("person"))
 STATES = ("open", "free", "taken", "done")
@@ -66,6 +79,37 @@ class WorkItemSerializer(serializers.ModelSerializer):
         return {"kind": "paraphrase", "id": item.paraphrase_id}
 
 
+class ComparedLabelSerializer(serializers.ModelSerializer):
+    annotator = serializers.CharField(source="annotator.username", default=None)
+
+    class Meta:
+        model = Label
+        fields = ["annotator", "verdict", "form", "reason"]
+
+
+class ComparedWorkItemSerializer(WorkItemSerializer):
+    """An item; ``labels`` are those that an adjudication compares, for who holds it or once it is done."""
+
+    labels = serializers.SerializerMethodField()
+
+    class Meta(WorkItemSerializer.Meta):
+        fields = [*WorkItemSerializer.Meta.fields, "labels"]
+
+    @extend_schema_field(ComparedLabelSerializer(many=True))
+    def get_labels(self, item: WorkItem) -> Any:
+        held = item.assignments.held().filter(person=self.context["request"].user).first()
+        labels = labels_to_compare(item) if may_see_labels(item, held) else []
+        return ComparedLabelSerializer(labels, many=True).data
+
+
+class WhatToAsk(Fields):
+    """The row that somebody is to look at, and why, as they read it in the queue."""
+
+    kind = serializers.ChoiceField(choices=list(ASKABLE))
+    id = serializers.IntegerField(min_value=1, max_value=2**63 - 1)
+    reason = LineField(max_length=LONGEST_REASON)
+
+
 class WorkItemQuery(django_filters.FilterSet):
     """Which items to list; all of them where nothing is asked."""
 
@@ -102,14 +146,27 @@ class WorkItemNoun:
 
 
 class WorkItems(WorkItemNoun, RowsRoute):
-    """Lists the items of the work queue, the oldest first."""
+    """Lists the items of the work queue, the oldest first; reviewers ask for a look at a row."""
 
     filterset_class = WorkItemQuery
     sorts = {"id": "pk", "created": "created_at", "priority": "priority"}
+    duties = {"POST": Duty.REVIEW}
+
+    @extend_schema(request=WhatToAsk, responses={201: WorkItemSerializer})
+    @once
+    def post(self, request: Request, **kwargs: object) -> Response:
+        sent = self.read(WhatToAsk)
+        subject = get_object_or_404(ASKABLE[sent["kind"]](self.world), pk=sent["id"])
+        if not ask_about(self.world, subject, sent["reason"], request.user):
+            raise Conflict("Somebody is asked about this already.")
+        rows = self.rows().filter(**{sent["kind"]: subject, "kind": WorkKind.REQUESTED})
+        return RowRoute.show(self, rows.order_by("-pk")[0], HTTPStatus.CREATED)
 
 
 class OneWorkItem(WorkItemNoun, RowRoute):
     """Shows one item."""
+
+    serializer_class = ComparedWorkItemSerializer
 
 
 class WorkItemVerb(WorkItemNoun, WorldRoute):
@@ -190,4 +247,17 @@ class GiveBackWorkItem(WorkItemVerb):
     )
     def post(self, request: Request, world: str, pk: int) -> Response:
         give_back(self.held(request, pk))
+        return self.shown(pk)
+
+
+class SkipWorkItem(WorkItemVerb):
+    """Returns an item that the caller holds; they do not get it again."""
+
+    @extend_schema(
+        operation_id="work_item_skip",
+        request=None,
+        responses={200: WorkItemSerializer},
+    )
+    def post(self, request: Request, world: str, pk: int) -> Response:
+        skip(self.held(request, pk))
         return self.shown(pk)

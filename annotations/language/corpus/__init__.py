@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from annotations.language.corpus.distances import distance
+from annotations.language.corpus.known import KNOWN, KNOWN_SHARE, harmonic_mean, hold_out_known
 from annotations.language.corpus.leakage import (
     MOST_COMPARISONS,
     Leak,
@@ -38,6 +39,8 @@ from annotations.language.corpus.splitting import (
 __all__ = [
     "CORPUS_FOLDERS",
     "DEFAULT_PROPORTIONS",
+    "KNOWN",
+    "KNOWN_SHARE",
     "MOST_COMPARISONS",
     "PART_FILES",
     "TRIPLES_FILE",
@@ -56,6 +59,8 @@ __all__ = [
     "content_hash",
     "distance",
     "draw_share",
+    "harmonic_mean",
+    "hold_out_known",
     "near_duplicates",
     "read_pairs",
     "read_triples",

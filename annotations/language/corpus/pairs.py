@@ -65,10 +65,12 @@ def read_pairs(data: bytes, source: str) -> RecordFile[WrittenPair]:
     """Read alternating lines: command, logical form. Errors are returned, not raised."""
     records: list[WrittenPair] = []
     problems: list[Problem] = []
+    forms: dict[str, tuple[str, Form]] = {}  # many commands share one, and its text
     for (command, written), place in _group_lines(data, source, 2, problems):
-        form = _form(written, place, 1, problems)
-        if form is not None and _is_written(command, place, 0, problems):
-            records.append(WrittenPair(command, written, form, place))
+        if written not in forms and (form := _form(written, place, 1, problems)) is not None:
+            forms[written] = written, form
+        if written in forms and _is_written(command, place, 0, problems):
+            records.append(WrittenPair(command, *forms[written], place))
     return RecordFile(tuple(records), tuple(sorted(problems)))
 
 

@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
-import re
 from enum import StrEnum
 
-from annotations.language.english import BOUNDARIES, DETERMINERS
+from annotations.language.english import (
+    ANSWER_OPENINGS,
+    BOUNDARIES,
+    DETERMINERS,
+    IS_EITHER,
+    IS_NEW,
+    NO_WORDS,
+    STOP_WORDS,
+    YES_WORDS,
+)
 from annotations.language.errors import LanguageError, Position
 from annotations.language.forms import Constant
 from annotations.language.grounding import Anonymizer, Slot
@@ -13,17 +21,6 @@ from annotations.language.limits import require_writable
 
 MOST_CHARACTERS = 80  # of words that name an entity
 _MOST_WORDS = 6
-_YES = frozenset(
-    (
-        "yes", "y", "yeah", "yep", "ok", "okay", "sure", "correct", "right", "please", "confirm", "exactly",
-    )
-)  # fmt: skip
-_NO = frozenset(["no", "n", "nope", "wrong", "incorrect", "false"])
-_STOP = frozenset(("stop", "cancel", "never mind", "nevermind", "quit", "abort"))
-_NEW = re.compile(
-    r"(?:it is |it's |its |that is |that's )?(?:a |an )?new(?: one| thing| object| place| person)?"
-)
-_OPENINGS = frozenset(["it", "is", "it's", "its", "i", "mean", "that", "that's"])
 _ENDS = " .!?,;:\t\n\r\"'“”"
 
 
@@ -34,26 +31,37 @@ class Reaction(StrEnum):
     NO = "no"
     STOP = "stop"
     NEW = "new"
+    EITHER = "either"
     OTHER = "other"
 
 
 def reaction_of(answer: str) -> Reaction:
-    """Return whether an answer agrees, disagrees, stops or says that something is new."""
+    """Return whether an answer agrees, disagrees, stops, says that something is new, or leaves the choice."""
     said = " ".join(answer.casefold().strip(_ENDS).split())
-    if said in _STOP:
+    if said in STOP_WORDS:
         return Reaction.STOP
-    if _NEW.fullmatch(said):
+    if IS_NEW.fullmatch(said):
         return Reaction.NEW
+    if IS_EITHER.fullmatch(said.replace("’", "'")):
+        return Reaction.EITHER
     first = said.partition(" ")[0].strip(_ENDS)
-    if first in _YES:
+    if first in YES_WORDS:
         return Reaction.YES
-    return Reaction.NO if first in _NO else Reaction.OTHER
+    return Reaction.NO if first in NO_WORDS else Reaction.OTHER
 
 
 def known_values(answer: str, slot: Slot, anonymizer: Anonymizer) -> tuple[str, ...]:
-    """Return the entities of the slot's class that an answer names; of any class for an UNKNOWN."""
+    """Return the entities that an answer names and that fit the slot.
+
+    They are of the slot's class (of any for an UNKNOWN), or among the choices that the utterance leaves.
+    """
     spans = anonymizer.anonymize(answer).spans
-    fitting = (span.value for span in spans if slot.entity_class in ("", span.entity_class))
+    fitting = (
+        span.value
+        for span in spans
+        if slot.entity_class in ("", span.entity_class)
+        or (slot.is_choice and span.value in slot.candidates)
+    )
     return tuple(dict.fromkeys(fitting))
 
 
@@ -64,7 +72,7 @@ def unknown_words(answer: str) -> str:
     class token, a character that cannot be stored.
     """
     words = answer.strip(_ENDS).split()
-    while words and words[0].casefold() in (_OPENINGS | DETERMINERS | BOUNDARIES):
+    while words and words[0].casefold() in (ANSWER_OPENINGS | DETERMINERS | BOUNDARIES):
         words = words[1:]
     text = " ".join(words)
     if not text or len(text) > MOST_CHARACTERS or len(words) > _MOST_WORDS:

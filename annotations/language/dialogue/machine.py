@@ -109,11 +109,12 @@ class Dialogue:
             return self._fill(state, slot, values[0], _alias(slot, values[0]))
         if len(values) > 1:
             return self._miss(state, f"Please name one {noun_for(slot)}. ")
-        if reaction is Reaction.YES and slot.likely is not None:
+        if reaction in (Reaction.YES, Reaction.EITHER) and slot.likely is not None:
             return self._fill(state, slot, slot.likely)
         is_new = reaction is Reaction.NEW and slot.phrases
         word = slot.phrases[0] if is_new else unknown_words(answer)
-        if not word or (reaction in (Reaction.YES, Reaction.NO) and len(word.split()) == 1):
+        is_no_word = reaction in (Reaction.YES, Reaction.NO) and len(word.split()) == 1
+        if not word or is_no_word or reaction is Reaction.EITHER:
             return self._miss(state, "")
         return self._take_word(state, slot, word, is_new=bool(is_new))
 
@@ -207,9 +208,17 @@ def _alias(slot: Slot, value: str) -> Offer | None:
 
 
 def _after(other: Slot, slot: Slot, value: str) -> Slot:
-    """Return what a slot becomes when ``slot`` gets its value."""
+    """Return what a slot becomes when ``slot`` gets its value.
+
+    Slots that wait for the same choice get the same value; others that the utterance names
+    something for are left with what is not taken.
+    """
     if other.path == slot.path:
         return replace(other, value=value, likely=None)
+    if slot.is_choice or other.is_choice:
+        is_same = (slot.candidates, slot.phrases) == (other.candidates, other.phrases)
+        is_waiting = slot.is_choice and other.is_choice and other.value is None
+        return replace(other, value=value, likely=None) if is_same and is_waiting else other
     if not (other.is_ambiguous and other.token == slot.token):
         return other
     left = tuple(each for each in other.candidates if each != value)

@@ -4,17 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from annotations.language.english.glosses import PLURALS
+from annotations.language.english.stand_ins import STAND_IN, read_stand_in, stand_in
+from annotations.language.english.word_lists import PLURALS
 
 _VOWELS = "aeiou"
 _SIBILANTS = ("s", "x", "z", "ch", "sh")
+_SINGULAR_ENDS = ("ss", "us", "is")  # of words with an s that is no plural's: glass, bus, iris
 
 
 def plural(noun: str) -> str:
-    """Return the plural of a noun phrase: ``objects``, ``people``, ``objects of the category``."""
+    """Return the plural of a noun phrase: ``objects``, ``people``, ``objects of the category``.
+
+    What looks like a plural stays: kinds of things are called ``tools`` and ``drinks`` in an ontology.
+    """
     head, of, rest = noun.partition(" of ")
     before, space, last = head.rpartition(" ")
-    return before + space + (PLURALS.get(last) or _regular_plural(last)) + of + rest
+    return before + space + _plural_of_word(last) + of + rest
 
 
 def say_count(count: int, noun: str) -> str:
@@ -33,7 +38,16 @@ def spellings(noun: str) -> Iterator[str]:
             yield f"{head}{space}{spelling}"
 
 
+def _plural_of_word(word: str) -> str:
+    if STAND_IN.fullmatch(word):
+        return stand_in(read_stand_in(word)[0], is_plural=True)
+    return PLURALS.get(word) or _regular_plural(word)
+
+
 def _regular_plural(word: str) -> str:
+    lower = word.lower()
+    if lower.endswith("s") and not lower.endswith(_SINGULAR_ENDS):
+        return word
     return f"{word[:-1]}ies" if _ends_in_consonant_y(word) else _add_s(word)
 
 

@@ -15,6 +15,7 @@ from annotations.language.forms.printing import to_corpus, to_reading, to_templa
 from annotations.language.forms.spans import Span, read_spans
 from annotations.language.forms.terms import (
     CLASS_TOKEN,
+    CONJUNCTION,
     UNKNOWN,
     Application,
     Constant,
@@ -35,6 +36,7 @@ from annotations.language.forms.unordered_difference import diff_unordered
 
 __all__ = [
     "CLASS_TOKEN",
+    "CONJUNCTION",
     "UNKNOWN",
     "Application",
     "Change",

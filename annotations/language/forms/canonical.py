@@ -6,7 +6,14 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from annotations.language.forms.printing import to_corpus
-from annotations.language.forms.terms import Application, Form, Lambda, Variable, free_variables
+from annotations.language.forms.terms import (
+    CONJUNCTION,
+    Application,
+    Form,
+    Lambda,
+    Variable,
+    free_variables,
+)
 
 
 def canonicalize(form: Form) -> Form:
@@ -46,7 +53,7 @@ def flatten_conjunctions(form: Form) -> Form:
 
 
 def _conjuncts(body: Form) -> Iterator[Form]:
-    if isinstance(body, Application) and body.predicate == "and":
+    if isinstance(body, Application) and body.predicate == CONJUNCTION:
         for each in body.arguments:
             yield from _conjuncts(each)
     else:
@@ -71,7 +78,7 @@ def _order(form: Form) -> Form:
     if isinstance(form, Lambda):
         return replace(form, bodies=_sort(form.bodies))
     if isinstance(form, Application):
-        if form.predicate == "and":
+        if form.predicate == CONJUNCTION:
             return replace(form, arguments=_sort(form.arguments))
         return replace(form, arguments=tuple(map(_order, form.arguments)))
     return form

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
-from annotations.language.forms.terms import Application, Form, Lambda, walk
+from annotations.language.forms.terms import CONJUNCTION, Application, Form, Lambda, walk
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ def conjunctions(form: Form) -> Iterator[tuple[Form, ...]]:
     for node in walk(form):
         if isinstance(node, Lambda):
             yield node.bodies
-        elif isinstance(node, Application) and node.predicate == "and":
+        elif isinstance(node, Application) and node.predicate == CONJUNCTION:
             yield node.arguments
 
 

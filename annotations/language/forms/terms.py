@@ -13,6 +13,8 @@ from typing import TypeAlias
 
 from annotations.language.symbols import ENTITY_CLASSES, Nonterminal, Wildcard
 
+# A word of the notation: its arguments hold together, as the bodies of one λ do.
+CONJUNCTION = "and"
 CLASS_TOKEN = re.compile(r"<([^\W\d]\w*)>")
 _BARE_TOKEN = re.compile(rf"({'|'.join(ENTITY_CLASSES)})[0-9]+")
 

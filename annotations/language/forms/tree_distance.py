@@ -17,7 +17,14 @@ from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
-from annotations.language.forms.terms import Application, Form, Lambda, Variable, children
+from annotations.language.forms.terms import (
+    CONJUNCTION,
+    Application,
+    Form,
+    Lambda,
+    Variable,
+    children,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +71,7 @@ class FormDistances:
 
     def _number(self, form: Form, position: int, binders: tuple[int, ...]) -> int:
         inner = (form.variable, *binders) if isinstance(form, Lambda) else binders
-        has_order = isinstance(form, Application) and form.predicate != "and"
+        has_order = isinstance(form, Application) and form.predicate != CONJUNCTION
         below = sorted(
             self._number(child, place if has_order else 0, inner)
             for place, child in enumerate(children(form))

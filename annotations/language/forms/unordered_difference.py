@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from annotations.language.forms.canonical import canonicalize
 from annotations.language.forms.difference import Difference, diff
-from annotations.language.forms.terms import Application, Form, Lambda, size
+from annotations.language.forms.terms import CONJUNCTION, Application, Form, Lambda, size
 
 
 def diff_unordered(left: Form, right: Form) -> Difference:
@@ -31,7 +31,7 @@ def _order(form: Form, model: Form) -> Form:
     if isinstance(form, Lambda) and isinstance(model, Lambda):
         return replace(form, bodies=_assign(form.bodies, model.bodies))
     if isinstance(form, Application) and isinstance(model, Application):
-        if form.predicate == model.predicate == "and":
+        if form.predicate == model.predicate == CONJUNCTION:
             return replace(form, arguments=_assign(form.arguments, model.arguments))
         pairs = zip(form.arguments, model.arguments, strict=False)
         ordered = tuple(_order(mine, its) for mine, its in pairs)
@@ -41,6 +41,8 @@ def _order(form: Form, model: Form) -> Form:
 
 def _assign(own: Sequence[Form], others: Sequence[Form]) -> tuple[Form, ...]:
     """Return ``own`` in the order of their counterparts among ``others``."""
+    if not own or not others:
+        return tuple(own)
     if len(own) == len(others) == 1:
         return (_order(own[0], others[0]),)
     # Half a second, which a start can do without.

@@ -7,7 +7,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import permutations, zip_longest
 
-from annotations.language.forms import Form
 from annotations.language.grounding.evidence import Evidence
 from annotations.language.grounding.roles import Context, Role
 from annotations.language.ontology import Entity
@@ -21,39 +20,45 @@ _IN_ORDER = 0.5  # log odds of mentions in the order of the slots, where the gra
 
 @dataclass(frozen=True, slots=True)
 class Mention:
-    """A value that an utterance names, how it stands there, and the entities it may be."""
+    """A value that an utterance names, how it stands there, and the entities it may be.
+
+    ``alternatives`` are the values that the utterance joins with "or", this one included, of which one is
+    meant; ``phrases`` are unknown words among them. Both are empty for a value that stands for itself.
+    """
 
     value: str
     context: Context
     entities: tuple[Entity, ...]
+    alternatives: tuple[str, ...] = ()
+    phrases: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """The most likely value of a slot; None if the utterance names none for it. ``margin`` is in log odds."""
+    """The most likely mention for a slot; None if the utterance has none for it. ``margin`` is in log odds."""
 
-    value: str | None
+    mention: Mention | None
     margin: float
 
     @property
     def is_certain(self) -> bool:
-        return self.value is not None and self.margin >= MARGIN
+        return self.mention is not None and self.margin >= MARGIN
 
 
 _Values = tuple[str | None, ...]
 
 
 def assign(
-    form: Form,
+    form: str,
     entity_class: str,
     roles: Sequence[Role],
     mentions: Sequence[Mention],
     evidence: Evidence,
 ) -> tuple[Choice, ...]:
-    """Return the most likely value of each slot of a class, and how clearly it wins.
+    """Return the most likely mention for each slot of a class, and how clearly it wins.
 
     Args:
-        form: the form with class tokens.
+        form: the canonical text of the form with class tokens.
         entity_class: the class of all slots and mentions.
         roles: the roles of the slots, in the order of the form.
         mentions: what the utterance names, in its order.
@@ -61,32 +66,33 @@ def assign(
     The best assignment is the one with the highest sum of scores. The margin of a slot is the distance
     to the best assignment that gives it another value. With more assignments than can be compared,
     mentions and slots go together in order, and nothing is certain. Neither is it where the utterance
-    names more than the form has slots for, and the grammar does not have the form.
+    names more than the form has slots for, and the grammar has no such command.
     """
     if not mentions:
         return tuple(Choice(None, math.inf) for _ in roles)
     fewer, more = sorted((len(roles), len(mentions)))
     if more > MOST_TOGETHER or math.perm(more, fewer) > _MOST_ASSIGNMENTS:
-        values = [each.value for each in mentions]
-        return tuple(Choice(value, 0.0) for value, _ in zip_longest(values[: len(roles)], roles))
-    scores = _scores(form, entity_class, roles, mentions, evidence)
+        return tuple(Choice(each, 0.0) for each, _ in zip_longest(mentions[: len(roles)], roles))
+    first = {each.value: each for each in reversed(mentions)}
+    if len(roles) <= 1 and len(first) == 1:
+        return tuple(Choice(each, math.inf) for each, _ in zip(mentions, roles, strict=False))
+    orders = evidence.orders(form, entity_class, len(first))
+    scores = _scores(roles, mentions, evidence, orders)
     best = max(scores, key=scores.__getitem__)
-    is_too_much = len({each.value for each in mentions}) > len(roles)
-    if is_too_much and not evidence.orders(form, entity_class):
-        return tuple(Choice(value, 0.0) for value in best)
+    is_too_much = len(first) > len(roles) and not orders
     choices = []
     for place, value in enumerate(best):
         rivals = (score for values, score in scores.items() if values[place] != value)
-        choices.append(Choice(value, scores[best] - max(rivals, default=-math.inf)))
+        margin = 0.0 if is_too_much else scores[best] - max(rivals, default=-math.inf)
+        choices.append(Choice(None if value is None else first[value], margin))
     return tuple(choices)
 
 
 def _scores(
-    form: Form,
-    entity_class: str,
     roles: Sequence[Role],
     mentions: Sequence[Mention],
     evidence: Evidence,
+    orders: Mapping[tuple[int, ...], int],
 ) -> Mapping[_Values, float]:
     """Return the score of every assignment; of two that give the same values the better one counts."""
     points = [
@@ -96,7 +102,6 @@ def _scores(
         ]
         for role in roles
     ]
-    orders = evidence.orders(form, entity_class)
     scores: dict[_Values, float] = {}
     for places, prior in _assignments(len(roles), mentions, orders):
         total = prior + sum(
@@ -116,21 +121,24 @@ def _assignments(
     """
     first = {each.value: place for place, each in reversed([*enumerate(mentions)])}
     turns = sorted(first.values())
-    known = {order: count for order, count in orders.items() if max(order) + 1 == len(turns)}
-    if known:
-        patterns = {
-            tuple(turn[rank] for rank in order)
-            for order in known
-            for turn in permutations(range(len(turns)))
-        }
-        total = sum(known.values()) + len(patterns) / 2
+    if orders:
+        patterns = {each for order in orders for each in _permuted(order, len(turns))}
+        total = sum(orders.values()) + len(patterns) / 2
         for pattern in patterns:
-            share = (known.get(pattern, 0) + 0.5) / total
+            share = (orders.get(pattern, 0) + 0.5) / total
             yield tuple(turns[rank] for rank in pattern), math.log(share)
         return
     for places in _injections(slots, len(mentions)):
         used = [place for place in places if place is not None]
         yield places, _IN_ORDER if used == sorted(used) else 0.0
+
+
+def _permuted(order: Sequence[int], count: int) -> Iterator[tuple[int, ...]]:
+    """Yield the orders with the same slots sharing a value, over all choices of ``count`` values."""
+    ranks = sorted(set(order))
+    for chosen in permutations(range(count), len(ranks)):
+        value_of = dict(zip(ranks, chosen, strict=True))
+        yield tuple(value_of[rank] for rank in order)
 
 
 def _injections(slots: int, mentions: int) -> Iterable[tuple[int | None, ...]]:

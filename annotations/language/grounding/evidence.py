@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 
-from annotations.language.english import SAMPLE_COMMANDS
+from annotations.language.english import CHOOSING_WORDS, sample_commands
 from annotations.language.forms import (
     Application,
     Constant,
@@ -42,6 +42,7 @@ _FROM_SIMILAR = 2.0  # pairs that what is known of similar roles counts for
 _FROM_NOWHERE = 1.0  # pairs that knowing nothing counts for
 _FEATURE_VALUES = 60
 _MISFIT = -4.0  # log odds of an entity of a kind that the grammar never has in a role
+_NO_COUNTS: Mapping[str, int] = {}
 _NO_ORDERS: Mapping[tuple[int, ...], int] = {}
 
 
@@ -55,9 +56,11 @@ class Evidence:
     def __init__(self, derivations: Iterable[tuple[Symbols, Form]] = ()) -> None:
         self._by_role: defaultdict[str, Counter[str]] = defaultdict(Counter)
         self._all: Counter[str] = Counter()
-        self._orders: defaultdict[tuple[str, str], Counter[tuple[int, ...]]] = defaultdict(Counter)
+        self._orders: defaultdict[tuple[str, str, int], Counter[tuple[int, ...]]]
+        self._orders = defaultdict(Counter)
+        self._with_or: set[tuple[str, str]] = set()
         self._wildcards: defaultdict[str, set[Wildcard]] = defaultdict(set)
-        for text, form in SAMPLE_COMMANDS:
+        for text, form in sample_commands():
             self._learn(words_of(text), read_form(form))
         for symbols, intact in derivations:
             self._learn_derivation(symbols, intact)
@@ -73,21 +76,27 @@ class Evidence:
             return 0.0
         return _MISFIT
 
-    def orders(self, form: Form, entity_class: str) -> Mapping[tuple[int, ...], int]:
+    def orders(self, form: str, entity_class: str, named: int) -> Mapping[tuple[int, ...], int]:
         """Return how often which order of mentions goes with the slots of a class in this form.
 
         ``(1, 0, 0)``: the second value of the command fills the first slot, the first one the others.
+        Counted over the commands that name as many values of the class. ``form`` is canonical text.
         """
-        return self._orders.get((canonical_text(form), entity_class), _NO_ORDERS)
+        return self._orders.get((form, entity_class, named), _NO_ORDERS)
+
+    def has_with_or(self, form: str, entity_class: str) -> bool:
+        """Return whether a command of this form says "or" beside several values of a class."""
+        return (form, entity_class) in self._with_or
 
     def _gain(self, feature: str, value: str, role: Role) -> float:
-        if not self._all[f"{feature} {value}"]:
+        both = f"{feature} {value}"
+        if both not in self._all:
             return 0.0  # no pair has it, so it tells nothing
-        anywhere = (self._all[f"{feature} {value}"] + 1) / (self._all[feature] + _FEATURE_VALUES)
+        anywhere = (self._all[both] + 1) / (self._all[feature] + _FEATURE_VALUES)
         share = anywhere
         for name, weight in ((role.similar, _FROM_NOWHERE), (role.exact, _FROM_SIMILAR)):
-            counts = self._by_role.get(name, Counter[str]())
-            share = (counts[f"{feature} {value}"] + weight * share) / (counts[feature] + weight)
+            counts = self._by_role.get(name, _NO_COUNTS)
+            share = (counts.get(both, 0) + weight * share) / (counts.get(feature, 0) + weight)
         return math.log(share / anywhere)
 
     def _learn_derivation(self, symbols: Symbols, form: Form) -> None:
@@ -119,7 +128,9 @@ class Evidence:
         for entity_class, tokens in by_class.items():
             mentioned = [word for word in dict.fromkeys(words) if class_of(word) == entity_class]
             order = tuple(map(mentioned.index, tokens))
-            self._orders[plain, entity_class][order] += 1
+            self._orders[plain, entity_class, len(mentioned)][order] += 1
+            if len(mentioned) > 1 and CHOOSING_WORDS.intersection(words):
+                self._with_or.add((plain, entity_class))
 
 
 @cache

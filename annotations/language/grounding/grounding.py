@@ -10,6 +10,7 @@ from itertools import count
 from random import Random
 from typing import TypeAlias
 
+from annotations.language.english import OBFUSCATED, PRONOUNS
 from annotations.language.forms import Application, Constant, Form, Lambda
 from annotations.language.grammar import anonymized
 from annotations.language.grounding.drawing import Drawn, draw
@@ -19,14 +20,7 @@ from annotations.language.symbols import Choice, Symbol, Symbols, Text, Wildcard
 
 Leaves: TypeAlias = "tuple[Text | Wildcard, ...]"
 
-_PRONOUNS = {
-    "male": {"obj": "him", "sub": "he", "pos": "his", "pab": "his"},
-    "female": {"obj": "her", "sub": "she", "pos": "her", "pab": "hers"},
-    "either": {"obj": "them", "sub": "they", "pos": "their", "pab": "theirs"},
-    "thing": {"obj": "it", "sub": "it", "pos": "its", "pab": "its"},
-}
 _PRONOUN_TYPES = {"": "obj", "paj": "pos", "posadj": "pos", "posabs": "pab"}
-_OBFUSCATED = {"category": "objects", "name": "person", "room": "room"}
 _IN_BRACES = re.compile(r"\{[^{}]*\}")
 
 
@@ -202,11 +196,11 @@ class _Speaker:
             return self._ontology.singular(entity.attribute("category") or "object")
         if wildcard.entity_class == "location":
             return entity.attribute("room") or "room"
-        return _OBFUSCATED.get(wildcard.entity_class, wildcard.entity_class)
+        return OBFUSCATED.get(wildcard.entity_class, wildcard.entity_class)
 
     def _pronoun(self, wildcard: Wildcard) -> str:
         type_ = _PRONOUN_TYPES.get(wildcard.type, wildcard.type)
-        return _PRONOUNS[self._gender()][type_]
+        return PRONOUNS[self._gender()][type_]
 
     def _gender(self) -> str:
         """Return the gender for a pronoun.
@@ -218,4 +212,4 @@ class _Speaker:
         text = self._drawn[self._last_name.identity].text
         rows = [each for each in self._ontology.of_class("name") if each.text == text]
         genders = {(each.attribute("gender") or "female").lower() for each in rows}
-        return genders.pop() if len(genders) == 1 and genders <= _PRONOUNS.keys() else "either"
+        return genders.pop() if len(genders) == 1 and genders <= PRONOUNS.keys() else "either"

@@ -2,30 +2,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from annotations.language.english import CLASS_WORDS
 from annotations.language.forms import Form
 from annotations.language.grounding.deanonymizer import Deanonymized, Slot, filled
+from annotations.language.grounding.roles import SlotPath
 from annotations.language.predicates import Predicate, gloss
 
 BLANK = "___"
 MOST_OFFERED = 4  # entities of the ontology that a question lists
 
 
-def question_for(slot: Slot, form: Form, predicates: Mapping[str, Predicate]) -> str:
+def say_with_blank(path: SlotPath, form: Form, predicates: Mapping[str, Predicate]) -> str:
+    """Return the English sentence of a form with a blank in the place of the slot at ``path``."""
+    return gloss(filled(form, path, BLANK), predicates)
+
+
+def question_for(
+    slot: Slot, form: Form, predicates: Mapping[str, Predicate], sentence: str | None = None
+) -> str:
     """Return the question for an open slot: what is missing, where, and what there is to choose from.
 
-    An unknown word of the utterance is asked about itself: "Which object is “flurb”?".
+    An unknown word of the utterance is asked about itself: "Which object is “flurb”?". What the
+    utterance joins with "or" is offered whole, unknown words in quotation marks. ``sentence`` is that of
+    ``say_with_blank``; made from the form if there is none.
     """
     noun = noun_for(slot)
     if slot.phrases and not slot.is_named:
         asked = f"Which {noun} is {_or(tuple(f'“{phrase}”' for phrase in slot.phrases))}?"
     else:
-        words = gloss(filled(form, slot.path, BLANK), predicates)
-        asked = f"Which {noun} is {BLANK} in “{words}”?"
+        if sentence is None:
+            sentence = say_with_blank(slot.path, form, predicates)
+        asked = f"Which {noun} is {BLANK} in “{sentence}”?"
     choices = choices_of(slot)
+    if slot.is_choice:
+        choices += tuple(f"“{phrase}”" for phrase in slot.phrases)
     offered = _or(choices) if slot.is_named or len(choices) <= MOST_OFFERED else ""
     return f"{asked} {offered[:1].upper()}{offered[1:]}?" if offered else asked
 
@@ -44,19 +57,24 @@ def noun_for(slot: Slot | None) -> str:
 
 
 def open_slots_as_json(
-    deanonymized: Deanonymized, predicates: Mapping[str, Predicate]
+    deanonymized: Deanonymized,
+    predicates: Mapping[str, Predicate],
+    sentence_of: Callable[[Slot], str] | None = None,
 ) -> list[dict[str, Any]]:
     """Return the slots to ask about as plain data, with their questions.
 
     ``likely`` is null unless the utterance names several values; ``choices`` are the values to choose
     from, the likely one first; ``phrases`` the unknown words of the utterance that may be meant.
+    ``sentence_of`` gives what ``say_with_blank`` says of a slot, where that is known already.
     """
     return [
         {
             "path": list(slot.path),
             "token": slot.token,
             "entity_class": slot.entity_class,
-            "question": question_for(slot, deanonymized.form, predicates),
+            "question": question_for(
+                slot, deanonymized.form, predicates, sentence_of(slot) if sentence_of else None
+            ),
             "is_named": slot.is_named,
             "likely": slot.likely,
             "choices": list(choices_of(slot)),

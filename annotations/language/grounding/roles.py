@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from annotations.language.english import DETERMINERS, GOING_WORDS, PERSON_WORDS, THING_WORDS
 from annotations.language.forms import (
+    CONJUNCTION,
     Application,
     Constant,
     Form,
@@ -19,7 +20,6 @@ SlotPath = tuple[int, ...]
 _WORD = re.compile(r"<\w+>|\w+(?:'\w+)?|[^\w\s]")
 _TOKEN = re.compile(r"<([^\W\d]+?)(\d*)>")
 _OF_A_PERSON = frozenset(("person", "name", "male", "female", "gesture", "is"))
-_STEPS = frozenset(("sequence", "and"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +62,7 @@ def context_of(words: Sequence[str], place: int) -> Context:
 def role_of(form: Form, path: SlotPath) -> Role:
     """Return the role of the slot at ``path``."""
     exact: list[str] = []
-    similar = ""
+    similar, outermost = "", 0
     is_person = False
     for place in path:
         parts = children(form)
@@ -75,12 +75,13 @@ def role_of(form: Form, path: SlotPath) -> Role:
             exact.append(f"{name}.{place + 1}")
             if _describes(form):
                 similar = f"{name} of a {'person' if is_person else 'thing'}"
-            elif name not in _STEPS:
+            elif not _joins(form):
                 similar = f"argument {min(place, 1) + 1}"
+            if not outermost and not _joins(form):
+                outermost = place + 1
         form = parts[place]
     if similar.startswith("is_a") or similar.startswith("name"):
-        outermost = next(step for step in exact if step.split(".")[0] not in _STEPS)
-        similar = f"{similar} in argument {outermost.split('.')[1]}"
+        similar = f"{similar} in argument {outermost}"
     return Role("/".join(exact), similar)
 
 
@@ -94,6 +95,13 @@ def tokens_of(form: Form, path: SlotPath = ()) -> Iterator[tuple[SlotPath, str]]
 
 def _describes(form: Application) -> bool:
     return isinstance(next(iter(form.arguments), None), Variable)
+
+
+def _joins(form: Application) -> bool:
+    """Return whether a form joins others, which gives no role: a conjunction, or actions in sequence."""
+    parts = [each for each in form.arguments if isinstance(each, Application)]
+    is_joined = len(parts) == len(form.arguments) > 1
+    return form.predicate == CONJUNCTION or (is_joined and not all(map(_describes, parts)))
 
 
 def _kind(word: str) -> str:

@@ -5,17 +5,17 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 
-from annotations.language.english import BOUNDARIES, DETERMINERS, PERSON_WORDS, THING_WORDS
+from annotations.language.english import (
+    BOUNDARIES,
+    DETERMINERS,
+    PERSON_WORDS,
+    PLACE_PREPOSITIONS,
+    THING_WORDS,
+)
 from annotations.language.grounding.anonymizer import Anonymized
 from annotations.language.ontology import Ontology
 
 _WORD = re.compile(r"<\w+>|[^\W_][\w'’-]*|[^\w\s]")
-_PLACES = frozenset(
-    (
-        "from", "to", "into", "onto", "on", "in", "at", "near", "under", "behind", "beside",
-        "above", "below", "by",
-    )
-)  # fmt: skip
 _LONGEST = 4  # words of a phrase
 _NO_NAMES = frozenset((*BOUNDARIES, *DETERMINERS, *PERSON_WORDS, *THING_WORDS))
 
@@ -64,7 +64,7 @@ def _find_in(text: str, is_start: bool) -> Iterator[tuple[str, bool, bool]]:
         phrase = _phrase(words[first:]) if is_determiner or is_name else ()
         if phrase:
             before = words[at - 1].casefold() if at else ""
-            yield " ".join(phrase), before in _PLACES, _is_capitalised(phrase[0])
+            yield " ".join(phrase), before in PLACE_PREPOSITIONS, _is_capitalised(phrase[0])
         at = max(at + 1, first + len(phrase))
 
 

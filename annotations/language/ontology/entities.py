@@ -57,6 +57,17 @@ class Ontology:
         """Return the rows of a class; none if the ontology does not have the class."""
         return self.by_class.get(entity_class, ())
 
+    def texts_of(self, entity_class: str) -> tuple[str, ...]:
+        """Return the different texts of the rows of a class, in order."""
+        return self._texts.get(entity_class, ())
+
+    @cached_property
+    def _texts(self) -> Mapping[str, tuple[str, ...]]:
+        return {
+            name: tuple(dict.fromkeys(each.text for each in rows))
+            for name, rows in self.by_class.items()
+        }
+
     @cached_property
     def singulars(self) -> Mapping[str, str]:
         """Category name → its singular, for the categories that declare one."""

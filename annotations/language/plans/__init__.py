@@ -5,7 +5,7 @@ from __future__ import annotations
 from annotations.language.plans.behavior_tree import to_behavior_tree
 from annotations.language.plans.lookup import Lookup
 from annotations.language.plans.plan import ASK, ActionName, Plan, PlanProblem, Step, Trouble
-from annotations.language.plans.planning import make_plan
+from annotations.language.plans.planning import doubts_about, make_plan
 from annotations.language.plans.schemas import (
     behavior_tree_schema_text,
     plan_schema,
@@ -39,6 +39,7 @@ __all__ = [
     "Value",
     "Words",
     "behavior_tree_schema_text",
+    "doubts_about",
     "make_plan",
     "plan_schema",
     "plan_schema_text",

@@ -1,54 +1,13 @@
-"""What the arguments of actions are called, by place and kind: data for plans."""
+"""What the arguments of actions are called in plans, by place and kind."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-
+from annotations.language.english import ARGUMENT_NAMES, ARGUMENT_QUESTIONS
 from annotations.language.forms import Application, Form, Lambda, Unknown, walk
 from annotations.language.predicates import ArgumentKind, argument_kind
 
-THING, PERSON, PLACE, TEXT = "thing", "person", "destination", "text"
-# Action → the names of its arguments by place; a name by kind where an action takes several kinds there.
-_NAMES: Mapping[str, Sequence[Mapping[str, str] | str]] = {
-    "bring": (THING, {"person": "recipient", "place": "source", "": "recipient"}),
-    "put": (THING, PLACE),
-    "pour": (THING, PLACE),
-    "take": (THING, {"place": "source", "": PLACE}),
-    "find": ("target", {"number": "count", "": "where"}),
-    "follow": (PERSON, PLACE),
-    "guide": (PERSON, PLACE),
-    "meet": (PERSON, "where"),
-    "greet": (PERSON, "where"),
-    "introduce": (PERSON, "to"),
-    "go": (PLACE,),
-    "clear": ("where",),
-    "wait": ({"place": "where", "": PERSON}, "where"),
-    "open": (THING,),
-    "close": (THING,),
-    "count": ("things",),
-    "answer": ("question", "asker"),
-    "say": ({"thing": "about", "person": "about", "": TEXT}, "listener"),
-}
 _PLACES = frozenset((ArgumentKind.LOCATION, ArgumentKind.ROOM))
 _OF_A_PERSON = frozenset(("person", "name", "male", "female", "gesture", "pose", "gender"))
-# Actions that make no sense without these arguments.
-NEEDED: Mapping[str, Sequence[str]] = {
-    "guide": (PLACE,),
-    "go": (PLACE,),
-    "put": (PLACE,),
-    "bring": (THING,),
-}
-QUESTIONS = {
-    PLACE: "Where to?",
-    "source": "From where?",
-    THING: "Which thing?",
-    PERSON: "Which person?",
-    "recipient": "For whom?",
-    "listener": "To whom?",
-    TEXT: "What shall I say?",
-    "question": "Which question?",
-    "where": "Where?",
-}
 
 
 def argument_name(action: str, place: int, argument: Form, entity_class: str = "") -> str:
@@ -57,16 +16,18 @@ def argument_name(action: str, place: int, argument: Form, entity_class: str = "
     ``entity_class`` is that of a text that names an entity. An action that is not known calls its
     arguments ``argument_1``, ``argument_2``, ….
     """
-    names = _NAMES.get(action, ())
+    names = ARGUMENT_NAMES.get(action, ())
     if place >= len(names):
         return f"argument_{place + 1}"
     name = names[place]
-    return name if isinstance(name, str) else name.get(_kind(argument, entity_class), name[""])
+    if isinstance(name, str):
+        return name
+    return name.get(_kind(argument, entity_class)) or name.get("") or f"argument_{place + 1}"
 
 
 def question_of(name: str) -> str:
     """Return what to ask the operator for an argument that a command leaves open."""
-    return QUESTIONS.get(name, f"What is the {name.replace('_', ' ')}?")
+    return ARGUMENT_QUESTIONS.get(name, f"What is the {name.replace('_', ' ')}?")
 
 
 def _kind(argument: Form, entity_class: str) -> str:

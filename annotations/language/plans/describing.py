@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from annotations.language.forms import Application, Constant, Form, Lambda, Variable
+from annotations.language.forms import CONJUNCTION, Application, Constant, Form, Lambda, Variable
 from annotations.language.plans.values import Condition, Described, Number, Open, Value
-from annotations.language.predicates import Predicate, PredicateKind, gloss
+from annotations.language.predicates import Predicate, gloss
 
 ValueOf = Callable[[Constant, str, int], Value]
 _SUPERLATIVES = ("est", "most")
@@ -103,7 +103,7 @@ def is_description(form: Form, predicates: Mapping[str, Predicate]) -> bool:
     ):
         return False
     declared = predicates.get(str(form.predicate))
-    return declared is None or declared.kind == PredicateKind.DESCRIPTION
+    return declared is None or not declared.is_action
 
 
 def open_lambdas(form: Lambda) -> Iterator[Form]:
@@ -111,7 +111,7 @@ def open_lambdas(form: Lambda) -> Iterator[Form]:
     for body in form.bodies:
         if isinstance(body, Lambda):
             yield from open_lambdas(body)
-        elif isinstance(body, Application) and body.predicate == "and":
+        elif isinstance(body, Application) and body.predicate == CONJUNCTION:
             yield from open_lambdas(Lambda(form.variable, form.type, body.arguments))
         else:
             yield body

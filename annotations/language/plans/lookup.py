@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Mapping
 
-from annotations.language.english import spellings
+from annotations.language.english import ANY_OBJECT, spellings
 from annotations.language.grounding import QUESTION_WORD
 from annotations.language.ontology import Entity, Ontology
 from annotations.language.plans.values import Named, Value, Words
 from annotations.language.predicates import ENTITY_KINDS, ArgumentKind, Predicate
 
 # Words in the place of an entity that name none: any category, any question, where the robot is.
-NEUTRAL_WORDS = frozenset(("objects", QUESTION_WORD, "current"))
+NEUTRAL_WORDS = frozenset((ANY_OBJECT, QUESTION_WORD, "current"))
 _SPOKEN = frozenset((ArgumentKind.WHATTOSAY, ArgumentKind.QUESTION))
 _KINDS = {
     ("is_a", 1): frozenset((ArgumentKind.OBJECT, ArgumentKind.CATEGORY)),

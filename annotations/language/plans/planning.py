@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from annotations.language.english import NEEDED_ARGUMENTS
 from annotations.language.forms import (
+    CONJUNCTION,
     Application,
     Constant,
     Form,
@@ -16,7 +18,7 @@ from annotations.language.forms import (
 )
 from annotations.language.grounding import Slot
 from annotations.language.ontology import Ontology
-from annotations.language.plans.arguments import NEEDED, argument_name, question_of
+from annotations.language.plans.arguments import argument_name, question_of
 from annotations.language.plans.describing import (
     Describer,
     is_description,
@@ -26,10 +28,9 @@ from annotations.language.plans.describing import (
 from annotations.language.plans.lookup import Lookup
 from annotations.language.plans.plan import ASK, ActionName, Plan, PlanProblem, Step, Trouble
 from annotations.language.plans.values import Described, Named, Number, Open, Result, Value, Words
-from annotations.language.predicates import Predicate, declared_or_inferred, gloss
+from annotations.language.predicates import Predicate, PredicateKind, declared_or_inferred, gloss
 
 MOST_STEPS = 50
-_SEQUENCES = ("sequence", "and")
 NOT_UNDERSTOOD = "I did not understand that. What shall I do?"
 
 
@@ -54,13 +55,21 @@ def make_plan(
     known = declared_or_inferred(predicates or {}, form)
     lookup = lookup or Lookup(ontology, predicates or {})
     planner = _Planner(lookup, known, action_names or {})
-    for slot in slots:
-        if slot.value is None and slot.likely is not None:
-            message = f"it is not certain that the {slot.entity_class} is “{slot.likely}”"
-            hint = f"ask: {' or '.join(slot.candidates)}?"
-            planner.report(Trouble.AMBIGUOUS, message, hint, step=0)
+    planner.problems += doubts_about(slots)
     planner.add(form)
     return Plan(tuple(planner.steps), tuple(planner.problems))
+
+
+def doubts_about(slots: Sequence[Slot]) -> tuple[PlanProblem, ...]:
+    """Return a problem for each slot with an entity that is only likely; they come before those of the steps."""
+    doubts = []
+    for slot in slots:
+        if slot.value is None and slot.likely is not None:
+            message = f"It is not certain that the {slot.entity_class} is “{slot.likely}”."
+            offered = (*slot.candidates, *(slot.phrases if slot.is_choice else ()))
+            hint = f"ask: {' or '.join(offered)}?"
+            doubts.append(PlanProblem(Trouble.AMBIGUOUS, 0, message, hint))
+    return tuple(dict.fromkeys(doubts))
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,11 +120,16 @@ class _Planner:
             for body in bodies:
                 if body not in about:
                     self._add(body, inner)
-        elif isinstance(form, Application) and form.predicate in _SEQUENCES:
+        elif isinstance(form, Application) and self._is_sequence(form):
             for argument in form.arguments:
                 self._add(argument, scope)
         elif isinstance(form, Application):
             self.step(form, scope)
+
+    def _is_sequence(self, form: Application) -> bool:
+        declared = self.predicates.get(str(form.predicate))
+        is_declared = declared is not None and declared.kind is PredicateKind.SEQUENCE
+        return is_declared or form.predicate == CONJUNCTION
 
     def step(self, form: Application, scope: _Scope) -> int:
         """Add the step of one action, after the steps whose results it needs; return its number."""
@@ -133,7 +147,7 @@ class _Planner:
             entity_class = value.entity_class if isinstance(value, Named) else ""
             name = argument_name(action, place, argument, entity_class)
             arguments[_free_name(name, arguments)] = self._asked(value, name, action)
-        for name in NEEDED.get(action, ()):
+        for name in NEEDED_ARGUMENTS.get(action, ()):
             if name not in arguments:
                 arguments[name] = self._asked(Open(""), name, action)
         self._check_superlatives(arguments)

@@ -22,6 +22,11 @@ from annotations.language.predicates.signatures import (
     argument_kind,
     signature_of,
 )
+from annotations.language.predicates.standing_in import (
+    can_stand_in,
+    is_loose,
+    texts_of_patterns,
+)
 
 __all__ = [
     "ENTITY_KINDS",
@@ -31,14 +36,17 @@ __all__ = [
     "PredicateKind",
     "Signature",
     "argument_kind",
+    "can_stand_in",
     "check_form",
     "declared_or_inferred",
     "find_misuses",
     "gloss",
     "infer_signatures",
+    "is_loose",
     "pattern_of_name",
     "print_signatures",
     "read_signatures",
     "sample_forms",
     "signature_of",
+    "texts_of_patterns",
 ]

@@ -21,6 +21,7 @@ from functools import lru_cache
 from annotations.language.english import KNOWN_PATTERNS, PREPOSITIONS, RELATIONS
 from annotations.language.predicates.signatures import Signature
 
+ALL_IN_ORDER = "{*}"  # how a sequence is said
 _SLOT = re.compile(r"\{(?P<place>[1-9][0-9]?|\*)(?::(?P<kind>\w+)|=(?P<value>[^{}]*))?\}")
 
 

@@ -8,6 +8,7 @@ from typing import TypeGuard
 
 from annotations.language.english import CLASS_WORDS, NUMBERS, plural
 from annotations.language.forms import (
+    CONJUNCTION,
     Application,
     Constant,
     Form,
@@ -96,7 +97,7 @@ def _open(form: Lambda, scope: _Scope) -> tuple[tuple[Form, ...], _Scope]:
         body = waiting.pop(0)
         if isinstance(body, Lambda):
             waiting = [*body.bodies, *waiting]
-        elif isinstance(body, Application) and body.predicate == "and":
+        elif isinstance(body, Application) and body.predicate == CONJUNCTION:
             waiting = [*body.arguments, *waiting]
         else:
             bodies.append(body)
@@ -229,7 +230,7 @@ def _add(phrase: _NounPhrase, conjunct: Application, scope: _Scope) -> None:
         for each in conjunct.arguments
     )
     chosen = _choose(conjunct, scope.patterns, False)
-    if chosen.pieces == (Slot(1),):
+    if chosen.pieces == (Slot(1),) and len(conjunct.arguments) > 1:
         phrase.noun = _bare(conjunct.arguments[1])
         return
     before, underscore, after = _fill(chosen, conjunct.arguments, scope).partition("_")

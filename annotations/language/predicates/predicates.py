@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
@@ -14,7 +14,7 @@ from annotations.language.english import say_count
 from annotations.language.errors import Position, Problem, warning_at
 from annotations.language.forms import Application, Form, Lambda, Variable, children, walk
 from annotations.language.limits import MAX_GLOSS
-from annotations.language.predicates.gloss_patterns import default_pattern
+from annotations.language.predicates.gloss_patterns import ALL_IN_ORDER, default_pattern
 from annotations.language.predicates.glossing import sentence
 from annotations.language.predicates.signatures import (
     Signature,
@@ -25,9 +25,11 @@ ALIKE = 0.6  # the share of common letters from which on one name is offered for
 
 
 class PredicateKind(StrEnum):
-    """An ACTION is something to do; a DESCRIPTION says something about what a variable stands for."""
+    """An ACTION is something to do; a SEQUENCE does the actions that are its arguments, in their order; a
+    DESCRIPTION says something about what a variable stands for."""
 
     ACTION = "action"
+    SEQUENCE = "sequence"
     DESCRIPTION = "description"
 
 
@@ -43,22 +45,37 @@ class Predicate:
     signatures: tuple[Signature, ...]
     gloss: str = ""
 
+    @property
+    def is_action(self) -> bool:
+        """Whether it is something to do, alone or in a sequence."""
+        return self.kind is not PredicateKind.DESCRIPTION
+
 
 def infer_signatures(forms: Iterable[Form]) -> dict[str, Predicate]:
     """Return the predicates that occur in the forms, by name and sorted by it, with default glosses.
 
     A predicate is an action if it heads a form, if it is inside an action and has no variable as an
-    argument itself (``(say (count …))``), or if it is next to such a predicate in a sequence. All
-    others are descriptions.
+    argument itself (``(say (count …))``), or if it is next to such a predicate in a sequence. One that
+    always has two or more actions as arguments, and nothing else, is a sequence. All others are
+    descriptions.
     """
     signatures: defaultdict[str, set[Signature]] = defaultdict(set)
+    arguments: defaultdict[str, list[tuple[Form, ...]]] = defaultdict(list)
     actions: set[str] = set()
     for form in dict.fromkeys(forms):
         actions.update(_actions(form))
         for application in _applications(form):
             signatures[str(application.predicate)].add(signature_of(application))
+            arguments[str(application.predicate)].append(application.arguments)
+
+    def kind(name: str) -> PredicateKind:
+        if name not in actions:
+            return PredicateKind.DESCRIPTION
+        is_sequence = all(_are_several(each, actions) for each in arguments[name])
+        return PredicateKind.SEQUENCE if is_sequence else PredicateKind.ACTION
+
     return {
-        name: _predicate(name, name in actions, tuple(sorted(signatures[name])))
+        name: _predicate(name, kind(name), tuple(sorted(signatures[name])))
         for name in sorted(signatures)
     }
 
@@ -103,7 +120,7 @@ def gloss(form: Form, predicates: Mapping[str, Predicate]) -> str:
     declared = declared_or_inferred(predicates, form)
     used = {name: declared[name] for name in map(_name_of, _applications(form))}
     patterns = {name: each.gloss or _default(each) for name, each in used.items()}
-    actions = frozenset(n for n, each in used.items() if each.kind == PredicateKind.ACTION)
+    actions = frozenset(name for name, each in used.items() if each.is_action)
     return sentence(form, patterns, actions)
 
 
@@ -120,8 +137,14 @@ def _name_of(application: Application) -> str:
     return str(application.predicate)
 
 
-def _predicate(name: str, is_action: bool, signatures: tuple[Signature, ...]) -> Predicate:
-    kind = PredicateKind.ACTION if is_action else PredicateKind.DESCRIPTION
+def _are_several(arguments: tuple[Form, ...], actions: Collection[str]) -> bool:
+    """Return whether two or more arguments are given, and all are applications of ``actions``."""
+    return len(arguments) > 1 and all(
+        isinstance(each, Application) and each.predicate in actions for each in arguments
+    )
+
+
+def _predicate(name: str, kind: PredicateKind, signatures: tuple[Signature, ...]) -> Predicate:
     predicate = Predicate(name, kind, signatures)
     pattern = _default(predicate)
     # A pattern too long to store is made again from the name whenever a form is glossed.
@@ -129,8 +152,9 @@ def _predicate(name: str, is_action: bool, signatures: tuple[Signature, ...]) ->
 
 
 def _default(predicate: Predicate) -> str:
-    is_action = predicate.kind == PredicateKind.ACTION
-    return default_pattern(predicate.name, is_action, predicate.signatures)
+    if predicate.kind is PredicateKind.SEQUENCE:
+        return ALL_IN_ORDER
+    return default_pattern(predicate.name, predicate.is_action, predicate.signatures)
 
 
 def _applications(form: Form) -> Iterator[Application]:

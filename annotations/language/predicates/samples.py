@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from annotations.language.forms import UNKNOWN, Application, Constant, Form, Lambda, Variable
-from annotations.language.predicates.predicates import Predicate, PredicateKind
+from annotations.language.predicates.predicates import Predicate
 from annotations.language.predicates.signatures import ENTITY_KINDS, ArgumentKind
 
 
@@ -19,7 +19,7 @@ def sample_forms(predicate: Predicate) -> Iterator[Form]:
         )
         form = Application(predicate.name, arguments)
         takes_variable = ArgumentKind.VARIABLE in signature.arguments
-        if predicate.kind == PredicateKind.ACTION and not takes_variable:
+        if predicate.is_action and not takes_variable:
             yield form
         else:
             yield Application("find", (Lambda(1, "e", (form,)),))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from annotations.language.forms import Application, Form, Lambda, Variable, predicates
+from annotations.language.forms import CONJUNCTION, Application, Form, Lambda, Variable, predicates
 from annotations.language.suggesting.alignment import Alignment
 from annotations.language.suggesting.habits import Habits, words_of
 from annotations.language.suggesting.slots import Key, keys_of
@@ -64,9 +64,11 @@ def _rename(form: Form, old: str, new: str) -> Form:
 def _add(form: Form, predicate: str | Nonterminal, slot: Slot, habits: Habits) -> Iterator[Form]:
     """Yield the form with ``(predicate $v slot)`` added to each of its conjunctions in turn."""
     match form:
-        case Lambda(variable, type_, (Application("and", conjuncts),)):
+        case Lambda(variable, type_, (Application(predicate, conjuncts),)) if (
+            predicate == CONJUNCTION
+        ):
             added = Application(predicate, (Variable(variable), slot))
-            whole = Application("and", habits.place(conjuncts, added))
+            whole = Application(CONJUNCTION, habits.place(conjuncts, added))
             yield Lambda(variable, type_, (whole,))
         case Lambda(variable, type_, bodies):
             if not any(isinstance(body, Lambda) for body in bodies):

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from annotations.language.grammar import Grammar
-from annotations.language.predicates import Predicate
+from annotations.language.predicates import Predicate, PredicateKind
 from annotations.language.symbols import (
     WILDCARD_NAMES,
     Symbols,
@@ -29,6 +29,11 @@ _MEANINGS = {
     "gesture": "a gesture",
     "question": "a question",
     "whattosay": "something to say",
+}
+_KINDS = {
+    PredicateKind.ACTION: "Something to do",
+    PredicateKind.SEQUENCE: "Does its arguments, one after the other",
+    PredicateKind.DESCRIPTION: "Says something of a variable",
 }
 
 
@@ -112,9 +117,10 @@ def _more(wildcard: Wildcard) -> str:
 
 def _predicate(predicate: Predicate) -> Completion:
     signatures = " or ".join(map(str, predicate.signatures))
-    kind = "Something to do" if predicate.kind == "action" else "Says something of a variable"
     says = f": “{predicate.gloss}”" if predicate.gloss else ""
-    return Completion(predicate.name, _shorten(signatures), f"{kind}{says}. Takes {signatures}.")
+    return Completion(
+        predicate.name, _shorten(signatures), f"{_KINDS[predicate.kind]}{says}. Takes {signatures}."
+    )
 
 
 def _shorten(text: str) -> str:

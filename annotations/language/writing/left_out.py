@@ -7,7 +7,15 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from annotations.language.errors import Edit
-from annotations.language.forms import Application, ConjunctOrder, Form, Variable, order_of, walk
+from annotations.language.forms import (
+    CONJUNCTION,
+    Application,
+    ConjunctOrder,
+    Form,
+    Variable,
+    order_of,
+    walk,
+)
 from annotations.language.grammar import Grammar
 from annotations.language.symbols import (
     Nonterminal,
@@ -118,7 +126,7 @@ def _conjoin(
     for span in form.spans:
         if span.kind != "abstraction":
             continue
-        is_and = len(span.children) == 1 and span.children[0].name == "and"
+        is_and = len(span.children) == 1 and span.children[0].name == CONJUNCTION
         conjuncts = span.children[0].children if is_and else span.children
         heads = [each.name for each in conjuncts]
         place = order.place(heads, use.predicate)

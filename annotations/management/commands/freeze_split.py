@@ -12,7 +12,8 @@ from django.db import transaction
 from annotations.language.corpus import Criterion
 from annotations.management.base import ReportingCommand, find_world
 from annotations.models import Split
-from annotations.splits.freezing import freeze_split
+from annotations.rows.synchronise import BATCH
+from annotations.splits.freezing import as_items, freeze_split, unresolved_prompts
 from annotations.splits.split_statistics import counts_of
 
 
@@ -21,6 +22,8 @@ class Command(ReportingCommand):
         "Freezes the commands and accepted paraphrases of a world as splits. With several criteria "
         "each split is named NAME-CRITERION."
     )
+
+    audited = "freeze a split"
 
     def add_options(self, parser: CommandParser) -> None:
         parser.add_argument("world")
@@ -43,6 +46,9 @@ class Command(ReportingCommand):
         with transaction.atomic():
             splits = [freeze_split(chosen, names[each], each, seed, shares) for each in criteria]
         return {"world": world, "splits": _describe(splits)}
+
+    def audit_subject(self, report: Mapping[str, Any], options: Mapping[str, Any]) -> str:
+        return ", ".join(each["name"] for each in report["splits"])
 
 
 def _criteria(text: str) -> list[str]:
@@ -68,10 +74,19 @@ def _describe(splits: Sequence[Split]) -> list[dict[str, Any]]:
             "criterion": split.criterion,
             "seed": split.seed,
             "content_hash": split.content_hash,
+            **_unresolved(split),
             "counts": {each.source: _without_source(asdict(each)) for each in counts[split.pk]},
         }
         for split in splits
     ]
+
+
+def _unresolved(split: Split) -> dict[str, list[str]]:
+    """Return the prompts that are no generated command, whose paraphrases went to the training part."""
+    if split.criterion != Criterion.SOURCE_COMMAND:
+        return {}
+    items = as_items(split.examples.order_by().iterator(chunk_size=BATCH))
+    return {"unresolved_prompts": sorted(unresolved_prompts(items).values())}
 
 
 def _without_source(counts: dict[str, Any]) -> dict[str, Any]:

@@ -19,6 +19,8 @@ from annotations.models import World
 class Command(ReportingCommand):
     help = "Generates the commands of a world, with their logical forms, from its templates."
 
+    audited = "generate commands"
+
     def add_options(self, parser: CommandParser) -> None:
         parser.add_argument("world")
         parser.add_argument("--limit", type=int, default=DEFAULT_LIMIT, help="refuse more commands")

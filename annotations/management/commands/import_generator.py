@@ -25,6 +25,8 @@ class Command(ReportingCommand):
         "Refused whole, with exit status 1, where a file has an error."
     )
 
+    audited = "import files"
+
     def add_options(self, parser: CommandParser) -> None:
         parser.add_argument("folder", type=Path)
         parser.add_argument("--world", required=True, help="made where there is none")
@@ -44,6 +46,9 @@ class Command(ReportingCommand):
         if report.is_refused:
             raise Refused.because(report.errors, report.as_json(), folder)
         return report.as_json()
+
+    def audit_subject(self, report: Mapping[str, Any], options: Mapping[str, Any]) -> str:
+        return str(options["folder"])
 
     def describe(self, report: Mapping[str, Any]) -> str:
         return "\n".join([super().describe(report), *say_left_out(report)])

@@ -18,9 +18,14 @@ class Command(ReportingCommand):
         "under another name. Refused whole where anything is wrong with the archive."
     )
 
+    audited = "import a world"
+
     def add_options(self, parser: CommandParser) -> None:
         parser.add_argument("file", type=Path)
         parser.add_argument("--world", required=True, help="the name of the new world")
 
     def report(self, *, file: Path, world: str, **options: Any) -> Mapping[str, Any]:
         return import_world(world, file).as_json()
+
+    def audit_subject(self, report: Mapping[str, Any], options: Mapping[str, Any]) -> str:
+        return options["file"].name

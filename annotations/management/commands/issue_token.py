@@ -7,6 +7,7 @@ from typing import Any
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 
 from annotations.models import ApiToken, Scope, User
+from annotations.people.audit_log import record_command
 
 
 class Command(BaseCommand):
@@ -27,5 +28,6 @@ class Command(BaseCommand):
             )
         if options["days"] < 1:
             raise CommandError(f"--days is {options['days']}; a token lasts at least one day.")
-        _, key = ApiToken.issue(user, options["name"], options["days"], options["scope"])
+        token, key = ApiToken.issue(user, options["name"], options["days"], options["scope"])
+        record_command("make a token", f"{token.name} ({token.scope}) for {user.get_username()}")
         self.stdout.write(key)

@@ -8,13 +8,14 @@ from django.shortcuts import get_object_or_404, redirect, render
 
 from annotations.auditing import examples_before
 from annotations.forms import SplitForm, posted
+from annotations.language.corpus import Criterion
 from annotations.language.errors import LanguageError
 from annotations.lists.filters import ExampleFilters, SplitFilters
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.models import Duty, Example, Split, World
 from annotations.people.access import READ_AND_WRITE, WRITE, world_view
 from annotations.rows.occurrences import command_of_example, logical_form_of, paraphrase_of_example
-from annotations.splits.freezing import freeze_split, plan_split
+from annotations.splits.freezing import as_items, freeze_split, plan_split, unresolved_prompts
 from annotations.splits.renewing import changes_since, freeze_anew, is_from_import, last_of
 from annotations.splits.split_statistics import (
     counts_of,
@@ -54,7 +55,10 @@ def split_new(request: HttpRequest, world: World) -> HttpResponse:
     if form.is_bound and form.is_valid():
         try:
             if "freeze" not in request.POST:
-                context["counts"] = counts_of_planned(plan_split(world, **form.choice))
+                planned = plan_split(world, **form.choice)
+                context["counts"] = counts_of_planned(planned)
+                if form.choice["criterion"] == Criterion.SOURCE_COMMAND:
+                    context["unresolved"] = sorted(unresolved_prompts(as_items(planned)).values())
             else:
                 name = form.cleaned_data["name"]
                 frozen = freeze_split(world, name, by=request.user, **form.choice)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from django import forms
 from django.contrib import messages
 from django.contrib.auth import logout
@@ -11,7 +13,7 @@ from django.utils import timezone
 from django.views.decorators.cache import never_cache
 from django.views.decorators.http import require_http_methods
 
-from annotations.models import ApiToken, LogInSession, Scope
+from annotations.models import ApiToken, LogInSession, Scope, User
 from annotations.models.people import scope_choices
 from annotations.people.access import READ, WRITE
 from annotations.people.audit_log import note
@@ -40,6 +42,17 @@ class TokenForm(forms.Form):
         label="Days", min_value=1, max_value=MOST_DAYS, initial=90, help_text="until it expires"
     )
 
+    def __init__(self, user: User, *args: Any) -> None:
+        super().__init__(*args)
+        self.user = user
+
+    def clean(self) -> dict[str, Any]:
+        if self.user.api_tokens.count() >= MOST_TOKENS:
+            raise forms.ValidationError(
+                f"You have {MOST_TOKENS} tokens. Revoke one that you do not need."
+            )
+        return super().clean()
+
 
 @require_http_methods(READ)
 def account(request: HttpRequest) -> HttpResponse:
@@ -51,9 +64,7 @@ def account(request: HttpRequest) -> HttpResponse:
 @require_http_methods(WRITE)
 def token_new(request: HttpRequest) -> HttpResponse:
     """Make a token, and show its secret, which is not shown again."""
-    form = TokenForm(request.POST)
-    if form.is_valid() and request.user.api_tokens.count() >= MOST_TOKENS:
-        form.add_error(None, f"You have {MOST_TOKENS} tokens. Revoke one that you do not need.")
+    form = TokenForm(request.user, request.POST)
     if not form.is_valid():
         return _render_account(request, status=422, form=form)
     token, key = ApiToken.issue(request.user, **form.cleaned_data)
@@ -91,7 +102,7 @@ def _render_account(
     request: HttpRequest, status: int = 200, form: TokenForm | None = None, key: str = ""
 ) -> HttpResponse:
     context = {
-        "form": form or TokenForm(),
+        "form": form or TokenForm(request.user),
         "key": key,
         "tokens": request.user.api_tokens.order_by("-pk"),
         "now": timezone.now(),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from django import forms
 from django.contrib.auth import login
 from django.contrib.auth.decorators import login_not_required
 from django.contrib.auth.forms import UserCreationForm
@@ -18,6 +17,7 @@ from annotations.people.audit_log import note
 from annotations.people.invitations import InvitationOver, NameTaken, sign_up
 from annotations.people.invitations import join as take_place
 from annotations.people.members import role_names
+from annotations.people.passwords import ask_twice
 from annotations.people.rate_limits import JOINING
 from annotations.people.sessions import remember_device
 
@@ -41,12 +41,7 @@ class SignUpForm(UserCreationForm):
             "autocomplete": "username",
             "autocapitalize": "none",
         }
-        self.fields["password1"].help_text = "At least 8 characters, and not a common one."
-        self.fields["password2"].help_text = ""
-        self.fields["password2"].label = "Password again"
-        for name in ("password1", "password2"):
-            self.fields[name].max_length = 1000
-            self.fields[name].validators.append(forms.fields.validators.MaxLengthValidator(1000))
+        ask_twice(self, "password1", "password2")
 
 
 @login_not_required

@@ -39,7 +39,11 @@ class MemberForm(forms.Form):
         help_text="The name of an account. Whoever has none yet joins by an invitation.",
         widget=forms.TextInput(attrs={"autocomplete": "off", "autocapitalize": "none"}),
     )
-    roles = forms.MultipleChoiceField(choices=role_choices, widget=forms.CheckboxSelectMultiple)
+    roles = forms.MultipleChoiceField(
+        choices=role_choices,
+        widget=forms.CheckboxSelectMultiple,
+        error_messages={"required": "Choose at least one role."},
+    )
 
     def clean_name(self) -> User:
         account = find_account(self.cleaned_data["name"])
@@ -65,7 +69,11 @@ class InvitationForm(forms.Form):
         help_text="So that admins know later. Whoever joins does not see it.",
         widget=forms.TextInput(attrs={"autocomplete": "off"}),
     )
-    roles = forms.MultipleChoiceField(choices=role_choices, widget=forms.CheckboxSelectMultiple)
+    roles = forms.MultipleChoiceField(
+        choices=role_choices,
+        widget=forms.CheckboxSelectMultiple,
+        error_messages={"required": "Choose at least one role."},
+    )
     places = forms.IntegerField(
         label="People",
         min_value=1,

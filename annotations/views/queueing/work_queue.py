@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from django.contrib import messages
-from django.db.models import Prefetch, QuerySet
+from django.db.models import Prefetch
 from django.http import Http404, HttpRequest, HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.urls import reverse
@@ -17,16 +17,17 @@ from annotations.labelling import AnsweredMeanwhile
 from annotations.language.english import say_count
 from annotations.lists.filters import WorkItemFilters
 from annotations.lists.listing import Listing, Sort, render_list
-from annotations.models import Assignment, Duty, SemanticTemplate, WorkItem, WorkKind, World
+from annotations.models import Assignment, Duty, WorkItem, WorkKind, World
 from annotations.models.work_items import OCCUPYING
 from annotations.people.access import READ_AND_WRITE, WRITE, demand, world_view
 from annotations.queueing import (
+    ASKABLE,
     NoLongerYours,
     NotForThem,
-    WantedItem,
     answer,
+    ask_about,
     assign,
-    enqueue,
+    assign_first,
     finish,
     give_back,
     held_item,
@@ -105,8 +106,7 @@ def _item_page(
     parts = item.assignments.select_related("person", "label")
     mine = parts.held().filter(person=request.user).first()
     labels = labels_to_compare(item)
-    # Who may still be asked must not see what others said.
-    may_compare = bool(labels) and (mine is not None or not item.is_open)
+    may_compare = bool(labels) and may_see_labels(item, mine)
     context = {
         "item": item,
         "parts": parts,
@@ -125,6 +125,11 @@ def labels_to_compare(item: WorkItem) -> list:
         return []
     done = item.follows.assignments.done().filter(label__isnull=False).order_by("done_at", "id")
     return [each.label for each in done.select_related("label__annotator")]
+
+
+def may_see_labels(item: WorkItem, part: Assignment | None) -> bool:
+    """Return whether somebody with ``part`` in an item may: who may still be asked must not see them."""
+    return part is not None or not item.is_open
 
 
 def page_of(item: WorkItem) -> str:
@@ -169,14 +174,6 @@ def _finish(part: Assignment) -> None:
     finish(part)
 
 
-# What a reviewer may ask somebody to look at: its kind → the rows of a world.
-ASKABLE: dict[str, Callable[[World], QuerySet]] = {
-    "utterance": lambda world: world.utterances.all(),
-    "template": lambda world: SemanticTemplate.objects.filter(grammar__world=world),
-    "paraphrase": lambda world: world.paraphrases.all(),
-}
-
-
 @world_view(Duty.REVIEW, WRITE)
 def queue_ask(request: HttpRequest, world: World, kind: str, pk: int) -> HttpResponse:
     """Ask for a look at an utterance, a template or a paraphrase, with a reason."""
@@ -186,12 +183,7 @@ def queue_ask(request: HttpRequest, world: World, kind: str, pk: int) -> HttpRes
     form = AskForm(request.POST)
     if not form.is_valid():
         messages.error(request, "Say in a few words what is to be looked at.")
-    elif enqueue(
-        world,
-        WorkKind.REQUESTED,
-        [WantedItem(subject, f"{request.user} asks: {form.cleaned_data['reason']}")],
-        by=request.user,
-    ):
+    elif ask_about(world, subject, form.cleaned_data["reason"], request.user):
         messages.success(request, "In the queue: the next annotator who is free gets it.")
     else:
         messages.info(request, "Somebody is asked about this already.")
@@ -252,13 +244,7 @@ def queue_assign(request: HttpRequest, world: World) -> HttpResponse:
         return _back_to_list(request, world)
     person, count = form.cleaned_data["person"], form.cleaned_data["count"]
     rows = WorkItemFilters(request.GET, queryset=world.work_items.all(), request=request).qs
-    given = 0
-    for item in rows.takeable_by(person).order_by("-priority", "id")[:count]:
-        try:
-            assign(item, person, by=request.user)
-            given += 1
-        except NotForThem:
-            continue  # taken meanwhile, or not for this person
+    given = assign_first(rows, person, count, request.user)
     messages.success(request, f"{person} has {say_count(given, 'more item')} now.")
     return _back_to_list(request, world)
 

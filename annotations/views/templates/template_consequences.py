@@ -21,7 +21,7 @@ MOST_DIGITS = 18  # of a key
 def template_consequences(request: HttpRequest, world: World) -> HttpResponse:
     """Show what saving the typed template would do, over the stored one that ``template`` names."""
     row = _find_row(world, request.GET.get("template", ""))
-    expected = _consequences(world, TemplateForm(world, request.POST), row)
+    expected = consequences_of_form(world, TemplateForm(world, request.POST), row)
     context = {"expected": expected, "groups": groups_of(expected) if expected else []}
     return render(request, "annotations/_change_consequences.html", context)
 
@@ -35,10 +35,13 @@ def _find_row(world: World, key: str) -> SemanticTemplate | None:
     return get_object_or_404(SemanticTemplate, grammar__world=world, pk=int(key))
 
 
-def _consequences(
+def consequences_of_form(
     world: World, form: TemplateForm, row: SemanticTemplate | None
 ) -> WorldConsequences | None:
-    """Return None while a side is empty or has an error that keeps the template from being saved."""
+    """Return what saving the form over ``row`` would do; of a new template where that is None.
+
+    None while a side is empty. ``trouble`` where it has an error that keeps the template from being saved.
+    """
     form.fields["task_category"].required = row is None
     form.is_valid()  # the template may be a draft, and then an error does not stop it
     values = {name: form[name].value() or "" for name in ("pattern", "form", "status")}

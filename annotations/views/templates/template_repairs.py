@@ -30,7 +30,7 @@ LISTS = ("unmatched", "conflicts", "outside_grammar")
 @world_view(Duty.VIEW)
 def unmatched(request: HttpRequest, world: World) -> HttpResponse:
     """List the templates that give no command of the grammar its form."""
-    rows = _with_counts(world).filter(n_inside=0)
+    rows = with_counts(world).filter(n_inside=0)
     context = {"listing": Listing(request, TemplateFilters, rows, SORTS), "current": "unmatched"}
     return render_list(request, "annotations/template_repairs.html", context)
 
@@ -38,7 +38,7 @@ def unmatched(request: HttpRequest, world: World) -> HttpResponse:
 @world_view(Duty.VIEW)
 def outside_grammar(request: HttpRequest, world: World) -> HttpResponse:
     """List the templates that make commands outside the grammar, with one of these."""
-    rows = _with_counts(world).filter(n_outside__gt=0)
+    rows = with_counts(world).filter(n_outside__gt=0)
     listing = Listing(request, TemplateFilters, rows, SORTS)
     context = {"listing": listing, "current": "outside_grammar"}
     return render_list(request, "annotations/template_repairs.html", context)
@@ -100,7 +100,7 @@ def _move(request: HttpRequest, world: World, row: SemanticTemplate, version: in
     messages.success(request, f"Moved to task category {category.name}.")
 
 
-def _with_counts(world: World) -> QuerySet[SemanticTemplate]:
+def with_counts(world: World) -> QuerySet[SemanticTemplate]:
     """Return the ready templates with how many of their commands are in the grammar and outside it."""
     is_outside = Q(commands__is_in_grammar=False)
     return SemanticTemplate.objects.filter(grammar__world=world, status=Status.READY).annotate(

@@ -14,7 +14,12 @@ from annotations.people.access import world_view
 
 @world_view(Duty.VIEW)
 def download_part(request: HttpRequest, world: World, part: str) -> HttpResponse:
-    """Download a part of a world: one file as it is, several in an archive that the import page takes."""
+    """Download a part of a world."""
+    return file_of(world, part)
+
+
+def file_of(world: World, part: str) -> HttpResponse:
+    """Return one file as it is, several in an archive that the import page takes. Raises Http404."""
     if part not in Part.values:
         raise Http404("There is no such part of a world.")
     files = files_of_part(world, part)

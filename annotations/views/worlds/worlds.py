@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from django.contrib import messages
-from django.db import IntegrityError, transaction
 from django.http import HttpRequest, HttpResponse, StreamingHttpResponse
 from django.shortcuts import redirect, render
 
@@ -20,14 +19,8 @@ from annotations.world_archive import archive_name, world_archive
 def world_new(request: HttpRequest) -> HttpResponse:
     """Create an empty world; its files are imported next."""
     form = WorldForm(posted(request))
-    if form.is_bound and form.is_valid():
-        try:
-            with transaction.atomic():
-                created = form.save()
-        except IntegrityError:  # somebody was quicker
-            form.add_error("name", "There is a world of this name already. Choose another name.")
-        else:
-            return redirect("import", world=created.name)
+    if form.is_bound and form.is_valid() and (created := form.create()):
+        return redirect("import", world=created.name)
     return render(request, "annotations/world_new.html", {"form": form})
 
 

@@ -13,8 +13,10 @@ from django.conf import settings
 from django.core.management import call_command
 from django.core.management.base import BaseCommand, CommandError
 
-from annotations.models import User
-from annotations.worlds.starter_world import load_starter_world
+from annotations.models import Split, User, World
+from annotations.models.splits import Criterion
+from annotations.people.audit_log import record_command
+from annotations.worlds.starter_world import STARTER_WORLD, load_starter_world
 from gpsr_site.processes import PARSE_SERVER, Supervisor, web_server_commands, worker_command
 from gpsr_site.web.server import require_free_port
 from parser_service.runs.first_runs import request_first_runs
@@ -34,7 +36,7 @@ class Command(BaseCommand):
         call_command("migrate", interactive=False, verbosity=0)
         call_command("collectstatic", interactive=False, verbosity=0)
         self.create_admin()
-        request_first_runs(load_starter_world(self.say))
+        request_first_runs(self.load_world())
         commands = {
             **web_server_commands(settings.WEB_PROCESSES),
             "training worker": worker_command("cpu", "gpu"),
@@ -71,8 +73,18 @@ class Command(BaseCommand):
             return
         password = secrets.token_urlsafe(12)
         User.objects.create_superuser("admin", password=password)
+        record_command("make an account", "admin, administrator of the site")
         self.say(f"Created the administrator. Log in as: admin   password: {password}")
         self.say("The password is not shown again; change it with: manage.py changepassword admin")
+
+    def load_world(self) -> dict[Criterion, Split]:
+        """Load the starter world, where it is not there, and return its splits."""
+        is_new = not World.objects.filter(name=STARTER_WORLD).exists()
+        splits = load_starter_world(self.say)
+        if is_new:
+            world = World.objects.get(name=STARTER_WORLD)
+            record_command("create a world", "the starter world", world)
+        return splits
 
     def announce(self) -> None:
         """Print the address once the web server answers."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from parser_service.analysis.comparing.best import is_better
 from parser_service.analysis.comparing.comparisons import (
     Comparison,
     compare_runs,
@@ -12,4 +13,5 @@ __all__ = [
     "Comparison",
     "compare_runs",
     "count_wins",
+    "is_better",
 ]

@@ -10,6 +10,7 @@ import numpy as np
 
 from annotations.language.english import say_count
 from parser_service.analysis.arrays import Bools, Ints
+from parser_service.analysis.comparing.best import LEVEL
 from parser_service.analysis.comparing.significance import (
     SAMPLES,
     holm,
@@ -17,8 +18,6 @@ from parser_service.analysis.comparing.significance import (
     paired_bootstrap,
 )
 from parser_service.analysis.resampling import SEED
-
-LEVEL = 0.05  # a corrected p-value up to this is called significant
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,6 +15,7 @@ from annotations.management.base import find_world
 from annotations.models import World
 from parser_service.benchmarking.cells import CellFile, Group, jobs
 from parser_service.benchmarking.plan import find_missing, measure_all
+from parser_service.benchmarking.sources import find_sources
 from parser_service.management.options import (
     read_columns,
     read_configurations,
@@ -90,8 +91,11 @@ class Command(BaseCommand):
                 options["seeds"],
                 read_configurations(options["config"]),
                 read_split_seeds(options["new_splits"]),
+                read_names(options["new_splits_by"], list(Criterion)),
             )
         )
+        if any(job.criterion == Criterion.SOURCE_COMMAND for job in todo) and world:
+            self._report_unresolved(folder, world)
         cells = CellFile(options["json"])
         groups, failures = find_missing(todo, cells, folder, world)
         done = len(todo) - sum(len(group.jobs) for group in groups)
@@ -106,6 +110,10 @@ class Command(BaseCommand):
                     cells.append(answer)
                 bar.update()
         return failures
+
+    def _report_unresolved(self, folder: Path, world: World) -> None:
+        if folder.is_dir() and (sentence := find_sources(folder, world).sentence):
+            self.stderr.write(sentence)
 
 
 def _add_choice_of_cells(parser: CommandParser) -> None:
@@ -122,7 +130,8 @@ def _add_choice_of_cells(parser: CommandParser) -> None:
         "--columns",
         metavar="A,B",
         help="instead of --train-test, --criteria and --protocols: some of their combinations, each "
-        "TRAIN-TEST:CRITERION:PROTOCOL",
+        "TRAIN-TEST:CRITERION:PROTOCOL, under domain also with :training where only forms of training "
+        "pairs declare predicates",
     )
     parser.add_argument("--seeds", type=int, default=1, help="train with the seeds 0 to N - 1")
     parser.add_argument(
@@ -131,6 +140,11 @@ def _add_choice_of_cells(parser: CommandParser) -> None:
         metavar="N|A-B",
         help="use new splits of the train and validation pairs, 70/10/20: N of them, or those with "
         "the seeds A to B (default: the published split, or by source command the new one of seed 0)",
+    )
+    parser.add_argument(
+        "--new-splits-by",
+        metavar="A,B",
+        help=f"the criteria that have new splits, some of {', '.join(Criterion)} (default: all)",
     )
 
 

@@ -14,11 +14,12 @@ from annotations.management.base import Refused, ReportingCommand, find_split, f
 from annotations.models import World
 from annotations.models.background import Status
 from annotations.models.splits import Criterion
+from annotations.people.audit_log import record_command
 from parser_service.management.options import read_hyperparameters, read_sources
 from parser_service.models import TrainingRun
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.registry import PARSERS
-from parser_service.results.reports import report_run, report_seeds
+from parser_service.results.reports import report_run, report_seeds, with_reach
 from parser_service.runs import lifecycle, requesting
 from parser_service.runs.training import train
 
@@ -61,7 +62,7 @@ class Command(ReportingCommand):
             default=1,
             metavar="N",
             help="number of runs: one per seed, counting up from --seed. The report has each of them "
-            "and the mean and spread of their accuracies",
+            "and the mean and spread of their accuracies, with the 95 % interval",
         )
         parser.add_argument(
             "--config", nargs="*", default=[], metavar="KEY=VALUE", help="hyperparameters"
@@ -80,6 +81,7 @@ class Command(ReportingCommand):
         }
         # Each is requested when its turn comes: nothing stays in the queue where this is interrupted.
         runs = [self._train(home, seed, asked) for seed in seeds]
+        record_command("start a run", ", ".join(f"run {run.pk}" for run in runs), home)
         report = report_run(runs[0]) if len(runs) == 1 else report_seeds(runs)
         failed = [run for run in runs if run.status != Status.SUCCEEDED]
         if failed:
@@ -90,11 +92,15 @@ class Command(ReportingCommand):
     def describe(self, report: Mapping[str, Any]) -> str:
         lines = [super().describe(report)]
         for each in report.get("means", ()):
-            spread = "" if each["spread"] is None else f" ± {100 * each['spread']:.1f}"
-            where = f"{each['test_source']}, {each['part']}"
-            lines.append(
-                f"  {where}: {100 * each['mean']:.1f}{spread} % over {each['n_seeds']} seeds"
+            where, share = _where(each), with_reach(each["mean"], each["interval"])
+            spread = (
+                "" if each["spread"] is None else f", standard deviation {100 * each['spread']:.1f}"
             )
+            lines.append(f"  {where}: {share} over {each['n_seeds']} seeds{spread}")
+        for each in report["harmonic_means"]:
+            share = with_reach(each["harmonic_mean"], each["interval"])
+            both = f"unseen {100 * each['unseen']:.1f}, known {100 * each['known']:.1f}"
+            lines.append(f"  {_where(each)}, harmonic mean: {share} ({both})")
         return "\n".join(lines)
 
     def _train(self, world: World, seed: int, asked: Mapping[str, Any]) -> TrainingRun:
@@ -119,3 +125,7 @@ class Command(ReportingCommand):
                 raise CommandError(f"Run {run.pk} continues without this command.") from None
             lifecycle.acknowledge_cancel(run)
             raise CommandError(f"Run {run.pk} was cancelled.") from None
+
+
+def _where(figure: Mapping[str, Any]) -> str:
+    return f"{figure['test_source']}, {figure['part']}"

@@ -3,8 +3,8 @@ probabilities."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from math import log
 from typing import Any, Self
 
@@ -18,10 +18,18 @@ Weights = tuple[float, ...]  # by EXPERTS
 TERMS = (*EXPERTS, "novelty", "others")
 EQUAL: Weights = (1.0,) * len(EXPERTS)
 SPREAD = 0.5  # standard deviation of the prior of the logarithm of a weight
-# By how many nats new forms have to fit better than known ones, negated, and the scale of the prior
-# around it, from which validation pairs move it: measured on splits by source command (docs/ranker.md).
-USUAL_NOVELTY, NOVELTY_SCALE = -4.75, 0.2
-NOVELTIES = tuple(0.05 * step for step in range(-320, 321))  # nats
+# How much the nearest example says about whether a form is new, beside the glosses, and how near one
+# has to be to say that it is known (docs/ranker-experiments.md).
+NEAREST_SHARE = 0.5
+NEAR = 11.0  # nats; a cosine of 0.55
+# A command means a new form a third as often as a known one. This is the novelty where nothing was held
+# out, too, and the scale of the prior around it.
+USUAL_NOVELTY, NOVELTY_SCALE = log(1 / 3), 0.5
+NOVELTIES = tuple(0.05 * step for step in range(-200, 201))  # nats
+LABEL_NOISE = 0.05  # share of the pairs that are taken to have any form
+WITHHELD = 0.05  # most of the right answers that may be withheld, to answer nothing that is unlike all examples
+USUAL_NEARNESS = 11.0  # nats; the bound where too few answers tell one
+TELLING = 40  # right answers
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,30 +45,44 @@ class Scores:
 
     @property
     def evidence(self) -> Tensor:
-        """Return by how much the new forms fit better than the known ones. Shape [utterances].
+        """Return by how much the best new form fits better than the best known one. Shape [utterances].
 
-        Examples are left out, because only known forms have them.
+        Forms that fit worse say nothing, so ten of them are like ten thousand. The examples are
+        weighed apart, because most new forms have none.
         """
         if not self.new.shape[-1]:
             return self.known.new_zeros(self.known.shape[1])
-        return self.new[1:].sum(0).logsumexp(-1) - self.known[1:].sum(0).logsumexp(-1)
+        return _fit(self.new) - _fit(self.known)
+
+    @property
+    def nearness(self) -> Tensor:
+        """Return how near the nearest example or gloss of any form is, in nats. Shape [utterances]."""
+        parts = [part[:2].amax((0, 2)) for part in (self.known, self.new) if part.shape[-1]]
+        return torch.stack(parts).amax(0)
 
 
 @dataclass(frozen=True, slots=True)
 class Decision:
     """The weight of each expert among known and among new forms, and when a form is new.
 
-    The log-odds that it is new are ``novelty`` + evidence.
+    The log-odds that it is new are ``novelty`` + evidence. An utterance below ``least_nearness`` is like
+    nothing that was learned (``Scores.nearness``).
     """
 
     novelty: float = USUAL_NOVELTY
     known: Weights = EQUAL
     new: Weights = EQUAL
+    least_nearness: float = USUAL_NEARNESS
 
     @classmethod
     def read(cls, values: Mapping[str, Any]) -> Self:
         """Read what ``dataclasses.asdict`` returned, after it was JSON."""
-        return cls(values["novelty"], tuple(values["known"]), tuple(values["new"]))
+        return cls(
+            values["novelty"],
+            tuple(values["known"]),
+            tuple(values["new"]),
+            values.get("least_nearness", USUAL_NEARNESS),
+        )
 
     def log_probabilities(self, scores: Scores) -> Tensor:
         """Return log-probabilities [utterances, known + new forms]; the probabilities of a row sum to 1."""
@@ -92,39 +114,69 @@ class Decision:
         return torch.cat([experts, novelty[None], others[None]])
 
 
-def calibrate(scores: Scores, targets: Tensor) -> Decision:
-    """Return the decision under which ``targets`` [utterances] are most probable.
+def weigh(
+    novelty: float, scores: Scores, targets: Tensor, spoken: Tensor | None = None
+) -> Decision:
+    """Return the decision with the weights at which ``targets`` [utterances] are most probable among the
+    known forms, and among the new ones; and with the bound of nearness that withholds ``WITHHELD`` of the
+    right answers.
 
-    Targets number known forms first, then new ones; -1 is a form that is in neither list, which counts
-    as a new one (all such forms count as one).
+    Targets number known forms first, then new ones; -1 is a form that is in neither list. The bound is for the
+    utterances that ``spoken`` [utterances] names, where it names any.
     """
     number = scores.known.shape[-1]
     is_known, is_made = (targets >= 0) & (targets < number), targets >= number
-    return Decision(
-        best_novelty(scores.evidence, ~is_known, targets),
+    decision = Decision(
+        novelty,
         best_weights(scores.known[:, is_known], targets[is_known]),
         best_weights(scores.new[:, is_made], targets[is_made] - number),
     )
+    is_right = decision.log_probabilities(scores).argmax(-1) == targets
+    if spoken is not None and spoken.any():
+        is_right &= spoken
+    return replace(decision, least_nearness=least_nearness(scores.nearness[is_right]))
 
 
-def best_novelty(evidence: Tensor, is_new: Tensor, forms: Tensor) -> float:
-    """Return the novelty that best explains which of ``forms`` [utterances] are new.
+def least_nearness(of_right: Tensor) -> float:
+    """Return the bound below which ``WITHHELD`` of ``of_right`` lie at most: the nearness of utterances that
+    were answered right. Few of them are no evidence against a lower bound than usual.
 
-    Pairs of one form are right or wrong together, so each form counts once. The prior is a Cauchy
-    distribution, which a few forms hardly move and many do (O'Hagan 1979). Where all forms are new,
-    the split is by form and the set is open: the odds are those of as many new pairs and half a known
-    one (Krichevsky and Trofimov 1981).
+    It is halfway to the next below, since nearness is rounded otherwise among other utterances: at the bound
+    itself an utterance would be refused in one batch and answered in another.
     """
-    if not len(forms):
+    if not len(of_right):
+        return USUAL_NEARNESS
+    ordered, place = of_right.sort().values, int(WITHHELD * len(of_right))
+    bound = float(ordered[max(0, place - 1)] + ordered[place]) / 2
+    return bound if len(of_right) >= TELLING else min(bound, USUAL_NEARNESS)
+
+
+def best_novelty(
+    of_new: Tensor, new_forms: Sequence[str], of_known: Tensor, known_forms: Sequence[str]
+) -> float:
+    """Return the novelty that best tells utterances of new forms from those of known ones.
+
+    Args:
+        of_new: the evidence for utterances of forms that training did not show. Shape [utterances].
+        new_forms: the form of each.
+        of_known: the evidence for utterances of the other forms.
+        known_forms: the form of each.
+
+    New and known forms count alike, however many there are of each, and so do all forms of one kind:
+    pairs of one form are right or wrong together. New forms are meant less often than they are held out,
+    which ``USUAL_NOVELTY`` says. A share of ``LABEL_NOISE`` of the pairs may have any
+    form, so that a wrong one costs a few nats at most. The prior is a Cauchy distribution around
+    ``USUAL_NOVELTY``, which a few forms hardly move and many do (O'Hagan 1979).
+    """
+    if not new_forms or not known_forms:
         return USUAL_NOVELTY
-    if is_new.all():
-        return log(1 + 2 * len(forms))
-    _, at, pairs = forms.unique(return_inverse=True, return_counts=True)
     novelties = torch.tensor(NOVELTIES)
-    odds = novelties[:, None] + evidence  # [novelties, utterances]
-    seen = (logsigmoid(torch.where(is_new, odds, -odds)) / pairs[at]).sum(-1)
-    prior = -torch.log1p(((novelties - USUAL_NOVELTY) / NOVELTY_SCALE).square())
-    return NOVELTIES[int((seen + prior).argmax())]
+    pulls = novelties[:, None]
+    seen = _mean_by_form(_noisy(pulls + of_new), new_forms)
+    seen = seen + _mean_by_form(_noisy(-pulls - of_known), known_forms)
+    forms = min(len(set(new_forms)), len(set(known_forms)))
+    prior = -torch.log1p((novelties / NOVELTY_SCALE).square())
+    return USUAL_NOVELTY + NOVELTIES[int((forms * seen + prior).argmax())]
 
 
 def best_weights(scores: Tensor, targets: Tensor) -> Weights:
@@ -153,3 +205,26 @@ def combine(scores: Tensor, weights: Weights | Tensor) -> Tensor:
     """Return the weighted sum of the experts. Shape [experts, utterances, forms] to [utterances, forms]."""
     shares = torch.as_tensor(weights, dtype=scores.dtype)
     return torch.einsum("e,euf->uf", shares, scores)
+
+
+def _fit(scores: Tensor) -> Tensor:
+    """Return how well the best of some forms [experts, utterances, forms] fit. Shape [utterances].
+
+    Forms without examples count as if their nearest example were just ``NEAR``.
+    """
+    examples, others = scores[0], scores[1:].sum(0)
+    nearest = examples.amax(-1) if examples.any() else NEAR
+    return others.amax(-1) + NEAREST_SHARE * (nearest - NEAR)
+
+
+def _noisy(odds: Tensor) -> Tensor:
+    """Return the log-probability of what has the log-odds ``odds``, where some labels are wrong."""
+    return torch.log(LABEL_NOISE / 2 + (1 - LABEL_NOISE) * torch.sigmoid(odds))
+
+
+def _mean_by_form(values: Tensor, forms: Sequence[str]) -> Tensor:
+    """Return the mean over forms of the mean over their utterances. Shape [..., utterances] to [...]."""
+    numbers = {form: at for at, form in enumerate(dict.fromkeys(forms))}
+    at = torch.tensor([numbers[form] for form in forms])
+    shares = 1 / torch.bincount(at)[at]
+    return (values * shares).sum(-1) / len(numbers)

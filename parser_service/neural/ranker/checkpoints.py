@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import torch
 from safetensors.torch import save_file
@@ -13,29 +14,33 @@ from parser_service.neural.weights import load_tensors
 from parser_service.parsers.storage import read_json, write_json
 
 FILES = (TRAINING, TENSORS)
+GLOSSES = "glosses"
 
 
-def save_training(folder: Path, training: RankerTraining) -> None:
-    """Write what ``load_training`` reads: live and averaged weights and the optimizer's state.
+def save_training(folder: Path, training: RankerTraining, about: dict[str, Any]) -> None:
+    """Write what ``load_training`` reads: the weights that training changes, their average, the state of
+    the optimizer and the vectors of the glosses. ``about`` is stored beside them.
 
-    For use while the average is in force.
+    Pretrained weights that training leaves alone are not among them.
     """
-    tensors = optimizer_tensors(training.optimizer, training.model.trained())
-    for name, _ in training.model.trained():
-        tensors[f"live.{name}"] = training.average.live[name]
-        tensors[f"average.{name}"] = training.average.values[name]
+    tensors = optimizer_tensors(training.optimizer, training.trained())
+    tensors |= {f"live.{name}": weight.detach() for name, weight in training.trained()}
+    tensors |= {f"average.{name}": value for name, value in training.average.values.items()}
+    tensors[GLOSSES] = training.model.glosses.vectors
     save_file({name: value.contiguous() for name, value in tensors.items()}, folder / TENSORS)
-    write_json(folder / TRAINING, {"epoch": training.epoch})
+    state = {**about, "step": training.step, "losses": training.losses}
+    write_json(folder / TRAINING, state)
 
 
 @torch.no_grad()
-def load_training(folder: Path, training: RankerTraining) -> int:
-    """Put ``training`` into the state that ``save_training`` wrote; return its epoch. Raises
-    ValueError."""
+def load_training(folder: Path, training: RankerTraining) -> None:
+    """Put ``training`` into the state that ``save_training`` wrote. Raises ValueError."""
     tensors = load_tensors(folder / TENSORS)
-    for name, weight in training.model.trained():
+    for name, weight in training.trained():
         weight.copy_(tensors[f"live.{name}"])
-        training.average.values[name].copy_(tensors[f"average.{name}"])
-    load_optimizer(training.optimizer, training.model.trained(), tensors)
-    training.epoch = read_json(folder / TRAINING)["epoch"]
-    return training.epoch
+    for name, value in training.average.values.items():
+        value.copy_(tensors[f"average.{name}"])
+    training.model.glosses.vectors.copy_(tensors[GLOSSES])
+    load_optimizer(training.optimizer, training.trained(), tensors)
+    state = read_json(folder / TRAINING)
+    training.step, training.losses = state["step"], state["losses"]

@@ -11,14 +11,16 @@ from parser_service.neural.ranker.prototype_head import SCALE
 from parser_service.neural.sentence_encoder import SentenceEncoder
 from parser_service.parsers.interface import Check, keep_going
 
+AT_ONCE = 1024  # glosses
+
 
 class GlossHead(nn.Module):
     """logit = 20 · cos(utterance, gloss). It has no weights of its own, so it also scores forms that
     training never showed.
 
     In training the glosses of a batch's own forms carry gradient; the vectors of the others are
-    re-encoded from time to time. The vectors are saved with the weights: encoding a thousand
-    glosses takes longer than everything else that loading does.
+    re-encoded from time to time, of very many glosses some each time. The vectors are saved with the
+    weights: encoding a thousand glosses takes longer than everything else that loading does.
     """
 
     vectors: Tensor  # [glosses, width], zero before the first ``encode``
@@ -31,6 +33,14 @@ class GlossHead(nn.Module):
     def encode(self, encoder: SentenceEncoder, check: Check = keep_going) -> None:
         """Encode the glosses with the current ``encoder``."""
         self.vectors = encoder.vectors(self.glosses, check)
+
+    @torch.no_grad()
+    def refresh(self, encoder: SentenceEncoder, turn: int, check: Check = keep_going) -> None:
+        """Encode the next ``AT_ONCE`` glosses, those of the ``turn``, in place of their older vectors."""
+        turns = max(1, -(-len(self.glosses) // AT_ONCE))
+        begin = turn % turns * AT_ONCE
+        some = self.glosses[begin : begin + AT_ONCE]
+        self.vectors[begin : begin + len(some)] = encoder.vectors(some, check)
 
     def logits(self, utterances: Tensor) -> Tensor:
         """Return logits [batch, glosses] for ``utterances`` [batch, width]."""

@@ -10,7 +10,6 @@ from torch import Tensor, nn
 from parser_service.neural.ranker.calibration import EXPERTS, Scores
 from parser_service.neural.ranker.gloss_head import GlossHead
 from parser_service.neural.ranker.nearest_examples import NearestExamples
-from parser_service.neural.ranker.prototype_head import PrototypeHead
 from parser_service.neural.ranker.ranked_forms import RankedForms
 from parser_service.neural.ranker.slot_term import SlotTerm
 from parser_service.neural.sentence_encoder import SentenceEncoder
@@ -21,11 +20,7 @@ SUPPORT_WEIGHT = 1.0  # nats for each kind of step that arrives at a new form
 
 
 class RankerModel(nn.Module):
-    """Scores forms by their examples and by their glosses.
-
-    In training, a prototype represents the examples of a form, because their vectors change with
-    every step; afterwards the nearest example does.
-    """
+    """Scores forms by the nearest of their examples and by their glosses."""
 
     def __init__(
         self, encoder: SentenceEncoder, ranked: RankedForms, slots: SlotTerm | None = None
@@ -34,19 +29,14 @@ class RankerModel(nn.Module):
         super().__init__()
         self.encoder = encoder
         self.nearest = NearestExamples(ranked.examples, encoder.width)
-        self.prototypes = PrototypeHead(self.nearest.number, encoder.width)
         self.glosses = GlossHead(ranked.glosses, encoder.width)
         self.slots = slots
         self.known = ranked.known
         self.support = torch.tensor(ranked.support, dtype=torch.float)  # [new forms]
 
     def trained(self) -> Iterator[tuple[str, nn.Parameter]]:
-        """Yield the weights that training changes, by name."""
+        """Yield the weights that training changes, by name: those of the encoder."""
         return ((name, weight) for name, weight in self.named_parameters() if weight.requires_grad)
-
-    def encoder_weights(self) -> Iterator[tuple[str, nn.Parameter]]:
-        """Yield those of the encoder."""
-        return ((name, weight) for name, weight in self.trained() if name.startswith("encoder."))
 
     def add_slots(self, logits: Tensor, utterances: Sequence[str]) -> Tensor:
         """Add the slot term, where the ontology is known, to gloss logits [batch, forms]."""

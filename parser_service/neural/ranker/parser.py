@@ -2,33 +2,25 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict
+from copy import copy
+from dataclasses import asdict, replace
 from math import log
 from pathlib import Path
 from typing import Self
 
-import torch
-
-from parser_service.neural.device import processor, threads
-from parser_service.neural.pretrained import load_encoder
-from parser_service.neural.ranker.calibration import TERMS, Decision, Scores, calibrate
-from parser_service.neural.ranker.checkpoints import FILES, load_training, save_training
+from parser_service.neural.device import threads
+from parser_service.neural.ranker.calibration import TERMS, Decision, Scores
+from parser_service.neural.ranker.checkpoints import FILES
+from parser_service.neural.ranker.fitting import Fitting, make_model, weigh_by
 from parser_service.neural.ranker.model import RankerModel
-from parser_service.neural.ranker.ranked_forms import RankedExample, RankedForms, collect
-from parser_service.neural.ranker.slot_term import SlotTerm
-from parser_service.neural.ranker.training import RankerTraining, reduced_precision
+from parser_service.neural.ranker.ranked_forms import RankedForms
 from parser_service.neural.sentence_encoder import ENCODER, TOKENIZER, SentenceEncoder
-from parser_service.neural.training import resume
 from parser_service.neural.weights import WEIGHTS, load_weights, save_weights
-from parser_service.parsers.candidates.slot_filling import SlotFiller
 from parser_service.parsers.conditions import Protocol
-from parser_service.parsers.encoder_places import encoders_folder
 from parser_service.parsers.interface import (
     Candidate,
     Check,
-    EpochReport,
     Knowledge,
     Observer,
     Pair,
@@ -44,7 +36,6 @@ SAVED = (FORMS, ENCODER, TOKENIZER, WEIGHTS)
 UNKNOWN = "UNKNOWN"
 REFUSAL = "refusal"  # the origin of UNKNOWN where no form is probable enough
 PREDICTION_BATCH = 64
-VALIDATIONS = 4  # in a training; each re-encodes all examples, which takes a while
 
 
 class FormRanker(Parser):
@@ -53,12 +44,13 @@ class FormRanker(Parser):
     A form with examples is scored by the nearest of them and by its English gloss, a new one by its
     gloss alone; where the ontology is known, slots that no entity of the utterance fills lower the
     score. New forms are made from those of the training pairs (``candidates``) or taken from the
-    grammar. Scores are log-probabilities. They are calibrated on the validation pairs, which also
-    decide by how much a new form has to fit better.
+    grammar. Scores are log-probabilities. By how much a new form has to fit better is learned from forms
+    that are held out of the first half of the training, never from the validation pairs: those only
+    weigh the experts.
     """
 
     name = "ranker"
-    version = 7
+    version = 9
     protocols = (Protocol.STRICT, Protocol.DOMAIN, Protocol.GRAMMAR)
     score_kind = ScoreKind.LOG_PROBABILITY
     Config = RankerConfig
@@ -73,6 +65,7 @@ class FormRanker(Parser):
         self._decision = Decision()
         self._ranked = RankedForms((), (), 0, (), ())
         self._model: RankerModel | None = None
+        self._is_hesitant = False
 
     def fit(
         self,
@@ -83,38 +76,57 @@ class FormRanker(Parser):
         observe = observe or Observer()
         if not train:
             raise ValueError("There is no training pair, so there is nothing to learn from.")
-        is_open = self.config.forms == "open"
-        self._ranked, examples, line = collect(train, self.knowledge, is_open)
-        observe.log(line)
+        fitting = Fitting(self.config, self.seed, self.knowledge, validation, observe)
         with threads(self.config.threads):
-            training = self._prepare(examples, observe.check)
-            resume(
-                observe,
-                check=lambda folder: open_sealed(folder, type(self), (*SAVED, *FILES)),
-                load=lambda folder: load_training(folder, training),
+            fitting.run(
+                train,
+                check_sealed=lambda folder: open_sealed(folder, type(self), FILES),
+                seal=lambda folder: seal(folder, self, FILES),
             )
-            was_over = training.is_over()
-            while not training.is_over():
-                self._train_epoch(training, validation, observe)
-            training.average.keep()
-            if was_over:  # else the last epoch has done this
-                self._validate(training, validation, observe.check)
+        self._ranked, self._model = fitting.ranked, fitting.model
+        self._decision = fitting.decision
 
     def predict(
         self, utterances: Sequence[str], beam_width: int = 1, check: Check = keep_going
     ) -> list[list[Candidate]]:
         """Return the most probable forms; scores are log-probabilities in nats.
 
-        Their parts are the ``TERMS`` that are not 0. Where the best is below ``unknown_below``, the
+        Their parts are the ``TERMS`` that are not 0; the forms of an utterance that is longer than the
+        encoder reads say so. Where the best is below ``unknown_below``, the
         first answer is UNKNOWN, scored with that bound.
         """
         answers: list[list[Candidate]] = []
         for begin in range(0, len(utterances), PREDICTION_BATCH):
             asked = utterances[begin : begin + PREDICTION_BATCH]
-            scores = self._model_or_refuse().scores(asked, check)
-            for ranked in self._rank(scores, beam_width):
-                answers.append(self._refuse_improbable(ranked)[:beam_width])
+            model = self._model_or_refuse()
+            scores = model.scores(asked, check)
+            is_cut = model.encoder.cut(asked)
+            ranked_forms = self._rank(scores, beam_width)
+            near = scores.nearness.tolist()
+            for text, ranked, nearness, is_long in zip(
+                asked, ranked_forms, near, is_cut, strict=True
+            ):
+                is_unlike = not text.strip() or nearness < self._decision.least_nearness
+                if self._is_hesitant and is_unlike:
+                    ranked = _refuse(ranked, ranked[0].score)
+                ranked = self._refuse_improbable(ranked)[:beam_width]
+                answers.append(
+                    [replace(each, is_cut=True) for each in ranked] if is_long else ranked
+                )
         return answers
+
+    def hesitant(self) -> Self:
+        other = copy(self)
+        other._is_hesitant = True
+        return other
+
+    def calibrated(self, pairs: Sequence[Pair]) -> Self:
+        other = copy(self)  # of the same model, which answering does not change
+        novelty = self._decision.novelty
+        other._decision, _ = weigh_by(
+            pairs, novelty, self._ranked, self._model_or_refuse(), keep_going
+        )
+        return other
 
     def _rank(self, scores: Scores, beam_width: int) -> Iterator[list[Candidate]]:
         """Yield the most probable forms of each utterance."""
@@ -153,7 +165,8 @@ class FormRanker(Parser):
             )
         parser._ranked = RankedForms.read(about["ranked"])
         parser._decision = Decision.read(about["decision"])
-        parser._model = parser._make_model(SentenceEncoder.described_in(folder))
+        encoder = SentenceEncoder.described_in(folder)
+        parser._model = make_model(encoder, parser._ranked, parser.knowledge)
         load_weights(folder / WEIGHTS, parser._model)
         parser._model.eval()
         return parser
@@ -161,70 +174,11 @@ class FormRanker(Parser):
     def parameters(self) -> int:
         return sum(weights.numel() for weights in self._model.parameters()) if self._model else 0
 
-    def _prepare(self, examples: Sequence[RankedExample], check: Check) -> RankerTraining:
-        """Make a model with the pretrained encoder, and its prototypes from the encoded examples."""
-        pretrained = load_encoder(self.config.encoder, encoders_folder())
-        model = self._make_model(SentenceEncoder.of(pretrained, self.config.dropout))
-        with reduced_precision(model, self.config.precision):
-            vectors = model.encoder.vectors([each.utterance for each in examples], check)
-        model.prototypes.start_from(vectors, [each.form for each in examples])
-        self._model = model
-        ontology = self.knowledge.ontology
-        fill = SlotFiller(ontology).fill if ontology is not None else None
-        is_strict = self.knowledge.predicates is None
-        config = self.config
-        share = config.pretrained_share if is_strict else config.pretrained_share_domain
-        return RankerTraining(model, config, self.seed, examples, share, fill)
-
-    def _make_model(self, encoder: SentenceEncoder) -> RankerModel:
-        ranked, ontology = self._ranked, self.knowledge.ontology
-        slots = SlotTerm(ranked.forms, ontology) if ontology is not None else None
-        return RankerModel(encoder, ranked, slots).to(processor())
-
-    def _train_epoch(
-        self, training: RankerTraining, validation: Sequence[Pair], observe: Observer
-    ) -> None:
-        begin = time.monotonic()
-        loss = training.run_epoch(observe.check)
-        result: tuple[float | None, float | None] = None, None
-        with training.average.in_force():
-            if is_due(training.epoch, training.epochs):
-                precision = "fp32" if training.is_over() else self.config.precision
-                with reduced_precision(training.model, precision):
-                    result = self._validate(training, validation, observe.check)
-            observe.epoch(EpochReport(training.epoch, loss, *result, time.monotonic() - begin))
-            # The newest average counts as the best: the last one becomes the parser, whatever a
-            # small validation part says.
-            observe.checkpoint(
-                training.epoch, True, lambda folder: self._checkpoint(folder, training)
-            )
-        message = f"epoch {training.epoch} of {training.epochs}"
-        observe.progress(training.epoch / training.epochs, message)
-
-    def _validate(
-        self, training: RankerTraining, validation: Sequence[Pair], check: Check
-    ) -> tuple[float | None, float | None]:
-        """Encode examples and glosses and calibrate; return loss and accuracy on the validation pairs."""
-        model = self._model_or_refuse()
-        model.encode([example.utterance for example in training.examples], check)
-        if not validation:
-            self._decision = Decision()
-            return None, None
-        number = {form: at for at, form in enumerate(self._ranked.forms)}
-        targets = torch.tensor([number.get(pair.form, -1) for pair in validation])
-        scores = model.scores([pair.utterance for pair in validation], check)
-        self._decision = calibrate(scores, targets)
-        logs = self._decision.log_probabilities(scores)
-        of_targets = logs[targets >= 0].gather(1, targets[targets >= 0, None])
-        loss = -float(of_targets.mean()) if len(of_targets) else None
-        return loss, float((logs.argmax(-1) == targets).float().mean())
-
     def _refuse_improbable(self, ranked: list[Candidate]) -> list[Candidate]:
         bound = self.config.unknown_below
         if not bound or ranked[0].score >= log(bound):
             return ranked
-        others = [each for each in ranked if each.form != UNKNOWN]
-        return [Candidate(UNKNOWN, log(bound), REFUSAL), *others]
+        return _refuse(ranked, log(bound))
 
     def _model_or_refuse(self) -> RankerModel:
         if self._model is None:
@@ -243,17 +197,8 @@ class FormRanker(Parser):
         model.encoder.describe(folder)
         save_weights(folder / WEIGHTS, model)
 
-    def _checkpoint(self, folder: Path, training: RankerTraining) -> None:
-        """Write the averaged weights and the state to resume from.
 
-        The vectors of examples and glosses and the calibration are older than the weights, except
-        after an epoch that was validated, as the last one is. Resuming needs none of them.
-        """
-        self._write(folder)
-        save_training(folder, training)
-        seal(folder, self, (*SAVED, *FILES))
-
-
-def is_due(epoch: int, epochs: int) -> bool:
-    """Return whether ``epoch`` is validated; the last one always is."""
-    return epoch * VALIDATIONS // epochs > (epoch - 1) * VALIDATIONS // epochs
+def _refuse(ranked: list[Candidate], score: float) -> list[Candidate]:
+    """Put UNKNOWN before the forms."""
+    others = [each for each in ranked if each.form != UNKNOWN]
+    return [Candidate(UNKNOWN, score, REFUSAL), *others]

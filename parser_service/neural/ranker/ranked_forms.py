@@ -10,8 +10,10 @@ from annotations.language.grounding import Anonymizer
 from annotations.language.ontology import Ontology
 from parser_service.parsers.candidates.generation import generate_candidates
 from parser_service.parsers.candidates.glosses import glosses
-from parser_service.parsers.interface import TRAINING, Knowledge, Pair
+from parser_service.parsers.interface import TRAINING, Check, Knowledge, Pair, keep_going
+from parser_service.parsers.spreading import spread
 
+MOST_EXAMPLES = 20_000
 MOST_SUPPORT = 4  # kinds of step, above which more of them say no more
 
 
@@ -66,14 +68,14 @@ class RankedForms:
 
 
 def collect(
-    pairs: Sequence[Pair], knowledge: Knowledge, is_open: bool
+    pairs: Sequence[Pair], knowledge: Knowledge, is_open: bool, check: Check = keep_going
 ) -> tuple[RankedForms, list[RankedExample], str]:
     """Return the forms to choose from, the examples to learn from, and a line for the log.
 
     Where the grammar is known, its commands are examples as well; a command that is the utterance of a
-    pair keeps the form of the pair.
+    pair keeps the form of the pair. There are at most ``MOST_EXAMPLES``, or one of each form.
     """
-    generated = generate_candidates(pairs, knowledge, is_open)
+    generated = generate_candidates(pairs, knowledge, is_open, check)
     forms = (*generated.training, *(each.form for each in generated.new))
     number = {form: at for at, form in enumerate(forms)}
     meant = [(pair.utterance, pair.form) for pair in pairs]
@@ -84,17 +86,22 @@ def collect(
         for command in commands
         if command not in said
     ]
+    kept = spread(meant, max(MOST_EXAMPLES, len(forms)), lambda each: each[1])
     anonymizer = Anonymizer(knowledge.ontology or Ontology(()))
-    examples = [
-        RankedExample(utterance, number[form], anonymizer.anonymize(utterance).text)
-        for utterance, form in meant
-    ]
+    examples = []
+    for utterance, form in kept:
+        check()
+        pattern = anonymizer.anonymize(utterance).text
+        examples.append(RankedExample(utterance, number[form], pattern))
     ranked = RankedForms(
         forms,
-        tuple(glosses(forms, knowledge.predicates)),
+        tuple(glosses(forms, knowledge.predicates, check)),
         len(generated.training),
         tuple(min(each.support, MOST_SUPPORT) for each in generated.new),
         tuple(each.form for each in examples),
         tuple(each.main_step for each in generated.new),
     )
-    return ranked, examples, str(generated)
+    line = str(generated)
+    if len(kept) < len(meant):
+        line += f" Of {len(meant):,} pairs, {len(kept):,} are read, of all forms alike."
+    return ranked, examples, line

@@ -10,6 +10,7 @@ from functools import lru_cache
 import torch
 from torch import Tensor
 
+from annotations.language.english import OPEN_CATEGORIES
 from annotations.language.forms import CLASS_TOKEN
 from annotations.language.grounding import Anonymizer, Span
 from annotations.language.ontology import Ontology
@@ -19,7 +20,7 @@ _PLACE = {name: place for place, name in enumerate(ENTITY_CLASSES)}
 _MOST_READINGS = 8
 # These words mean a category that is left open (FORMATS: ``{category?}`` is "objects") or things of no
 # category, so they may count as one or not.
-_OPEN_CATEGORY = re.compile(r"\b(?:objects|items|things)\b", re.IGNORECASE)
+_OPEN_CATEGORY = re.compile(rf"\b(?:{'|'.join(map(re.escape, OPEN_CATEGORIES))})\b", re.IGNORECASE)
 Counts = tuple[int, ...]  # by ENTITY_CLASSES
 
 
@@ -31,7 +32,9 @@ class SlotTerm:
     """
 
     def __init__(self, forms: Sequence[str], ontology: Ontology):
-        self.slots = torch.tensor([_count_tokens(form) for form in forms])  # [forms, classes]
+        counts = torch.tensor([_count_tokens(form) for form in forms])  # [forms, classes]
+        # Many forms have the same slots. [kinds of form, classes] and [forms]
+        self._kinds, self._kind_of = counts.unique(dim=0, return_inverse=True)
         self._anonymizer = Anonymizer(ontology)
         self._readings = lru_cache(maxsize=100_000)(self._read)
 
@@ -40,9 +43,9 @@ class SlotTerm:
         rows = []
         for utterance in utterances:
             readings = torch.tensor(self._readings(utterance))  # [readings, classes]
-            misfit = (self.slots[None] - readings[:, None]).abs().sum(-1)  # [readings, forms]
+            misfit = (self._kinds[None] - readings[:, None]).abs().sum(-1)  # [readings, kinds]
             rows.append(-misfit.min(0).values)
-        return torch.stack(rows).float()
+        return torch.stack(rows).float()[:, self._kind_of]
 
     def _read(self, utterance: str) -> tuple[Counts, ...]:
         """Count the entities by class, once for each way to understand the words."""

@@ -5,18 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 from random import Random
-from typing import Any
+from typing import Any, NamedTuple
 
 import torch
-from torch import Tensor
+from torch import Tensor, nn
 from torch.nn.functional import cross_entropy
 
 from parser_service.neural.device import denormals_flushed, has_bf16
 from parser_service.neural.ranker.averaging import Average
 from parser_service.neural.ranker.model import RankerModel
+from parser_service.neural.ranker.prototype_head import PrototypeHead
 from parser_service.neural.ranker.ranked_forms import RankedExample
-from parser_service.neural.training import finite_mean
+from parser_service.neural.training import finite_mean, random_state_kept
 from parser_service.parsers.interface import Check
 from parser_service.parsers.ranker_config import RankerConfig
 
@@ -30,64 +32,115 @@ POOL = 8  # batches sorted by length together: little padding, yet another mix e
 Fill = Callable[[str, Random], str]
 
 
+class Span(NamedTuple):
+    """The steps of a training, ``first`` to before ``end``, out of ``total`` in the whole schedule;
+    ``a_pass`` of them are a pass over the pairs, or as much of one as there is time for."""
+
+    first: int
+    end: int
+    total: int
+    a_pass: int
+
+    @property
+    def passes(self) -> int:
+        return math.ceil((self.end - self.first) / self.a_pass)
+
+
+def plan(shares: Sequence[float], pairs: Sequence[int], config: RankerConfig) -> list[Span]:
+    """Return the steps of trainings that follow each other, on ``pairs`` many pairs each.
+
+    ``shares`` of the steps are rounded up to whole passes; where one pass is longer, it is cut.
+    """
+    ends, lengths, end = [0], [], 0
+    for share, number in zip(shares, pairs, strict=True):
+        steps = max(1, round(share * config.steps))
+        batches = math.ceil(number / config.batch_size)
+        lengths.append(min(batches, steps))
+        end += math.ceil(steps / lengths[-1]) * lengths[-1]
+        ends.append(end)
+    return [
+        Span(first, last, end, length)
+        for first, last, length in zip(ends, ends[1:], lengths, strict=False)
+    ]
+
+
+@dataclass
 class RankerTraining:
-    """AdamW and the average of the weights, with everything that one epoch passes to the next.
+    """AdamW and the average of the encoder's weights.
+
+    In training, one prototype represents the examples of a form, because their vectors change with
+    every step; afterwards the nearest example does.
 
     Random choices (batches, dropout, the entities in generated commands) depend on the seed and the
-    number of the step alone. So weights, average, optimizer and the number of the epoch are all that
-    a training needs to resume exactly.
+    number of the step alone. So the weights, the average, the optimizer, the vectors of the glosses and the
+    losses of this pass are all that a training needs to resume exactly after any step.
     """
 
-    def __init__(
-        self,
-        model: RankerModel,
-        config: RankerConfig,
-        seed: int,
-        examples: Sequence[RankedExample],
-        pretrained_share: float = 0.0,
-        fill: Fill | None = None,
-    ):
-        self.model = model
-        self.config = config
-        self.seed = seed
-        self.examples = examples
-        self.fill = fill
-        kept = {name: pretrained_share for name, _ in model.encoder_weights()}
-        self.average = Average(model.trained(), config.averaging, kept)
+    model: RankerModel
+    config: RankerConfig
+    seed: int
+    examples: Sequence[RankedExample]
+    average: Average
+    span: Span
+    fill: Fill | None = None
+    losses: list[float] = field(default_factory=list)  # of this pass
+
+    def __post_init__(self) -> None:
+        self.step = self.span.first
+        encoder = self.model.encoder
+        self.prototypes = PrototypeHead(self.model.nearest.number, encoder.width)
+        self.prototypes.to(encoder.device)
         self.optimizer = torch.optim.AdamW(self._groups(), weight_decay=WEIGHT_DECAY, fused=True)
-        self.epoch = 0
-        self.batches = math.ceil(len(examples) / config.batch_size)  # an epoch
-        self.epochs = math.ceil(config.steps / self.batches)
+
+    def start(self, check: Check) -> None:
+        """Give each prototype the mean of the encoded examples, and encode the glosses."""
+        with reduced_precision(self.model, self.config.precision):
+            texts = [example.utterance for example in self.examples]
+            vectors = self.model.encoder.vectors(texts, check)
+            self.prototypes.start_from(vectors, [example.form for example in self.examples])
+            self.model.glosses.encode(self.model.encoder, check)
+
+    @property
+    def passes(self) -> int:
+        """The number of passes that are over."""
+        return (self.step - self.span.first) // self.span.a_pass
 
     def is_over(self) -> bool:
-        return self.epoch >= self.epochs
+        return self.step >= self.span.end
 
-    def run_epoch(self, check: Check) -> float:
-        """Train for one pass; return the mean loss in nats per example. Raises ValueError where it is not
-        finite."""
+    def trained(self) -> Iterator[tuple[str, nn.Parameter]]:
+        """Yield the weights that this changes, by name."""
+        yield from self.model.trained()
+        yield from self.prototypes.named_parameters("prototypes")
+
+    def run_pass(self, check: Check, after_step: Callable[[], None] = lambda: None) -> float:
+        """Train until the pass is over; return its mean loss in nats per example. ``after_step`` is called
+        after each step but the last. Raises ValueError where the loss is not finite."""
         self.model.train()
-        first = self.epoch * self.batches
-        losses = []
+        number = self.passes
         precision = reduced_precision(self.model, self.config.precision)
         with random_state_kept(), denormals_flushed(), precision:
-            for step, batch in enumerate(self._shuffle(), first):
+            for batch in self._shuffle()[len(self.losses) : self.span.a_pass]:
                 check()
-                losses.append(self._train_on(batch, step))
+                self.losses.append(self._train_on(batch, check))
+                self.step += 1
+                if len(self.losses) < self.span.a_pass:
+                    after_step()
         self.model.eval()
-        self.epoch += 1
-        return finite_mean(losses, self.epoch, self.config.learning_rate)
+        losses, self.losses = self.losses, []
+        return finite_mean(losses, number + 1, self.config.learning_rate)
 
     def _groups(self) -> list[dict[str, Any]]:
         """Return the groups of weights: the head learns faster than the pretrained encoder."""
-        encoder = [weight for _, weight in self.model.encoder_weights()]
+        encoder = [weight for _, weight in self.model.trained()]
         return [
             {"params": encoder, "lr": self.config.learning_rate},
-            {"params": [*self.model.prototypes.parameters()], "lr": self.config.head_learning_rate},
+            {"params": [*self.prototypes.parameters()], "lr": self.config.head_learning_rate},
         ]
 
-    def _shuffle(self) -> Iterator[list[RankedExample]]:
-        """Yield the batches of this epoch in random order, each of utterances of similar length."""
-        random = Random(f"{self.seed} {self.epoch}")
+    def _shuffle(self) -> list[list[RankedExample]]:
+        """Return the batches of this pass in random order, each of utterances of similar length."""
+        random = Random(f"{self.seed} {self.span.first} {self.passes}")
         order = random.sample(self.examples, len(self.examples))
         size = self.config.batch_size
         batches: list[list[RankedExample]] = []
@@ -95,20 +148,21 @@ class RankerTraining:
             pool = order[begin : begin + size * POOL]
             pool.sort(key=lambda example: len(example.utterance))
             batches += [pool[at : at + size] for at in range(0, len(pool), size)]
-        yield from random.sample(batches, len(batches))
+        return random.sample(batches, len(batches))
 
-    def _train_on(self, batch: Sequence[RankedExample], step: int) -> float:
-        torch.manual_seed(self.seed * 1_000_003 + step)
-        if step % self.batches % REENCODE_EVERY == 0:
-            self.model.glosses.encode(self.model.encoder)
-        loss = self._loss(batch, Random(f"{self.seed} step {step}"))
+    def _train_on(self, batch: Sequence[RankedExample], check: Check) -> float:
+        torch.manual_seed(self.seed * 1_000_003 + self.step)
+        if self.step % REENCODE_EVERY == 0:
+            turn = self.step // REENCODE_EVERY
+            self.model.glosses.refresh(self.model.encoder, turn, check)
+        loss = self._loss(batch, Random(f"{self.seed} step {self.step}"))
         self.optimizer.zero_grad()
         loss.backward()  # type: ignore[no-untyped-call]
         weights = [weight for group in self.optimizer.param_groups for weight in group["params"]]
         torch.nn.utils.clip_grad_norm_(weights, CLIP)
-        self._set_rates(step)
+        self._set_rates()
         self.optimizer.step()
-        self.average.update(step + 1)
+        self.average.update(self.step + 1)
         return loss.item()
 
     def _loss(self, batch: Sequence[RankedExample], random: Random) -> Tensor:
@@ -117,7 +171,7 @@ class RankerTraining:
         vectors, by_gloss = self.model.glosses.read(self.model.encoder, texts, meant)
         targets = torch.tensor(meant, device=vectors.device)
         smoothing = self.config.label_smoothing
-        by_example = self.model.prototypes(vectors)  # [batch, forms with examples]
+        by_example = self.prototypes(vectors)  # [batch, forms with examples]
         return cross_entropy(by_example, targets, label_smoothing=smoothing) + cross_entropy(
             self.model.add_slots(by_gloss, texts), targets, label_smoothing=smoothing
         )
@@ -129,23 +183,15 @@ class RankerTraining:
             return self.fill(example.pattern, random)
         return example.utterance
 
-    def _set_rates(self, step: int) -> None:
-        """Set the learning rates of ``step``: linear growth, then linear decay."""
-        steps = self.epochs * self.batches
+    def _set_rates(self) -> None:
+        """Set the learning rates of this step: linear growth, then linear decay."""
+        steps = self.span.total
         warm = max(1, int(WARM_UP * steps))
-        decay = 1 - (1 - LEAST_RATE) * (step - warm) / (steps - warm or 1)
-        share = (step + 1) / warm if step < warm else decay
+        decay = 1 - (1 - LEAST_RATE) * (self.step - warm) / (steps - warm or 1)
+        share = (self.step + 1) / warm if self.step < warm else decay
         rates = self.config.learning_rate, self.config.head_learning_rate
         for group, rate in zip(self.optimizer.param_groups, rates, strict=True):
             group["lr"] = rate * share
-
-
-@contextmanager
-def random_state_kept() -> Iterator[None]:
-    """Leave torch's random state as it was, on every device."""
-    devices = list(range(torch.cuda.device_count()))
-    with torch.random.fork_rng(devices=devices):
-        yield
 
 
 @contextmanager

@@ -83,8 +83,13 @@ class SentenceEncoder(nn.Module):
     def device(self) -> torch.device:
         return next(self.model.parameters()).device
 
+    def cut(self, texts: Sequence[str]) -> list[bool]:
+        """Return for each text whether it is longer than this encoder reads."""
+        return [bool(each.overflowing) for each in self.tokenizer.encode_batch(list(texts))]
+
     def forward(self, texts: Sequence[str]) -> Tensor:
-        """Return vectors of length 1 [texts, width], always in single precision."""
+        """Return vectors of length 1 [texts, width], always in single precision; 0 for a text without a
+        subword."""
         device = self.device
         encodings = self.tokenizer.encode_batch(list(texts))
         subwords = torch.tensor([each.ids for each in encodings], device=device)  # [texts, length]
@@ -93,7 +98,7 @@ class SentenceEncoder(nn.Module):
         with bf16:
             states = self.model(input_ids=subwords, attention_mask=mask).last_hidden_state
         states = self.dropout(states.float())  # [texts, length, width]
-        shares = mask / mask.sum(1, keepdim=True)  # [texts, length]
+        shares = mask / mask.sum(1, keepdim=True).clamp(min=1)  # [texts, length]
         return normalize(torch.einsum("bl,blw->bw", shares, states), dim=-1)
 
     @torch.no_grad()

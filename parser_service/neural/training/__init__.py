@@ -1,5 +1,5 @@
-"""What the trainings of all networks share: the state that a checkpoint keeps, resuming from it, and
-the refusal of a loss that has diverged."""
+"""What the trainings of all networks share: the state that a checkpoint keeps, resuming from it, random
+choices that stay inside, and the refusal of a loss that has diverged."""
 
 from parser_service.neural.training.checkpoints import (
     TENSORS,
@@ -10,6 +10,7 @@ from parser_service.neural.training.checkpoints import (
     tensors_under,
 )
 from parser_service.neural.training.losses import finite_mean
+from parser_service.neural.training.randomness import random_state_kept
 
 __all__ = [
     "TENSORS",
@@ -17,6 +18,7 @@ __all__ = [
     "finite_mean",
     "load_optimizer",
     "optimizer_tensors",
+    "random_state_kept",
     "resume",
     "tensors_under",
 ]

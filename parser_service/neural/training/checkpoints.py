@@ -44,14 +44,20 @@ def tensors_under(prefix: str, tensors: Mapping[str, Tensor]) -> dict[str, Tenso
     return {name.removeprefix(prefix): t for name, t in tensors.items() if name.startswith(prefix)}
 
 
-def resume(observe: Observer, check: Callable[[Path], object], load: Callable[[Path], int]) -> None:
+def resume(
+    observe: Observer,
+    check: Callable[[Path], object],
+    load: Callable[[Path], int],
+    unit: str = "epoch",
+) -> None:
     """Resume from the last checkpoint, or start from the beginning, to the same end, where there is
     none or it cannot be read.
 
     Args:
         observe: knows the checkpoint and takes a line for the log.
         check: raises ValueError, a sentence, where a folder is no checkpoint of this training.
-        load: puts the training into the state in a folder; returns the epoch it was saved after.
+        load: puts the training into the state in a folder; returns the number of the ``unit`` it was saved
+            after.
     """
     folder = observe.last_checkpoint()
     if folder is None:
@@ -63,4 +69,4 @@ def resume(observe: Observer, check: Callable[[Path], object], load: Callable[[P
             f"The last checkpoint is unreadable; training starts from the beginning. {error}"
         )
         return
-    observe.log(f"Resuming after epoch {load(folder)}.")
+    observe.log(f"Resuming after {unit} {load(folder)}.")

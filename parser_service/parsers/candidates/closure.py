@@ -42,6 +42,10 @@ from parser_service.parsers.candidates.contexts import (
     with_children,
 )
 from parser_service.parsers.candidates.pool import Made
+from parser_service.parsers.interface import Check, keep_going
+from parser_service.parsers.spreading import visiting_order
+
+MOST_WAYS = 30_000  # of one closure, which takes about ten seconds
 
 Change = tuple[Form, str]
 Changes = Callable[[Place, Contexts, Mapping[str, Predicate]], Iterator[Change]]
@@ -51,26 +55,48 @@ def close(
     forms: Sequence[str],
     predicates: Mapping[str, Predicate],
     changes: Mapping[str, Changes] | None = None,
+    check: Check = keep_going,
 ) -> list[Made]:
-    """Return every form one change away from ``forms``, once for each way to it.
+    """Return forms one change away from ``forms``, once for each way to them.
 
     Args:
         forms: canonical texts; a text that is not a form is skipped.
         predicates: with the signatures that a change may use.
         changes: kinds of change by name; those of this module by default.
+        check: is called for each form.
+
+    These are all such forms, unless there are more than ``MOST_WAYS`` ways: then those from as many of
+    ``forms``, spread evenly over them, as it takes to find that many.
     """
     kinds = CHANGES if changes is None else changes
     read = list(read_forms(forms))
-    contexts = find_contexts(read)
+    contexts = find_contexts(read, check)
+    ways: dict[int, list[Made]] = {}
+    number_of_ways = 0
+    for at in visiting_order(len(read)):
+        if number_of_ways >= MOST_WAYS:
+            break
+        check()
+        ways[at] = _change(read[at], contexts, predicates, kinds)
+        number_of_ways += len(ways[at])
+    return [each for at in sorted(ways) for each in ways[at]]
+
+
+def _change(
+    form: Form,
+    contexts: Contexts,
+    predicates: Mapping[str, Predicate],
+    kinds: Mapping[str, Changes],
+) -> list[Made]:
+    """Return the forms one change away from ``form``, once for each way to them."""
+    origin = canonical_text(form)
     made: dict[Made, None] = {}
-    for form in read:
-        origin = canonical_text(form)
-        for place in places(form):
-            for name, changed in kinds.items():
-                for part, change in changed(place, contexts, predicates):
-                    whole = place.rebuild(part)
-                    if not free_variables(whole):
-                        made[Made(canonical_text(whole), name, origin, change)] = None
+    for place in places(form):
+        for name, changed in kinds.items():
+            for part, change in changed(place, contexts, predicates):
+                whole = place.rebuild(part)
+                if not free_variables(whole):
+                    made[Made(canonical_text(whole), name, origin, change)] = None
     return list(made)
 
 
@@ -81,8 +107,9 @@ def exchange(
     for number, part in enumerate(conjuncts(place.part)):
         if is_leaf(part):
             others = _without(conjuncts(place.part), number)
-            for leaf in contexts.leaves:
-                is_like = leaf != part and variables(leaf) == variables(part)
+            mine = variables(part)
+            for leaf, its in contexts.leaves.items():
+                is_like = its == mine and leaf != part
                 if is_like and contexts.go_together(leaf, others):
                     parts = list(conjuncts(place.part))
                     parts[number] = leaf
@@ -101,8 +128,8 @@ def add(place: Place, contexts: Contexts, predicates: Mapping[str, Predicate]) -
     """Add a description of a variable that is described already."""
     parts = conjuncts(place.part)
     described = {variables(part) for part in parts if is_leaf(part)}
-    for leaf in contexts.leaves:
-        if variables(leaf) in described and contexts.go_together(leaf, parts):
+    for leaf, its in contexts.leaves.items():
+        if its in described and contexts.go_together(leaf, parts):
             yield with_children(place.part, (*parts, leaf)), f"+ {to_corpus(leaf)}"
 
 
@@ -112,8 +139,8 @@ def transplant(
     """Replace what an action is done with by what a λ of another form describes."""
     if place.holder is None or not isinstance(place.part, Lambda):
         return
-    for term in contexts.terms:
-        if term != place.part and contexts.may_hold(place.holder, term):
+    for term in contexts.fitting(place.holder):
+        if term != place.part:
             yield term, f"{to_corpus(place.part)} → {to_corpus(term)}"
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from typing import TypeGuard
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TypeGuard, TypeVar
 
 from annotations.language.forms import (
+    CONJUNCTION,
     Application,
     Form,
     Lambda,
@@ -15,9 +17,12 @@ from annotations.language.forms import (
     predicates,
     walk,
 )
+from parser_service.parsers.interface import Check, keep_going
 
 Rebuild = Callable[[Form], Form]
 Leaf = Application
+Part = TypeVar("Part")
+MOST_PARTS = 300  # descriptions, and λs, that a change puts in: the most frequent ones of many
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,10 +41,11 @@ class Place:
 class Contexts:
     """The contexts seen in a set of forms."""
 
-    leaves: tuple[Leaf, ...]  # descriptions, as ``at($1, <room>)``
+    leaves: Mapping[Leaf, tuple[Variable, ...]]  # descriptions, as ``at($1, <room>)``
     beside: frozenset[tuple[str, str]]  # predicates in one conjunction
     inside: frozenset[tuple[str, int, str]]  # action, argument, predicate anywhere in it
     terms: tuple[Lambda, ...]  # the λs that are arguments
+    _fitting: dict[tuple[str, int], tuple[Lambda, ...]] = field(default_factory=dict)
 
     def go_together(self, leaf: Leaf, others: Iterable[Form]) -> bool:
         """Return whether ``leaf`` has another predicate than each of ``others`` and was seen beside each of them."""
@@ -47,27 +53,45 @@ class Contexts:
         mine = leaf.predicate
         return all(name != mine and (mine, name) in self.beside for name in names)
 
-    def may_hold(self, holder: tuple[str, int], term: Lambda) -> bool:
-        """Return whether every predicate in ``term`` was seen in that argument."""
-        return all((*holder, name) in self.inside for name in predicates(term))
+    def fitting(self, holder: tuple[str, int]) -> tuple[Lambda, ...]:
+        """Return the terms of which every predicate was seen in the argument ``holder``."""
+        if holder not in self._fitting:
+            self._fitting[holder] = tuple(
+                term
+                for term in self.terms
+                if all((*holder, name) in self.inside for name in predicates(term))
+            )
+        return self._fitting[holder]
 
 
-def find_contexts(forms: Sequence[Form]) -> Contexts:
+def find_contexts(forms: Sequence[Form], check: Check = keep_going) -> Contexts:
     """Collect the contexts of all parts of ``forms``."""
-    leaves: dict[Leaf, None] = {}
+    leaves: Counter[Leaf] = Counter()
     beside: set[tuple[str, str]] = set()
     inside: set[tuple[str, int, str]] = set()
-    terms: dict[Lambda, None] = {}
+    terms: Counter[Lambda] = Counter()
     for form in forms:
+        check()
         for place in places(form):
             conjunction = conjuncts(place.part)
             names = [each.predicate for each in conjunction if isinstance(each, Application)]
             beside |= {(str(one), str(other)) for one in names for other in names if one != other}
-            leaves |= {each: None for each in conjunction if is_leaf(each)}
+            leaves.update(each for each in conjunction if is_leaf(each))
             if place.holder and isinstance(place.part, Lambda):
                 inside |= {(*place.holder, name) for name in predicates(place.part)}
-                terms[place.part] = None
-    return Contexts(tuple(leaves), frozenset(beside), frozenset(inside), tuple(terms))
+                terms[place.part] += 1
+    return Contexts(
+        {leaf: variables(leaf) for leaf in _most_frequent(leaves)},
+        frozenset(beside),
+        frozenset(inside),
+        _most_frequent(terms),
+    )
+
+
+def _most_frequent(counts: Counter[Part]) -> tuple[Part, ...]:
+    """Return at most ``MOST_PARTS`` of what was counted, in the order in which it was seen first."""
+    kept = {part for part, _ in counts.most_common(MOST_PARTS)}
+    return tuple(part for part in counts if part in kept)
 
 
 def places(form: Form) -> Iterator[Place]:
@@ -85,7 +109,7 @@ def places(form: Form) -> Iterator[Place]:
 
 def conjuncts(form: Form) -> tuple[Form, ...]:
     """Return the bodies of a λ or the arguments of ``and``; nothing for any other form."""
-    is_conjunction = isinstance(form, Application) and form.predicate == "and"
+    is_conjunction = isinstance(form, Application) and form.predicate == CONJUNCTION
     return children(form) if is_conjunction or isinstance(form, Lambda) else ()
 
 

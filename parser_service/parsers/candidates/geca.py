@@ -9,18 +9,23 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 from annotations.language.errors import LanguageError
 from annotations.language.forms import canonical_text, read_form
 from parser_service.parsers.candidates.pool import SURE, Made
 from parser_service.parsers.candidates.short import lengthen, name_of, shorten
-from parser_service.parsers.interface import Pair
+from parser_service.parsers.interface import Check, Pair, keep_going
+from parser_service.parsers.spreading import spread, visiting_order
 from parser_service.parsers.words import words
 
 NAME = "geca"
 LONGEST_SPAN = 6  # words
 LEAST_CONTEXT = 3  # words that the two commands share around the span
 MOST_COMMANDS = 24  # a form
+MOST_EXAMPLES = 3000  # that rules are found in, and applied to
+MOST_RULES = 5000
+MOST_MADE = 60_000  # commands
 
 Words = tuple[str, ...]
 Short = tuple[str, ...]
@@ -36,35 +41,48 @@ class Rule:
     other_words: Words
 
 
-def geca(pairs: Sequence[Pair]) -> list[Made]:
+def geca(pairs: Sequence[Pair], check: Check = keep_going) -> list[Made]:
     """Return new forms with their commands, from exchanges that ``pairs`` themselves show.
 
     Rules come from the generated pairs where there are any: paraphrases differ in more than their
-    meaning. A command that would get two forms is dropped.
+    meaning. A command that would get two forms is dropped. Of very many pairs, some of each form are
+    looked at. ``check`` is called for each.
     """
     generated = [pair for pair in pairs if pair.source == "generated"]
-    rules = find_rules(_examples(generated or pairs))
-    return recombine(_examples(pairs), rules)
+    rules = find_rules(_examples(generated or pairs), check)
+    return recombine(_examples(pairs), rules, check)
 
 
-def find_rules(examples: Sequence[tuple[Words, Short]]) -> list[Rule]:
-    """Return all exchanges that two examples show, in a fixed order."""
+def find_rules(examples: Sequence[tuple[Words, Short]], check: Check = keep_going) -> list[Rule]:
+    """Return the exchanges that two examples show, in a fixed order."""
     frames: defaultdict[tuple[Words, Words], set[tuple[Words, Short]]] = defaultdict(set)
     for sentence, short in examples:
+        check()
         for begin, end in _spans(len(sentence)):
             frame = sentence[:begin], sentence[end:]
             frames[frame].add((sentence[begin:end], short))
-    return sorted({rule for filled in frames.values() for rule in _rules_of(sorted(filled))})
+    rules: set[Rule] = set()
+    for filled in frames.values():
+        if len(filled) > 1:
+            check()
+            rules.update(_rules_of(sorted(filled)))
+    return spread(sorted(rules), MOST_RULES, lambda rule: rule.token)
 
 
-def recombine(examples: Sequence[tuple[Words, Short]], rules: Sequence[Rule]) -> list[Made]:
+def recombine(
+    examples: Sequence[tuple[Words, Short]], rules: Sequence[Rule], check: Check = keep_going
+) -> list[Made]:
     """Return the forms that the rules make from the examples and that no example has."""
     by_token: defaultdict[str, list[Rule]] = defaultdict(list)
     for rule in rules:
         by_token[rule.token].append(rule)
     known = {short for _, short in examples}
     meanings: defaultdict[Words, dict[Short, tuple[Short, str]]] = defaultdict(dict)
-    for sentence, short in examples:
+    for at in visiting_order(len(examples)) if len(rules) == MOST_RULES else range(len(examples)):
+        check()
+        sentence, short = examples[at]
+        if len(meanings) >= MOST_MADE:
+            break
         for rule, made_words, made_short in _apply(sentence, short, by_token):
             if made_short not in known:
                 change = f"{rule.token} → {rule.other_token}"
@@ -81,13 +99,18 @@ def recombine(examples: Sequence[tuple[Words, Short]], rules: Sequence[Rule]) ->
 
 
 def _examples(pairs: Sequence[Pair]) -> list[tuple[Words, Short]]:
-    examples = []
-    for pair in pairs:
-        try:
-            examples.append((words(pair.utterance), shorten(read_form(pair.form))))
-        except LanguageError:
-            continue  # a text that is not a form can be an answer, but not recombined
-    return list(dict.fromkeys(examples))
+    read = cache(_shorten)
+    some = spread(pairs, MOST_EXAMPLES, lambda pair: pair.form)
+    examples = ((words(pair.utterance), read(pair.form)) for pair in some)
+    return list(dict.fromkeys((said, short) for said, short in examples if short is not None))
+
+
+def _shorten(text: str) -> Short | None:
+    """Return the short form; None for a text that is none, which can be an answer, but not recombined."""
+    try:
+        return shorten(read_form(text))
+    except LanguageError:
+        return None
 
 
 def _spans(length: int) -> Iterator[tuple[int, int]]:
@@ -99,18 +122,18 @@ def _spans(length: int) -> Iterator[tuple[int, int]]:
 
 def _rules_of(filled: Sequence[tuple[Words, Short]]) -> Iterator[Rule]:
     """Yield the exchanges between the fillers of one frame."""
+    alike: defaultdict[tuple[Short, Short], list[tuple[Words, str]]] = defaultdict(list)
     for span, short in filled:
-        for other_span, other in filled:
-            place = _only_difference(short, other)
-            if place is not None and span[0] != other_span[0] and span[-1] != other_span[-1]:
-                yield Rule(short[place], other[place], span, other_span)
-
-
-def _only_difference(short: Short, other: Short) -> int | None:
-    if len(short) != len(other):
-        return None
-    places = [place for place, token in enumerate(short) if token != other[place]]
-    return places[0] if len(places) == 1 else None
+        for place, token in enumerate(short):
+            alike[short[:place], short[place + 1 :]].append((span, token))
+    for fillers in alike.values():
+        for span, token in fillers:
+            for other_span, other in fillers:
+                is_other = (
+                    token != other and span[0] != other_span[0] and span[-1] != other_span[-1]
+                )
+                if is_other:
+                    yield Rule(token, other, span, other_span)
 
 
 def _apply(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import islice
 
 from annotations.language.grounding import Anonymizer
 from annotations.language.ontology import Ontology
@@ -14,9 +15,12 @@ from parser_service.parsers.candidates.grammar_forms import grammar_forms
 from parser_service.parsers.candidates.pool import SURE, CandidateForm, Made, Pool
 from parser_service.parsers.candidates.substitution import substitute
 from parser_service.parsers.candidates.unseen import unseen
-from parser_service.parsers.interface import Knowledge, Pair
+from parser_service.parsers.interface import Check, Knowledge, Pair, keep_going
+from parser_service.parsers.spreading import spread
 
 MOST_CANDIDATES = 800
+MOST_PAIRS = 20_000  # that recombination looks at
+MOST_GRAMMAR_FORMS = 10_000  # all of them are real
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,59 +45,67 @@ class GeneratedForms:
 
 
 def generate_candidates(
-    pairs: Sequence[Pair], knowledge: Knowledge, is_open: bool = True
+    pairs: Sequence[Pair],
+    knowledge: Knowledge,
+    is_open: bool = True,
+    check: Check = keep_going,
 ) -> GeneratedForms:
     """Return the forms that a parser trained on ``pairs`` chooses from: those of the pairs alone unless
     ``is_open``.
 
     *strict* infers signatures from the forms of the pairs. *domain* uses the declared ones, and so
     reaches predicates that no pair has. *grammar* takes all forms of its templates and makes no
-    others. Forms that only one kind of change arrives at are left out.
+    others. Forms that only one kind of change arrives at are left out. ``check`` is called now and then.
     """
     training = _forms(pairs)
     if not is_open:
         return GeneratedForms(training)
-    pool = reach(pairs, knowledge)
+    pool = reach(pairs, knowledge, check)
     candidates = list(pool.candidates())
     known = set(training)
-    new = [each for each in candidates if each.form not in known and each.support >= SURE]
-    return GeneratedForms(
-        training,
-        tuple(new[:MOST_CANDIDATES]),
-        pool.counts(),
-        {each.form: each.commands for each in candidates} if knowledge.grammar is not None else {},
-    )
+    is_grammar = knowledge.grammar is not None
+    likely = (each for each in candidates if each.form not in known and each.support >= SURE)
+    new = tuple(islice(likely, MOST_GRAMMAR_FORMS if is_grammar else MOST_CANDIDATES))
+    named = known.union(each.form for each in new)
+    commands = {each.form: each.commands for each in candidates if each.form in named}
+    return GeneratedForms(training, new, pool.counts(), commands if is_grammar else {})
 
 
 def _forms(pairs: Sequence[Pair]) -> tuple[str, ...]:
     return tuple(sorted({pair.form for pair in pairs}))
 
 
-def reach(pairs: Sequence[Pair], knowledge: Knowledge) -> Pool:
+def reach(pairs: Sequence[Pair], knowledge: Knowledge, check: Check = keep_going) -> Pool:
     """Return all forms that the steps arrive at, unlikely ones and those of ``pairs`` included."""
     pool = Pool()
-    pool.add(_make_forms(pairs, _forms(pairs), knowledge))
+    pool.add(_make_forms(pairs, _forms(pairs), knowledge, check))
     return pool
 
 
 def _make_forms(
-    pairs: Sequence[Pair], training: Sequence[str], knowledge: Knowledge
+    pairs: Sequence[Pair], training: Sequence[str], knowledge: Knowledge, check: Check
 ) -> Iterator[Made]:
     if knowledge.grammar is not None:
         yield from grammar_forms(knowledge.grammar)
         return
-    yield from geca(_anonymize(pairs, knowledge.ontology))
+    some = spread(pairs, MOST_PAIRS, lambda pair: pair.form)
+    yield from geca(_anonymize(some, knowledge.ontology, check), check)
     if knowledge.predicates is None:
-        yield from close(training, infer_signatures(read_forms(training)))
+        yield from close(training, infer_signatures(read_forms(training)), check=check)
         return
-    yield from close(training, knowledge.predicates)
-    yield from substitute(training, knowledge.predicates)
-    yield from unseen(training, knowledge.predicates)
+    yield from close(training, knowledge.predicates, check=check)
+    yield from substitute(training, knowledge.predicates, check)
+    yield from unseen(training, knowledge.predicates, check)
 
 
-def _anonymize(pairs: Sequence[Pair], ontology: Ontology | None) -> Sequence[Pair]:
+def _anonymize(pairs: Sequence[Pair], ontology: Ontology | None, check: Check) -> Sequence[Pair]:
     """Put class tokens for known entities: then more commands differ in one thing only."""
     if ontology is None:
         return pairs
     anonymizer = Anonymizer(ontology)
-    return [replace(pair, utterance=anonymizer.anonymize(pair.utterance).command) for pair in pairs]
+    anonymized = []
+    for pair in pairs:
+        check()
+        command = anonymizer.anonymize(pair.utterance).command
+        anonymized.append(replace(pair, utterance=command))
+    return anonymized

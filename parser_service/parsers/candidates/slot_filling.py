@@ -5,11 +5,11 @@ from __future__ import annotations
 from random import Random
 from re import Match
 
+from annotations.language.english import ANY_OBJECT
 from annotations.language.forms import CLASS_TOKEN
 from annotations.language.grounding import QUESTION_WORD
 from annotations.language.ontology import Ontology
 
-OPEN_CATEGORY = "objects"  # what ``{category?}`` says
 OBFUSCATED = 0.15  # share of object slots said by their category, as ``{object?}`` says them
 
 
@@ -36,5 +36,5 @@ class SlotFiller:
             return token[0]
         text = random.choice(entities).text
         if entity_class == "category":
-            return random.choice((OPEN_CATEGORY, text, self._ontology.singular(text)))
+            return random.choice((ANY_OBJECT, text, self._ontology.singular(text)))
         return text

@@ -8,27 +8,31 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import cache
 
 from annotations.language.forms import to_corpus
 from annotations.language.predicates import Predicate, signature_of
 from parser_service.parsers.candidates.closure import Change, close
 from parser_service.parsers.candidates.contexts import Contexts, Place, is_leaf
 from parser_service.parsers.candidates.pool import SURE, Made
+from parser_service.parsers.interface import Check, keep_going
 
 NAME = "substitution"
 
 
-def substitute(forms: Sequence[str], predicates: Mapping[str, Predicate]) -> list[Made]:
+def substitute(
+    forms: Sequence[str], predicates: Mapping[str, Predicate], check: Check = keep_going
+) -> list[Made]:
     """Return the forms with one description replaced by another declared one.
 
     No other change arrives at a description that none of ``forms`` has, so such a form counts as
     much as one that two kinds of change arrive at.
     """
+    all_forms = "\n".join(forms)
+    is_shown = cache(lambda description: description in all_forms)
     return [
-        each
-        if any(_new_description(each) in form for form in forms)
-        else replace(each, weight=SURE)
-        for each in close(forms, predicates, {NAME: rename})
+        each if is_shown(_new_description(each)) else replace(each, weight=SURE)
+        for each in close(forms, predicates, {NAME: rename}, check)
     ]
 
 

@@ -6,8 +6,9 @@ signature. A world may also declare ``(leftmost $1 <location>)`` where training 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 from annotations.language.forms import (
     Application,
@@ -35,12 +36,15 @@ from parser_service.parsers.candidates.contexts import (
     with_children,
 )
 from parser_service.parsers.candidates.pool import SURE, Made
+from parser_service.parsers.interface import Check, keep_going
 
 NAME = "unseen"
 OPEN_KINDS = (ArgumentKind.LAMBDA, ArgumentKind.VARIABLE)
 
 
-def unseen(forms: Sequence[str], predicates: Mapping[str, Predicate]) -> list[Made]:
+def unseen(
+    forms: Sequence[str], predicates: Mapping[str, Predicate], check: Check = keep_going
+) -> list[Made]:
     """Return the forms with one predicate that none of ``forms`` has, or has with such arguments.
 
     Few other changes arrive at them, so each counts as much as one that two kinds arrive at.
@@ -52,16 +56,25 @@ def unseen(forms: Sequence[str], predicates: Mapping[str, Predicate]) -> list[Ma
         for name, each in predicates.items()
         if name in shown
     }
-    made = [*close(forms, absent, {NAME: stand_in}), *close(forms, other, {NAME: retype})]
+    of_kind = {name for name, each in predicates.items() if each.kind is PredicateKind.SEQUENCE}
+    made = [
+        *close(forms, absent, {NAME: partial(stand_in, sequences=of_kind)}, check),
+        *close(forms, other, {NAME: retype}, check),
+    ]
     return [replace(each, weight=SURE) for each in made]
 
 
 def stand_in(
-    place: Place, contexts: Contexts, predicates: Mapping[str, Predicate]
+    place: Place,
+    contexts: Contexts,
+    predicates: Mapping[str, Predicate],
+    sequences: Collection[str] = (),
 ) -> Iterator[Change]:
-    """Put one of ``predicates`` in place of an action, or of a description that is the only one."""
+    """Put one of ``predicates`` in place of an action, or of a description that is the only one.
+
+    ``sequences`` names the predicates whose arguments are actions."""
     parts = conjuncts(place.part)
-    if _is_action(place):
+    if _is_action(place, sequences):
         yield from _actions(place.part, predicates)
     elif len(parts) == 1 and is_leaf(parts[0]):
         for leaf in _instances(PredicateKind.DESCRIPTION, variables(parts[0]), predicates):
@@ -72,11 +85,10 @@ def _without(declared: Sequence[Signature], shown: Sequence[Signature]) -> tuple
     return tuple(each for each in declared if each not in shown)
 
 
-def _is_action(place: Place) -> bool:
+def _is_action(place: Place, sequences: Collection[str]) -> bool:
     """Return whether the part is an action, by itself or in a sequence."""
-    return (place.holder is None or place.holder[0] == "sequence") and not free_variables(
-        place.part
-    )
+    is_one = place.holder is None or place.holder[0] in sequences
+    return is_one and not free_variables(place.part)
 
 
 def _actions(form: Form, predicates: Mapping[str, Predicate]) -> Iterator[Change]:

@@ -65,6 +65,6 @@ def _refusal(curve: dict[str, Any] | None, bound: str) -> dict[str, Any]:
         "last_place": len(points) - 1,
         "chosen": chosen,
         "facts": list(zip(FACTS, chosen.facts, strict=True)),
-        "points": [[point.bound, point.sentence, *point.facts] for point in points],
+        "points": [[point.bound, point.shown, point.sentence, *point.facts] for point in points],
         "chart": curve_chart(points, place),
     }

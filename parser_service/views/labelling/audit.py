@@ -14,7 +14,6 @@ from django.views.decorators.cache import never_cache
 from django_htmx.http import reselect, reswap, retarget
 
 from annotations.auditing import DecidedMeanwhile, decide, take_back
-from annotations.jobs import request_job
 from annotations.labelling import AnsweredMeanwhile, check_label
 from annotations.language.auditing import LEAST_FOLDS, MOST_FOLDS
 from annotations.language.errors import LanguageError
@@ -35,6 +34,7 @@ from annotations.queueing.giving import kinds_for
 from annotations.rows.occurrences import examples_of_pair
 from parser_service.audit import AUDITORS
 from parser_service.audit.precision import precision_of
+from parser_service.audit.requesting import request_audit
 from parser_service.parsers.registry import entry
 
 SORTS = {"rank": Sort("No.", "rank", is_number=True), "text": Sort("Utterance", "text")}
@@ -108,9 +108,7 @@ def audit_start(request: HttpRequest, world: World) -> HttpResponse:
         problems = " ".join(f"{name}: {' '.join(each)}" for name, each in form.errors.items())
         messages.error(request, f"The audit was not started. {problems}")
         return redirect("audit", world=world.name)
-    job = world.jobs.active().filter(kind=JobKind.AUDIT).first()
-    job = job or request_job(JobKind.AUDIT, world.name, request.user, form.cleaned_data)
-    return redirect("job", pk=job.pk)
+    return redirect("job", pk=request_audit(world, request.user, form.cleaned_data).pk)
 
 
 @world_view(Duty.VIEW, WRITE)

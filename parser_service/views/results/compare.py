@@ -17,7 +17,7 @@ from parser_service.results.choices import default_part
 from parser_service.slices import PredictionFilters, slice_query
 from parser_service.slices.addresses import Addresses
 from parser_service.slices.breakdown import accuracies_of, break_down, break_down_by_slices
-from parser_service.slices.choosing import LETTERS, PARTS, RunChoice, choose_runs
+from parser_service.slices.choosing import LETTERS, PARTS, RunChoice, choose_runs, named_keys
 from parser_service.slices.compared import compare_on
 from parser_service.slices.heat import confusion_table
 from parser_service.slices.pairs import pair_rows, win_matrix
@@ -60,7 +60,7 @@ class ComparedFilters(FilteredList):
 def compare(request: HttpRequest, world: World) -> HttpResponse:
     """Compare the runs that the URL names on the slice that it chooses, or offer runs to choose from."""
     part = request.GET.get("part", "")
-    part = part if part in PARTS else default_part(world)
+    part = part if part in PARTS else default_part(world, named_keys(request.GET))
     choice = choose_runs(world, request.GET, part)
     filters = ComparedFilters(request)
     context = {

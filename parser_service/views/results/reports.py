@@ -17,7 +17,7 @@ from parser_service.reporting.comparison_report import comparison_report
 from parser_service.reporting.run_report import part_of
 from parser_service.reporting.run_report import run_report as write_run_report
 from parser_service.results.choices import default_part
-from parser_service.slices.choosing import PARTS, choose_runs
+from parser_service.slices.choosing import PARTS, choose_runs, named_keys
 from parser_service.slices.compared import compare_on
 from parser_service.views.results.compare import ComparedFilters
 
@@ -49,7 +49,7 @@ def as_download(pieces: Iterator[str], name: str) -> HttpResponse | StreamingHtt
 def compare_report(request: HttpRequest, world: World) -> HttpResponseBase:
     """Download the comparison that the compare page shows at the same address."""
     part = request.GET.get("part", "")
-    part = part if part in PARTS else default_part(world)
+    part = part if part in PARTS else default_part(world, named_keys(request.GET))
     choice = choose_runs(world, request.GET, part)
     filters = ComparedFilters(request)
     page = f"{reverse('compare', kwargs={'world': world.name})}?{request.GET.urlencode()}"

@@ -128,6 +128,6 @@ def read_choices(request: HttpRequest, world: World, splits: list[Split]) -> Cur
         split=run.split,
         setting=settings.get(asked.get("setting", ""), own),
         protocol=protocol if protocol in list(Protocol) else run.protocol,
-        part=part if part in PARTS else default_part(world),
+        part=part if part in PARTS else default_part(world, splits=[run.split]),
         measure=Measure(measure) if measure in list(Measure) else Measure.EXACT,
     )

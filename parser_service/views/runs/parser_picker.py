@@ -19,6 +19,7 @@ TITLES = {
     Needs.CPU: "Minutes on a CPU",
     Needs.GPU: "A GPU is recommended",
     Needs.WEIGHTS: "Weights to bring",
+    Needs.SERVER: "A server to ask",
 }
 SOURCES = {"gen": "commands", "para": "paraphrases"}
 
@@ -27,7 +28,7 @@ SOURCES = {"gen": "commands", "para": "paraphrases"}
 class ParserOption:
     """One parser. ``seconds`` is the median time of its finished runs here, None before the first;
     ``scores`` its best accuracies on the validation part, as source and fraction; ``missing`` names
-    the weights that are not there."""
+    the weights, or the server, that are not there."""
 
     name: str
     entry: Entry

@@ -71,8 +71,15 @@ class RunForm(forms.Form):
         return [self[name] for name in GENERAL]
 
     @property
+    def named(self) -> list[forms.BoundField]:
+        """The hyperparameters that have no default and have to be given."""
+        return [self[PREFIX + each.name] for each in config_fields(self.parser) if each.is_required]
+
+    @property
     def hyperparameters(self) -> list[forms.BoundField]:
-        return [self[name] for name in self.fields if name.startswith(PREFIX)]
+        """Those that may stay at their defaults."""
+        optional = [each for each in config_fields(self.parser) if not each.is_required]
+        return [self[PREFIX + each.name] for each in optional]
 
     @property
     def changed(self) -> list[str]:
@@ -90,7 +97,7 @@ class RunForm(forms.Form):
 
     @property
     def missing(self) -> str | None:
-        """Which pretrained weights the parser lacks as the form stands, and where to put them."""
+        """Which pretrained weights, or server, the parser lacks as the form stands, and where to put them."""
         names = {
             each.name: named
             for each in config_fields(self.parser)
@@ -145,7 +152,10 @@ class RunForm(forms.Form):
 
 
 def say_default(declared: ConfigField) -> str:
-    """Return the default of a hyperparameter as a sentence, such as ``Default 0.1.``"""
+    """Return the default of a hyperparameter as a sentence, such as ``Default 0.1.``; nothing where it has
+    to be given."""
+    if declared.is_required:
+        return ""
     if declared.type is bool:
         return f"Default {'on' if declared.default else 'off'}."
     if declared.type is float:
@@ -158,7 +168,7 @@ def field_for(declared: ConfigField) -> forms.Field:
     common = {
         "label": LABELS.get(declared.name, declared.name.replace("_", " ").capitalize()),
         "initial": declared.default,
-        "help_text": f"{declared.description} {say_default(declared)}",
+        "help_text": f"{declared.description} {say_default(declared)}".rstrip(),
     }
     if declared.type is bool:
         return forms.BooleanField(required=False, **common)
@@ -166,7 +176,8 @@ def field_for(declared: ConfigField) -> forms.Field:
         return forms.ChoiceField(choices=[(name, name) for name in declared.choices], **common)
     if declared.type is str:
         # A text that names something by default is never left empty: it would name nothing.
-        return forms.CharField(required=bool(declared.default), **common)
+        required = bool(declared.default) or declared.is_required
+        return forms.CharField(required=required, max_length=declared.longest, **common)
     bounds = {"min_value": declared.minimum, "max_value": declared.maximum}
     if declared.type is int:
         return forms.IntegerField(**common, **bounds)

@@ -17,8 +17,9 @@ from parser_service.filters import RunFilters
 from parser_service.models import TrainingRun
 from parser_service.models.runs import Status
 from parser_service.parsers.registry import PARSERS
+from parser_service.promotion import promoted_run
 from parser_service.results.learning_curves import curves_url
-from parser_service.results.reports import order_of
+from parser_service.results.reports import KNOWN_FORMS, order_of
 from parser_service.reviewing.earlier import history_of_errors
 from parser_service.runs import lifecycle
 from parser_service.runs.curves import CURVES, loss_curves, will_have_curves
@@ -55,6 +56,7 @@ def run(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     """Show one run: progress, curves, log and results."""
     context = state_of(world, pk)
     context["newest"], context["again"] = retrained(context["run"])
+    context["is_promoted"] = promoted_run(world) == context["run"]
     return render(request, "parser_service/run.html", context)
 
 
@@ -83,6 +85,7 @@ def state_of(world: World, pk: int) -> dict[str, Any]:
         "curves_url": curves_url(world, run),
         "loss_title": f"Loss by epoch, {entry.loss_unit if entry else 'nats'}",
         "evaluations": sorted(run.evaluations.all(), key=order_of),
+        "known_forms": KNOWN_FORMS,
         "history": history_of_errors(run) if run.is_ended else None,
         "epochs": list(run.epochs.all()),
         "will_have_curves": will_have_curves(run),

@@ -18,7 +18,7 @@ from annotations.models import Duty, World
 from annotations.models.utterances import MOST_CHARACTERS
 from annotations.people.access import WRITE, world_view
 from parser_service.analysis.probing import PAPER_PROBES
-from parser_service.candidates.reporting import report_wrong
+from parser_service.candidates.reporting import report_wrong, say_parser
 from parser_service.models import TrainingRun
 from parser_service.parsers.interface import ScoreKind
 from parser_service.promotion import promoted_run
@@ -77,7 +77,6 @@ def playground_wrong(request: HttpRequest, world: World) -> HttpResponse:
     """Send an utterance that was answered wrongly to the work queue, with the right form if one is given."""
     sent = request.POST
     run = TrainingRun.objects.filter(world=world, pk=number_of(sent.get("run", ""))).first()
-    answered_by = f"{run.parser} (run {run.pk})" if run else "a parser"
     context: dict[str, Any] = {
         "text": _text_of(sent),
         "run": run.pk if run else "",
@@ -89,7 +88,7 @@ def playground_wrong(request: HttpRequest, world: World) -> HttpResponse:
         context["sent"] = report_wrong(
             world,
             context["text"],
-            answered_by,
+            say_parser(run),
             request.user,
             _changed(sent),
             context["reason"],

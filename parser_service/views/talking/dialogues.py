@@ -14,6 +14,7 @@ from annotations.language.predicates import gloss
 from annotations.models import Duty, World
 from annotations.models.utterances import MOST_CHARACTERS
 from annotations.people.access import READ_AND_WRITE, WRITE, world_view
+from annotations.people.audit_log import note
 from parser_service.conversing.keeping import keep
 from parser_service.conversing.showing import asked_of, plan_of
 from parser_service.conversing.talking import AnsweredMeanwhile, reply, start, state_of
@@ -33,6 +34,7 @@ def dialogues(request: HttpRequest, world: World) -> HttpResponse:
     if request.method == "POST":
         try:
             row = start(world, text, request.user)
+            note(request, row.utterance)
             return redirect("dialogue", world=world.name, pk=row.pk)
         except (ParserAway, ParserRefused, ValueError) as error:
             context["trouble"] = str(error)
@@ -55,6 +57,7 @@ def dialogue(request: HttpRequest, world: World, pk: int) -> HttpResponse:
             if request.POST.get("version") != str(row.version):
                 raise AnsweredMeanwhile("Somebody has answered this meanwhile. Look at it again.")
             is_stop = "stop" in request.POST
+            note(request, row.utterance)
             reply(row, "stop" if is_stop else request.POST.get("answer", ""))
             return redirect("dialogue", world=world.name, pk=pk)
         except (ParserAway, ParserRefused, AnsweredMeanwhile, ValueError) as error:

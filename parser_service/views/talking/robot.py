@@ -30,12 +30,14 @@ SCHEMAS = {
 
 @dataclass(frozen=True, slots=True)
 class ActionRow:
-    """A line of the page: an action, what was written for it, and what is wrong with that."""
+    """A line of the page: an action, what was written for it, and what is wrong with that, either the name or
+    the arguments."""
 
     action: str
     name: str
     arguments: str
     trouble: str = ""
+    is_name_wrong: bool = False
 
 
 @world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.ANNOTATE)
@@ -87,9 +89,17 @@ def _read(actions: list[str], sent: QueryDict) -> tuple[list[ActionRow], dict[st
         try:
             value = read_name(action, name, arguments)
         except ValueError as error:
-            rows.append(ActionRow(action, name, arguments, str(error)))
+            rows.append(ActionRow(action, name, arguments, str(error), not _can_be(action, name)))
             continue
         rows.append(ActionRow(action, name, arguments))
         if value is not None:
             names[action] = value
     return rows, names
+
+
+def _can_be(action: str, name: str) -> bool:
+    try:
+        read_name(action, name, "")
+    except ValueError:
+        return False
+    return True

@@ -8,6 +8,7 @@ import annotations
 from annotations.exporting.split_export import export_split
 from annotations.generation.generating import generate_pairs
 from annotations.importing import import_generator, import_pairs
+from annotations.importing.pair_files import read_pair_folder
 from annotations.models import Paraphrase, Split, World
 from tests.annotations.rows_of import counts
 
@@ -180,3 +181,16 @@ def test_every_paraphrase_of_the_starter_world_finds_its_command_and_form(db):
         if each.command is None or each.logical_form != each.command.logical_form.text
     ]
     assert differing == []
+
+
+def test_a_file_that_is_too_large_is_refused_whole(world, folder):
+    report = import_pairs("home", "published", folder, most_bytes=50)
+    assert report.is_refused
+    assert {problem.message for problem in report.problems} == {"the file is larger than 50 bytes"}
+    assert not Split.objects.exists()
+
+
+def test_forms_that_are_written_alike_are_kept_once(folder):
+    pairs = read_pair_folder(folder).pairs["command", "paraphrased", "train"]
+    assert len(pairs) == 2 and pairs[0].form is pairs[1].form
+    assert pairs[0].position != pairs[1].position

@@ -219,3 +219,9 @@ def test_the_commands_of_a_world_meanwhile_generated_by_others(home, tiny, monke
     monkeypatch.setattr(JobProgress, "report", interfere)
     assert done(job).report["changes"] == {"added": 0, "changed": 0, "removed": 0, "moved": 0}
     assert home.commands.count() == 3
+
+
+def test_an_error_analysis_says_of_which_run(home):
+    job = Job(world=home, kind=JobKind.ANALYSE, arguments={"run": 7})
+    assert job.title == "Error analysis of run 7"
+    assert Job(world=home, kind=JobKind.GENERATE).title == "Generation of commands"

@@ -10,7 +10,7 @@ from annotations.importing import import_pairs
 from annotations.language.errors import LanguageError
 from annotations.models import Command, Example, Paraphrase
 from annotations.models.corpus import ParaphraseStatus
-from annotations.splits.freezing import freeze_split
+from annotations.splits.freezing import as_items, freeze_split, unresolved_prompts
 from tests.sample_world import make_paraphrase
 
 ROOMS = [f"{adjective} {room}" for adjective in ("red", "blue", "old", "new") for room in "abcde"]
@@ -132,3 +132,24 @@ def test_a_frozen_split_is_read_again_as_it_was_written(full, tmp_path):
     fields = ["source", "part", "position", "utterance", "logical_form"]
     copied = Example.objects.filter(split__name="copy-logical_form").values_list(*fields)
     assert list(copied) == list(split.examples.values_list(*fields))
+
+
+def test_by_source_command_a_prompt_of_no_command_goes_to_training(full):
+    """Its siblings may be told from it, but not the command that they all rewrite."""
+    lost = full.paraphrases.order_by("position")[:12]
+    for said in lost:
+        full.paraphrases.filter(pk=said.pk).update(command=None, prompt=f"prompt {said.position}")
+    split = freeze_split(full, "first", "source_command", seed=3)
+    assert parts_by(split, "source_command")["prompt 0"] == {"train"}
+    of_lost = split.examples.filter(utterance__in=[said.utterance for said in lost])
+    assert set(of_lost.values_list("part", flat=True)) == {"train"}
+    assert len(unresolved_prompts(as_items(split.examples.all()))) == 12
+    by_command = freeze_split(full, "second", "command", seed=3)
+    assert len({part for (part,) in by_command.examples.values_list("part")}) == 3
+
+
+def test_without_generated_commands_prompts_are_what_there_is(full):
+    full.paraphrases.update(command=None)
+    full.commands.all().delete()
+    split = freeze_split(full, "first", "source_command")
+    assert set(split.examples.values_list("part", flat=True)) == {"train", "validation", "test"}

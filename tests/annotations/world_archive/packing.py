@@ -12,7 +12,7 @@ from django.db.models import ForeignKey
 from annotations.commenting import SUBJECTS
 from annotations.models import Comment, World
 from annotations.world_archive import world_archive
-from annotations.world_archive.tables import TABLES
+from annotations.world_archive.tables import tables
 
 
 def pack(world: World) -> io.BytesIO:
@@ -46,7 +46,7 @@ def everything_of(world: World) -> dict[str, list[dict]]:
     """All rows of all models below ``world`` but ids and timestamps; a reference is a row's number."""
     numbers: dict[type, dict[int, int]] = {}
     contents: dict[str, list[dict]] = {}
-    for table in TABLES:
+    for table in tables():
         rows = list(table.model.objects.filter(**{table.world_path: world}).order_by("pk"))
         numbers[table.model] = {row.pk: number for number, row in enumerate(rows)}
         contents[table.name] = [_values(row, numbers) for row in rows]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 
+import pytest
 from django.apps import apps
 from django.db import models
 from hypothesis import HealthCheck, given, settings
@@ -15,6 +16,8 @@ from annotations.editing.edits import change, delete
 from annotations.generation.generating import generate_pairs
 from annotations.importing import import_generator, import_pairs
 from annotations.labelling import collect, label, take_back
+from annotations.language.errors import LanguageError
+from annotations.language.plans import ActionName
 from annotations.models import (
     FindingStatus,
     Grammar,
@@ -31,9 +34,10 @@ from annotations.models.worlds import Duty
 from annotations.queueing import finish, next_item, set_share
 from annotations.splits.freezing import freeze_split
 from annotations.world_archive import import_world
-from annotations.world_archive.tables import TABLES
+from annotations.world_archive.tables import tables
 from annotations.worlds.starter_world import STARTER_WORLD, load_starter_world
 from annotations.worlds.world_deletion import delete_world
+from parser_service.robots.action_names import names_of, store_names, version_of
 from tests.annotations.conftest import TINY, as_bytes
 from tests.annotations.world_archive.packing import (
     everything_of,
@@ -118,11 +122,42 @@ def test_findings_of_an_audit_keep_their_reasons_and_decisions(tiny_world, annot
     assert finding.reasons.count() == again.audit_findings.open().count() == 1
 
 
+def test_the_names_of_actions_go_with_the_world(tiny_world, annotator):
+    names = {"go": ActionName("NavigateTo", {"destination": "goal"})}
+    store_names(tiny_world, names, annotator, version=0)
+    again = same_again(tiny_world)
+    assert names_of(again) == names and version_of(again) == 1
+    assert again.action_names.changed_by == annotator
+    moment = again.action_names.changed_at
+    assert moment == tiny_world.action_names.changed_at
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        [],
+        {"go": "NavigateTo"},
+        {"go": {"name": "NavigateTo"}},
+        {"go": {"name": 3, "arguments": {}}},
+        {"go": {"name": "Navigate to", "arguments": {}}},
+        {"go": {"name": "NavigateTo", "arguments": {"destination": "name"}}},
+        {"go": {"name": "NavigateTo", "arguments": {"destination": "x", "thing": "x"}}},
+    ],
+)
+def test_names_that_no_robot_can_have_are_refused(names, tiny_world, annotator):
+    store_names(tiny_world, {"go": ActionName("NavigateTo", {})}, annotator, version=0)
+    members = members_of(pack(tiny_world))
+    row = json.loads(members["rows/action_names.jsonl"])
+    members["rows/action_names.jsonl"] = json.dumps({**row, "names": names}).encode() + b"\n"
+    with pytest.raises(LanguageError, match="names has the wrong shape"):
+        import_world("again", pack_members(members))
+
+
 def test_an_archive_from_before_there_were_utterances(tiny_world):
     members = members_of(pack(tiny_world))
     manifest = json.loads(members["world.json"])
     later = ("utterances", "labels", "work_items", "assignments", "work_shares")
-    for name in (*later, "audit_findings", "audit_reasons", "audit_decisions"):
+    for name in (*later, "audit_findings", "audit_reasons", "audit_decisions", "action_names"):
         del members[f"rows/{name}.jsonl"], manifest["rows"][name]
     members["world.json"] = json.dumps(manifest).encode()
     import_world("again", pack_members(members))
@@ -150,7 +185,7 @@ def test_commands_stay_out_of_date(tiny_world):
 
 
 def test_every_model_below_a_world_is_in_the_archive(tiny_world):
-    listed = {table.model for table in TABLES}
+    listed = {table.model for table in tables()}
     below = {model for model in models_below() if model._meta.app_label == "annotations"}
     assert below - listed == {Grammar, Ontology, Membership} | not_of_the_world()
 

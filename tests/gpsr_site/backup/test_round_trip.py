@@ -1,12 +1,14 @@
 """A backup makes the same installation again, in either database: rows and files equal by hash.
 
-With TEST_DATABASE_URL the way goes from PostgreSQL to SQLite and back, else between two of SQLite.
+With TEST_DATABASE_URL the ways go from PostgreSQL to SQLite and back, and from an installation on SQLite into
+an empty one on PostgreSQL; else between installations on SQLite.
 """
 
 from __future__ import annotations
 
 import json
 import zipfile
+from hashlib import sha256
 from pathlib import Path
 
 import pytest
@@ -18,6 +20,7 @@ from gpsr_site.backup import restore, write_backup
 from gpsr_site.backup.manifest import NAME
 from gpsr_site.backup.tables import SNAPSHOT, snapshot, tables
 from parser_service.models import TrainingRun
+from parser_service.serving.loading import load_anew
 from tests.annotations.commands.run_command import run, run_process
 from tests.conftest import client_of, member
 from tests.filled_world import leave_traces
@@ -90,6 +93,46 @@ def test_an_installation_moves_to_another_database_and_back(
     restore(tmp_path / "two.zip", replace=True)
     assert backup_of(tmp_path / "three.zip") == before
     assert not LogInSession.objects.exists()
+
+
+# Fills an installation in a process of its own, as one that was always on SQLite.
+FILL = """
+from pathlib import Path
+from django.db import transaction
+from annotations.models import World
+from annotations.models.worlds import Role
+from gpsr_site.backup import write_backup
+from tests.conftest import member
+from tests.filled_world import leave_traces
+from tests.sample_world import fill_world
+world = World.objects.create(name="home")
+fill_world(world)
+with transaction.atomic():
+    leave_traces(world, member(world, "anna", Role.ANNOTATOR), member(world, "adam", Role.ADMIN))
+write_backup(Path({path!r}))
+"""
+
+
+@pytest.mark.processes
+def test_an_installation_on_sqlite_fills_an_empty_one_of_the_other_database(
+    transactional_db, var, migrated_database, tmp_path
+):
+    older = copy_installation(migrated_database, tmp_path / "older")
+    done = run_process(older, "shell", "-c", FILL.format(path=str(tmp_path / "one.zip")))
+    assert done.returncode == 0, done.stderr
+    written = json.loads(zipfile.ZipFile(tmp_path / "one.zip").read(NAME))
+    assert written["database"] == "sqlite"
+    rows = {name: (part["rows"], part["sha256"]) for name, part in written["tables"].items()}
+    files = {name: part["sha256"] for name, part in written["files"].items()}
+    assert sum(count for count, _ in rows.values()) > 100 and files
+
+    restore(tmp_path / "one.zip")  # refused, were anything here
+    assert backup_of(tmp_path / "two.zip") == (rows, files)
+    for name, digest in files.items():
+        assert sha256((var / name).read_bytes()).hexdigest() == digest
+    last = TrainingRun.objects.latest("pk")
+    assert load_anew(last).predict(["go to the kitchen"], 1)[0]
+    assert World.objects.create(name="laboratory").pk > World.objects.get(name="home").pk
 
 
 def test_what_is_restored_can_be_worked_with(small, var, tmp_path):

@@ -81,6 +81,12 @@ def waiting_job(sample: SampleWorld) -> Job:
     return Job.objects.get_or_create(world=world, world_name=world.name, kind="import_generator")[0]
 
 
+def job_without_world(sample: SampleWorld) -> Job:
+    """Return the import of a world that is not there yet, which nobody of the policy asked for."""
+    name = f"copy-of-{sample.world}"
+    return Job.objects.get_or_create(world=None, world_name=name, kind="import_world")[0]
+
+
 def proposal(sample: SampleWorld) -> Promotion:
     """Return a proposal that nobody has decided."""
     return Promotion.objects.get_or_create(
@@ -190,8 +196,13 @@ def run(sample: SampleWorld) -> Model:
 
 
 KEYS: dict[str, RouteKeys] = {
-    "member": pk_of(removable_member),
-    "invitation_withdraw": pk_of(invitation),
+    **dict.fromkeys(
+        ("member", "api:member", "api:account", "api:account-link"), pk_of(removable_member)
+    ),
+    **dict.fromkeys(("invitation_withdraw", "api:invitation"), pk_of(invitation)),
+    **dict.fromkeys(("api:token", "api:notice-read"), lambda _: {"pk": 10**6}),
+    "api:session": lambda _: {"handle": "none"},
+    **dict.fromkeys(("api:site-job", "api:site-job-cancel"), pk_of(job_without_world)),
     "join": join_keys,
     **dict.fromkeys(("account_close", "account_link"), pk_of(removable_member)),
     "password_set": lambda _: {"uidb64": "MQ", "token": "none"},
@@ -228,18 +239,18 @@ KEYS: dict[str, RouteKeys] = {
         ("production", "api:production"),
         pk_of(lambda sample: sample.world.grammar.productions.first()),
     ),
-    "download_part": lambda _: {"part": "grammar"},
+    **dict.fromkeys(("download_part", "api:download-part"), lambda _: {"part": "grammar"}),
     "notice_open": lambda _: {"pk": 10**6},
     **dict.fromkeys(
         (
             *("split", "near_duplicates", "split_changes", "split_renew", "split_runs"),
             *("api:split-export", "api:split", "api:split-renew", "api:split-examples"),
-            "api:split-manifest",
+            *("api:split-manifest", "api:near-duplicates", "api:split-changes"),
         ),
         pk_of(split),
     ),
     **dict.fromkeys(
-        ("example", "example_send"),
+        ("example", "example_send", "api:example-send"),
         lambda sample: {"split": sample.split.pk, "pk": sample.example.pk},
     ),
     **dict.fromkeys(
@@ -250,6 +261,7 @@ KEYS: dict[str, RouteKeys] = {
             *("api:run", "api:run-log", "api:run-curves", "api:run-checkpoints"),
             *("api:run-cancel", "api:run-retrain", "api:predictions", "api:candidates"),
             *("api:learning-curve", "api:run-analyse", "api:predictions-send"),
+            *("api:run-findings", "api:run-probes"),
         ),
         pk_of(run),
     ),
@@ -279,21 +291,27 @@ KEYS: dict[str, RouteKeys] = {
         pk_of(waiting_job),
     ),
     **dict.fromkeys(
-        ("utterance", "label_answer", "label_check", "label_mend", "api:utterance"),
+        (
+            *("utterance", "label_answer", "label_check", "label_mend", "api:utterance"),
+            *("api:utterance-label", "api:utterance-spans", "api:utterance-candidates"),
+        ),
         pk_of(utterance),
     ),
-    "label_take_back": pk_of(answer_of_nobody),
+    **dict.fromkeys(("label_take_back", "api:label-take-back"), pk_of(answer_of_nobody)),
     **dict.fromkeys(
         (
             *("queue_item", "queue_act", "queue_settle"),
             *("api:work-item", "api:work-item-finish", "api:work-item-give-back"),
+            *("api:work-item-take", "api:work-item-skip"),
+            *("api:work-item-assign", "api:work-item-withdraw"),
         ),
         pk_of(work_item),
     ),
     **dict.fromkeys(
-        ("audit_item", "audit_decide", "audit_check", "api:audit-finding"), pk_of(finding)
+        ("audit_item", "audit_decide", "audit_check", "api:audit-finding", "api:audit-decide"),
+        pk_of(finding),
     ),
-    "audit_take_back": pk_of(decision_of_nobody),
+    **dict.fromkeys(("audit_take_back", "api:audit-take-back"), pk_of(decision_of_nobody)),
     **dict.fromkeys(
         (
             *("dialogue", "dialogue_keep"),

@@ -22,6 +22,9 @@ READABLE = (
     *("results", "evaluations", "evaluation", "reviews", "review", "answer-review"),
     *("slices", "slice", "error-categories", "error-category"),
     *("jobs", "job", "download", "history", "deleted", "comments", "comment"),
+    *("members", "member", "labels", "audit", "download-part", "run-findings", "run-probes"),
+    *("complexity", "uncovered", "conflicts", "near-duplicates", "agreement", "progress"),
+    "split-changes",
 )
 # Lists that annotators add to, and rows that they change and delete.
 ADDED_BY_ANNOTATORS = ("entities", "predicates", "productions", "templates", "utterances", "splits")
@@ -40,9 +43,46 @@ def admins(outcome: int) -> tuple[int, ...]:
     return NO_TOKEN, NOWHERE, NO, NO, outcome
 
 
+def everybody(outcome: int) -> tuple[int, ...]:
+    return NO_TOKEN, *[outcome] * 4
+
+
+def members(outcome: int) -> tuple[int, ...]:
+    return NO_TOKEN, NOWHERE, *[outcome] * 3
+
+
 API_POLICY = [
     Rule("api:schema", YES, YES, YES, YES, YES),
-    Rule("api:worlds", NO_TOKEN, YES, YES, YES, YES),
+    Rule("api:worlds", *everybody(YES)),
+    # Everybody has tokens, log-ins and notices of their own alone
+    *(Rule(f"api:{name}", *everybody(YES)) for name in ("tokens", "sessions", "notices")),
+    Rule("api:tokens", *everybody(NO_JSON), method="post"),
+    *(Rule(f"api:{name}", *everybody(NOWHERE)) for name in ("token", "session")),
+    *(Rule(f"api:{each}", *everybody(NOWHERE), method="delete") for each in ("token", "session")),
+    Rule("api:sessions-end", *everybody(NOTHING), method="post"),
+    Rule("api:notices-read", *everybody(YES), method="post"),
+    Rule("api:notice-read", *everybody(NOWHERE), method="post"),
+    Rule("api:join", *everybody(NO_JSON), method="post"),
+    # Jobs of worlds that are not there are for who asked for them
+    Rule("api:site-job", *everybody(NOWHERE)),
+    Rule("api:site-job-cancel", *everybody(NOWHERE), method="post"),
+    # Worlds and accounts are made and unmade by administrators of the site, who are none of these
+    *(Rule(f"api:{name}", *everybody(NO)) for name in ("accounts", "account", "site-log")),
+    Rule("api:account", *everybody(NO), method="patch"),
+    *(
+        Rule(f"api:{name}", *everybody(NO), method="post")
+        for name in ("worlds", "import-world", "account-link")
+    ),
+    Rule("api:world", *admins(NO_VERSION), method="patch"),
+    Rule("api:world", *members(NO), method="delete"),
+    # Admins say who is in a world, and see who did what there
+    *(Rule(f"api:{name}", *admins(YES)) for name in ("invitations", "invitation", "audit-log")),
+    *(Rule(f"api:{name}", *admins(NO_JSON), method="post") for name in ("members", "invitations")),
+    Rule("api:member", *admins(NO_VERSION), method="patch"),
+    *(
+        Rule(f"api:{name}", *admins(NO_VERSION), method="delete")
+        for name in ("member", "invitation")
+    ),
     *(Rule(f"api:{name}", *READ) for name in READABLE),
     *(Rule(f"api:{name}", *annotators(NO_JSON), method="post") for name in ADDED_BY_ANNOTATORS),
     # Every member comments; what somebody said is their own, and admins may take it away.
@@ -56,6 +96,37 @@ API_POLICY = [
     *(Rule(f"api:{name}", *admins(400), method="post") for name in ("import", "import-pairs")),
     Rule("api:job-cancel", *admins(YES), method="post"),
     Rule("api:job-answer", *admins(CLASH), method="post"),  # it asks nothing
+    Rule("api:utterance-candidates", *annotators(YES)),
+    # What is only checked
+    *(
+        Rule(f"api:{name}", *annotators(NO_JSON), method="post")
+        for name in ("check-template", "check-production", "check-predicate", "suggestions")
+    ),
+    Rule("api:check-form", *members(NO_JSON), method="post"),
+    # What annotators answer; the queue itself knows who may do which item
+    *(
+        Rule(f"api:{name}", *annotators(NO_JSON), method="post")
+        for name in ("utterance-label", "utterance-spans")
+    ),
+    Rule("api:label-take-back", *annotators(CLASH), method="post"),  # it is of nobody
+    Rule("api:work-item-take", NO_TOKEN, NOWHERE, YES, CLASH, YES, method="post"),
+    Rule("api:work-item-skip", *members(CLASH), method="post"),  # nobody holds it
+    Rule("api:parse-wrong", *members(NO_JSON), method="post"),
+    # Everybody with a role decides about labels in doubt, reviewers let them be looked for
+    Rule("api:audit-decide", *members(NO_JSON), method="post"),
+    Rule("api:audit-take-back", *members(CLASH), method="post"),
+    *(
+        Rule(f"api:{name}", *reviewers(NO_JSON), method="post")
+        for name in ("audit", "work-items", "example-send")
+    ),
+    # Admins say who does what
+    Rule("api:queue-settings", *admins(YES)),
+    Rule("api:queue-settings", *admins(NO_VERSION), method="patch"),
+    *(
+        Rule(f"api:{name}", *admins(NO_JSON), method="post")
+        for name in ("work-items-assign", "work-item-assign")
+    ),
+    Rule("api:work-item-withdraw", *admins(YES), method="post"),
     # What reviewers say, what admins decide
     *(
         Rule(f"api:{name}", *reviewers(NO_JSON), method="post")
@@ -104,13 +175,3 @@ API_POLICY = [
     Rule("api:offered-entity-decide", *annotators(NO_JSON), method="post"),
     Rule("api:dialogue-keep", NO_TOKEN, NOWHERE, CLASH, NO, CLASH, method="post"),
 ]
-
-API_ONLY_POSTED = {"api:work-item-finish", "api:work-item-give-back", "api:split-renew"} | {
-    *("api:run-cancel", "api:run-retrain", "api:answer-doubt", "api:error-category-move"),
-    *("api:job-cancel", "api:job-answer", "api:rename", "api:comment-restore"),
-    *("api:learning-curve", "api:run-analyse", "api:predictions-send"),
-    *("api:dialogue-answer", "api:dialogue-keep", "api:offered-entity-decide"),
-    "api:promotion-decline",
-}
-
-API_READ_AND_POSTED = {"api:history", "api:comments"}

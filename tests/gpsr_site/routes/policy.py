@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.gpsr_site.routes.api_policy import API_ONLY_POSTED, API_POLICY, API_READ_AND_POSTED
+from tests.gpsr_site.routes.api_policy import API_POLICY
 from tests.gpsr_site.routes.rules import (
     BAD,
     GONE_ON,
@@ -10,12 +10,11 @@ from tests.gpsr_site.routes.rules import (
     NO,
     NOWHERE,
     PEOPLE,
-    WRONG,
     YES,
     Rule,
 )
 
-__all__ = ["LOG_IN", "ONLY_POSTED", "PEOPLE", "POLICY", "READ_AND_POSTED", "YES", "Rule"]
+__all__ = ["LOG_IN", "NO", "NOWHERE", "PEOPLE", "POLICY", "YES", "Rule"]
 
 MEMBERS = (LOG_IN, NOWHERE, YES, YES, YES)
 ANNOTATORS = (LOG_IN, NOWHERE, YES, NO, YES)
@@ -25,6 +24,7 @@ POLICY = [
     # Outside of any world
     Rule("healthz", YES, YES, YES, YES, YES),
     Rule("login", YES, GONE_ON, GONE_ON, GONE_ON, GONE_ON),
+    Rule("login", YES, GONE_ON, GONE_ON, GONE_ON, GONE_ON, method="post"),
     Rule("logout", LOG_IN, GONE_ON, GONE_ON, GONE_ON, GONE_ON, method="post"),
     Rule("password", LOG_IN, YES, YES, YES, YES),
     Rule("password", LOG_IN, YES, YES, YES, YES, method="post"),
@@ -38,6 +38,7 @@ POLICY = [
     Rule("account_close", LOG_IN, NO, NO, NO, NO, method="post"),
     Rule("account_link", LOG_IN, NO, NO, NO, NO, method="post"),
     Rule("password_set", YES, YES, YES, YES, YES),
+    Rule("password_set", YES, YES, YES, YES, YES, method="post"),
     Rule("site_log", LOG_IN, NO, NO, NO, NO),
     # Whoever has the link of an invitation joins
     Rule("join", YES, YES, YES, YES, YES),
@@ -240,8 +241,11 @@ POLICY = [
     Rule("queue_assign", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("queue_settings", *ADMINS),
     Rule("queue_settings", *ADMINS, method="post"),
-    Rule("import", *ADMINS),
-    Rule("import_pairs", *ADMINS),
+    *(Rule(name, *ADMINS) for name in ("import", "import_pairs")),
+    *(
+        Rule(name, LOG_IN, NOWHERE, NO, NO, 422, method="post")
+        for name in ("import", "import_pairs")
+    ),
     Rule("job_cancel", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("job_answer", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("run_new", *ADMINS),
@@ -250,51 +254,11 @@ POLICY = [
     Rule("run_retrain", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("learning_curve_start", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("split_runs", *ADMINS),
+    Rule("people", *MEMBERS),
     Rule("people", *ADMINS, method="post"),
     Rule("member", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("audit_log", *ADMINS),
     Rule("invite", LOG_IN, NOWHERE, NO, NO, 422, method="post"),
     Rule("invitation_withdraw", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
-    Rule("member", LOG_IN, WRONG, WRONG, WRONG, WRONG),
-    # What changes something is not done by following a link
-    Rule("generate", LOG_IN, WRONG, WRONG, WRONG, WRONG),
-    Rule("run_cancel", LOG_IN, WRONG, WRONG, WRONG, WRONG),
-    Rule("template_check", LOG_IN, WRONG, WRONG, WRONG, WRONG),
-    Rule("template_preview", LOG_IN, WRONG, WRONG, WRONG, WRONG),
-    Rule("template_consequences", LOG_IN, WRONG, WRONG, WRONG, WRONG),
-    Rule("template_suggestions", LOG_IN, WRONG, WRONG, WRONG, WRONG),
-    Rule("template_repair", LOG_IN, WRONG, WRONG, WRONG, WRONG),
     *API_POLICY,
 ]
-
-# Routes of rows that are not read, only changed.
-ONLY_POSTED = {
-    *API_ONLY_POSTED,
-    *("dialogue_keep", "offered_entity_decide"),
-    *("run_cancel", "member", "invitation_withdraw", "template_duplicate", "template_repair"),
-    *("queue_ask", "queue_act", "queue_settle"),
-    *("label_answer", "label_check", "label_mend", "label_take_back"),
-    *("example_send", "predictions_send", "paraphrase_label", "paraphrase_check"),
-    *("split_renew", "run_retrain", "learning_curve_start"),
-    *("comment_delete", "comment_restore"),
-    *("audit_decide", "audit_check", "audit_take_back"),
-    *("slice_rename", "slice_delete"),
-    *("analysis_start", "analysis_cancel"),
-    *("review_tag", "review_note", "review_doubt"),
-    *("error_category_move", "error_category_delete"),
-    "promotion_decline",
-}
-# Routes of rows that take a POST at the address where they are read.
-READ_AND_POSTED = {
-    *API_READ_AND_POSTED,
-    "dialogue",
-    "template",
-    "entity",
-    "production",
-    "history",
-    "comments",
-    "comment",
-    "rename",
-    "delete_row",
-    "error_category",
-}

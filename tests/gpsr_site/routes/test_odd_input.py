@@ -48,7 +48,7 @@ if connection.vendor != "sqlite":
     WORST_VALUES = ["a\0b", SURROGATE, str(2**63)]
 FILE_FIELDS = {
     **{"import": b"files", "import_pairs": b"archive", "world_import": b"archive"},
-    **{"api:import": b"files", "api:import-pairs": b"archive"},
+    **{"api:import": b"files", "api:import-pairs": b"archive", "api:import-world": b"archive"},
 }
 CURSORS = [
     *("[null,1]", "[1e400,1]", "[1,1e400]", '["\\u0000",1]', '["\\ud800",1]', "[[1],1]", "[{},1]"),

@@ -5,13 +5,16 @@ from __future__ import annotations
 import pytest
 
 from annotations.background import Stopped
+from annotations.background.progress import UNWATCHED
 from annotations.jobs import cancel_job, request_job
 from annotations.jobs.watching import JobProgress
 from annotations.models import Job, JobKind
 from parser_service.analysing import findings as findings_module
 from parser_service.analysing.carrying_out import names_of_steps
 from parser_service.analysing.findings import findings_of
+from parser_service.analysing.refusing import refusal_findings
 from parser_service.analysing.state import analysis_of
+from parser_service.analysing.target import Target
 from parser_service.models import ProbeAnswer
 from parser_service.runs.analysis_requests import analysis_jobs, request_analysis
 from parser_service.runs.checkpoints import model_folder, remove_folder
@@ -70,6 +73,19 @@ def test_refusing_everything_withholds_every_error(analysed):
     assert (curve["count"], curve["correct"], curve["unanswered"]) == (6, 0, 0)
     assert curve["bounds"] == [None, 1.0]
     assert (curve["answered"], curve["wrong"], curve["spared"]) == ([0, 6], [0, 6], [6, 0])
+    assert curve["no_probability"].startswith("The scores of this parser are no probabilities")
+
+
+@pytest.mark.parametrize(
+    ("kind", "error", "brier"), [("probability", 1.0, 1.0), ("log_probability", 1.0, 1.0)]
+)
+def test_scores_that_are_probabilities_are_measured(analysed, kind, error, brier):
+    """It is sure of every answer, and all are wrong."""
+    run = analysed("always-one")
+    run.score_kind = kind
+    target = Target(run, "validation")
+    curve = refusal_findings(target, UNWATCHED)["para"]
+    assert (curve["calibration_error"], curve["brier_score"]) == (error, brier)
 
 
 def test_every_error_has_a_proposal_which_knows_the_default(analysed):

@@ -18,6 +18,7 @@ from annotations.models import (
 from parser_service.candidates.for_templates import suggest_with_parsers
 from parser_service.runs import lifecycle
 from parser_service.runs.training import train
+from parser_service.serving.loading import _load
 from tests.parser_service.requests import ask
 
 COMMAND, PATTERN = "go to the <room>", "go to the {room}"
@@ -109,7 +110,9 @@ def test_a_worker_is_asked_once_and_the_page_takes_its_answer(
     assert "is asked about" not in page and "Nearest neighbour 1.00" in page
 
 
-def test_a_parser_that_cannot_answer_is_asked_once(sample, anna, annotator):
+def test_a_parser_that_cannot_answer_is_asked_once(sample, anna, annotator, settings, tmp_path):
+    settings.RUNS_DIR = tmp_path  # other tests saved parsers of runs with the same numbers
+    _load.cache_clear()
     assert suggest(sample.world, by=annotator).waits_for == "Nearest neighbour"
     job = sample.world.jobs.get(kind=JobKind.PROPOSE)
     carry_out(background.claim("a worker", "quick", Job))

@@ -19,6 +19,13 @@ from parser_service.benchmarking import cells as cells_module
 from parser_service.benchmarking.corpus import new_split, read_corpus, source_commands
 from parser_service.management.options import read_column, read_split_seeds
 from parser_service.parsers.conditions import SETTINGS
+from tests.parser_service.llm_server import (
+    KEY,
+    REPORTED,
+    fails,
+    installed_tiny_server,
+    says,
+)
 from tests.parser_service.made_up import made_up_pairs, make_folder
 from tests.parser_service.worker_process import ROOT
 
@@ -278,3 +285,23 @@ def test_the_published_parts_have_the_published_sizes(shared_data):
         corpus = read_corpus(shared_data / "walker2019", criterion)
         parts = [corpus.pairs(part, ["generated"]) for part in ("train", "validation")]
         assert tuple(map(len, parts)) == sizes
+
+
+def test_a_cell_names_the_model_that_answered_and_one_without_all_answers_is_not_measured(
+    folder, tmp_path
+):
+    asked = {"parsers": "llm", "columns": "gen-para:command:strict"}
+    with installed_tiny_server(tmp_path) as tiny:
+        with pytest.raises(CommandError, match="model is empty"):
+            run(folder, tmp_path / "cells.json", **asked)
+        tiny.faults = [*4 * [says('{"form": "UNKNOWN"}')], *9 * [fails(500, KEY)]]
+        asked["config"] = ["llm.model=tiny", "llm.at_once=1"]
+        with pytest.raises(CommandError, match="does not answer: status 500"):
+            run(folder, tmp_path / "cells.json", **asked)
+        assert not (tmp_path / "cells.json").exists()
+        tiny.faults.clear()
+        before = len(tiny.asked)
+        [cell] = run(folder, tmp_path / "cells.json", **asked)
+    assert (cell["answered_by"], cell["n_validation"]) == (REPORTED, 9)
+    assert len(tiny.asked) == before + 9 - 3  # the first of the four was asked in fitting
+    assert KEY not in (tmp_path / "cells.json").read_text()

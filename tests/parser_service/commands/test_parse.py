@@ -8,7 +8,8 @@ from io import StringIO
 import pytest
 from django.core.management import CommandError, call_command
 
-from annotations.models import Entity, Ontology
+from annotations.models import Entity, Ontology, Split
+from parser_service.models import TrainingRun
 from parser_service.runs import lifecycle, requesting
 from parser_service.runs.checkpoints import model_folder, remove_folder
 from parser_service.runs.training import train
@@ -41,20 +42,21 @@ def ask(text: str, *options: str) -> dict:
     return json.loads(out.getvalue())
 
 
-def test_a_parser_of_generated_commands_is_asked_with_class_tokens(split):
-    run = trained(split, train_sources="gen")
+@pytest.mark.parametrize("sources", ["gen", "gen+para"])
+def test_every_parser_is_asked_as_people_speak_as_it_was_evaluated(split, sources):
+    run = trained(split, train_sources=sources)
     answer = ask("Bring me the red cup")
     assert (answer["run"], answer["parser"]) == (run.pk, "knn")
-    assert answer["parsed_text"] == "Bring me the <object>"
+    assert answer["parsed_text"] == "Bring me the red cup"
+
+
+def test_an_answer_names_the_entities_that_the_utterance_names(split):
+    trained(split, train_sources="gen")
+    answer = ask("Bring me the red cup")
     first = answer["candidates"][0]
     assert (first["form"], first["grounded"]) == (FETCH, FETCH_CUP)
     assert first["reading"] == 'bring(λx. is_a(x, "red cup"))'
     assert first["english"] == "bring me the red cup"
-
-
-def test_a_parser_that_knows_paraphrases_is_asked_as_people_speak(split):
-    trained(split, train_sources="gen+para")
-    assert ask("Bring me the red cup")["parsed_text"] == "Bring me the red cup"
 
 
 def test_a_network_is_loaded_from_its_folder(split):
@@ -66,9 +68,29 @@ def test_the_best_run_is_the_one_that_is_right_on_paraphrases(split):
     spoken = trained(split, train_sources="gen+para")
     generated = trained(split, train_sources="gen")
     for run, source, accuracy in ((spoken, "para", 0.5), (generated, "para", 0.25)):
-        run.evaluations.filter(part="validation", test_source=source).update(accuracy=accuracy)
-    generated.evaluations.filter(test_source="gen").update(accuracy=1.0)
+        of_run = run.evaluations.filter(part="validation", test_source=source)
+        of_run.update(accuracy=accuracy, interval_low=accuracy / 2)
+    generated.evaluations.filter(test_source="gen").update(accuracy=1.0, interval_low=1.0)
     assert best_run(split.world) == spoken
+
+
+def test_of_two_runs_the_surer_one_is_the_best(split):
+    sure, lucky = trained(split, train_sources="gen+para"), trained(split, train_sources="gen")
+    for run, accuracy, low in ((sure, 0.8, 0.7), (lucky, 0.9, 0.5)):
+        run.evaluations.filter(test_source="para").update(accuracy=accuracy, interval_low=low)
+    assert best_run(split.world) == sure
+
+
+def test_a_run_of_a_split_by_form_is_not_better_for_being_right_more_often(split):
+    by_command = trained(split, train_sources="gen+para")
+    by_form = trained(split, train_sources="gen")
+    other = Split.objects.create(world=split.world, name="forms", criterion="logical_form", seed=0)
+    TrainingRun.objects.filter(pk=by_form.pk).update(split=other)
+    by_form.evaluations.update(accuracy=1.0, interval_low=1.0)
+    by_command.evaluations.update(accuracy=0.5, interval_low=0.25)
+    assert best_run(split.world) == by_command
+    TrainingRun.objects.filter(pk=by_command.pk).update(split=other)
+    assert best_run(split.world) == by_form
 
 
 def remarks(text: str) -> list[str]:

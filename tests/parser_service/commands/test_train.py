@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -14,6 +15,7 @@ from django.conf import settings as site
 from django.core.management import CommandError, call_command
 from django.utils import timezone
 
+from annotations.models import Split
 from parser_service.models import TrainingRun
 from parser_service.runs import lifecycle, requesting
 from tests.parser_service.made_up import LONG, make_split
@@ -109,7 +111,19 @@ def test_several_seeds_report_each_run_and_mean_and_spread(split):
 def test_mean_and_spread_are_printed_for_a_person(split):
     out = StringIO()
     call_command("train", "knn", *HERE, "--seeds", "2", stdout=out, stderr=StringIO())
-    assert " ± 0.0 % over 2 seeds" in out.getvalue()
+    assert re.search(r" ± [1-9][0-9.]* % over 2 seeds, standard deviation 0\.0\n", out.getvalue())
+
+
+def test_by_form_the_harmonic_mean_is_reported(split):
+    Split.objects.update(criterion="logical_form")
+    report = call("knn", *HERE, "--sources", "gen,para")
+    assert report["harmonic_means"]
+    for each in report["harmonic_means"]:
+        unseen, known = each["unseen"], each["known"]
+        expected = 2 * unseen * known / (unseen + known) if unseen and known else 0
+        assert each["harmonic_mean"] == pytest.approx(expected)
+        low, high = each["interval"]
+        assert low <= each["harmonic_mean"] <= high
 
 
 def test_seeds_that_fail_are_reported_together(split):

@@ -49,13 +49,6 @@ def test_an_unknown_word_is_asked_about_learnt_and_then_known(parse_server, call
     assert again["plan"]["is_executable"]
 
 
-def test_two_places_are_asked_for_only_where_the_words_leave_them_open(
-    parse_server, call, annotator
-):
-    said = {"utterance": "bring me the bowl near the desk"}
-    assert call(annotator, DIALOGUES, said).json()["phase"] == "confirming"
-
-
 def test_an_utterance_can_be_said_another_way(parse_server, call, annotator):
     row = call(annotator, DIALOGUES, {"utterance": "find the bowl"}).json()
     address = f"{DIALOGUES}{row['id']}/answer/"

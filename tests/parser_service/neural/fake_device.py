@@ -16,7 +16,8 @@ CPU = torch.device("cpu")
 FAKE = torch.device("meta")  # the only other device for which torch's autograd needs no hardware
 CALLERS = (
     "seq2seq.parser",
-    "ranker.parser",
+    "ranker.fitting",
+    "t5.parser",
     "word_vectors.contextual",
     "word_vectors.elmo",
     "word_vectors.elmo_weights",

@@ -71,5 +71,5 @@ def test_loading_a_class_leaves_the_garbage_collector_on():
 
 @pytest.mark.parametrize("name", PARSERS)
 def test_every_parser_says_what_its_scores_are(name):
-    kinds = {"grammar-oracle": None, "knn": ScoreKind.SIMILARITY}
+    kinds = {"grammar-oracle": None, "llm": None, "knn": ScoreKind.SIMILARITY}
     assert load_class(name).score_kind == kinds.get(name, ScoreKind.LOG_PROBABILITY)

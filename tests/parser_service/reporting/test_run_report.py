@@ -37,6 +37,7 @@ FINDINGS = {
         "para": {
             **{"count": 4, "correct": 3, "unanswered": 1, "area": 0.2, "best_area": 0.1},
             **{"bounds": [None, 0.9, 0.1], "answered": [0, 2, 4], "wrong": [0, 0, 1]},
+            **{"calibration_error": 0.123, "brier_score": 0.045},
         }
     },
     "sensitivity": [
@@ -146,7 +147,9 @@ def test_what_a_worker_found_out_is_shown(report, run, tmp_path):
     assert validate(html, tmp_path) == []
     document = parse(html)
     assert table(document, "attractors")[0][:4] == ['( go " <room> " )', "bring & tea", "7", "1"]
-    assert table(document, "refusing") == [["para", "4", "3", "1", "0.200", "0.100"]]
+    assert table(document, "refusing") == [
+        ["para", "4", "3", "1", "0.200", "0.100", "0.123", "0.045"]
+    ]
     assert len(document.query("#refusing polyline")) == 1
     assert table(document, "sensitivity")[0][:3] == ["article", "10", "20.0 10.0–30.0"]
     assert "bring" in texts(document, "#sensitivity p strong")

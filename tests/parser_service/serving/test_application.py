@@ -8,9 +8,9 @@ import json
 import pytest
 
 from parser_service.promotion import promote
-from parser_service.serving.application import LINES_TOGETHER, Application
+from parser_service.serving.application import Application
 from parser_service.serving.metrics import Metrics
-from parser_service.serving.shelf import Shelf
+from parser_service.serving.shelf import LINES_TOGETHER, Shelf
 from tests.parser_service.served import make_home, trained_run
 
 PARSE = "/api/v1/worlds/home/parse/"

@@ -56,3 +56,11 @@ def test_an_exchanged_conjunct_is_found_where_it_moved() -> None:
     assert found.cost == 1
     changed = [span.text for span in found.right_spans() if span.change == Change.CHANGED]
     assert changed == ["at"]
+
+
+def test_conjunctions_without_conjuncts_have_an_order_too() -> None:
+    empty = Application("and", ())
+    assert order_like(empty, empty) == empty
+    both = read_form("(find (λ$1:e (and (red $1) (tall $1))))")
+    none = read_form("(find (λ$1:e (and)))")
+    assert (order_like(both, none), order_like(none, both)) == (both, none)

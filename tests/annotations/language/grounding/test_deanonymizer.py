@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from random import Random
@@ -202,18 +203,30 @@ def test_every_form_of_the_2018_generator_is_right_with_and_without_its_grammar(
     derivations = derivations_of_2018()
     grammar = evidence_of_2018()
     same_text = certain = 0
+    several: Counter[str] = Counter()
     for derivation in derivations:
         made = ground(derivation.symbols, derivation.form, ontology, random)
         anonymized = anonymizer.anonymize(made.text)
         form = fill_anonymized(derivation.form, {})
         same_text += anonymized.command == derivation.anonymized_text
-        for evidence in (None, grammar):
+        for name, evidence in (("English", None), ("grammar", grammar)):
             result = deanonymize(form, anonymized, ontology, evidence)
+            is_right = canonical_text(result.form) == canonical_text(made.form)
             if not result.open_slots:
                 certain += 1
-                assert canonical_text(result.form) == canonical_text(made.form), made.text
+                assert is_right, made.text
+                several[f"{name}, right"] += has_several(result)
+            several[name] += has_several(result)
     assert same_text > 0.97 * len(derivations)
     assert certain > 0.9 * 2 * len(derivations)
+    assert several == dict.fromkeys(several, 219)
+    assert len(several) == 4
+
+
+def has_several(result: Deanonymized) -> bool:
+    """Return whether a form has several slots of one class."""
+    classes = Counter(slot.entity_class for slot in result.slots if slot.entity_class)
+    return max(classes.values(), default=0) > 1
 
 
 @needs_corpus

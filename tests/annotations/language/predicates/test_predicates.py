@@ -121,6 +121,7 @@ def test_a_nonterminal_as_predicate_or_argument_is_not_judged() -> None:
         ),
         ('(bring (λ$1:e (is $1 "<gesture>")))', "bring me the one who is making the gesture"),
         ("(find (λ$1:e (heaviest $1 3) (is_a $1 {kobject})))", "find the three heaviest objects"),
+        ("(bring (λ$1:e (is_a $1)))", "bring me the object"),  # a parser may write it
     ],
 )
 def test_a_gloss_reads_as_a_sentence(text: str, expected: str) -> None:
@@ -143,6 +144,15 @@ def test_a_pattern_of_ones_own_overrides_the_default() -> None:
     signature = Signature((ArgumentKind.ROOM,))
     mine = {"go": Predicate("go", PredicateKind.ACTION, (signature,), "drive | drive into {1}")}
     assert gloss(read_form('(go "<room>")'), mine) == "drive into the room"
+
+
+def test_a_predicate_of_nothing_but_actions_is_a_sequence() -> None:
+    form = read_form('(first_then (go "<room>") (say (count (λ$1:e (person $1)))))')
+    known = infer_signatures([form, read_form("(find (λ$1:e (follow (person $1) (male $1))))")])
+    kinds = {name: each.kind for name, each in known.items()}
+    assert kinds["first_then"] is PredicateKind.SEQUENCE
+    assert PredicateKind.SEQUENCE not in {kinds[name] for name in ("follow", "say", "go", "find")}
+    assert gloss(form, known) == "go to the room, then tell me the number of people"
 
 
 def test_describing_each_other_does_not_go_round_forever() -> None:

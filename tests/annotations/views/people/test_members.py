@@ -44,7 +44,7 @@ def test_an_admin_adds_an_account_that_exists(world, nora, as_admin):
     ("values", "field", "sentence"),
     [
         ({"name": "nobody", "roles": ["annotator"]}, "name", "No account has this name."),
-        ({"name": "nora"}, "roles", "This field is required."),
+        ({"name": "nora"}, "roles", "Choose at least one role."),
         ({"name": "nora", "roles": ["owner"]}, "roles", "owner is not one of"),
         ({"name": "\0", "roles": ["annotator"]}, "name", "Null characters"),
     ],

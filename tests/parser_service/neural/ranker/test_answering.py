@@ -55,6 +55,15 @@ def test_below_the_threshold_the_answer_is_unknown(learned, pairs):
     assert learned.predict(["something else"])[0][0].form != "UNKNOWN"
 
 
+def test_other_pairs_calibrate_another_parser_and_this_one_stays(learned, pairs):
+    asked = utterances(pairs)
+    before = learned.predict(asked)
+    other = learned.calibrated(pairs[:4])
+    assert other.calibrated(pairs).predict(asked) == before
+    assert other.predict(asked) != before
+    assert learned.predict(asked) == before
+
+
 def test_a_cancelled_prediction_stops(learned):
     def cancel():
         raise Cancelled
@@ -103,13 +112,20 @@ def test_known_forms_are_answered_where_validation_and_training_have_no_others(
     assert all(ranked[0].form in known for ranked in parser.predict(utterances(pairs)))
 
 
-def test_new_forms_are_answered_where_validation_has_no_others(config, pairs):
-    parser = FormRanker(config, seed=1)
+def test_whatever_is_validated_the_same_forms_are_new(config, pairs):
     known = [pair for pair in pairs if pair.form != UNSEEN]
     unseen = [pair for pair in pairs if pair.form == UNSEEN]
-    parser.fit(known, unseen)
-    answers = parser.predict(utterances(unseen))
-    assert not {ranked[0].form for ranked in answers} & {pair.form for pair in known}
+    parsers = [FormRanker(config, seed=1) for _ in range(3)]
+    for parser, validation in zip(parsers, (known, unseen, ()), strict=True):
+        parser.fit(known, validation)
+    assert len({parser._decision.novelty for parser in parsers}) == 1
+
+
+def test_known_training_utterances_are_answered_where_all_validation_forms_are_new(config, pairs):
+    parser = FormRanker(replace(config, steps=300), seed=2)
+    known = [pair for pair in pairs if pair.form != UNSEEN]
+    parser.fit(known, [pair for pair in pairs if pair.form == UNSEEN])
+    assert accuracy(parser, known) >= 0.95
 
 
 @pytest.mark.parametrize("knowledge", [Knowledge(), domain()], ids=["strict", "domain"])
@@ -137,3 +153,37 @@ def test_a_refusal_says_so(learned):
     hesitant._ranked, hesitant._decision = learned._ranked, learned._decision
     hesitant._model = learned._model
     assert hesitant.predict(["something else"])[0][0].origin == "refusal"
+
+
+@pytest.mark.parametrize("text", ["", "   ", "\u3000"], ids=["nothing", "blanks", "a wide blank"])
+def test_served_it_answers_nothing_to_nothing(learned, text):
+    [[first, second]] = learned.hesitant().predict([text], 2)
+    assert (first.form, first.origin) == ("UNKNOWN", "refusal")
+    assert second == learned.predict([text])[0][0]
+
+
+def test_served_it_withholds_few_answers_that_are_right(learned, pairs):
+    known = [pair for pair in pairs if pair.form != UNSEEN]
+    right = [
+        pair.utterance
+        for pair, ranked in zip(known, learned.predict(utterances(known)), strict=True)
+        if ranked[0].form == pair.form
+    ]
+    served = learned.hesitant().predict(right)
+    withheld = sum(ranked[0].form == "UNKNOWN" for ranked in served)
+    assert withheld <= 0.05 * len(right)
+
+
+def test_served_it_does_not_answer_what_is_far_from_all_that_it_knows(learned):
+    strict = learned.hesitant()
+    strict._decision = replace(strict._decision, least_nearness=20.1)
+    assert strict.predict(["bring the <object>"])[0][0].form == "UNKNOWN"
+    assert learned.predict(["bring the <object>"])[0][0].form != "UNKNOWN"
+
+
+def test_an_utterance_longer_than_the_encoder_reads_says_so(learned):
+    [short], [long, other] = (
+        learned.predict(["bring the <object>"])[0],
+        learned.predict(["bring the <object> " * 40], 2)[0],
+    )
+    assert not short.is_cut and long.is_cut and other.is_cut

@@ -1,5 +1,4 @@
 from dataclasses import asdict
-from math import log
 
 import pytest
 import torch
@@ -7,12 +6,15 @@ import torch
 from parser_service.neural.ranker.calibration import (
     EQUAL,
     EXPERTS,
+    NEAR,
+    USUAL_NEARNESS,
     USUAL_NOVELTY,
     Decision,
     Scores,
     best_novelty,
     best_weights,
-    calibrate,
+    least_nearness,
+    weigh,
 )
 
 FIRST, SECOND = EXPERTS.index("examples"), EXPERTS.index("glosses")
@@ -45,60 +47,84 @@ def test_without_new_forms_all_is_known():
     assert torch.allclose(logs.exp().sum(-1), torch.ones(2))
 
 
-def test_evidence_is_how_much_better_the_new_forms_fit_without_their_examples():
-    one = Scores(said([[5.0]], [[1.0]]), said([[0.0]], [[3.0]]))
+def test_evidence_is_how_much_better_the_best_new_form_fits():
+    one = Scores(said([[NEAR]], [[1.0]]), said([[0.0]], [[3.0]]))
     assert one.evidence.tolist() == [2]
+
+
+def test_a_near_example_speaks_for_the_known_forms_and_a_far_one_against_them():
+    near, far = (
+        Scores(said([[NEAR + by]], [[1.0]]), said([[0.0]], [[1.0]])).evidence for by in (4, -4)
+    )
+    assert near.tolist() == [-2] and far.tolist() == [2]
+
+
+def test_new_forms_with_examples_have_theirs_weighed_alike():
+    same = Scores(said([[14.0]], [[1.0]]), said([[14.0]], [[1.0]]))
+    assert same.evidence.tolist() == [0]
+
+
+@pytest.mark.parametrize("times", [10, 10_000])
+def test_evidence_is_the_same_for_ten_and_for_ten_thousand_forms(times):
+    many = Scores(SCORES.known, SCORES.new.repeat(1, 1, times))
+    assert torch.equal(many.evidence, SCORES.evidence)
+    worse = SCORES.new - torch.tensor([0.0, 5.0, 0.0, 0.0])[:, None, None]
+    others = Scores(SCORES.known, torch.cat([SCORES.new, worse.repeat(1, 1, times)], -1))
+    assert torch.equal(others.evidence, SCORES.evidence)
 
 
 def test_the_more_often_forms_are_new_the_more_new_forms_are_answered():
     chosen = [
-        Decision(novelty).log_probabilities(SCORES).argmax(-1).tolist() for novelty in (-9, 0, 9)
+        Decision(novelty).log_probabilities(SCORES).argmax(-1).tolist() for novelty in (-20, -6, 9)
     ]
     assert chosen == [[0, 1], [0, 2], [3, 2]]
 
 
-def novelty_of(evidence, new, forms):
-    """The novelty after so many pairs, of so many ``forms``, the first ``new`` of which are new."""
-    number = torch.arange(len(evidence)) % forms
-    return best_novelty(evidence, number < new, number)
+def novelty_of(of_new, of_known, pairs_a_form=1):
+    """The novelty by so much evidence for utterances of new and of known forms."""
+    new, known = (
+        [f"{kind} {at // pairs_a_form}" for at in range(len(evidence))]
+        for kind, evidence in (("new", of_new), ("known", of_known))
+    )
+    return best_novelty(torch.tensor(of_new), new, torch.tensor(of_known), known)
 
 
-def test_without_a_pair_the_novelty_is_as_usual():
-    assert novelty_of(torch.zeros(0), 0, 1) == USUAL_NOVELTY
+def test_where_nothing_was_held_out_the_novelty_is_as_usual():
+    assert novelty_of([], []) == novelty_of([1.0], []) == novelty_of([], [1.0]) == USUAL_NOVELTY
 
 
-@pytest.mark.parametrize("new", [1, 5, 10])
-def test_some_new_forms_leave_it_as_it_is(new):
-    evidence = torch.where(torch.arange(120) % 40 < new, 5.0, 0.0)
-    assert novelty_of(evidence, new, 40) == pytest.approx(USUAL_NOVELTY, abs=0.2)
+def test_two_forms_move_it_less_than_many():
+    few, many = (novelty_of([3.0] * forms, [1.0] * forms) for forms in (2, 60))
+    assert USUAL_NOVELTY > few > many
+    assert few == pytest.approx(USUAL_NOVELTY, abs=0.5)
+    assert many == pytest.approx(USUAL_NOVELTY - 2, abs=0.3)
 
 
-@pytest.mark.parametrize("pairs", [1, 200])
-def test_where_all_forms_are_new_the_set_is_open(pairs):
-    novelty = novelty_of(torch.full((pairs,), 2.0), 12, 12)
-    assert novelty == pytest.approx(log(pairs / 0.5 + 1))
+def test_it_lies_between_the_evidence_of_new_and_of_known_forms():
+    assert novelty_of([2.0] * 9, [-2.0] * 9) == pytest.approx(USUAL_NOVELTY, abs=0.1)
 
 
-def test_where_most_forms_are_new_they_need_not_fit_better():
-    evidence = torch.where(torch.arange(200) % 40 < 36, 2.0, -2.0)
-    assert novelty_of(evidence, 36, 40) > -2
-
-
-def test_where_known_forms_were_meant_that_fitted_worse_new_ones_are_rarer():
-    assert novelty_of(torch.linspace(-2, 4, 200), 0, 200) < USUAL_NOVELTY - 1
+@pytest.mark.parametrize("wrong", [-30.0, -12.0])
+def test_one_mislabelled_pair_of_eighteen_moves_it_by_little(wrong):
+    right = [2.0] * 9, [-2.0] * 9
+    assert novelty_of([2.0] * 8 + [wrong], right[1]) == pytest.approx(novelty_of(*right), abs=0.5)
+    assert novelty_of(right[0], [-2.0] * 8 + [-wrong]) == pytest.approx(novelty_of(*right), abs=0.5)
 
 
 def test_many_pairs_of_one_form_say_no_more_than_one_of_it():
-    evidence, number = torch.linspace(-2, 4, 200), torch.arange(200)
-    once = best_novelty(evidence, number < 0, number)
-    thrice = best_novelty(evidence.repeat(3), number.repeat(3) < 0, number.repeat(3))
-    assert thrice == once
+    new, known = [3.0, 1.0, 2.0], [-1.0, 0.5, -3.0]
+    thrice = [[each for each in some for _ in range(3)] for some in (new, known)]
+    assert novelty_of(*thrice, pairs_a_form=3) == novelty_of(new, known)
+
+
+def test_known_forms_are_not_more_likely_for_being_many():
+    new, known = [3.0, 1.0], [-1.0, 0.5]
+    assert novelty_of(new, known * 50) == novelty_of(new, known)
 
 
 def test_the_only_known_form_has_a_probability_when_nothing_is_new():
     scores = Scores(said([[1.0]] * 3), torch.zeros(len(EXPERTS), 3, 0))
-    decision = calibrate(scores, torch.zeros(3, dtype=torch.long))
-    assert decision.novelty <= USUAL_NOVELTY
+    decision = weigh(2.0, scores, torch.zeros(3, dtype=torch.long))
     assert decision.log_probabilities(scores).tolist() == [[0]] * 3
 
 
@@ -123,13 +149,45 @@ def test_the_weights_follow_how_often_the_scores_are_right():
     assert sure[FIRST] > 1 > unsure[FIRST]
 
 
-def test_a_form_that_is_in_no_list_counts_as_new_and_for_no_weight():
-    decision = calibrate(SCORES, torch.tensor([-1, -1]))
-    assert decision.known == decision.new == EQUAL
-    assert decision.novelty > 0
-    assert calibrate(SCORES, torch.tensor([0, 2])).known != EQUAL
+def test_a_form_that_is_in_no_list_counts_for_no_weight_and_no_pair_moves_the_novelty():
+    decision = weigh(1.5, SCORES, torch.tensor([-1, -1]))
+    assert decision == Decision(1.5)
+    assert weigh(1.5, SCORES, torch.tensor([0, 2])).known != EQUAL
+    assert weigh(1.5, SCORES, torch.tensor([2, 3])).novelty == 1.5
 
 
 def test_a_decision_can_be_written_and_read():
-    decision = calibrate(SCORES, torch.tensor([0, 2]))
+    decision = weigh(0.5, SCORES, torch.tensor([0, 2]))
     assert Decision.read(asdict(decision)) == decision
+
+
+def test_the_bound_of_nearness_withholds_five_right_answers_in_a_hundred_at_most():
+    of_right = torch.linspace(5, 20, 100)
+    assert int((of_right < least_nearness(of_right)).sum()) == 5
+    assert int((of_right[:19] < least_nearness(of_right[:19])).sum()) == 0
+    assert float((of_right - least_nearness(of_right)).abs().min()) > 1e-4  # it is nobody's own
+
+
+def test_the_bound_is_for_what_people_say_where_some_of_it_was_validated():
+    far = Scores(SCORES.known - 3, SCORES.new - 3)
+    both = Scores(
+        *(torch.cat(parts, 1) for parts in ((SCORES.known, far.known), (SCORES.new, far.new)))
+    )
+    targets = Decision().log_probabilities(both).argmax(-1)
+    bounds = [
+        weigh(USUAL_NOVELTY, both, targets, torch.tensor(spoken)).least_nearness
+        for spoken in ([True, True, False, False], [False, False, True, True], [False] * 4)
+    ]
+    assert bounds[0] > bounds[1] == bounds[2]
+
+
+def test_few_right_answers_do_not_raise_the_bound():
+    assert least_nearness(torch.full((3,), 19.0)) == USUAL_NEARNESS
+    assert least_nearness(torch.zeros(0)) == USUAL_NEARNESS
+    assert least_nearness(torch.full((50,), 19.0)) == 19
+
+
+def test_a_decision_of_before_there_was_a_bound_has_the_usual_one():
+    written = asdict(Decision(0.5))
+    del written["least_nearness"]
+    assert Decision.read(written) == Decision(0.5)

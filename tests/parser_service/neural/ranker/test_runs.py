@@ -1,20 +1,20 @@
 """The ranker as a run: epochs, checkpoints, going on."""
 
 import pytest
-import torch
 
-from parser_service.neural.ranker.parser import VALIDATIONS, FormRanker, is_due
+from parser_service.neural.ranker.fitting import VALIDATIONS, is_due
+from parser_service.neural.ranker.parser import FormRanker
+from parser_service.neural.weights import load_tensors
 from parser_service.parsers.interface import Cancelled
-from tests.parser_service.neural.conftest import Recorder
+from tests.parser_service.neural.conftest import Recorder, StoppedOnce
 from tests.parser_service.neural.ranker.sample_domain import (
     domain,
     same_weights,
     utterances,
-    weights,
 )
 
 
-@pytest.mark.parametrize("checks", [3, 25, 38])
+@pytest.mark.parametrize("checks", [3, 60, 130, 190])
 def test_a_stopped_run_goes_on_to_the_same_weights_and_predictions(config, pairs, tmp_path, checks):
     train, validation = pairs[:18], pairs[18:]
     undisturbed = FormRanker(config, seed=5, knowledge=domain())
@@ -43,7 +43,7 @@ def test_a_run_lost_after_its_last_epoch_has_the_same_end(config, pairs, tmp_pat
 
 def test_an_unreadable_checkpoint_is_said_and_training_starts_again(config, pairs, tmp_path):
     with pytest.raises(Cancelled):
-        FormRanker(config, 5).fit(pairs, pairs[:4], Recorder(tmp_path, stop_after_checks=30))
+        FormRanker(config, 5).fit(pairs, pairs[:4], StoppedOnce(tmp_path))
     (tmp_path / "last" / "training.safetensors").write_bytes(b"torn")
     undisturbed, resumed, observe = FormRanker(config, 5), FormRanker(config, 5), None
     undisturbed.fit(pairs, pairs[:4])
@@ -53,11 +53,43 @@ def test_an_unreadable_checkpoint_is_said_and_training_starts_again(config, pair
     assert same_weights(undisturbed, resumed)
 
 
-def test_the_last_checkpoint_is_the_parser(config, pairs, tmp_path):
+def test_a_checkpoint_holds_what_training_changes_and_nothing_else(config, pairs, tmp_path):
     parser, observe = FormRanker(config, seed=5), Recorder(tmp_path)
     parser.fit(pairs[:18], pairs[18:], observe)
-    kept = weights(FormRanker.load(tmp_path / "best"))
-    assert all(torch.equal(weights(parser)[name], kept[name]) for name in kept)
+    tensors = load_tensors(tmp_path / "last" / "training.safetensors")
+    changed = {name for name, _ in parser._model.trained()}
+    assert {name.removeprefix("average.") for name in tensors if name[:8] == "average."} == changed
+    assert not any("word_embeddings" in name for name in tensors)
+
+
+class Unhurried(Recorder):
+    """Keeps a checkpoint after every seventh step."""
+
+    steps = 0
+
+    def is_checkpoint_due(self):
+        self.steps += 1
+        return self.steps % 7 == 0
+
+
+@pytest.mark.parametrize("stop", [0.3, 0.8], ids=["some forms held out", "with all forms"])
+def test_a_run_stopped_within_a_pass_goes_on_from_the_step_that_was_kept(
+    config, pairs, tmp_path, stop
+):
+    class Stopped(Unhurried):
+        def check(self):
+            if self.fractions and self.fractions[-1] >= stop:
+                raise Cancelled
+
+    undisturbed = FormRanker(config, seed=5)
+    undisturbed.fit(pairs, pairs[:4])
+    with pytest.raises(Cancelled):
+        FormRanker(config, seed=5).fit(pairs, pairs[:4], Stopped(tmp_path))
+    resumed, observe = FormRanker(config, seed=5), Unhurried(tmp_path)
+    resumed.fit(pairs, pairs[:4], observe)
+    assert any(line.startswith("Resuming after step") for line in observe.lines)
+    assert same_weights(undisturbed, resumed)
+    assert resumed._decision == undisturbed._decision
 
 
 def test_every_epoch_is_reported(config, pairs, tmp_path):
@@ -66,7 +98,7 @@ def test_every_epoch_is_reported(config, pairs, tmp_path):
     first, last = observe.epochs[0], observe.epochs[-1]
     assert last.train_loss < first.train_loss
     assert first.seconds > 0
-    assert len(observe.epochs) == -(-config.steps // -(-len(pairs) // config.batch_size))
+    assert [report.epoch for report in observe.epochs] == list(range(1, len(observe.epochs) + 1))
     assert observe.fractions[-1] == 1
     assert "forms of the training pairs" in observe.lines[0]
 

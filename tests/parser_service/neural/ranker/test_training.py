@@ -63,7 +63,7 @@ def texts_of_a_training(pairs, knowledge, config, monkeypatch):
     seen = []
     read = RankerTraining._text
     monkeypatch.setattr(RankerTraining, "_text", lambda *args: seen.append(read(*args)) or seen[-1])
-    FormRanker(replace(config, steps=40), 0, knowledge).fit(pairs)
+    FormRanker(replace(config, steps=80), 0, knowledge).fit(pairs)
     return set(seen)
 
 
@@ -94,7 +94,7 @@ def test_without_training_pairs_it_refuses(config):
 
 
 def test_a_missing_encoder_is_said_before_training(config, pairs, tmp_path, monkeypatch):
-    monkeypatch.setattr("parser_service.neural.ranker.parser.encoders_folder", lambda: tmp_path)
+    monkeypatch.setattr("parser_service.neural.ranker.fitting.encoders_folder", lambda: tmp_path)
     with pytest.raises(
         ValueError, match=rf"no weights of absent.*Put its .* into {tmp_path}/absent"
     ):

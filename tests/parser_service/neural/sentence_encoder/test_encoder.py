@@ -1,5 +1,6 @@
 import pytest
 import torch
+from tokenizers.processors import TemplateProcessing
 
 from parser_service.neural.pretrained import load_encoder
 from parser_service.neural.sentence_encoder import SentenceEncoder
@@ -36,6 +37,12 @@ def test_vectors_come_in_the_order_asked_for(encoder):
 
 def test_no_text_no_vector(encoder):
     assert encoder.vectors([]).shape == (0, 32)
+
+
+def test_a_text_without_a_subword_has_a_vector_that_is_like_no_other(encoder):
+    encoder.tokenizer.post_processor = TemplateProcessing(single="$A", pair="$A $B")
+    vectors = encoder.vectors(["", "go"])
+    assert vectors[0].tolist() == [0] * 32 and vectors[1].norm() == pytest.approx(1)
 
 
 def test_a_very_long_text_is_cut(encoder):

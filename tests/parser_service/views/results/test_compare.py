@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -47,6 +49,21 @@ def test_wins_losses_and_what_they_mean_are_those_of_the_core(sample, second, th
     names = [f"Nearest neighbour (run {run.pk})" for run in runs]
     assert context["pairs"][0].letters == ("A", "B")
     assert str(runs[1].pk) in context["pairs"][0].meaning, names
+
+
+def test_the_form_sends_the_runs_in_their_order(sample, second, third, anna):
+    page = compare(anna, second, sample.run)
+    assert [each.run for each in page.context["choice"].offered] == [second, sample.run, third]
+    boxes = re.findall(r'name="run" id="run-(\d+)" value="\1" checked', page.content.decode())
+    assert boxes == [str(second.pk), str(sample.run.pk)]
+
+
+def test_without_a_part_the_runs_say_which(sample, second, third, anna):
+    third.evaluations.update(part="test")  # so that the page begins with the test part
+    assert anna.get(PAGE).context["choice"].part == "test"
+    page = anna.get(PAGE, {"run": [sample.run.pk, second.pk]})
+    assert page.context["choice"].part == "validation"
+    assert page.context["pairs"]
 
 
 def test_each_cell_of_the_matrix_leads_to_the_answers_that_it_counts(sample, second, third, anna):

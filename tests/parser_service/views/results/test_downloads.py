@@ -12,7 +12,10 @@ from statistics import mean, stdev
 import pytest
 
 from annotations.models import Split
+from parser_service.models import TrainingRun
+from parser_service.parsers.registry import config_values, make_config
 from parser_service.results.latex import escape
+from parser_service.results.tables import MAY_KNOW_CORPORA
 from parser_service.runs import requesting
 from tests.parser_service.made_up import make_split
 from tests.parser_service.views.results.conftest import equivalents, seeds
@@ -116,3 +119,26 @@ def test_the_latex_compiles(sample, anna, tmp_path):
     command = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "results.tex"]
     subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
     assert (tmp_path / "results.pdf").stat().st_size > 0
+
+
+def test_a_model_that_may_have_read_the_corpus_is_marked_everywhere(sample, anna):
+    unmarked = anna.get("/w/home/results/").content.decode()
+    assert "†" not in unmarked and "dagger" not in anna.get("/w/home/results.tex").content.decode()
+    run = scored_run(sample.world, sample.split, "seq2seq", 2)
+    config = config_values(make_config("llm", {"model": "tiny"}))
+    TrainingRun.objects.filter(pk=run.pk).update(
+        parser="llm", config=config, answered_by="tiny-2026-07"
+    )
+    page = anna.get("/w/home/results/").content.decode()
+    assert page.count(">†</a></sup>") == 1 and f"† {MAY_KNOW_CORPORA}" in page
+    assert "answered by tiny-2026-07" in page and "model tiny" in page
+    lines = csv.DictReader(io.StringIO(anna.get("/w/home/results.csv").content.decode()))
+    assert [(each["parser"], each["answered_by"], each["may_know_corpora"]) for each in lines] == [
+        ("knn", "", "False"),
+        ("llm", "tiny-2026-07", "True"),
+    ]
+    figures = anna.get("/w/home/results.json").json()["figures"]
+    assert [each["may_know_corpora"] for each in figures] == [False, True]
+    latex = anna.get("/w/home/results.tex").content.decode()
+    assert r"Language model (model tiny)$^\dagger$ &" in latex
+    assert rf"$^\dagger$ {MAY_KNOW_CORPORA}" in latex

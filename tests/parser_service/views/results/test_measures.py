@@ -42,15 +42,28 @@ def test_published_figures_are_those_of_the_paper():
 
 def test_equivalence_has_its_own_figure_interval_and_best(sample):
     equivalents(sample)
-    scored_run(sample.world, sample.split, "seq2seq", right=4)
+    scored_run(sample.world, sample.split, "seq2seq", right=11)
     both = (Measure.EXACT, Measure.EQUIVALENT)
     (table,) = accuracy_tables(sample.world, "validation", [sample.split], both)
     exact, equivalent = table.rows[0].cells[0].figures
     assert (exact.percent, equivalent.percent) == (25.0, 50.0)
-    assert (exact.is_best, equivalent.is_best) == (False, True)
-    assert equivalent.low == pytest.approx(25.378, abs=0.01)  # Wilson's interval of 6 of 12
-    assert equivalent.high == pytest.approx(74.622, abs=0.01)
+    assert (exact.is_best, equivalent.is_best) == (False, False)
+    assert equivalent.low < exact.percent < equivalent.high
+    best, same = table.rows[1].cells[0].figures
+    assert (best.is_best, same.is_best) == (True, True)
     assert "6 of 12 equivalent" in equivalent.note
+
+
+def test_without_outcomes_by_cluster_the_interval_is_wilsons_and_nothing_is_best(sample):
+    equivalents(sample)
+    scored_run(sample.world, sample.split, "seq2seq", right=12)
+    sample.run.evaluations.update(outcomes={})
+    both = (Measure.EXACT, Measure.EQUIVALENT)
+    (table,) = accuracy_tables(sample.world, "validation", [sample.split], both)
+    _, equivalent = table.rows[0].cells[0].figures
+    assert equivalent.low == pytest.approx(25.378, abs=0.01)  # of 6 of 12
+    assert equivalent.high == pytest.approx(74.622, abs=0.01)
+    assert not table.rows[1].cells[0].is_best
 
 
 @pytest.mark.parametrize(
@@ -72,8 +85,8 @@ def test_what_is_misspelled_is_the_default(sample, anna):
 def test_published_figures_are_shown_on_request(sample, anna, published):
     assert published == 63.0
     page = anna.get("/w/home/results/").content.decode()
-    assert "published </span>63.0" not in page and "beside published" in page
+    assert ">published 63.0<" not in page and "beside published" in page
     page = anna.get("/w/home/results/", {"published": "yes"}).content.decode()
-    assert "published </span>63.0" in page and "Walker, Peng and Cakmak (2019)" in page
+    assert ">published 63.0<" in page and "Walker, Peng and Cakmak (2019)" in page
     page = anna.get("/w/home/results/", {"published": "yes", "measure": "equivalent"})
-    assert "published </span>" not in page.content.decode()
+    assert ">published " not in page.content.decode()

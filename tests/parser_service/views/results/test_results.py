@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import csv
+import io
 from statistics import mean, stdev
 
 import pytest
 from django.db.models import F
 
 from annotations.models import Split
+from parser_service.analysis.outcomes import outcomes_of
+from parser_service.analysis.scores import Judgement
 from parser_service.models import TrainingRun
 from parser_service.results.accuracy import accuracy_tables
 from parser_service.runs import requesting
@@ -59,13 +63,19 @@ def test_hyperparameters_that_were_changed_are_named(sample, anna):
     assert ">epochs 3, dropout 0.5</span>" in page or ">dropout 0.5, epochs 3</span>" in page
 
 
-def test_the_best_of_a_column_is_marked(sample):
-    scored_run(sample.world, sample.split, "seq2seq", right=5)
+@pytest.mark.parametrize(("right", "is_best"), [(5, False), (11, True)])
+def test_what_is_better_than_the_rest_of_a_column_beyond_chance_is_marked(sample, right, is_best):
+    scored_run(sample.world, sample.split, "seq2seq", right=right)
     (table,) = tables(sample)
     assert [(row.parser, row.cells[0].is_best) for row in table.rows] == [
         ("knn", False),
-        ("seq2seq", True),
+        ("seq2seq", is_best),
     ]
+
+
+def test_a_parser_alone_in_its_column_is_not_the_best(sample):
+    (table,) = tables(sample)
+    assert not table.rows[0].cells[0].is_best
 
 
 def test_nothing_right_is_not_the_best(sample):
@@ -106,25 +116,66 @@ def test_several_seeds_show_their_mean_and_spread_and_lead_to_their_runs(sample,
     assert cell.n_seeds == 3
     assert cell.percent == pytest.approx(100 * mean(shares))
     assert cell.spread == pytest.approx(100 * stdev(shares))
-    assert "Mean of 3 seeds ± standard deviation" in cell.note
+    assert cell.note.startswith("Mean of 3 seeds; 95 % interval ")
+    assert "standard deviation between 3 seeds 22.0, from 16.7 to 58.3" in cell.note
     listed = anna.get(cell.url).context["listing"].rows
     assert {run.pk for run in listed} == {run.pk for run in runs}
 
 
 def test_the_seeds_are_said_in_words_and_one_run_says_nothing_of_them(sample, anna):
     page = anna.get("/w/home/results/table/").content.decode()
-    assert "seeds</span>" not in page
+    assert "mean of </span>" not in page
     seeds(sample, 2, 3, 7)
     page = anna.get("/w/home/results/table/").content.decode()
-    assert "mean and standard deviation of </span>3 seeds</span>" in page
+    assert "mean of </span>3 seeds," in page
+    assert 'title="standard deviation between seeds"' in page
 
 
 def test_the_best_of_a_column_is_the_best_mean(sample):
-    sample.run.evaluations.update(accuracy=0.5)
-    seeds(sample, 1, 9)
-    TrainingRun.objects.get(parser="seq2seq", seed=1).evaluations.update(accuracy=0.6)
+    seeds(sample, 11, 12)
+    scored_run(sample.world, sample.split, "ranker", right=4)
     (table,) = tables(sample)
-    assert [row.cells[0].is_best for row in table.rows] == [True, False]
+    assert [row.cells[0].is_best for row in table.rows] == [False, True, False]
+
+
+def by_form(sample, right=6, known=9):
+    """The split of the sample as if by form, and the score of its run on known forms."""
+    Split.objects.filter(pk=sample.split.pk).update(criterion="logical_form")
+    sample.split.refresh_from_db()
+    sample.run.evaluations.update(accuracy=right / 12, correct=right)
+    (score,) = sample.run.evaluations.all()
+    judgements = [Judgement(n < right, n < right, True) for n in range(12)]
+    score.outcomes = outcomes_of([f"form {n // 2}" for n in range(12)], judgements)
+    score.save()
+    score.pk, score.part, score.correct, score.accuracy = None, "known", known, known / 12
+    judgements = [Judgement(n < known, n < known, True) for n in range(12)]
+    score.outcomes = outcomes_of([f"other {n // 2}" for n in range(12)], judgements)
+    score.save()
+
+
+def test_by_form_a_cell_shows_the_harmonic_mean_and_both_that_it_is_of(sample, anna):
+    by_form(sample)
+    (figure,) = tables(sample)[0].rows[0].cells[0].figures
+    assert figure.percent == pytest.approx(60.0)
+    assert [(part.label, part.percent) for part in figure.parts] == [("unseen", 50), ("known", 75)]
+    assert figure.low < 60 < figure.high
+    page = " ".join(anna.get("/w/home/results/").content.decode().split())
+    assert "<b>60.0</b>" in page
+    assert "unseen 50.0 · known 75.0" in page
+    (row,) = csv.DictReader(io.StringIO(anna.get("/w/home/results.csv").content.decode()))
+    assert [float(row[name]) for name in ("percent", "unseen", "known")] == pytest.approx(
+        [60, 50, 75]
+    )
+    assert "unseen 50.0, known 75.0" in anna.get("/w/home/results.tex").content.decode()
+
+
+def test_unseen_forms_never_stand_alone_without_a_word(sample, anna):
+    by_form(sample)
+    sample.run.evaluations.filter(part="known").delete()
+    (figure,) = tables(sample)[0].rows[0].cells[0].figures
+    assert (figure.alone, figure.percent) == (True, 50.0)
+    assert "train again for the accuracy on known ones" in figure.note
+    assert "unseen forms alone" in anna.get("/w/home/results/").content.decode()
 
 
 def test_other_hyperparameters_and_protocols_are_not_seeds_of_one_cell(sample):

@@ -8,6 +8,7 @@ from annotations.people.rate_limits import STARTED_RUNS
 from parser_service.models import TrainingRun
 from parser_service.results.learning_curves import curves_url
 from parser_service.runs.learning_curve import SHARES
+from tests.parser_service.made_up import make_split
 from tests.sample_world import scored_run
 
 pytestmark = pytest.mark.usefixtures("no_messages")
@@ -56,7 +57,7 @@ def test_several_seeds_are_one_point(curve, anna):
     (series,) = anna.get(PAGE + "data/").json()["series"]
     pairs, percent, low, high = series["points"][1]
     assert (pairs, round(percent, 1)) == (13, 25.0)
-    assert (round(low, 1), round(high, 1)) == (16.7, 33.3)
+    assert (round(low, 1), round(high, 1)) == (0.0, 54.2)  # over seeds and clusters
 
 
 def test_other_versions_protocols_and_sources_are_left_out(curve, anna):
@@ -107,6 +108,14 @@ def test_what_the_address_misspells_is_that_of_the_newest_run(curve, anna):
     assert (choices.protocol, choices.part, choices.measure) == ("strict", "validation", "exact")
 
 
+def test_the_part_is_one_on_which_the_split_was_tested(curve, anna):
+    other = make_split(curve.world, "tested")
+    run = scored_run(curve.world, other, "seq2seq", 3)
+    run.evaluations.update(part="test")
+    assert anna.get(PAGE, {"split": "tested"}).context["choices"].part == "test"
+    assert anna.get(PAGE, {"split": curve.split.name}).context["choices"].part == "validation"
+
+
 def test_a_column_without_runs_says_so(sample, anna):
     page = " ".join(anna.get(PAGE, {"setting": "para-para"}).content.decode().split())
     assert "No parser has been trained for para on home-split under the strict protocol." in page
@@ -130,3 +139,4 @@ def test_runs_and_their_pages_say_that_they_learned_from_a_share(curve, anna):
     page = " ".join(anna.get(f"/w/home/runs/{run.pk}/").content.decode().split())
     assert "Trained on 10 % of gen" in page and "3, 10 % of them all" in page
     assert "10 %</span>" in anna.get("/w/home/runs/").content.decode()
+    assert "10 % of gen of home-split" in anna.get("/w/home/try/").content.decode()

@@ -100,6 +100,24 @@ def test_hyperparameters_are_folded_away_at_their_defaults(sample, adam):
     assert "Default 0.1." in page and "Default 150." in page
 
 
+def test_what_has_to_be_named_is_not_folded_away(sample, adam):
+    page = adam.get(NEW, {"parser": "llm"}).content.decode()
+    folded = page.partition('<details class="advanced">')[2].partition("</details>")[0]
+    assert 'name="config-decoding"' in folded and "5 hyperparameters" in " ".join(folded.split())
+    assert 'name="config-model"' in page and 'name="config-model"' not in folded
+    assert "Default: none" not in page
+
+
+def test_a_parser_that_asks_a_server_says_that_it_has_none(sample, adam):
+    page = adam.get(NEW, {"parser": "llm"}).content.decode()
+    assert "Missing: GPSR_LLM_URL" in page
+    assert "There is no language model to ask: GPSR_LLM_URL is not set." in page
+    made = {**PageForm(page).values, "config-model": "tiny"}
+    page = adam.post(f"{NEW}?parser=llm", made).content.decode()
+    assert "There is no language model to ask" in page
+    assert not TrainingRun.objects.filter(parser="llm").exists()
+
+
 @pytest.mark.parametrize("parser", PARSERS)
 def test_no_form_opens_with_changed_hyperparameters(parser, sample, adam):
     assert adam.get(NEW, {"parser": parser}).context["form"].changed == []

@@ -35,6 +35,15 @@ def test_the_evidence_of_both_stands_beside_each_other(runs, adam):
     assert f"/compare/?run={first.pk}&amp;run={better.pk}" in shown
 
 
+def test_the_page_of_a_run_leads_there_or_says_that_it_answers(runs, adam, anna):
+    first, better = runs
+    link = f'href="{PAGE}?run={better.pk}"'
+    assert link in adam.get(f"/w/home/runs/{better.pk}/").content.decode()
+    assert link not in anna.get(f"/w/home/runs/{better.pk}/").content.decode()
+    present = adam.get(f"/w/home/runs/{first.pk}/").content.decode()
+    assert "it answers in home" in present and f"{PAGE}?run=" not in present
+
+
 def test_an_admin_promotes_and_rolls_back_with_reasons(runs, adam, world):
     first, better = runs
     adam.post(f"{PAGE}promote/", {"run": better.pk, "reason": "better on names"})

@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from annotations.models import Entity, Utterance
+from annotations.models import AuditEntry, Entity, Utterance
 from parser_service.models import ActionNames, Dialogue, OfferedEntity
 from parser_service.serving.preparing import WorldLanguage
 from tests.parser_service.served import make_home
@@ -38,6 +38,11 @@ def test_a_command_is_talked_about_learnt_and_kept(parse_server, browse):
     kept = browse.post(f"{address}keep/", follow=True)
     assert "Kept as a labelled utterance." in text_of(kept)
     assert Utterance.objects.get().origin == "dialogue"
+    said = AuditEntry.objects.order_by("pk").values_list("what", "subject")
+    assert list(said[:2]) == [
+        ("begin a dialogue", "bring me the flurb"),
+        ("answer in a dialogue", "bring me the flurb"),
+    ]
 
 
 def test_an_answer_to_an_older_question_changes_nothing(parse_server, browse):
@@ -105,6 +110,9 @@ def test_actions_get_the_names_of_the_robot(sample, browse):
 def test_what_no_robot_can_be_told_is_refused(sample, browse, name, arguments, sentence):
     answer = browse.post(ROBOT, {"name find": name, "arguments find": arguments, "version": 0})
     assert answer.status_code == 422 and sentence in text_of(answer)
+    (row,) = [row for row in answer.context["rows"] if row.trouble]
+    assert row.is_name_wrong == bool(name)
+    assert text_of(answer).count('aria-invalid="true"') == 1
     assert not ActionNames.objects.exists()
 
 

@@ -1,0 +1,52 @@
+"""Tell which texts can be put into a gloss that was made with signs in their places (``english.stand_in``).
+
+A gloss depends on the texts of a form in few ways, and this names them all, so that the gloss with the texts
+put in is the very one that would be made with them.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+
+from annotations.language.english import KNOWN_PATTERNS, STAND_IN
+from annotations.language.forms import Constant
+from annotations.language.predicates.gloss_patterns import read_pattern
+from annotations.language.predicates.predicates import Predicate
+
+_SIGN = STAND_IN.pattern
+_TOUCHING = re.compile(rf"(?:\w|{_SIGN}){_SIGN}|{_SIGN}\w")
+_BEGINNINGS = ("that", "is")  # of a clause that is fitted to people and plurals
+
+
+def texts_of_patterns(predicates: Mapping[str, Predicate]) -> frozenset[str]:
+    """Return the texts that gloss patterns ask for, such as ``current`` in ``guide {1} back{2=current}``."""
+    patterns = {*KNOWN_PATTERNS.values(), *(each.gloss for each in predicates.values())}
+    alternatives = (each for pattern in patterns for each in read_pattern(pattern))
+    values = (slot.value for each in alternatives for slot in each.slots if slot.value)
+    return frozenset(str(Constant(value).value) for value in values)
+
+
+def can_stand_in(text: str, of_patterns: frozenset[str]) -> bool:
+    """Return whether a sign can stand for ``text`` in a gloss.
+
+    It cannot for a class token, for a text that a pattern asks for (``of_patterns``), and for one that looks
+    like a part of a pattern or of a noun phrase.
+    """
+    constant = Constant(text)
+    return not (
+        constant.value != text
+        or constant.token_class
+        or text in of_patterns
+        or "_" in text
+        or " of " in text
+        or not text
+        or text.split(" ", 1)[0] in _BEGINNINGS
+        or text.endswith("person")
+    )
+
+
+def is_loose(text: str) -> bool:
+    """Return whether the signs in ``text`` are words of their own, so that no text that is put in grows together
+    with another word."""
+    return not _TOUCHING.search(text)

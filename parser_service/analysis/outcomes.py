@@ -1,0 +1,56 @@
+"""How many answers are right in each cluster, small enough to be kept with a score."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from hashlib import sha256
+from typing import Literal, TypeAlias
+
+from parser_service.analysis.clustered import Clustered, Parts, interval_of
+from parser_service.analysis.scores import Judgement
+
+# Of a part with more clusters, whole clusters are put together at random: groups of clusters are as
+# independent as clusters are, and 300 of them say nearly as much.
+MOST_CLUSTERS = 300
+NAME_DIGITS = 8
+Counted: TypeAlias = Literal["exact", "equivalent", "well_formed"]
+PLACES: dict[Counted, int] = {"exact": 1, "equivalent": 2, "well_formed": 3}
+
+Outcomes: TypeAlias = dict[str, list[int]]
+"""Cluster, as digits of its SHA-256 → number of examples, and how many are exact, equivalent and well-formed."""
+
+
+def outcomes_of(clusters: Sequence[str], judgements: Sequence[Judgement]) -> Outcomes:
+    """Count the answers to examples, whose clusters are given, by cluster. Shapes: [examples] each."""
+    digests = {cluster: sha256(cluster.encode()).hexdigest() for cluster in set(clusters)}
+    if len(digests) > MOST_CLUSTERS:
+        names = {each: str(int(digest, 16) % MOST_CLUSTERS) for each, digest in digests.items()}
+    else:
+        names = {each: digest[:NAME_DIGITS] for each, digest in digests.items()}
+    outcomes: Outcomes = {}
+    for cluster, judgement in zip(clusters, judgements, strict=True):
+        counts = outcomes.setdefault(names[cluster], [0, 0, 0, 0])
+        counts[0] += 1
+        counts[1] += judgement.is_exact_match
+        counts[2] += judgement.is_equivalent
+        counts[3] += judgement.is_well_formed
+    return dict(sorted(outcomes.items()))
+
+
+def clustered(
+    of: Sequence[Mapping[str, Sequence[int]]], counted: Counted = "exact"
+) -> Clustered | None:
+    """Return what some trainings got right; None where one of them has no outcomes."""
+    if not of or not all(of):
+        return None
+    at = PLACES[counted]
+    return Clustered.of([{name: (each[at], each[0]) for name, each in one.items()} for one in of])
+
+
+def interval_of_outcomes(
+    outcomes: Outcomes, counted: Counted = "exact"
+) -> tuple[float, float] | None:
+    """Return the 95 % interval of the share that is right, fractions of 1; None without outcomes."""
+    right = clustered([outcomes], counted)
+    parts: Parts | None = (right,) if right is not None else None
+    return interval_of(parts) if parts else None

@@ -1,0 +1,255 @@
+"""How a ranker learns: at first without some forms, then from all pairs."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import torch
+
+from parser_service.neural.device import processor
+from parser_service.neural.pretrained import load_encoder
+from parser_service.neural.ranker.averaging import Average
+from parser_service.neural.ranker.calibration import (
+    USUAL_NOVELTY,
+    Decision,
+    best_novelty,
+    weigh,
+)
+from parser_service.neural.ranker.checkpoints import load_training, save_training
+from parser_service.neural.ranker.holding_out import HeldOut, hold_out
+from parser_service.neural.ranker.model import RankerModel
+from parser_service.neural.ranker.ranked_forms import RankedForms, collect
+from parser_service.neural.ranker.slot_term import SlotTerm
+from parser_service.neural.ranker.training import (
+    RankerTraining,
+    Span,
+    plan,
+    reduced_precision,
+)
+from parser_service.neural.sentence_encoder import SentenceEncoder
+from parser_service.neural.training import TRAINING, resume
+from parser_service.parsers.candidates.slot_filling import SlotFiller
+from parser_service.parsers.encoder_places import encoders_folder
+from parser_service.parsers.interface import Check, EpochReport, Knowledge, Observer, Pair
+from parser_service.parsers.ranker_config import RankerConfig
+from parser_service.parsers.spreading import spread
+from parser_service.parsers.storage import read_json
+
+VALIDATIONS = 4  # in a training; each re-encodes all examples, which takes a while
+FIRST_SHARE = 0.5  # of the steps, before the forms that were held out are learned as well
+MOST_SCORES = 5_000_000  # of validation utterances and forms, to choose weights by
+LEAST_VALIDATED = 64
+
+Report = tuple[float | None, float | None]
+
+
+class Fitting:
+    """The training of a ranker.
+
+    Where there are forms enough, some are held out of its first half, which then tells when a form is
+    new (``holding_out``, ``calibration.best_novelty``); the second half continues with all. Afterwards
+    ``ranked``, ``model`` and ``decision`` are the parser.
+    """
+
+    def __init__(
+        self,
+        config: RankerConfig,
+        seed: int,
+        knowledge: Knowledge,
+        validation: Sequence[Pair],
+        observe: Observer,
+    ):
+        self.config, self.seed, self.knowledge = config, seed, knowledge
+        self.validation, self.observe = validation, observe
+        self.decision = Decision()
+
+    @property
+    def ranked(self) -> RankedForms:
+        return self._sets[-1]
+
+    @property
+    def model(self) -> RankerModel:
+        return self._trainings[-1].model
+
+    def run(
+        self,
+        train: Sequence[Pair],
+        check_sealed: Callable[[Path], object],
+        seal: Callable[[Path], None],
+    ) -> None:
+        """Learn from ``train``. Checkpoints are sealed by ``seal`` and checked by ``check_sealed``."""
+        is_open = self.config.forms == "open"
+        held = hold_out(train, self.seed) if is_open else None
+        self._prepare([held.train, train] if held else [train], is_open)
+        self._seal, self._at, self._is_started = seal, 0, False
+        resume(self.observe, check_sealed, self._load, "step")
+        while True:
+            training = self._trainings[self._at]
+            if not self._is_started and not training.is_over():
+                training.start(self.observe.check)
+            was_over = training.is_over()
+            while not training.is_over():
+                self._run_pass(training)
+            if self._at == len(self._trainings) - 1:
+                break
+            assert held is not None
+            self.decision = Decision(self._learn_novelty(held))
+            self._at, self._is_started = self._at + 1, False
+        self._average.keep()
+        if was_over:  # else the last pass has done this
+            self._validate(self.observe.check)
+
+    def _prepare(self, sets: Sequence[Sequence[Pair]], is_open: bool) -> None:
+        """Make the trainings, one on each of ``sets``, with one encoder and its average."""
+        check = self.observe.check
+        collected = [collect(pairs, self.knowledge, is_open, check) for pairs in sets]
+        self._sets = [ranked for ranked, _, _ in collected]
+        examples = [of_set for _, of_set, _ in collected]
+        self.observe.log(collected[-1][2])
+        pretrained = load_encoder(self.config.encoder, encoders_folder())
+        encoder = SentenceEncoder.of(pretrained, self.config.dropout)
+        models = [make_model(encoder, ranked, self.knowledge) for ranked in self._sets]
+        self._average = self._make_average(models[-1])
+        shares = (FIRST_SHARE, 1 - FIRST_SHARE) if len(sets) > 1 else (1.0,)
+        spans = plan(shares, list(map(len, examples)), self.config)
+        self._say_what_is_cut(spans[-1], len(examples[-1]))
+        ontology = self.knowledge.ontology
+        fill = SlotFiller(ontology).fill if ontology is not None else None
+        self._trainings = [
+            RankerTraining(model, self.config, self.seed, of_set, self._average, span, fill)
+            for model, of_set, span in zip(models, examples, spans, strict=True)
+        ]
+        self._passes = sum(span.passes for span in spans)
+
+    def _make_average(self, model: RankerModel) -> Average:
+        config = self.config
+        is_strict = self.knowledge.predicates is None
+        share = config.pretrained_share if is_strict else config.pretrained_share_domain
+        kept = {name: share for name, _ in model.trained()}
+        return Average(model.trained(), config.averaging, kept)
+
+    def _say_what_is_cut(self, span: Span, examples: int) -> None:
+        seen = span.a_pass * self.config.batch_size
+        if seen < examples:
+            self.observe.log(
+                f"A pass over {examples:,} pairs would take longer than the {self.config.steps:,} steps "
+                f"allow; the last {span.end - span.first:,} steps see {seen:,} of them. More steps "
+                "see more."
+            )
+
+    def _run_pass(self, training: RankerTraining) -> None:
+        begin = time.monotonic()
+        observe = self.observe
+        loss = training.run_pass(observe.check, self._after_step)
+        epoch = self._epoch()
+        result: Report = None, None
+        is_last = self._at == len(self._trainings) - 1 and training.is_over()
+        with self._average.in_force():
+            if is_due(epoch, self._passes):
+                precision = "fp32" if is_last else self.config.precision
+                with reduced_precision(training.model, precision):
+                    result = self._validate(observe.check)
+        observe.epoch(EpochReport(epoch, loss, *result, time.monotonic() - begin))
+        self._after_step()
+
+    def _epoch(self) -> int:
+        """Return how many passes are over."""
+        return sum(each.passes for each in self._trainings[: self._at + 1])
+
+    def _after_step(self) -> None:
+        step, total = self._trainings[self._at].step, self._trainings[-1].span.end
+        epoch = min(self._epoch() + 1, self._passes)
+        self.observe.progress(step / total, f"epoch {epoch} of {self._passes}")
+        if self.observe.is_checkpoint_due():
+            # The newest average counts as the best: the last one becomes the parser, whatever a small
+            # validation part says.
+            self.observe.checkpoint(self._epoch(), True, self._save)
+
+    def _save(self, folder: Path) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        about = {"training": self._at, "novelty": self.decision.novelty}
+        save_training(folder, self._trainings[self._at], about)
+        self._seal(folder)
+
+    def _load(self, folder: Path) -> int:
+        state = read_json(folder / TRAINING)
+        self._at, self._is_started = state["training"], True
+        self.decision = Decision(state["novelty"])
+        for earlier in self._trainings[: self._at]:
+            earlier.step = earlier.span.end
+        training = self._trainings[self._at]
+        load_training(folder, training)
+        return training.step
+
+    def _learn_novelty(self, held: HeldOut) -> float:
+        """Return when a form is new, from the pairs that the first training did not see."""
+        model, check = self._trainings[self._at].model, self.observe.check
+        with self._average.in_force(), reduced_precision(model, self.config.precision):
+            self._encode(check)
+            of_new, of_known = (
+                model.scores([pair.utterance for pair in pairs], check).evidence
+                for pairs in (held.new, held.known)
+            )
+        forms = [[pair.form for pair in pairs] for pairs in (held.new, held.known)]
+        novelty = best_novelty(of_new, forms[0], of_known, forms[1])
+        self.observe.log(
+            f"{len(set(forms[0]))} forms were held out of the first half of the training, and "
+            f"utterances of {len(set(forms[1]))} others; by them, a new form is answered where it fits "
+            f"better by {USUAL_NOVELTY - novelty:.2f} nats than usual."
+        )
+        return novelty
+
+    def _encode(self, check: Check) -> None:
+        training = self._trainings[self._at]
+        training.model.encode([each.utterance for each in training.examples], check)
+
+    def _validate(self, check: Check) -> Report:
+        """Encode examples and glosses and weigh the experts; return loss and accuracy on the validation
+        pairs."""
+        self._encode(check)
+        self.decision, report = weigh_by(
+            self.validation,
+            self.decision.novelty,
+            self._sets[self._at],
+            self._trainings[self._at].model,
+            check,
+        )
+        return report
+
+
+def weigh_by(
+    validation: Sequence[Pair],
+    novelty: float,
+    ranked: RankedForms,
+    model: RankerModel,
+    check: Check,
+) -> tuple[Decision, Report]:
+    """Return the decision with the weights that ``validation`` tells, and its loss and accuracy there; of very
+    many pairs, some of each form tell."""
+    most = max(LEAST_VALIDATED, MOST_SCORES // len(ranked.forms))
+    asked = spread(validation, most, lambda pair: pair.form)
+    if not asked:
+        return Decision(novelty), (None, None)
+    number = {form: at for at, form in enumerate(ranked.forms)}
+    targets = torch.tensor([number.get(pair.form, -1) for pair in asked])
+    scores = model.scores([pair.utterance for pair in asked], check)
+    spoken = torch.tensor([pair.source == "paraphrased" for pair in asked])
+    decision = weigh(novelty, scores, targets, spoken)
+    logs = decision.log_probabilities(scores)
+    of_targets = logs[targets >= 0].gather(1, targets[targets >= 0, None])
+    loss = -float(of_targets.mean()) if len(of_targets) else None
+    return decision, (loss, float((logs.argmax(-1) == targets).float().mean()))
+
+
+def make_model(encoder: SentenceEncoder, ranked: RankedForms, knowledge: Knowledge) -> RankerModel:
+    """Make a model that chooses from ``ranked`` with ``encoder``."""
+    ontology = knowledge.ontology
+    slots = SlotTerm(ranked.forms, ontology) if ontology is not None else None
+    return RankerModel(encoder, ranked, slots).to(processor())
+
+
+def is_due(epoch: int, epochs: int) -> bool:
+    """Return whether ``epoch`` is validated; the last one always is."""
+    return epoch * VALIDATIONS // epochs > (epoch - 1) * VALIDATIONS // epochs

@@ -1,0 +1,250 @@
+"""The atoms that can continue a typed form, so that every form which ends passes the checker.
+
+The checker (``check_form``) knows the predicates, how many arguments each takes and of what kinds; the
+reader of forms wants every variable bound. Where an atom is allowed, some form that begins so is
+within the limits of the ``Rules``: the least that completes it is known before it is written.
+Variables are numbered by depth and each form has one spelling, so no two answers are the same form.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from enum import Enum, auto
+from functools import lru_cache
+
+from annotations.language.forms import UNKNOWN, Application, Form, Lambda, Variable
+from annotations.language.predicates import ArgumentKind, argument_kind
+from parser_service.neural.t5.rules import NESTED, NEVER, Costs, Kinds, Rules, own_length
+from parser_service.neural.t5.spelling import INSIDE, spell
+from parser_service.parsers.candidates.short import CLOSE
+
+REMEMBERED = 2_000  # states whose continuations are kept, of some kilobytes each
+
+
+class Place(Enum):
+    """What an open part of a form is."""
+
+    ROOT = auto()  # the place of the whole form
+    LAMBDA = auto()
+    LEAF = auto()  # an application of leaves, whose end no atom marks
+    NESTED = auto()  # an application with a λ or an application inside, or without arguments
+
+
+@dataclass(frozen=True, slots=True)
+class Open:
+    """A part of a form that more may be added to.
+
+    ``signatures`` are those that its arguments allow so far, ``filled`` counts its parts, and ``bound``
+    the λs around them.
+    """
+
+    place: Place
+    signatures: tuple[Kinds, ...] = ()
+    filled: int = 0
+    has_nested: bool = False
+    bound: int = 0
+
+    def is_closable(self) -> bool:
+        """Return whether it may end here, spelled as it is."""
+        if self.place in (Place.ROOT, Place.LAMBDA):
+            return self.filled > 0
+        if self.place == Place.NESTED and self.filled and not self.has_nested:
+            return False
+        return any(len(kinds) == self.filled for kinds in self.signatures)
+
+    def with_part(self, kind: ArgumentKind, may_refuse: bool = False) -> Open | None:
+        """Return it with one more part of ``kind``; None where that is not allowed."""
+        is_nested = kind in NESTED
+        if self.place in (Place.ROOT, Place.LAMBDA):
+            is_refusal = may_refuse and self.place == Place.ROOT and kind == ArgumentKind.UNKNOWN
+            is_allowed = is_nested or is_refusal
+            if not is_allowed or (self.place == Place.ROOT and self.filled):
+                return None
+            return replace(self, filled=self.filled + 1)
+        place = self.filled
+        left = tuple(s for s in self.signatures if len(s) > place and s[place].admits(kind))
+        has_nested = self.has_nested or is_nested
+        return (
+            replace(self, signatures=left, filled=place + 1, has_nested=has_nested)
+            if left
+            else None
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """A form that is being written: its open parts, the innermost last, and its bytes so far."""
+
+    parts: tuple[Open, ...] = (Open(Place.ROOT),)
+    spent: int = 0
+    has_just_closed: bool = False
+
+
+START = State()
+
+
+class Automaton:
+    """Tells which atoms may follow, for forms by ``rules``."""
+
+    def __init__(self, rules: Rules):
+        self.rules = rules
+        self.costs = Costs(rules)
+        self.may_refuse = rules.may_refuse or self._least(START) > rules.longest
+        self._terms = {atom: term for term in self._all_terms() for atom in _spellings(term)}
+        self.atoms = (*self._terms, CLOSE)
+        self._alike = self._group()
+        self._needs = lru_cache(maxsize=REMEMBERED)(self._count_needs)
+
+    def continuations(self, state: State) -> list[str]:
+        """Return the atoms after which a form within the limits can be completed."""
+        left = self.rules.longest - state.spent
+        needs = self._needs(replace(state, spent=0))
+        return [atom for atom, needed in needs if needed <= left]
+
+    def follow(self, state: State, atom: str) -> State | None:
+        """Return the state after ``atom``; None where it may not follow."""
+        if atom == CLOSE:
+            return self._close(state)
+        term = self._terms.get(atom)
+        if term is None:
+            return None
+        if atom.startswith(INSIDE):
+            is_inside = state.parts[-1].place == Place.LEAF
+            return self._add(state, term, atom) if is_inside else None
+        ended = _end_leaf(state)
+        return self._add(ended, term, atom) if ended else None
+
+    def can_end(self, state: State) -> bool:
+        """Return whether the form may end here: all that is open closes without an atom."""
+        return not state.has_just_closed and all(each.is_closable() for each in state.parts)
+
+    def accepts(self, atoms: Sequence[str]) -> bool:
+        """Return whether ``atoms`` may be written, each in its place, and may end there."""
+        state = START
+        for atom in atoms:
+            after = self.follow(state, atom)
+            if after is None or after.spent + self._least(after) > self.rules.longest:
+                return False
+            state = after
+        return self.can_end(state)
+
+    def _count_needs(self, state: State) -> list[tuple[str, int]]:
+        """Return the atoms that may follow, each with the least bytes of it and of what completes the
+        form. Atoms that are alike are tried together."""
+        needs = []
+        for atoms in self._alike:
+            after = self.follow(state, atoms[0])
+            if after is None or (least := self._least(after)) >= NEVER:
+                continue
+            needs += [(atom, self._own_length(atom) + least) for atom in atoms]
+        return needs
+
+    def _group(self) -> list[list[str]]:
+        """Return the atoms in groups, of which the same may follow each."""
+        groups: dict[object, list[str]] = {}
+        for atom, term in self._terms.items():
+            key: tuple[object, ...] = (atom.startswith(INSIDE), argument_kind(term))
+            if isinstance(term, Application):
+                key = (atom.endswith(INSIDE), self.rules.signatures[str(term.predicate)])
+            elif isinstance(term, Lambda | Variable):
+                key = (*key, term.variable if isinstance(term, Lambda) else term.index)
+            groups.setdefault(key, []).append(atom)
+        return [*groups.values(), [CLOSE]]
+
+    def _own_length(self, atom: str) -> int:
+        return 0 if atom == CLOSE else own_length(self._terms[atom])
+
+    def _all_terms(self) -> Iterator[Form]:
+        """Yield every term that one atom writes or begins, without its parts."""
+        yield from self.rules.leaves(self.rules.lambdas)
+        for level in range(1, self.rules.lambdas + 1):
+            yield from (Lambda(level, type_, ()) for type_ in self.rules.types)
+        yield from map(Application, self.rules.signatures)
+
+    def _add(self, state: State, term: Form, atom: str) -> State | None:
+        """Return the state with ``term`` in the innermost open part."""
+        *outer, inner = state.parts
+        if isinstance(term, Variable) and term.index > inner.bound:
+            return None
+        holder = inner.with_part(argument_kind(term), self.may_refuse)
+        if holder is None:
+            return None
+        spent = state.spent + own_length(term)
+        if not isinstance(term, Lambda | Application):
+            return State((*outer, holder), spent)
+        opened = self._open(term, atom, inner.bound)
+        if opened is None or len(state.parts) > self.rules.deepest:
+            return None
+        return State((*outer, holder, opened), spent)
+
+    def _open(self, term: Lambda | Application, atom: str, bound: int) -> Open | None:
+        if isinstance(term, Lambda):
+            is_next = term.variable == bound + 1
+            return Open(Place.LAMBDA, bound=bound + 1) if is_next else None
+        overloads = self.rules.signatures[str(term.predicate)]
+        if not atom.endswith(INSIDE):
+            return Open(Place.NESTED, overloads, bound=bound)
+        with_arguments = tuple(kinds for kinds in overloads if kinds)
+        return Open(Place.LEAF, with_arguments, bound=bound) if with_arguments else None
+
+    def _close(self, state: State) -> State | None:
+        ended = _end_leaf(state)
+        if ended is None or len(ended.parts) == 1 or not ended.parts[-1].is_closable():
+            return None
+        return State(ended.parts[:-1], ended.spent, has_just_closed=True)
+
+    def _least(self, state: State) -> int:
+        """Return the least bytes that complete a form. After a closing parenthesis something has to
+        follow: at the end of a form none is written."""
+        missing = [self._missing(part, level) for level, part in enumerate(state.parts)]
+        total = sum(missing)
+        if state.has_just_closed and not total:
+            return min(self._more(part, level) for level, part in enumerate(state.parts))
+        return min(NEVER, total)
+
+    def _missing(self, part: Open, level: int) -> int:
+        """Return the least bytes after which a part may end; ``level`` is the number of parts around."""
+        return 0 if part.is_closable() else self._more(part, level)
+
+    def _more(self, part: Open, level: int) -> int:
+        """Return the least bytes of one or more parts after which it may end."""
+        costs, bound = self.costs, part.bound
+        if part.place == Place.ROOT:
+            can_refuse = self.rules.may_refuse
+            refusal = own_length(UNKNOWN) if can_refuse else NEVER
+            return NEVER if part.filled else min(refusal, costs.body(level, bound))
+        if part.place == Place.LAMBDA:
+            return costs.body(level, bound)
+        longer = [kinds for kinds in part.signatures if len(kinds) > part.filled]
+        if part.place == Place.LEAF:
+            return min(
+                (
+                    min(NEVER, sum(costs.leaf(kind, bound) for kind in kinds[part.filled :]))
+                    for kinds in longer
+                ),
+                default=NEVER,
+            )
+        needs_nested = not part.has_nested
+        return min(
+            (costs.fill(kinds, part.filled, needs_nested, level, bound) for kinds in longer),
+            default=NEVER,
+        )
+
+
+def _end_leaf(state: State) -> State | None:
+    """Return the state after an application of leaves has ended, if the innermost part is one that may
+    end; the state itself where it is none."""
+    inner = state.parts[-1]
+    if inner.place != Place.LEAF:
+        return state
+    return replace(state, parts=state.parts[:-1]) if inner.is_closable() else None
+
+
+def _spellings(term: Form) -> tuple[str, ...]:
+    """Return the atoms that write or begin a term in its different places."""
+    if isinstance(term, Lambda):
+        return spell(term)
+    if isinstance(term, Application):
+        return (*spell(term), spell(Application(term.predicate, (UNKNOWN,)))[0])
+    return (INSIDE + spell(term)[0].removeprefix('"'), *spell(term))

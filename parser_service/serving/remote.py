@@ -1,0 +1,55 @@
+"""Answer requests with a parser that itself waits for a server elsewhere."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Sequence
+
+from parser_service.parsers.interface import Candidate, Check
+
+Predict = Callable[[Sequence[str], int, Check], list[list[Candidate]]]
+
+# Below the 30 s that pages and REST wait for the parse server (``client.PATIENCE``).
+PATIENCE = 20.0
+SEATS = 8  # requests that may wait for such parsers at once, of all threads of the parse server
+TOGETHER = 4  # lines of a longer request, so that each part of it is answered within the patience
+
+
+class Unanswered(Exception):
+    """The other server did not answer; a sentence says why."""
+
+
+class RemoteAsker:
+    """Asks for each request alone, since nothing is computed here. It takes no turn from other parsers, and
+    no more than the ``seats`` that such parsers share: threads that wait are threads that others lack."""
+
+    def __init__(
+        self, predict: Predict, seats: threading.BoundedSemaphore, patience: float = PATIENCE
+    ) -> None:
+        self._predict = predict
+        self._seats = seats
+        self._patience = patience
+
+    def ask(self, texts: Sequence[str], beam: int) -> list[list[Candidate]]:
+        """Return the candidates of each text. Raises Unanswered within the patience."""
+        if not self._seats.acquire(blocking=False):
+            raise Unanswered(
+                f"{SEATS} others wait for a language model already. Ask again in a few seconds."
+            )
+        try:
+            return self._predict(texts, beam, self._check_until(time.monotonic() + self._patience))
+        except ValueError as error:
+            raise Unanswered(str(error)) from error
+        finally:
+            self._seats.release()
+
+    def _check_until(self, end: float) -> Check:
+        def check() -> None:
+            if time.monotonic() > end:
+                raise Unanswered(
+                    f"The language model has not answered within {self._patience:g} s. Ask again: it may "
+                    "only have been starting."
+                )
+
+        return check

@@ -1,0 +1,215 @@
+"""Which route of the API does what a page does, or shows what it shows: one line for each page.
+
+A line names method and route, several where the page does several things, or gives the reason why
+there is none.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class NoRoute:
+    """Why a page does something that no route does."""
+
+    reason: str
+
+
+BROWSER = NoRoute("It begins or ends a log-in of a browser; programs have tokens.")
+PASSWORD = NoRoute(
+    "A password is typed by a person and is not sent by programs; it ends their tokens."
+)
+UNSAVED = NoRoute("It keeps what somebody has typed and not saved, for the next look at the page.")
+
+PAGE_ACTIONS: dict[str, str | NoRoute] = {
+    # One's account
+    **dict.fromkeys(("login", "logout"), BROWSER),
+    **dict.fromkeys(("password", "password_set"), PASSWORD),
+    "token_new": "post tokens",
+    "token_revoke": "delete token",
+    "session_end": "delete session",
+    "sessions_end": "post sessions-end",
+    "join": "post join",
+    "inbox": "post notices-read",
+    "notice_open": "post notice-read",
+    # The site
+    "account_close": "patch account",
+    "account_link": "post account-link",
+    "world_new": "post worlds",
+    "world_import": "post import-world",
+    "world_delete": "delete world",
+    # Who is in a world
+    "people": "post members",
+    "member": "patch member, delete member",
+    "invite": "post invitations",
+    "invitation_withdraw": "delete invitation",
+    # Files, jobs, commands
+    "import": "post import",
+    "import_pairs": "post import-pairs",
+    "generate": "post generate",
+    "job_cancel": "post job-cancel, post site-job-cancel",
+    "job_answer": "post job-answer",
+    # What annotators write, and what is said of it before it is stored
+    "entity_new": "post entities",
+    "entities_new": "post entities",
+    "entity": "patch entity",
+    "predicate_new": "post predicates",
+    "predicate": "patch predicate",
+    "predicate_preview": "post check-predicate",
+    "production_new": "post productions",
+    "production": "patch production",
+    "production_check": "post check-production",
+    "production_preview": "post check-production",
+    "template_new": "post templates",
+    "template": "patch template",
+    "template_duplicate": "post templates",
+    "template_repair": "patch template, delete template",
+    "template_check": "post check-template",
+    "template_preview": "post check-template",
+    "template_consequences": "post check-template",
+    "template_suggestions": "post suggestions",
+    "delete_row": "delete entity, delete predicate, delete production, delete template, delete paraphrase",
+    "history": "post history",
+    "rename": "post rename",
+    "comments": "post comments",
+    "comment": "patch comment",
+    "comment_delete": "delete comment",
+    "comment_restore": "post comment-restore",
+    "draft": UNSAVED,
+    # Utterances and labels
+    "utterances_new": "post utterances",
+    "label_answer": "post utterance-label",
+    "label_send": "post utterances",
+    "label_mend": "post utterance-spans",
+    "label_take_back": "post label-take-back",
+    "label_check": "post check-form",
+    "paraphrase_label": "patch paraphrase",
+    "paraphrase_check": "post check-form",
+    "audit_start": "post audit",
+    "audit_decide": "post audit-decide",
+    "audit_take_back": "post audit-take-back",
+    "audit_check": "post check-form",
+    # The work queue
+    "queue_next": "post work-item-next",
+    "queue_act": (
+        "post work-item-take, post work-item-give-back, post work-item-skip, post work-item-finish, "
+        "post work-item-assign, post work-item-withdraw"
+    ),
+    "queue_settle": "post work-item-finish",
+    "queue_ask": "post work-items",
+    "queue_assign": "post work-items-assign",
+    "queue_settings": "patch queue-settings",
+    "example_send": "post example-send",
+    "predictions_send": "post predictions-send",
+    # Splits, runs, and what comes of them
+    "split_new": "post splits",
+    "split_renew": "post split-renew",
+    "run_new": "post runs",
+    "run_cancel": "post run-cancel",
+    "run_retrain": "post run-retrain",
+    "learning_curve_start": "post learning-curve",
+    "analysis_start": "post run-analyse",
+    "analysis_cancel": "post job-cancel",
+    "slices": "post slices",
+    "slice_rename": "patch slice",
+    "slice_delete": "delete slice",
+    "review_tag": "patch answer-review",
+    "review_note": "patch answer-review",
+    "review_doubt": "post answer-doubt",
+    "error_categories": "post error-categories",
+    "error_category": "patch error-category",
+    "error_category_move": "post error-category-move",
+    "error_category_delete": "delete error-category",
+    "tryout_ask": "post parse",
+    # Parsing
+    "playground_ask": "post parse",
+    "playground_wrong": "post parse-wrong",
+    "promotion_promote": "post promotions",
+    "promotion_roll_back": "post promotion-roll-back",
+    "promotion_decline": "post promotion-decline",
+    "dialogues": "post dialogues",
+    "dialogue": "post dialogue-answer",
+    "dialogue_keep": "post dialogue-keep",
+    "offered_entity_decide": "post offered-entity-decide",
+    "robot": "post action-names",
+}
+
+
+CHOICES = NoRoute("A form with its choices; the schema says what its route takes.")
+HERE = NoRoute("It says how this server is, for whoever looks after it.")
+PRINTED = NoRoute("One file to read or print of what runs, results and predictions hold.")
+IN_EDITOR = NoRoute("It completes what somebody types, of predicates, entities and productions.")
+
+# Pages that are looked at and not posted to.
+PAGE_VIEWS: dict[str, str | NoRoute] = {
+    **dict.fromkeys(("healthz", "banner", "admin:index"), HERE),
+    "home": "get worlds",
+    "account": "get tokens, get sessions",
+    "accounts": "get accounts",
+    "site_log": "get site-log",
+    "audit_log": "get audit-log",
+    "world": "get world",
+    "search": NoRoute("Each list takes q."),
+    "download": "get download",
+    "download_part": "get download-part",
+    "jobs": "get jobs",
+    **dict.fromkeys(("job", "job_state"), "get job, get site-job"),
+    "ontology": "get entities",
+    "predicates": "get predicates",
+    "grammar": "get productions",
+    "coverage": "get task-categories",
+    "uncovered": "get uncovered",
+    **dict.fromkeys(("unmatched", "outside_grammar"), "get templates"),
+    "conflicts": "get conflicts",
+    "templates": "get templates",
+    "template_completion": IN_EDITOR,
+    "deleted": "get deleted",
+    "commands": "get commands",
+    "command": "get command",
+    "complexity": "get complexity",
+    "logical_forms": "get forms",
+    "logical_form": "get form",
+    "paraphrases": "get paraphrases",
+    "paraphrase": "get paraphrase",
+    "utterances": "get utterances",
+    "utterance": "get utterance",
+    "splits": "get splits",
+    "split": "get split",
+    "example": "get split-examples",
+    "near_duplicates": "get near-duplicates",
+    "split_changes": "get split-changes",
+    "split_runs": CHOICES,
+    "queue": "get work-items",
+    "queue_item": "get work-item",
+    "agreement": "get agreement",
+    "progress": "get progress",
+    **dict.fromkeys(("label", "label_item"), "get utterance-candidates, get labels"),
+    "audit": "get audit, get audit-findings",
+    "audit_item": "get audit-finding",
+    **dict.fromkeys(("runs", "runs_table"), "get runs"),
+    **dict.fromkeys(("run", "run_state"), "get run, get run-log, get run-checkpoints"),
+    **dict.fromkeys(("run_charts", "run_curves"), "get run-curves"),
+    **dict.fromkeys(("run_report", "compare_report"), PRINTED),
+    **dict.fromkeys(("analysis_state", "defaults", "sensitivity"), "get run-findings"),
+    "probes": "get run-probes",
+    "predictions": "get predictions, get candidates",
+    "review": "get predictions, get answer-review",
+    **dict.fromkeys(("playground", "tryout"), CHOICES),
+    **dict.fromkeys(("promotions", "parser_state"), "get promotions"),
+    "offered_entities": "get offered-entities",
+    "plan_schema": NoRoute("The page is the file itself, for programs."),
+    **dict.fromkeys(("results", "results_table", "results_csv"), "get results"),
+    **dict.fromkeys(("results_latex", "results_json"), "get results"),
+    "compare": "get evaluations, get predictions",
+    **dict.fromkeys(
+        ("learning_curves", "learning_curves_table", "learning_curves_data"),
+        "get evaluations, get runs",
+    ),
+}
+
+
+def routes_of(line: str) -> list[tuple[str, str]]:
+    """Return route and method for each part of a line of the table."""
+    parts = (part.split() for part in line.split(", "))
+    return [(f"api:{name}", method) for method, name in parts]

@@ -1,0 +1,60 @@
+"""/api/v1/worlds/<w>/parse/wrong/, suggestions/ and splits/<s>/examples/<e>/send/"""
+
+from __future__ import annotations
+
+import pytest
+
+from annotations.models import ApiToken, Proposal, Utterance, WorkItem
+
+HOME = "/api/v1/worlds/home/"
+GO = '( go " <room> " )'
+
+
+@pytest.fixture
+def call_as(client, monkeypatch):
+    monkeypatch.setattr("annotations.background.waking.send_wake_up", lambda queue: None)
+
+    def send(user, path, data, **headers):
+        _, key = ApiToken.issue(user, "notebook")
+        headers = {"authorization": f"Bearer {key}", **headers}
+        kind = "application/json"
+        return client.post(HOME + path, data, content_type=kind, headers=headers)
+
+    return send
+
+
+def test_a_wrong_answer_is_sent_to_the_work_queue(call_as, sample, reviewer):
+    sent = {"utterance": "off to bed", "run": sample.run.pk, "form": GO, "reason": "Nobody knew."}
+    said = call_as(reviewer, "parse/wrong/", sent).json()["sentence"]
+    assert said == "In the work queue, with your form offered first."
+    item = WorkItem.objects.get()
+    assert item.reason == (
+        f"rene says: the answer of knn (run {sample.run.pk}) is wrong: Nobody knew."
+    )
+    assert (item.utterance.text, Proposal.objects.get().form) == ("off to bed", GO)
+    refused = call_as(reviewer, "parse/wrong/", {**sent, "form": "(go"})
+    assert refused.json()["problems"][0]["field"] == "form"
+    assert call_as(reviewer, "parse/wrong/", {**sent, "run": 10**6}).status_code == 404
+    again = call_as(reviewer, "parse/wrong/", {"utterance": "off to bed"}).json()["sentence"]
+    assert again == "It was in the work queue already."
+
+
+def test_forms_are_suggested_for_a_pattern(call_as, sample, annotator):
+    sent = {"task_category": "1", "pattern": "walk to the {room}"}
+    answer = call_as(annotator, "suggestions/", sent).json()
+    assert "(go {room})" in [each["form"] for each in answer["forms"]]
+    assert answer["forms"][0]["english"]
+    other = call_as(annotator, "suggestions/", {**sent, "task_category": "9"})
+    assert other.json()["problems"][0]["field"] == "task_category"
+
+
+def test_an_example_is_sent_to_the_work_queue(call_as, sample, reviewer, annotator):
+    address = f"splits/{sample.split.pk}/examples/{sample.example.pk}/send/"
+    sent = {"reason": "Is this said?"}
+    assert call_as(annotator, address, sent).status_code == 403
+    done = call_as(reviewer, address, sent)
+    assert done.json() == {"utterances": 1, "subjects": 1, "queued": 1, "left_out": 0}
+    assert WorkItem.objects.get().reason == "rene asks: Is this said?"
+    assert Utterance.objects.get().text == " ".join(sample.example.utterance.split())
+    missing = f"splits/{sample.split.pk}/examples/1000000/send/"
+    assert call_as(reviewer, missing, sent).status_code == 404
