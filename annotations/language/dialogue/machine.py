@@ -122,6 +122,9 @@ class Dialogue:
         """Take words that name no entity: as they are for an UNKNOWN, else as something to learn."""
         if not slot.entity_class:
             return self._fill(state, slot, word)
+        learnt = _learnt(state, slot, word)
+        if learnt is not None:
+            return self._fill(state, slot, learnt)
         if self.anonymizer.anonymize(word).spans:
             return self._miss(state, f"“{word}” is no {noun_for(slot)}. ")
         is_said_twice = word.casefold() in {phrase.casefold() for phrase in slot.phrases}
@@ -139,8 +142,12 @@ class Dialogue:
         return self._miss(state, "Please say yes or no. ")
 
     def _fill(self, state: State, slot: Slot, value: str, offer: Offer | None = None) -> State:
-        """Fill a slot; an ambiguous slot that is left with one of the named values takes it."""
-        slots = tuple(_after(other, slot, value) for other in state.slots)
+        """Fill a slot; an ambiguous slot that is left with one of the named values takes it.
+
+        The unknown words that this settles are no choice for any other slot.
+        """
+        settled = _settled_phrases(slot, value)
+        slots = tuple(_without(settled, _after(other, slot, value)) for other in state.slots)
         offers = state.offers
         if offer is not None and offer not in offers:
             offers = (*offers, offer)
@@ -225,3 +232,29 @@ def _after(other: Slot, slot: Slot, value: str) -> Slot:
     if len(left) == 1:
         return replace(other, candidates=left, value=left[0], likely=None)
     return replace(other, candidates=left, likely=other.likely if other.likely in left else None)
+
+
+def _learnt(state: State, slot: Slot, word: str) -> str | None:
+    """Return the entity that a word stands for since an earlier answer; None if there is none."""
+    for offer in state.offers:
+        said = offer.alias or offer.text
+        if offer.entity_class == slot.entity_class and said.casefold() == word.casefold():
+            return offer.text
+    return None
+
+
+def _settled_phrases(slot: Slot, value: str) -> frozenset[str]:
+    """Return the unknown words that are accounted for once ``slot`` has its value.
+
+    They are the value itself, the only word that the question was about, and all that "or" joins.
+    """
+    if slot.is_choice or len(slot.phrases) == 1:
+        return frozenset(slot.phrases)
+    return frozenset(phrase for phrase in slot.phrases if phrase.casefold() == value.casefold())
+
+
+def _without(settled: frozenset[str], slot: Slot) -> Slot:
+    """Return a slot that is still open without the unknown words that others settle."""
+    if slot.value is not None or slot.is_choice:
+        return slot
+    return replace(slot, phrases=tuple(each for each in slot.phrases if each not in settled))
