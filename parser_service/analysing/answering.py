@@ -78,7 +78,12 @@ class _Answering:
         except ValueError as error:
             return _problem(str(error))
         (candidates,) = parser.predict([text], BEAM_WIDTH, self._progress.check)
-        return {"answers": [{"form": each.form, "score": each.score} for each in candidates]}
+        return {
+            "answers": [
+                {"form": each.form, "score": each.score, "is_cut": each.is_cut}
+                for each in candidates
+            ]
+        }
 
     def _parser_of(self, run: TrainingRun) -> Parser:
         if run.pk not in self._parsers:

@@ -65,7 +65,8 @@ def _ask_server(tryout: Tryout) -> None:
             break
         else:
             forms = [
-                {name: each[name] for name in ("form", "score")} for each in parsed["candidates"]
+                {"form": each["form"], "score": each["score"], "is_cut": parsed["is_cut"]}
+                for each in parsed["candidates"]
             ]
             answers[str(run)] = {"answers": forms}
     if not answers:

@@ -128,6 +128,7 @@ class ParseSerializer(serializers.Serializer):
     spans = SpanSerializer(many=True)
     parsed_text = serializers.CharField()
     is_unknown = serializers.BooleanField()
+    is_cut = serializers.BooleanField(help_text="The parser read only the beginning.")
     remarks = serializers.ListField(child=serializers.CharField())
     candidates = CandidateSerializer(many=True)
 

@@ -69,7 +69,8 @@ class OneEvaluation(EvaluationNoun, RowRoute):
 
 
 class PredictionSerializer(serializers.ModelSerializer):
-    """A ranked candidate of a run for an example, whose ``label`` is the annotated form."""
+    """A ranked candidate of a run for an example, whose ``label`` is the annotated form. ``is_cut``: the
+    parser read only the beginning of the utterance."""
 
     run = serializers.IntegerField(source="run_id")
     example = serializers.IntegerField(source="example_id")
@@ -82,7 +83,7 @@ class PredictionSerializer(serializers.ModelSerializer):
         fields = [
             *("id", "run", "example", "utterance", "label", "rank", "logical_form", "score"),
             *("is_exact_match", "is_equivalent", "is_well_formed"),
-            *("answer_in_training", "label_in_training", "origin"),
+            *("answer_in_training", "label_in_training", "origin", "is_cut"),
         ]
 
 

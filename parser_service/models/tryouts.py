@@ -21,7 +21,7 @@ class Tryout(models.Model):
 
     There is one row for each person and world, so that the newest text takes the place of the one before;
     ``number`` grows with each. ``runs`` are the keys of the runs, and ``answers`` maps such a key, as text,
-    to ``{"answers": [{"form": …, "score": …}, …]}`` or ``{"problem": sentence}``. ``before`` is the last
+    to ``{"answers": [{"form": …, "score": …, "is_cut": …}, …]}`` or ``{"problem": sentence}``. ``before`` is the last
     text that was answered, with its answers.
     """
 

@@ -36,7 +36,8 @@ class Entry:
     needs no torch, otherwise ``cpu`` or ``gpu``. ``loss_unit`` is that of the losses it reports.
     ``learns`` is False where training pairs change nothing.
     ``may_know_corpora`` marks figures of a model that may have read a public corpus, test part and all,
-    before anybody trained it here.
+    before anybody trained it here. ``most_subwords`` is how many it reads of an utterance, 0 where it reads
+    all or where that is up to its weights.
     """
 
     dotted: str
@@ -51,6 +52,7 @@ class Entry:
     loss_unit: str = "nats a token"
     learns: bool = True
     may_know_corpora: bool = False
+    most_subwords: int = 0
 
 
 PARSERS: dict[str, Entry] = {
@@ -161,6 +163,7 @@ PARSERS: dict[str, Entry] = {
         protocols=(Protocol.STRICT, Protocol.DOMAIN, Protocol.GRAMMAR),
         in_short="Chooses the form that fits best among known and new ones; the most accurate on new wording.",
         loss_unit="nats an utterance",
+        most_subwords=64,
     ),
     "t5": Entry(
         dotted="parser_service.neural.t5.parser.T5",

@@ -75,12 +75,13 @@ class Answer:
 @dataclass(frozen=True, slots=True)
 class Parse:
     """The answers to an utterance, best first. ``parsed_text`` is what the parser was given; ``remarks``
-    say what of it the world does not know."""
+    say what of it the world does not know, and ``is_cut`` that the parser read only its beginning."""
 
     heard: Anonymized
     parsed_text: str
     answers: tuple[Answer, ...]
     remarks: tuple[str, ...] = ()
+    is_cut: bool = False
 
     @property
     def is_unknown(self) -> bool:
@@ -105,6 +106,7 @@ class Parse:
             ],
             "parsed_text": self.parsed_text,
             "is_unknown": self.is_unknown,
+            "is_cut": self.is_cut,
             "remarks": list(self.remarks),
             "candidates": [answer.as_json() for answer in self.answers],
         }
@@ -124,8 +126,14 @@ def read_answers(
     heard: Anonymized, text: str, candidates: Sequence[Candidate], language: WorldLanguage
 ) -> Parse:
     """Return what a parser answered to ``text``, with the entities that were heard in its place."""
-    answers = (answer_of(each, heard, language) for each in candidates)
-    return Parse(heard, text, tuple(answers), unknown_tokens(heard.original, language.ontology))
+    answers = tuple(answer_of(each, heard, language) for each in candidates)
+    remarks = unknown_tokens(heard.original, language.ontology)
+    return Parse(heard, text, answers, remarks, is_cut_in(candidates))
+
+
+def is_cut_in(candidates: Sequence[Candidate]) -> bool:
+    """Return whether the candidates of an utterance say that the parser read only its beginning."""
+    return any(each.is_cut for each in candidates)
 
 
 def answer_of(candidate: Candidate, heard: Anonymized, language: WorldLanguage) -> Answer:

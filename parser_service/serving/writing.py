@@ -24,6 +24,7 @@ from parser_service.serving.answers import (
     answer_with,
     as_json,
     form_of,
+    is_cut_in,
     questions_of,
     remarks_on,
     score_of,
@@ -61,7 +62,8 @@ class AnswerWriter:
         candidates: Sequence[Candidate],
     ) -> str:
         """Return the answer to an utterance of which a parser was given ``text``, after what is ``about`` it."""
-        parse = Parse(heard, text, (), unknown_tokens(heard.original, self.language.ontology))
+        remarks = unknown_tokens(heard.original, self.language.ontology)
+        parse = Parse(heard, text, (), remarks, is_cut_in(candidates))
         head = {**about, **parse.as_json()}
         said = Heard(heard, self.language.ontology)
         answers = [self._write(each, said) for each in candidates]

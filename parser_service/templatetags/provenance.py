@@ -9,6 +9,7 @@ from django import template
 
 from parser_service.models import Prediction, TrainingRun
 from parser_service.parsers.interface import TRAINING, ScoreKind
+from parser_service.parsers.registry import PARSERS
 
 register = template.Library()
 
@@ -79,6 +80,14 @@ def score_kind_in_words(run: TrainingRun) -> str:
     """Say what the scores of a run are: ``log-probability``; ``only an order`` where they mean no more."""
     kind = run.score_kind
     return SCORE_KINDS[ScoreKind(kind)] if kind else "only an order"
+
+
+@register.filter
+def cut_in_words(parser: str) -> str:
+    """Say how much of an utterance a parser reads, where its answer is to the beginning alone."""
+    most = PARSERS[parser].most_subwords if parser in PARSERS else 0
+    read = f"It was read to the {most}th subword" if most else "Its beginning was read"
+    return f"This utterance is longer than the parser reads. {read}; the rest had no part in the answer."
 
 
 @register.filter

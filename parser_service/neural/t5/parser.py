@@ -265,6 +265,7 @@ class T5(Parser):
                     "tokens": len(each.tokens),
                     **({"cut": cut} if cut else {}),
                 },
+                is_cut=cut > 0,
             )
             for form, each in best.items()
         ]

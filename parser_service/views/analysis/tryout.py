@@ -40,6 +40,11 @@ class RunAnswer:
         return self.answers[0]["form"] if self.answers else ""
 
     @property
+    def is_cut(self) -> bool:
+        """Whether the answer is to the beginning of the text alone."""
+        return any(each.get("is_cut") for each in self.answers or ())
+
+    @property
     def has_changed(self) -> bool:
         return self.answers is not None and self.before not in (None, self.form)
 

@@ -83,7 +83,10 @@ def test_what_a_run_answers(call, sample):
     path = f"runs/{sample.run.pk}/"
     wrong = call("get", f"{path}predictions/?outcome=wrong").json()["results"]
     assert wrong
-    assert not any(row["is_exact_match"] for row in wrong)
+    assert not any(row["is_exact_match"] or row["is_cut"] for row in wrong)
+    sample.run.predictions.filter(pk=wrong[0]["id"]).update(is_cut=True)
+    listed = call("get", f"{path}predictions/?outcome=wrong").json()["results"]
+    assert [row["is_cut"] for row in listed].count(True) == 1
     assert call("get", f"{path}predictions/?outcome=late").status_code == 400
     (score,) = call("get", f"evaluations/?run={sample.run.pk}").json()["results"]
     assert score["correct"] == 3

@@ -131,6 +131,14 @@ def test_odd_names_in_a_form_that_is_known_from_plain_ones(do: str, said: str) -
         compare(odd_writer, f"bring {text} or the tea from the {text} place", [candidate])
 
 
+def test_that_the_parser_read_only_the_beginning_is_said() -> None:
+    writer = AnswerWriter(language_of(HOME))
+    candidates = [Candidate("(wait)", -1.5, is_cut=True), Candidate("UNKNOWN", -2.5, is_cut=True)]
+    compare(writer, "wait", candidates)
+    heard = writer.language.anonymizer.anonymize("wait")
+    assert '"is_cut": true' in writer.write({}, heard, "", candidates)
+
+
 @settings(max_examples=50)
 @given(commands(), st.lists(utterances, min_size=2, max_size=4))
 def test_whatever_is_named_in_whatever_form(form: Form, spoken: list[str]) -> None:

@@ -226,6 +226,7 @@ def test_an_utterance_that_is_too_long_is_cut_and_that_is_said(tmp_path):
     assert "1 of 10 utterances are cut after 40 tokens." in observe.lines
     [[long], [short]] = parser.predict(["bring " * 100, "bring"])
     assert long.parts["cut"] > 60 and "cut" not in short.parts
+    assert long.is_cut and not short.is_cut
 
 
 def test_a_form_that_is_too_long_for_the_network_is_refused():

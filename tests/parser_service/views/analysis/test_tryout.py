@@ -67,6 +67,16 @@ def test_what_is_missing_is_said(text, sentence, sample, anna):
     assert not Job.objects.exists()
 
 
+def test_that_a_run_read_only_the_beginning_is_said(sample, anna, annotator):
+    run = sample.run
+    answers = {str(run.pk): {"answers": [{"form": DEFAULT, "score": 0.5, "is_cut": True}]}}
+    Tryout.objects.create(
+        world=sample.world, person=annotator, text="go", runs=[run.pk], answers=answers
+    )
+    page = anna.post("/w/home/try/ask/?waiting", {"text": "go", "run": run.pk})
+    assert "utterance cut" in page.content.decode()
+
+
 def test_a_long_text_is_cut_and_a_run_of_another_world_is_not_asked(sample, other_sample, anna):
     ask_for(anna, "x" * 10_000, sample.run.pk, other_sample.run.pk)
     row = Tryout.objects.get()

@@ -102,6 +102,20 @@ def test_a_form_tells_how_often_training_had_it_and_where_it_is_from(sample, ann
     assert "Not seen in training; made by substitution" in anna.get(page).content.decode()
 
 
+def test_an_answer_to_the_beginning_of_an_utterance_says_so(sample, anna):
+    listed, page = seen(sample)
+    assert "utterance cut" not in anna.get(listed).content.decode()
+    assert "utterance cut" not in anna.get(page).content.decode()
+    seen(sample, is_cut=True)
+    sample.world.runs.update(parser="ranker")
+    assert anna.get(listed).content.decode().count("It was read to the 64th subword") == 1
+    assert (
+        anna.get(page).content.decode().count("It was read to the 64th subword") == 2
+    )  # and a title
+    sample.world.runs.update(parser="t5")
+    assert "Its beginning was read" in anna.get(listed).content.decode()
+
+
 def test_what_is_not_known_of_an_older_answer_is_not_made_up(sample, anna):
     _, page = seen(sample)
     text = anna.get(page).content.decode()

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from annotations.background.progress import UNWATCHED
 from annotations.models import Proposal, Utterance, WorkItem
 from parser_service.candidates.composing import PERSON, candidates_for
 from parser_service.candidates.proposing import propose
+from parser_service.parsers.knn import NearestNeighbour
 from parser_service.promotion import promote
 from tests.parser_service.live_server import parse_server  # noqa: F401
 from tests.parser_service.served import make_home, trained_run
@@ -38,9 +41,28 @@ def asked(client, text: str, **more: object) -> str:
 def test_spans_candidates_english_and_plan_are_shown(answering, anna):
     page = asked(anna, "Bring me the red cup")
     assert '<span class="value">red cup</span>object' in page
+    assert "utterance cut" not in page
     assert "bring me the red cup" in page and "<meter" in page
     assert "a robot can do this" in page and "data-tree" in page
     assert f"run {answering.pk}" in page
+
+
+def test_that_the_parser_read_only_the_beginning_is_said(
+    run,
+    anna,
+    monkeypatch,
+    parse_server,  # noqa: F811
+):
+    read = NearestNeighbour.predict
+    monkeypatch.setattr(
+        NearestNeighbour,
+        "predict",
+        lambda *asked: [[replace(each, is_cut=True) for each in one] for one in read(*asked)],
+    )
+    promote(run, None)
+    parse_server.update()
+    page = asked(anna, "bring me the red cup")
+    assert "utterance cut" in page and "Its beginning was read" in page
 
 
 def test_what_is_open_is_asked(answering, anna):
