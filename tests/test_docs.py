@@ -9,7 +9,9 @@ import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-SETTINGS = (ROOT / "gpsr_site" / "settings.py").read_text(encoding="utf-8")
+SETTINGS = "".join(
+    path.read_text(encoding="utf-8") for path in (ROOT / "gpsr_site" / "settings").glob("*.py")
+)
 TABLE_ROW = re.compile(r"^\| `([A-Z_]+)` \|", re.MULTILINE)
 # Django's and Celery's own; read by the shell, the tests or a library rather than by the settings.
 READ_ELSEWHERE = {
