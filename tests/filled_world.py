@@ -51,14 +51,42 @@ def leave_traces(world: World, annotator: User, admin: User) -> None:
     a label is in doubt.
     """
     _edit(world, annotator, admin)
+    _invite(world, admin)
+    _comment(world, annotator, admin)
+    _label(world, annotator, admin)
+    _doubt(world)
+    _analyse(world, annotator)
+    _promote(world, admin)
+    _review(world, annotator, admin)
+    _talk(world, annotator)
+    _fail(world, annotator)
+
+
+def save_parser(run: TrainingRun) -> None:
+    """Store the parser of a run that was only written down as succeeded."""
+    parser = make_parser(run)
+    parser.fit(pairs_of(run.split, Part.TRAIN, run.train_sources))
+    write_folder(model_folder(run.pk), parser.save)
+
+
+def _invite(world: World, admin: User) -> None:
+    """Let somebody invite a class, and the audit log say so."""
     AuditEntry.objects.create(
         world=world, world_name=world.name, who=admin, who_name=admin.username, what="invite"
     )
     Invitation.issue(world, [Role.ANNOTATOR], admin, days=7, places=20, note="A class")
+
+
+def _comment(world: World, annotator: User, admin: User) -> None:
+    """Let people talk about a template."""
     template = SemanticTemplate.objects.filter(grammar__world=world).first()
     text = f"Is this what people say? @{admin.get_username()} please look."
     add_comment(world, SUBJECTS["template"], template, text, annotator)
     add_comment(world, SUBJECTS["template"], template, "Yes, they do.", admin)
+
+
+def _label(world: World, annotator: User, admin: User) -> None:
+    """Let people label an utterance differently, and dispute another."""
     collect(world, SAID, by=annotator)
     set_share(world, WorkKind.UNLABELLED, 100)
     refill(world)
@@ -68,6 +96,10 @@ def leave_traces(world: World, annotator: User, admin: User) -> None:
     reason = "Whose milk is meant?"
     answer(disputed, Verdict.DISPUTE, "", admin, disputed.version, 8.0, reason)
     refill(world)
+
+
+def _doubt(world: World) -> None:
+    """Let an audit doubt the label of a paraphrase."""
     texts = dict.fromkeys(("prompt", "utterance"), "Fetch me the tea.")
     forms = dict.fromkeys(("grounded_form", "logical_form"), "UNKNOWN")
     distances = {"edit_distance": 3, "jaccard_distance": 0.5}
@@ -75,10 +107,10 @@ def leave_traces(world: World, annotator: User, admin: User) -> None:
         world=world, position=0, defaults={**texts, **forms, **distances}
     )
     store_findings(world, [doubt(paraphrase, '( go " <room> " )')])
-    _analyse(world, annotator)
-    _promote(world, admin)
-    _review(world, annotator, admin)
-    _talk(world, annotator)
+
+
+def _fail(world: World, annotator: User) -> None:
+    """Let a job fail."""
     Job.objects.create(
         world=world,
         world_name=world.name,
@@ -87,13 +119,6 @@ def leave_traces(world: World, annotator: User, admin: User) -> None:
         status=Status.FAILED,
         failure="The worker was stopped.",
     )
-
-
-def save_parser(run: TrainingRun) -> None:
-    """Store the parser of a run that was only written down as succeeded."""
-    parser = make_parser(run)
-    parser.fit(pairs_of(run.split, Part.TRAIN, run.train_sources))
-    write_folder(model_folder(run.pk), parser.save)
 
 
 def _analyse(world: World, annotator: User) -> None:

@@ -54,14 +54,7 @@ def request(
         "seed": seed,
         "train_share": train_share,
     }
-    entry = registry.entry(parser)
-    made = {"parser_version": entry.version, "queue": entry.queue, "created_by": by}
-    run, created = TrainingRun.objects.get_or_create(
-        world=world,
-        content_key=content_key(**asked),
-        status__in=[Status.QUEUED, Status.RUNNING, Status.SUCCEEDED],
-        defaults={**asked, **made},
-    )
+    run, created = _find_or_queue(world, asked, by)
     if created and send:
         wake(run)
     return run, created
@@ -113,6 +106,20 @@ def _whole_config(parser: str, config: Mapping[str, Any] | None, anywhere: bool)
     refuse_missing_weights(made, anywhere)
     refuse_unnamed(made)
     return registry.config_values(made)
+
+
+def _find_or_queue(
+    world: World, asked: Mapping[str, Any], by: User | None
+) -> tuple[TrainingRun, bool]:
+    """Return the run of what is asked that has not failed, or a new one, and whether it is new."""
+    entry = registry.entry(asked["parser"])
+    made = {"parser_version": entry.version, "queue": entry.queue, "created_by": by}
+    return TrainingRun.objects.get_or_create(
+        world=world,
+        content_key=content_key(**asked),
+        status__in=[Status.QUEUED, Status.RUNNING, Status.SUCCEEDED],
+        defaults={**asked, **made},
+    )
 
 
 def _refuse_share(share: float) -> None:

@@ -12,6 +12,8 @@ import threading
 from http.server import BaseHTTPRequestHandler, HTTPServer
 from urllib.parse import parse_qs, urlsplit
 
+from django.test import Client
+
 PERSON = {"sub": "1"}  # who signs on next, as the server says
 
 
@@ -60,16 +62,23 @@ def sign_on(client, sub: str, name: str, process: str = "login", next_page: str 
 
 
 def walk() -> None:
-    from django.test import Client
-
-    from annotations.models import AuditEntry, Invitation, User, World
+    """Check what single sign-on does for people who are invited, unknown, members and gone."""
+    from annotations.models import Invitation, User, World
     from annotations.models.worlds import Role
 
     world = World.objects.create(name="home")
     adam = User.objects.create_superuser("adam", password="correct horse")
     _, key = Invitation.issue(world, [Role.ANNOTATOR], adam, 7, 1, "")
     page = f"/join/{key}/"
+    join_by_invitation(world, page)
+    sign_on_again()
+    refuse_strangers(page)
+    connect_an_account()
+    refuse_a_closed_account()
+    refuse_what_is_made_up()
 
+
+def join_by_invitation(world, page: str) -> None:
     nora = Client()
     assert "Continue with the lab" in nora.get(page).content.decode()
     assert "form-action 'self' http://127.0.0.1:" in nora.get(page)["Content-Security-Policy"]
@@ -78,11 +87,19 @@ def walk() -> None:
     assert nora.post(page)["Location"] == "/w/home/"
     assert world.memberships.get().user.username == "nora"
 
+
+def sign_on_again() -> None:
+    from annotations.models import AuditEntry
+
     again = Client()
     assert sign_on(again, "n", "nora")["Location"] == "/"
     assert again.get("/w/home/").status_code == 200
     entry = AuditEntry.objects.latest("pk")
     assert (entry.who_name, entry.subject) == ("nora", "single sign-on")
+
+
+def refuse_strangers(page: str) -> None:
+    from annotations.models import User
 
     stranger = Client()
     for next_page in ("", page, "/join/guess/", "//elsewhere.example"):
@@ -93,6 +110,8 @@ def walk() -> None:
     other_nora = Client()  # nobody gets an account by its name alone
     assert sign_on(other_nora, "x", "adam").status_code == 403
 
+
+def connect_an_account() -> None:
     adams = Client()
     adams.post("/login/", {"username": "adam", "password": "correct horse"})
     assert sign_on(adams, "a", "adam", process="connect")["Location"] == "/account/"
@@ -100,10 +119,16 @@ def walk() -> None:
     sign_on(later, "a", "adam")
     assert "You are adam." in later.get("/account/").content.decode()
 
+
+def refuse_a_closed_account() -> None:
+    from annotations.models import User
+
     User.objects.filter(username="nora").update(is_active=False)
     closed = sign_on(Client(), "n", "nora")
     assert closed.status_code == 403 and b"This account is closed." in closed.content
 
+
+def refuse_what_is_made_up() -> None:
     assert b"Continue with the lab" in Client().get("/sso/site/login/").content
     made_up = Client().get("/sso/site/login/callback/", {"code": "c", "state": "made up"})
     assert made_up.status_code == 403 and b"did not succeed" in made_up.content
