@@ -15,7 +15,7 @@ from annotations.importing import import_generator
 from annotations.models import ApiToken, Entity
 from parser_service.models import TrainingRun
 from tests.annotations.conftest import TINY, as_bytes
-from tests.gpsr_site.routes.addresses import ALL_ROUTES
+from tests.gpsr_site.routes.listing import ALL_ROUTES
 
 TEXT = (Path(__file__).resolve().parent.parent / "docs" / "api.md").read_text(encoding="utf-8")
 SECONDS = 120

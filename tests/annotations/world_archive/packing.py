@@ -11,13 +11,21 @@ from django.db.models import ForeignKey
 
 from annotations.commenting import SUBJECTS
 from annotations.models import Comment, World
-from annotations.world_archive import world_archive
+from annotations.world_archive import import_world, world_archive
 from annotations.world_archive.tables import tables
 
 
 def pack(world: World) -> io.BytesIO:
     """The archive of ``world`` as a file."""
     return io.BytesIO(b"".join(world_archive(world)))
+
+
+def same_again(world: World) -> World:
+    """The world that an import of the archive of ``world`` makes; asserts that it is the same."""
+    import_world("again", pack(world))
+    again = World.objects.get(name="again")
+    assert everything_of(again) == everything_of(world)
+    return again
 
 
 def members_of(archive: io.BytesIO) -> dict[str, bytes]:

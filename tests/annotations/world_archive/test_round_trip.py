@@ -7,8 +7,6 @@ import json
 import pytest
 from django.apps import apps
 from django.db import models
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 
 from annotations.auditing import decide, store_findings
 from annotations.commenting import SUBJECTS, add_comment
@@ -24,7 +22,6 @@ from annotations.models import (
     Label,
     Membership,
     Ontology,
-    Paraphrase,
     SemanticTemplate,
     Verdict,
     WorkKind,
@@ -32,28 +29,18 @@ from annotations.models import (
 )
 from annotations.models.worlds import Duty
 from annotations.queueing import finish, next_item, set_share
-from annotations.splits.freezing import freeze_split
 from annotations.world_archive import import_world
 from annotations.world_archive.tables import tables
 from annotations.worlds.starter_world import STARTER_WORLD, load_starter_world
-from annotations.worlds.world_deletion import delete_world
 from parser_service.robots.action_names import names_of, store_names, version_of
-from tests.annotations.conftest import TINY, as_bytes
 from tests.annotations.world_archive.packing import (
     everything_of,
     members_of,
     pack,
     pack_members,
+    same_again,
 )
 from tests.doubted_labels import doubt, say
-
-
-def same_again(world: World) -> World:
-    """The world that an import of the archive of ``world`` makes; asserts that it is the same."""
-    import_world("again", pack(world))
-    again = World.objects.get(name="again")
-    assert everything_of(again) == everything_of(world)
-    return again
 
 
 def test_the_starter_world(db):
@@ -231,85 +218,3 @@ def not_of_the_world():
     """What goes with a world and is no part of it: not written by people, or for one person alone."""
     names = ("Job", "Proposal", "CommandProposal", "Draft", "Notice", "Invitation")
     return {model for model in apps.get_models() if model.__name__ in names}
-
-
-WORDS = st.text(st.characters(codec="utf-8", exclude_characters="\0\n\r"), min_size=1, max_size=12)
-
-
-@st.composite
-def edits(draw):
-    """What people may make of the tiny world."""
-    return {
-        "patterns": draw(st.lists(WORDS, max_size=3)),
-        "status": draw(st.sampled_from(["draft", "ready", "disputed"])),
-        "entity": draw(WORDS),
-        "attributes": draw(st.dictionaries(WORDS, WORDS, max_size=2)),
-        "gloss": draw(WORDS),
-        "utterances": draw(st.lists(WORDS, max_size=4)),
-        "description": draw(WORDS),
-        "is_generated": draw(st.booleans()),
-        "is_split": draw(st.booleans()),
-        "has_detached": draw(st.booleans()),
-    }
-
-
-@settings(
-    max_examples=25,
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],
-)
-@given(edit=edits())
-def test_any_edited_world(db, edit):
-    world = edited_world(edit)
-    try:
-        same_again(world)
-    finally:
-        for each in World.objects.all():
-            delete_world(each)
-
-
-def edited_world(edit) -> World:
-    import_generator("edited", as_bytes(TINY))
-    world = World.objects.get(name="edited")
-    World.objects.filter(pk=world.pk).update(description=edit["description"])
-    if edit["is_generated"]:
-        generate_pairs(world)
-    for pattern in edit["patterns"]:
-        add_draft(world, pattern)
-    world.grammar.templates.filter(pattern__startswith="go").update(status=edit["status"])
-    world.ontology.entities.filter(text="tea").update(
-        text=edit["entity"], attributes=edit["attributes"], aliases=[edit["gloss"]]
-    )
-    world.predicates.filter(name="go").update(gloss=edit["gloss"], is_edited=True)
-    for position, utterance in enumerate(edit["utterances"]):
-        add_paraphrase(world, utterance, position, edit["has_detached"])
-    if edit["is_split"] and world.commands.exists():
-        freeze_split(world, "frozen", seed=3)
-    return world
-
-
-def add_draft(world: World, pattern: str) -> None:
-    last = world.grammar.templates.count()
-    SemanticTemplate.objects.create(
-        grammar=world.grammar,
-        source="tiny_category_1_semantics.txt",
-        pattern=pattern,
-        form=pattern,
-        status="draft",
-        position=last,
-        version=2,
-    )
-
-
-def add_paraphrase(world: World, utterance: str, position: int, is_detached: bool) -> None:
-    Paraphrase.objects.create(
-        world=world,
-        command=None if is_detached else world.commands.first(),
-        prompt="go to the bath",
-        utterance=utterance,
-        grounded_form='( go " bath " )',
-        logical_form='( go " <room> " )',
-        edit_distance=position,
-        jaccard_distance=1 / 3,
-        status=["pending", "accepted", "rejected"][position % 3],
-        position=position,
-    )

@@ -1,66 +1,40 @@
-"""Every route of the site, and the address of each below a sample world."""
+"""The address of each route of the site below a sample world."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from datetime import timedelta
+from collections.abc import Callable
 from typing import TypeAlias
 
 from django.db.models import Model
-from django.urls import URLPattern, URLResolver, get_resolver, reverse
-from django.utils import timezone
+from django.urls import reverse
 
-from annotations.language.dialogue import Offer, Phase, State
-from annotations.models import (
-    AuditDecision,
-    AuditFinding,
-    Entity,
-    Invitation,
-    Job,
-    Label,
-    Membership,
-    User,
-    Utterance,
-    WorkItem,
+from annotations.models import Entity
+from tests.gpsr_site.routes.listing import ROUTES_OF_WORLDS
+from tests.gpsr_site.routes.sample_rows import (
+    answer_of_nobody,
+    decision_of_nobody,
+    dialogue,
+    error_category,
+    finding,
+    invitation,
+    job_without_world,
+    join_keys,
+    offered_entity,
+    predicate,
+    proposal,
+    removable_member,
+    review,
+    run,
+    saved_slice,
+    split,
+    template,
+    utterance,
+    waiting_job,
+    work_item,
 )
-from annotations.models.people import digest_of
-from annotations.models.worlds import Role
-from parser_service.conversing.offering import offer
-from parser_service.models import Dialogue, OfferedEntity, Promotion, PromotionState, Slice
-from parser_service.reviewing.categories import ensure_categories
 from tests.sample_world import SampleWorld, comment_in, paraphrase_in
 
 RouteKeys: TypeAlias = Callable[[SampleWorld], dict[str, object]]
-
-
-def list_routes(patterns, namespace: str = "", path: str = "") -> Iterator[tuple[str, str]]:
-    """Yield name and path of every route; what Django's own admin adds counts as ``admin:index``."""
-    for pattern in patterns:
-        here = path + str(pattern.pattern)
-        if isinstance(pattern, URLResolver):
-            inside = f"{pattern.namespace}:" if pattern.namespace else namespace
-            if pattern.namespace == "admin":
-                yield "admin:index", here
-            else:
-                yield from list_routes(pattern.url_patterns, inside, here)
-        elif isinstance(pattern, URLPattern):
-            yield f"{namespace}{pattern.name}", here
-
-
-def list_views(patterns, namespace: str = "") -> Iterator[tuple[str, type]]:
-    """Yield name and class of every route of the API."""
-    for pattern in patterns:
-        if isinstance(pattern, URLResolver):
-            inside = f"{pattern.namespace}:" if pattern.namespace else namespace
-            yield from list_views(pattern.url_patterns, inside)
-        elif isinstance(pattern, URLPattern) and namespace == "api:":
-            yield f"{namespace}{pattern.name}", pattern.callback.view_class
-
-
-ALL_ROUTES = dict(list_routes(get_resolver().url_patterns))
-API_VIEWS = dict(list_views(get_resolver().url_patterns))
-ROUTES_OF_WORLDS = {name for name, path in ALL_ROUTES.items() if "<slug:world>" in path}
-ROUTES_OF_ROWS = sorted(name for name in ROUTES_OF_WORLDS if "<int:" in ALL_ROUTES[name])
 
 
 def address(name: str, world: SampleWorld, rows: SampleWorld | None = None) -> str:
@@ -74,125 +48,6 @@ def address(name: str, world: SampleWorld, rows: SampleWorld | None = None) -> s
 def pk_of(row: Callable[[SampleWorld], Model], **others: str) -> RouteKeys:
     """Return a function that gives the keys of a route about ``row``, beside ``others``."""
     return lambda sample: {"pk": row(sample).pk, **others}
-
-
-def waiting_job(sample: SampleWorld) -> Job:
-    world = sample.world
-    return Job.objects.get_or_create(world=world, world_name=world.name, kind="import_generator")[0]
-
-
-def job_without_world(sample: SampleWorld) -> Job:
-    """Return the import of a world that is not there yet, which nobody of the policy asked for."""
-    name = f"copy-of-{sample.world}"
-    return Job.objects.get_or_create(world=None, world_name=name, kind="import_world")[0]
-
-
-def proposal(sample: SampleWorld) -> Promotion:
-    """Return a proposal that nobody has decided."""
-    return Promotion.objects.get_or_create(
-        world=sample.world, run=sample.run, state=PromotionState.PROPOSED
-    )[0]
-
-
-def removable_member(sample: SampleWorld) -> User:
-    """Return somebody with a role in the world, whom no test needs."""
-    user, _ = User.objects.get_or_create(username=f"someone in {sample.world}")
-    Membership.objects.get_or_create(world=sample.world, user=user, role=Role.REVIEWER)
-    return user
-
-
-def invitation(sample: SampleWorld) -> Invitation:
-    """Return an invitation to the world, whose link has a key that ``key_of`` knows."""
-    later = timezone.now() + timedelta(days=1)
-    values = {"roles": [Role.REVIEWER], "places": 100, "expires_at": later}
-    values["created_by"] = removable_member(sample)
-    return Invitation.objects.get_or_create(
-        world=sample.world, digest=digest_of(key_of(sample)), defaults=values
-    )[0]
-
-
-def key_of(sample: SampleWorld) -> str:
-    return f"key-of-{sample.world}"
-
-
-def join_keys(sample: SampleWorld) -> dict[str, object]:
-    invitation(sample)
-    return {"key": key_of(sample)}
-
-
-def utterance(sample: SampleWorld) -> Utterance:
-    texts = {"text": "bring me tea", "anonymized_text": "bring me <object>"}
-    return Utterance.objects.get_or_create(world=sample.world, **texts)[0]
-
-
-def answer_of_nobody(sample: SampleWorld) -> Label:
-    """Return an answer to the utterance, of an account that was deleted."""
-    return Label.objects.get_or_create(utterance=utterance(sample), verdict="skip")[0]
-
-
-def work_item(sample: SampleWorld) -> WorkItem:
-    """Return what the queue asks about the utterance."""
-    row = utterance(sample)
-    return WorkItem.objects.get_or_create(
-        world=sample.world, utterance=row, title=row.text, kind="unlabelled", priority=10
-    )[0]
-
-
-def finding(sample: SampleWorld) -> AuditFinding:
-    """Return a label that is in doubt."""
-    forms = {"form": "( go )", "suggested_form": "( find )"}
-    return AuditFinding.objects.get_or_create(
-        world=sample.world,
-        paraphrase=paraphrase_in(sample.world),
-        defaults={**forms, "rank": 1, "score": 1.0},
-    )[0]
-
-
-def decision_of_nobody(sample: SampleWorld) -> AuditDecision:
-    """Return what somebody whose account was deleted decided about it."""
-    return AuditDecision.objects.get_or_create(finding=finding(sample), decision="kept")[0]
-
-
-def saved_slice(sample: SampleWorld) -> Slice:
-    return Slice.objects.get_or_create(
-        world=sample.world, name="wrong ones", query="outcome=wrong"
-    )[0]
-
-
-def error_category(sample: SampleWorld) -> Model:
-    return list(ensure_categories(sample.world).values())[-1]
-
-
-def review(sample: SampleWorld) -> Model:
-    """Return what somebody whose account was deleted wrote about an answer."""
-    return sample.run.reviews.get_or_create(example=sample.example, note="Hm.")[0]
-
-
-def dialogue(sample: SampleWorld) -> Dialogue:
-    """Return a dialogue about a command that nobody understood."""
-    state = State(Phase.REPHRASING, prompt="Please say it another way.").as_json()
-    values = {"state": state, "phase": "rephrasing"}
-    return Dialogue.objects.get_or_create(world=sample.world, utterance="dance", defaults=values)[0]
-
-
-def offered_entity(sample: SampleWorld) -> OfferedEntity:
-    return offer(sample.world, Offer("object", "flurb"), "bring me the flurb")
-
-
-def predicate(sample: SampleWorld) -> Model:
-    return sample.world.predicates.first()
-
-
-def template(sample: SampleWorld) -> Model:
-    return sample.template
-
-
-def split(sample: SampleWorld) -> Model:
-    return sample.split
-
-
-def run(sample: SampleWorld) -> Model:
-    return sample.run
 
 
 KEYS: dict[str, RouteKeys] = {

@@ -13,7 +13,8 @@ import pytest
 from django.db import connection
 from django.urls import get_resolver
 
-from tests.gpsr_site.routes.addresses import ALL_ROUTES, address
+from tests.gpsr_site.routes.addresses import address
+from tests.gpsr_site.routes.listing import ALL_ROUTES
 from tests.gpsr_site.routes.policy import POLICY
 from tests.sample_world import SampleWorld
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.gpsr_site.routes.addresses import ALL_ROUTES, API_VIEWS
+from tests.gpsr_site.routes.listing import ALL_ROUTES, API_VIEWS
 from tests.gpsr_site.routes.page_actions import PAGE_ACTIONS, PAGE_VIEWS, NoRoute, routes_of
 from tests.gpsr_site.routes.policy import POLICY
 

@@ -15,7 +15,8 @@ from django.test import Client
 from django.urls import reverse
 
 from annotations.models import ApiToken, Scope
-from tests.gpsr_site.routes.addresses import ALL_ROUTES, API_VIEWS, ROUTES_OF_ROWS, address
+from tests.gpsr_site.routes.addresses import address
+from tests.gpsr_site.routes.listing import ALL_ROUTES, API_VIEWS, ROUTES_OF_ROWS
 from tests.gpsr_site.routes.policy import LOG_IN, NO, NOWHERE, PEOPLE, POLICY, YES
 from tests.gpsr_site.routes.rules import WRONG
 

@@ -2,49 +2,22 @@
 
 from __future__ import annotations
 
-import json
-import os
-import shutil
-import subprocess
-import sys
 from itertools import groupby
-from pathlib import Path
 
 import pytest
-from django.conf import settings as site
-from django.core.management import CommandError, call_command
+from django.core.management import CommandError
 
-from annotations.importing import import_generator
 from parser_service.benchmarking import cells as cells_module
-from parser_service.benchmarking.corpus import new_split, read_corpus, source_commands
-from parser_service.management.options import read_column, read_split_seeds
+from parser_service.management.options import read_column
 from parser_service.parsers.conditions import SETTINGS
-from tests.parser_service.llm_server import (
-    KEY,
-    REPORTED,
-    fails,
-    installed_tiny_server,
-    says,
-)
-from tests.parser_service.made_up import made_up_pairs, make_folder
-from tests.parser_service.worker_process import ROOT
+from tests.parser_service.commands.benchmark_run import run
+from tests.parser_service.llm_server import KEY, REPORTED, fails, installed_tiny_server, says
 
 KEYS = {
     "parser", "configuration", "setting", "criterion", "protocol", "seed", "n_train", "n_test",
     "accuracy_validation", "accuracy_test", "well_formed", "seconds_train",
     "milliseconds_per_command", "parameters", "code_version",
 }  # fmt: skip
-
-
-@pytest.fixture
-def folder(tmp_path) -> Path:
-    return make_folder(tmp_path / "pairs")
-
-
-def run(folder: Path, file: Path, **options) -> list[dict]:
-    named = {} if "columns" in options else {"criteria": "command", "protocols": "strict"}
-    call_command("benchmark", str(folder), json=file, **{"parsers": "knn", **named, **options})
-    return json.loads(file.read_text(encoding="utf-8"))
 
 
 def test_a_cell_says_all_that_the_table_needs(folder, tmp_path):
@@ -139,152 +112,6 @@ def test_a_test_part_is_scored_with_the_validation_pairs_as_neighbours(folder, t
     assert cell["n_test"] == 9
     assert cell["accuracy_test"] == 1.0
     assert cell["accuracy_validation"] < 1.0
-
-
-def split_by_source_command(folder):
-    return new_split(folder, "source_command", 0, source_commands(folder, lambda prompt: prompt))
-
-
-def test_no_source_command_is_in_two_parts(folder):
-    corpus = split_by_source_command(folder)
-    source = {said: command for command, said, _ in made_up_pairs()}
-    parts: dict[str, set[str]] = {}
-    for (part, _), pairs in corpus.parts.items():
-        for pair in pairs:
-            parts.setdefault(source.get(pair.utterance, pair.utterance), set()).add(part)
-    assert len(parts) == 36
-    assert all(len(some) == 1 for some in parts.values())
-    assert {part for part, _ in corpus.parts} == {"train", "validation", "test"}
-
-
-def test_a_paraphrase_of_unknown_origin_is_left_out(folder):
-    (folder / "paraphrasings.txt").write_text(
-        "".join((folder / "paraphrasings.txt").read_text().splitlines(keepends=True)[:30])
-    )
-    corpus = split_by_source_command(folder)
-    sources = [pair.source for pairs in corpus.parts.values() for pair in pairs]
-    assert (sources.count("generated"), sources.count("paraphrased")) == (36, 10)
-
-
-@pytest.mark.parametrize("criterion", ["command", "source_command", "logical_form"])
-def test_new_splits_stand_in_for_the_published_one(folder, tmp_path, criterion, world):
-    for name in ("gen", "para"):
-        shutil.copytree(folder / name, folder / f"{name}_logical")
-    options = {"criteria": criterion, "train_test": "para-para", "world": "home"}
-    cells = run(folder, tmp_path / "cells.json", new_splits="2-4", **options)
-    assert [(cell["split"], cell["seed"]) for cell in cells] == [(2, 0), (3, 0), (4, 0)]
-    for cell in cells:
-        assert (cell["n_train"], cell["n_validation"], cell["n_test"]) == pytest.approx(
-            (25, 4, 7), abs=3
-        )
-    published = run(folder, tmp_path / "others.json", **options)
-    assert [cell["split"] for cell in published] == [0 if criterion == "source_command" else None]
-
-
-def test_new_splits_are_so_many_or_those_of_some_seeds():
-    assert list(read_split_seeds("3")) == [0, 1, 2]
-    assert list(read_split_seeds(" 6-7 ")) == [6, 7]
-    assert not read_split_seeds("0")
-
-
-def test_no_form_is_in_two_parts_of_a_new_split(folder):
-    for name in ("gen", "para"):
-        (folder / name).rename(folder / f"{name}_logical")
-    corpora = [new_split(folder, "logical_form", seed) for seed in range(2)]
-    assert corpora[0] != corpora[1]
-    for corpus in corpora:
-        parts: dict[str, set[str]] = {}
-        for (part, _), pairs in corpus.parts.items():
-            for pair in pairs:
-                parts.setdefault(pair.form, set()).add(part)
-        assert all(len(some) == 1 for some in parts.values())
-
-
-@pytest.mark.parametrize(
-    ("options", "sentence"),
-    [
-        ({"parsers": "knn,elmo"}, "'elmo' is not one of grammar-oracle, knn"),
-        ({"train_test": "para-gen"}, "'para-gen' is not one of gen-gen"),
-        ({"criteria": "logical_form"}, "has no split by logical_form"),
-        ({"criteria": "source_command"}, "needs the ontology of a --world"),
-        ({"columns": "para-gen:command:strict"}, "'para-gen' is not one of gen-gen"),
-        ({"columns": "gen-gen:form:strict"}, "'form' is not one of command"),
-        ({"columns": "gen-gen:command:loose"}, "'loose' is not one of strict"),
-        (
-            {"columns": "gen-gen:command"},
-            "'gen-gen:command' has to be TRAIN-TEST:CRITERION:PROTOCOL",
-        ),
-        ({"columns": "gen-gen:command:strict", "criteria": "command"}, "leave either out"),
-        ({"new_splits": "-1"}, "--new-splits is '-1'; it has to be a number of splits (5), or"),
-        ({"new_splits": "9-6"}, "--new-splits is '9-6'; it has to be a number of splits (5), or"),
-        ({"seeds": 0}, "--seeds is 0; it has to be 1 or more"),
-        ({"jobs": 0}, "--jobs is 0; it has to be 1 or more"),
-        ({"config": ["least_overlap=0.5"]}, "has to be PARSER.KEY=VALUE"),
-        ({"parsers": "grammar-oracle", "protocols": "grammar"}, "The grammar oracle parses with"),
-    ],
-)
-def test_bad_input_is_a_sentence(folder, tmp_path, options, sentence):
-    with pytest.raises(CommandError) as refused:
-        run(folder, tmp_path / "cells.json", **options)
-    assert sentence in str(refused.value)
-
-
-def test_a_broken_pair_file_is_named_with_its_line(folder, tmp_path):
-    with (folder / "gen" / "val.txt").open("a") as file:
-        file.write("one line too many\n")
-    with pytest.raises(CommandError, match=r"val\.txt:19:1: .*not a multiple of 2"):
-        run(folder, tmp_path / "cells.json")
-
-
-def test_a_file_that_holds_something_else_is_not_overwritten(folder, tmp_path):
-    file = tmp_path / "notes.json"
-    file.write_text('{"note": 1}')
-    with pytest.raises(CommandError, match="holds something other than cells"):
-        run(folder, file)
-    assert file.read_text() == '{"note": 1}'
-
-
-@pytest.mark.parametrize(
-    "command",
-    [
-        "benchmark pairs --json cells.json",
-        "train knn --world home --split home",
-        "parse hello --world home",
-    ],
-)
-def test_an_abbreviated_option_is_refused_and_not_taken_for_the_settings_module(command):
-    with pytest.raises(CommandError, match="unrecognized arguments: --set gen-gen"):
-        call_command(*command.split(), "--set", "gen-gen")
-
-
-def test_the_options_of_the_command_line_are_those_of_the_command(folder, tmp_path):
-    file = tmp_path / "cells.json"
-    command = ["manage.py", "benchmark", str(folder), "--parsers", "knn", "--json", str(file)]
-    chosen = ["--train-test", "gen-gen", "--criteria=command"]
-    environment = {**os.environ, "GPSR_VAR_DIR": str(site.VAR_DIR)}
-    subprocess.run([sys.executable, *command, *chosen], cwd=ROOT, env=environment, check=True)
-    assert [cell["setting"] for cell in json.loads(file.read_text())] == ["gen-gen"]
-
-
-def test_the_oracle_is_right_on_every_published_generated_pair(shared_data, tmp_path, db):
-    import_generator("gpsr2018", shared_data / "generator-2018")
-    cells = run(
-        shared_data / "walker2019",
-        tmp_path / "cells.json",
-        world="gpsr2018",
-        parsers="grammar-oracle",
-        protocols="grammar",
-        criteria="command,logical_form",
-        train_test="gen-gen",
-    )
-    assert [cell["accuracy_validation"] for cell in cells] == [1.0, 1.0]
-
-
-def test_the_published_parts_have_the_published_sizes(shared_data):
-    for criterion, sizes in (("command", (847, 121)), ("logical_form", (850, 129))):
-        corpus = read_corpus(shared_data / "walker2019", criterion)
-        parts = [corpus.pairs(part, ["generated"]) for part in ("train", "validation")]
-        assert tuple(map(len, parts)) == sizes
 
 
 def test_a_cell_names_the_model_that_answered_and_one_without_all_answers_is_not_measured(

@@ -4,6 +4,8 @@ from dataclasses import replace
 
 import pytest
 
+from annotations.language.forms import read_form
+from annotations.language.predicates import infer_signatures
 from parser_service.neural.t5.parser import T5
 from parser_service.parsers import encoder_places
 from parser_service.parsers.t5_config import EncoderDecoderConfig
@@ -20,6 +22,11 @@ SMALL = EncoderDecoderConfig(
     threads=1,
 )
 TWENTY = toy_pairs()[:20]
+UTTERANCES = [pair.utterance for pair in TWENTY]
+ODD = ["", "☃", "bring " * 100, "unheard of\n\tλ"]
+DECLARED = infer_signatures(
+    map(read_form, [*(pair.form for pair in TWENTY), '( greet " <gesture> " )'])
+)
 
 
 def parser_of(seed=1, knowledge=None, **changes):

@@ -1,0 +1,146 @@
+"""The row of a sample world that a route is about, made where there is none."""
+
+from __future__ import annotations
+
+from datetime import timedelta
+
+from django.db.models import Model
+from django.utils import timezone
+
+from annotations.language.dialogue import Offer, Phase, State
+from annotations.models import (
+    AuditDecision,
+    AuditFinding,
+    Invitation,
+    Job,
+    Label,
+    Membership,
+    User,
+    Utterance,
+    WorkItem,
+)
+from annotations.models.people import digest_of
+from annotations.models.worlds import Role
+from parser_service.conversing.offering import offer
+from parser_service.models import Dialogue, OfferedEntity, Promotion, PromotionState, Slice
+from parser_service.reviewing.categories import ensure_categories
+from tests.sample_world import SampleWorld, paraphrase_in
+
+
+def waiting_job(sample: SampleWorld) -> Job:
+    world = sample.world
+    return Job.objects.get_or_create(world=world, world_name=world.name, kind="import_generator")[0]
+
+
+def job_without_world(sample: SampleWorld) -> Job:
+    """Return the import of a world that is not there yet, which nobody of the policy asked for."""
+    name = f"copy-of-{sample.world}"
+    return Job.objects.get_or_create(world=None, world_name=name, kind="import_world")[0]
+
+
+def proposal(sample: SampleWorld) -> Promotion:
+    """Return a proposal that nobody has decided."""
+    return Promotion.objects.get_or_create(
+        world=sample.world, run=sample.run, state=PromotionState.PROPOSED
+    )[0]
+
+
+def removable_member(sample: SampleWorld) -> User:
+    """Return somebody with a role in the world, whom no test needs."""
+    user, _ = User.objects.get_or_create(username=f"someone in {sample.world}")
+    Membership.objects.get_or_create(world=sample.world, user=user, role=Role.REVIEWER)
+    return user
+
+
+def invitation(sample: SampleWorld) -> Invitation:
+    """Return an invitation to the world, whose link has a key that ``key_of`` knows."""
+    later = timezone.now() + timedelta(days=1)
+    values = {"roles": [Role.REVIEWER], "places": 100, "expires_at": later}
+    values["created_by"] = removable_member(sample)
+    return Invitation.objects.get_or_create(
+        world=sample.world, digest=digest_of(key_of(sample)), defaults=values
+    )[0]
+
+
+def key_of(sample: SampleWorld) -> str:
+    return f"key-of-{sample.world}"
+
+
+def join_keys(sample: SampleWorld) -> dict[str, object]:
+    invitation(sample)
+    return {"key": key_of(sample)}
+
+
+def utterance(sample: SampleWorld) -> Utterance:
+    texts = {"text": "bring me tea", "anonymized_text": "bring me <object>"}
+    return Utterance.objects.get_or_create(world=sample.world, **texts)[0]
+
+
+def answer_of_nobody(sample: SampleWorld) -> Label:
+    """Return an answer to the utterance, of an account that was deleted."""
+    return Label.objects.get_or_create(utterance=utterance(sample), verdict="skip")[0]
+
+
+def work_item(sample: SampleWorld) -> WorkItem:
+    """Return what the queue asks about the utterance."""
+    row = utterance(sample)
+    return WorkItem.objects.get_or_create(
+        world=sample.world, utterance=row, title=row.text, kind="unlabelled", priority=10
+    )[0]
+
+
+def finding(sample: SampleWorld) -> AuditFinding:
+    """Return a label that is in doubt."""
+    forms = {"form": "( go )", "suggested_form": "( find )"}
+    return AuditFinding.objects.get_or_create(
+        world=sample.world,
+        paraphrase=paraphrase_in(sample.world),
+        defaults={**forms, "rank": 1, "score": 1.0},
+    )[0]
+
+
+def decision_of_nobody(sample: SampleWorld) -> AuditDecision:
+    """Return what somebody whose account was deleted decided about it."""
+    return AuditDecision.objects.get_or_create(finding=finding(sample), decision="kept")[0]
+
+
+def saved_slice(sample: SampleWorld) -> Slice:
+    return Slice.objects.get_or_create(
+        world=sample.world, name="wrong ones", query="outcome=wrong"
+    )[0]
+
+
+def error_category(sample: SampleWorld) -> Model:
+    return list(ensure_categories(sample.world).values())[-1]
+
+
+def review(sample: SampleWorld) -> Model:
+    """Return what somebody whose account was deleted wrote about an answer."""
+    return sample.run.reviews.get_or_create(example=sample.example, note="Hm.")[0]
+
+
+def dialogue(sample: SampleWorld) -> Dialogue:
+    """Return a dialogue about a command that nobody understood."""
+    state = State(Phase.REPHRASING, prompt="Please say it another way.").as_json()
+    values = {"state": state, "phase": "rephrasing"}
+    return Dialogue.objects.get_or_create(world=sample.world, utterance="dance", defaults=values)[0]
+
+
+def offered_entity(sample: SampleWorld) -> OfferedEntity:
+    return offer(sample.world, Offer("object", "flurb"), "bring me the flurb")
+
+
+def predicate(sample: SampleWorld) -> Model:
+    return sample.world.predicates.first()
+
+
+def template(sample: SampleWorld) -> Model:
+    return sample.template
+
+
+def split(sample: SampleWorld) -> Model:
+    return sample.split
+
+
+def run(sample: SampleWorld) -> Model:
+    return sample.run

@@ -1,0 +1,81 @@
+"""Options and files that ``manage.py benchmark`` takes and refuses."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+from django.conf import settings as site
+from django.core.management import CommandError, call_command
+
+from tests.parser_service.commands.benchmark_run import run
+from tests.parser_service.worker_process import ROOT
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        ({"parsers": "knn,elmo"}, "'elmo' is not one of grammar-oracle, knn"),
+        ({"train_test": "para-gen"}, "'para-gen' is not one of gen-gen"),
+        ({"criteria": "logical_form"}, "has no split by logical_form"),
+        ({"criteria": "source_command"}, "needs the ontology of a --world"),
+        ({"columns": "para-gen:command:strict"}, "'para-gen' is not one of gen-gen"),
+        ({"columns": "gen-gen:form:strict"}, "'form' is not one of command"),
+        ({"columns": "gen-gen:command:loose"}, "'loose' is not one of strict"),
+        (
+            {"columns": "gen-gen:command"},
+            "'gen-gen:command' has to be TRAIN-TEST:CRITERION:PROTOCOL",
+        ),
+        ({"columns": "gen-gen:command:strict", "criteria": "command"}, "leave either out"),
+        ({"new_splits": "-1"}, "--new-splits is '-1'; it has to be a number of splits (5), or"),
+        ({"new_splits": "9-6"}, "--new-splits is '9-6'; it has to be a number of splits (5), or"),
+        ({"seeds": 0}, "--seeds is 0; it has to be 1 or more"),
+        ({"jobs": 0}, "--jobs is 0; it has to be 1 or more"),
+        ({"config": ["least_overlap=0.5"]}, "has to be PARSER.KEY=VALUE"),
+        ({"parsers": "grammar-oracle", "protocols": "grammar"}, "The grammar oracle parses with"),
+    ],
+)
+def test_bad_input_is_a_sentence(folder, tmp_path, options, sentence):
+    with pytest.raises(CommandError) as refused:
+        run(folder, tmp_path / "cells.json", **options)
+    assert sentence in str(refused.value)
+
+
+def test_a_broken_pair_file_is_named_with_its_line(folder, tmp_path):
+    with (folder / "gen" / "val.txt").open("a") as file:
+        file.write("one line too many\n")
+    with pytest.raises(CommandError, match=r"val\.txt:19:1: .*not a multiple of 2"):
+        run(folder, tmp_path / "cells.json")
+
+
+def test_a_file_that_holds_something_else_is_not_overwritten(folder, tmp_path):
+    file = tmp_path / "notes.json"
+    file.write_text('{"note": 1}')
+    with pytest.raises(CommandError, match="holds something other than cells"):
+        run(folder, file)
+    assert file.read_text() == '{"note": 1}'
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "benchmark pairs --json cells.json",
+        "train knn --world home --split home",
+        "parse hello --world home",
+    ],
+)
+def test_an_abbreviated_option_is_refused_and_not_taken_for_the_settings_module(command):
+    with pytest.raises(CommandError, match="unrecognized arguments: --set gen-gen"):
+        call_command(*command.split(), "--set", "gen-gen")
+
+
+def test_the_options_of_the_command_line_are_those_of_the_command(folder, tmp_path):
+    file = tmp_path / "cells.json"
+    command = ["manage.py", "benchmark", str(folder), "--parsers", "knn", "--json", str(file)]
+    chosen = ["--train-test", "gen-gen", "--criteria=command"]
+    environment = {**os.environ, "GPSR_VAR_DIR": str(site.VAR_DIR)}
+    subprocess.run([sys.executable, *command, *chosen], cwd=ROOT, env=environment, check=True)
+    assert [cell["setting"] for cell in json.loads(file.read_text())] == ["gen-gen"]
