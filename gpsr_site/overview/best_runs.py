@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import dataclass
 
 from django.db.models import BooleanField, ExpressionWrapper, Q
 from django.urls import reverse
 from django.utils.http import urlencode
 
-from annotations.language.corpus import Criterion
+from annotations.language.corpus import KNOWN, Criterion
 from annotations.models import Split, World
 from annotations.models.background import Status
 from parser_service.models import Evaluation
+from parser_service.models.shown_scores import ShownScore, shown_scores
 from parser_service.parsers.conditions import Protocol, only_source
 from parser_service.parsers.registry import PARSERS
 
@@ -25,7 +27,11 @@ class BestRun:
     """A run's score on the validation part, with the address of what it got wrong."""
 
     world: World
-    score: Evaluation
+    figure: ShownScore
+
+    @property
+    def score(self) -> Evaluation:
+        return self.figure.score
 
     @property
     def protocol(self) -> str:
@@ -71,30 +77,39 @@ def best_runs(world: World) -> BestRuns | None:
     """Find the best runs on the validation part of a split, on paraphrases where it has any.
 
     The split is the one that was scored last; one by logical form only where there is no other,
-    because most parsers have no answer for a form that training never showed. Two queries; None
-    where nothing has been scored.
+    because most parsers have no answer for a form that training never showed: there the best has the highest
+    harmonic mean of unseen and known forms. Two queries; None where nothing has been scored.
     """
     scores = Evaluation.objects.filter(
         run__world=world,
         run__status=Status.SUCCEEDED,
         run__train_share=1,
-        part=PART,
+        part__in=[PART, KNOWN],
         count__gt=0,
     )
     is_by_form = Q(run__split__criterion=Criterion.LOGICAL_FORM)
     order = (ExpressionWrapper(is_by_form, BooleanField()), "-run_id")
-    newest = scores.select_related("run__split").order_by(*order).first()
+    newest = scores.filter(part=PART).select_related("run__split").order_by(*order).first()
     if newest is None:
         return None
     on_split = list(scores.filter(run__split=newest.run.split_id).select_related("run"))
-    source = next(each for each in SOURCES if any(s.test_source == each for s in on_split))
-    comparable = [score for score in on_split if score.test_source == source]
+    tested = {score.test_source for score in on_split if score.part == PART}
+    source = next(each for each in SOURCES if each in tested)
+    of_runs: dict[int, list[Evaluation]] = defaultdict(list)
+    for score in on_split:
+        of_runs[score.run_id].append(score)
+    shown = (shown_scores(each, newest.run.split.criterion) for each in of_runs.values())
+    comparable = [each[PART, source] for each in shown if (PART, source) in each]
     best = (_best(comparable, protocol) for protocol in Protocol)
-    runs = tuple(BestRun(world, score) for score in best if score is not None)
+    runs = tuple(BestRun(world, figure) for figure in best if figure is not None)
     return BestRuns(newest.run.split, SOURCES[source], runs)
 
 
-def _best(scores: list[Evaluation], protocol: str) -> Evaluation | None:
-    """Return the most accurate, the newer one of two that are equal."""
-    of_protocol = (score for score in scores if score.run.protocol == protocol)
-    return max(of_protocol, key=lambda score: (score.accuracy, score.run_id), default=None)
+def _best(figures: list[ShownScore], protocol: str) -> ShownScore | None:
+    """Return the most accurate, the newer one of two that are equal; figures on unseen forms alone come last."""
+    of_protocol = (figure for figure in figures if figure.score.run.protocol == protocol)
+    return max(
+        of_protocol,
+        key=lambda figure: (not figure.alone, figure.accuracy, figure.score.run_id),
+        default=None,
+    )

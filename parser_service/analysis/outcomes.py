@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from hashlib import sha256
+from statistics import fmean
 from typing import Literal, TypeAlias
 
-from parser_service.analysis.clustered import Clustered, Parts, interval_of
+from annotations.language.corpus import harmonic_mean
+from parser_service.analysis.clustered import Clustered, Interval, Parts, interval_of
 from parser_service.analysis.scores import Judgement
 
 # Of a part with more clusters, whole clusters are put together at random: groups of clusters are as
@@ -54,3 +56,22 @@ def interval_of_outcomes(
     right = clustered([outcomes], counted)
     parts: Parts | None = (right,) if right is not None else None
     return interval_of(parts) if parts else None
+
+
+def interval_of_scores(
+    parts: Sequence[Sequence[Outcomes]],
+    stored: Sequence[Sequence[Interval]],
+    counted: Counted = "exact",
+) -> tuple[Interval, Parts | None]:
+    """Return the 95 % interval of the mean of one part, or of the harmonic mean of two, and what it was taken from.
+
+    Without outcomes by cluster it is the mean, or the harmonic mean, of the intervals that were ``stored``, which
+    are also those of single scores. Shapes: [parts, trainings] each.
+    """
+    sides = [clustered(part, counted) for part in parts]
+    together: Parts | None = None if None in sides else tuple(sides)  # type: ignore[assignment]
+    if together is not None and (len(parts) > 1 or len(parts[0]) > 1):
+        return interval_of(together), together
+    lows, highs = ([fmean(ends[at] for ends in part) for part in stored] for at in (0, 1))
+    low, high = (harmonic_mean(*each) if len(parts) > 1 else each[0] for each in (lows, highs))
+    return (low, high), together

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 import django_filters
-from django.db.models import QuerySet
+from django.db.models import Case, OuterRef, Q, QuerySet, Subquery, When
 from django_filters.rest_framework import DjangoFilterBackend
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema, extend_schema_field
@@ -17,6 +17,7 @@ from annotations.api.once import once
 from annotations.api.queueing.sending import Sending, SentSerializer, WhatToLookAt
 from annotations.api.reading import FiniteField
 from annotations.api.routes import RowRoute, RowsRoute, WorldRoute
+from annotations.language.corpus import KNOWN, harmonic_mean
 from annotations.lists.filtering import Key
 from annotations.models import Split
 from parser_service.api.runs import OfRun
@@ -27,16 +28,25 @@ from parser_service.slices import PredictionFilters
 
 
 class EvaluationSerializer(serializers.ModelSerializer):
-    """Exact match of a run on one source of one part; fractions of 1, the interval at 95 %."""
+    """Exact match of a run on one source of one part; fractions of 1, the interval at 95 %. Of a split by form
+    ``accuracy`` is that on unseen forms, except of the part ``known``; ``harmonic_mean`` is that of it and of
+    ``accuracy_known``. Both are null for other splits and where known forms were not held out."""
 
     run = serializers.IntegerField(source="run_id")
+    accuracy_known = serializers.FloatField(allow_null=True)
+    harmonic_mean = serializers.SerializerMethodField()
 
     class Meta:
         model = Evaluation
         fields = [
             *("id", "run", "part", "test_source", "count", "correct", "accuracy"),
             *("interval_low", "interval_high", "equivalent", "well_formed"),
+            *("accuracy_known", "harmonic_mean"),
         ]
+
+    def get_harmonic_mean(self, score: Evaluation) -> float | None:
+        known = score.accuracy_known
+        return None if known is None else harmonic_mean(score.accuracy, known)
 
 
 class EvaluationQuery(django_filters.FilterSet):
@@ -54,7 +64,13 @@ class EvaluationNoun:
     serializer_class = EvaluationSerializer
 
     def rows(self) -> QuerySet[Evaluation]:
-        return Evaluation.objects.filter(run__world=self.world)
+        known = Evaluation.objects.filter(
+            run=OuterRef("run"), test_source=OuterRef("test_source"), part=KNOWN
+        )
+        beside_known = When(~Q(part=KNOWN), then=Subquery(known.values("accuracy")))
+        return Evaluation.objects.filter(run__world=self.world).annotate(
+            accuracy_known=Case(beside_known, default=None)
+        )
 
 
 class Evaluations(EvaluationNoun, RowsRoute):

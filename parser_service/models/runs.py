@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from django.apps import apps
 from django.db import models
 from django.utils import timezone
 
-from annotations.language.corpus import KNOWN
 from annotations.models import Split, World
 from annotations.models.background import BackgroundWork, Status, WorkQuerySet
 from annotations.models.background import queue_choices as queue_choices  # for the migrations
 from annotations.models.background import status_choices as status_choices
+from parser_service.models.shown_scores import ShownScore, shown_scores
 from parser_service.parsers.conditions import TEST_SOURCES, Protocol
 from parser_service.parsers.interface import ScoreKind
 from parser_service.parsers.registry import PARSERS, config_fields
-
-if TYPE_CHECKING:
-    from parser_service.models.predictions import Evaluation
-
 
 # What runs that differ by their seed have in common, beside the configuration.
 SHARED_BY_SEEDS = (
@@ -141,12 +137,12 @@ class TrainingRun(BackgroundWork):
         RunEvent.objects.create(run=self, attempt=self.attempt, message=message)
 
     @property
-    def scores_shown(self) -> dict[str, Evaluation]:
+    def scores_shown(self) -> dict[str, ShownScore]:
         """Test source, in their usual order → the score on the test part, or on validation where there is no
         test part."""
-        of_parts = (each for each in self.evaluations.all() if each.part != KNOWN)
-        test_part_last = sorted(of_parts, key=lambda each: each.part == "test")
-        scores = {each.test_source: each for each in test_part_last}
+        by_place = shown_scores(self.evaluations.all(), self.split.criterion)
+        test_part_last = sorted(by_place, key=lambda place: place[0] == "test")
+        scores = {place[1]: by_place[place] for place in test_part_last}
         return {source: scores[source] for source in TEST_SOURCES if source in scores}
 
     def changed_hyperparameters(self) -> tuple[tuple[str, Any], ...]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from parser_service.models import Evaluation, TrainingRun
+from parser_service.models.shown_scores import ShownScore, shown_scores
 
 SPOKEN = "para"  # the test source of paraphrases
 # What runs are compared on: the test part is looked at when the choice is made.
@@ -30,24 +31,26 @@ class ComparedScore:
 
     test_source: str
     part: str
-    score: Evaluation | None
-    before: Evaluation | None
+    score: ShownScore | None
+    before: ShownScore | None
 
     @property
     def change(self) -> float | None:
-        """Percentage points; None where only one of them was tested so."""
-        if self.score is None or self.before is None:
+        """Percentage points; None where only one of them was tested so, or one on unseen forms alone."""
+        if self.score is None or self.before is None or self.score.alone != self.before.alone:
             return None
-        return 100 * (self.score.accuracy - self.before.accuracy)
+        return self.score.percent - self.before.percent
 
 
 def compare_scores(run: TrainingRun, before: TrainingRun | None) -> list[ComparedScore]:
     """Return the scores of ``run`` beside those of ``before``, paraphrases first."""
-    mine = {(each.test_source, each.part): each for each in run.evaluations.all()}
-    others = before.evaluations.all() if before else ()
-    theirs = {(each.test_source, each.part): each for each in others}
-    order = sorted({*mine, *theirs}, key=lambda key: (key[0] != SPOKEN, key[0], key[1] == "test"))
-    return [ComparedScore(*key, mine.get(key), theirs.get(key)) for key in order]
+    mine = shown_scores(run.evaluations.all(), run.split.criterion)
+    theirs = shown_scores(before.evaluations.all(), before.split.criterion) if before else {}
+    order = sorted({*mine, *theirs}, key=lambda key: (key[1] != SPOKEN, key[1], key[0] == "test"))
+    return [
+        ComparedScore(source, part, mine.get((part, source)), theirs.get((part, source)))
+        for part, source in order
+    ]
 
 
 def evidence_for(run: TrainingRun, before: TrainingRun | None) -> dict[str, Any]:

@@ -17,7 +17,7 @@ FIGURE_END = WIDTH - FIGURES_WIDTH + 42  # there figures end, and their interval
 ROW = 24
 HEIGHT = 260  # of a chart of lines
 LEFT, RIGHT, TOP, BOTTOM = 48, 110, 12, 40
-LONGEST_LABEL = 30
+LONGEST_LABEL = 34
 LABEL_GAP = 15  # between the names of lines
 STYLES = 4  # of lines, in the style sheet
 

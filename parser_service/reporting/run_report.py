@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import Any
 
+from annotations.language.corpus import KNOWN
 from annotations.models.splits import Part
 from annotations.splits.split_statistics import counts_of
 from parser_service.analysing.findings import findings_of
@@ -16,7 +17,7 @@ from parser_service.reporting.charts import Bar, Line, draw_bars, draw_lines
 from parser_service.reporting.document import Section, write_document
 from parser_service.reporting.findings import attractor_tables, edit_rows, refusal_curves
 from parser_service.reporting.wrong_answers import MOST_WRONG, count_wrong, wrong_answers
-from parser_service.results.reports import order_of
+from parser_service.results.reports import KNOWN_FORMS, order_of, scores_by_form
 from parser_service.slices import filters_of
 from parser_service.slices.addresses import Addresses
 from parser_service.slices.breakdown import break_down, break_down_by_slices
@@ -102,16 +103,31 @@ class _RunReport:
 
     def _accuracy(self) -> dict[str, Any]:
         scores = sorted(self.run.evaluations.all(), key=order_of)
+        by_form = scores_by_form(self.run)
+        unseen = ", unseen forms" if by_form else ""
         bars = [
             Bar(
-                f"{each.part}, {each.test_source}",
+                f"{each.score.part}, {each.score.test_source}, harmonic mean",
+                *(each.accuracy, *each.interval),
+            )
+            for each in by_form
+            if not each.alone
+        ]
+        bars += [
+            Bar(
+                f"{each.part}{' forms' if each.part == KNOWN else unseen}, {each.test_source}",
                 each.accuracy,
                 each.interval_low,
                 each.interval_high,
             )
             for each in scores
         ]
-        return {"scores": scores, "chart": draw_bars("Exact match by part and source", bars)}
+        return {
+            "scores": scores,
+            "by_form": by_form,
+            "known_forms": KNOWN_FORMS,
+            "chart": draw_bars("Exact match by part and source", bars),
+        }
 
     def _training(self) -> dict[str, Any]:
         epochs = list(self.run.epochs.all())

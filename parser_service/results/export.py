@@ -7,9 +7,10 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from annotations.models import World
+from parser_service.models.shown_scores import KNOWN_FORMS, UNSEEN
 from parser_service.results.cells import Cell
 from parser_service.results.choices import ResultsChoices
-from parser_service.results.figures import KNOWN_FORMS, UNSEEN, Figure
+from parser_service.results.figures import Figure
 from parser_service.results.tables import Column, Row, Table, may_know_corpora
 
 # Of the newest run of a cell.

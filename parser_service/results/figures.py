@@ -8,27 +8,11 @@ from statistics import fmean
 
 from annotations.language.corpus import harmonic_mean
 from parser_service.analysis.clustered import Parts
-from parser_service.analysis.clustered import interval_of as interval_of_parts
-from parser_service.analysis.outcomes import clustered
+from parser_service.analysis.outcomes import interval_of_scores
 from parser_service.analysis.seeds import OverSeeds, over_seeds
 from parser_service.models import Evaluation
+from parser_service.models.shown_scores import KNOWN_FORMS, UNSEEN, PartFigure, reach_of
 from parser_service.results.measures import Measure, count_of, interval_of, share_of
-
-UNSEEN, KNOWN_FORMS = "unseen", "known"
-
-
-@dataclass(frozen=True, slots=True)
-class PartFigure:
-    """One of the two figures by form behind a harmonic mean, in percent, with the ends of its 95 % interval."""
-
-    label: str
-    percent: float
-    low: float
-    high: float
-
-    @property
-    def reach(self) -> float:
-        return reach_of(self.percent, self.low, self.high)
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,10 +62,6 @@ class Figure:
     def reach(self) -> float:
         """How far the interval goes to either side at most, in percentage points: what ± says."""
         return reach_of(self.percent, self.low, self.high)
-
-
-def reach_of(percent: float, low: float, high: float) -> float:
-    return max(high - percent, percent - low, 0.0)
 
 
 def figure_of(
@@ -138,18 +118,11 @@ def _part(
 def _interval(
     parts: Sequence[Sequence[Evaluation]], measure: Measure
 ) -> tuple[tuple[float, float], Parts | None]:
-    """Return the 95 % interval of one part, or of the harmonic mean of two, and what it was taken from.
-
-    Without outcomes by cluster it is the mean of the intervals that were stored.
-    """
-    sides = [clustered([score.outcomes for score in part], measure.counted) for part in parts]
-    counted = None if None in sides else tuple(sides)
-    stored = [[interval_of(score, measure) for score in part] for part in parts]
-    if counted is not None and (len(parts) > 1 or len(parts[0]) > 1):
-        return interval_of_parts(counted), counted  # type: ignore[arg-type]
-    lows, highs = ([fmean(ends[at] for ends in part) for part in stored] for at in (0, 1))
-    low, high = (harmonic_mean(*each) if len(parts) > 1 else each[0] for each in (lows, highs))
-    return (low, high), counted  # type: ignore[return-value]
+    return interval_of_scores(
+        [[score.outcomes for score in part] for part in parts],
+        [[interval_of(score, measure) for score in part] for part in parts],
+        measure.counted,
+    )
 
 
 def _note(scores: Sequence[Evaluation], measure: Measure, interval: tuple[float, float]) -> str:

@@ -10,8 +10,9 @@ from typing import Any
 from annotations.language.corpus import KNOWN
 from parser_service.analysis.seeds import over_seeds
 from parser_service.models import Evaluation, TrainingRun
+from parser_service.models.shown_scores import ShownScore, reach_of, shown_scores
 from parser_service.parsers.conditions import TEST_SOURCES
-from parser_service.results.figures import figure_of, reach_of
+from parser_service.results.figures import figure_of
 from parser_service.results.measures import Measure
 
 KNOWN_FORMS = "Pairs held out of the training part, by whole source commands, whose logical forms stay in training"
@@ -20,6 +21,14 @@ KNOWN_FORMS = "Pairs held out of the training part, by whole source commands, wh
 def order_of(score: Evaluation) -> tuple[bool, str, int]:
     """Return a sort key: by part, known forms last, then by source in the order of ``TEST_SOURCES``."""
     return score.part == KNOWN, score.part, list(TEST_SOURCES).index(score.test_source)
+
+
+def scores_by_form(run: TrainingRun) -> list[ShownScore]:
+    """Return the scores of a run by form, each on unseen and on known forms, in order; none for a split by something
+    else."""
+    shown = shown_scores(run.evaluations.all(), run.split.criterion).values()
+    of_forms = (each for each in shown if each.is_by_form)
+    return sorted(of_forms, key=lambda each: order_of(each.score))
 
 
 def report_run(run: TrainingRun) -> dict[str, Any]:

@@ -8,10 +8,12 @@ from functools import cached_property
 
 from django.http import QueryDict
 
+from annotations.language.corpus import KNOWN
 from annotations.language.english import say_count
 from annotations.models import Split, World
 from annotations.models.splits import Part
 from parser_service.models import Evaluation, TrainingRun
+from parser_service.models.shown_scores import ShownScore, shown_scores
 from parser_service.parsers.registry import PARSERS
 
 PARTS = (Part.VALIDATION, Part.TEST)
@@ -25,7 +27,7 @@ class OfferedRun:
     """A run that has answers on the part. ``scores`` are by test source; ``is_chosen`` where it is compared."""
 
     run: TrainingRun
-    scores: Mapping[str, Evaluation]
+    scores: Mapping[str, ShownScore]
     is_chosen: bool
 
     @property
@@ -84,9 +86,7 @@ def choose_runs(world: World, query: QueryDict, part: str) -> RunChoice:
     named = [found[key] for key in keys if key in found]
     splits = list(world.splits.filter(runs__evaluations__in=scored).distinct())
     split = named[0].split if named else _split_of(splits, query.get("split", ""))
-    scores: dict[int, dict[str, Evaluation]] = {}
-    for score in scored.filter(run__split=split) if split else ():
-        scores.setdefault(score.run_id, {})[score.test_source] = score
+    scores = _scores(world, split, part) if split else {}
     fitting = [run for run in named if run.pk in scores]
     chosen = tuple(fitting[:MOST_RUNS])
     rows = world.runs.succeeded().filter(pk__in=scores).order_by("-pk")
@@ -101,6 +101,20 @@ def choose_runs(world: World, query: QueryDict, part: str) -> RunChoice:
 def named_keys(query: QueryDict) -> list[int]:
     """Return the keys of the runs that an address names by ``run``, each once."""
     return [int(key) for key in dict.fromkeys(filter(_is_key, query.getlist("run")))]
+
+
+def _scores(world: World, split: Split, part: str) -> dict[int, dict[str, ShownScore]]:
+    """Return the scores on a part by run and test source."""
+    rows = Evaluation.objects.filter(run__world=world, run__split=split, part__in=[part, KNOWN])
+    of_runs: dict[int, list[Evaluation]] = {}
+    for score in rows.defer("outcomes").order_by():
+        of_runs.setdefault(score.run_id, []).append(score)
+    shown = {run: shown_scores(of_run, split.criterion) for run, of_run in of_runs.items()}
+    return {
+        run: {source: score for (_, source), score in of_run.items()}
+        for run, of_run in shown.items()
+        if of_run
+    }
 
 
 def _is_key(text: str) -> bool:

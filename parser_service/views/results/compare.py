@@ -8,11 +8,13 @@ from typing import Any
 from django.http import HttpRequest, HttpResponse
 from django.shortcuts import render
 
+from annotations.language.corpus import Criterion
 from annotations.lists.listing import FilteredList
 from annotations.models import Duty, World
 from annotations.people.access import world_view
 from parser_service.analysing.state import analysis_of
 from parser_service.models import Prediction, TrainingRun
+from parser_service.models.shown_scores import ShownScore
 from parser_service.results.choices import default_part
 from parser_service.slices import PredictionFilters, slice_query
 from parser_service.slices.addresses import Addresses
@@ -96,6 +98,7 @@ def comparison_of(
         ),
         "matrix": win_matrix(compared, addresses),
         "pairs": pair_rows(compared, choice.names),
+        "by_form": scores_by_form(choice),
         "breakdowns": break_down(compared, addresses),
         "saved": break_down_by_slices(compared, addresses),
         "heat": confusion_table(compared, place, addresses),
@@ -105,6 +108,15 @@ def comparison_of(
             for letter, run in zip(LETTERS, choice.runs, strict=False)
         ],
     }
+
+
+def scores_by_form(choice: RunChoice) -> list[tuple[str, TrainingRun, Sequence[ShownScore]]]:
+    """Return letter, run and the scores on the whole part of each compared run where the split is by form: the
+    examples that are compared have unseen forms alone. Nothing for other splits."""
+    if choice.split is None or choice.split.criterion != Criterion.LOGICAL_FORM:
+        return []
+    scores = {each.run: tuple(each.scores.values()) for each in choice.offered}
+    return [(letter, run, scores[run]) for letter, run in zip(LETTERS, choice.runs, strict=False)]
 
 
 def confused_run(request: HttpRequest, runs: Sequence[TrainingRun]) -> int:

@@ -7,9 +7,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from statistics import median
 
+from annotations.language.corpus import KNOWN
 from annotations.models import Split, World
 from parser_service.models import Evaluation
 from parser_service.models.runs import Status
+from parser_service.models.shown_scores import ShownScore, shown_scores
 from parser_service.parsers.registry import PARSERS, Entry, Needs, make_config
 from parser_service.parsers.weight_files import find_gaps
 
@@ -27,14 +29,14 @@ SOURCES = {"gen": "commands", "para": "paraphrases"}
 @dataclass(frozen=True, slots=True)
 class ParserOption:
     """One parser. ``seconds`` is the median time of its finished runs here, None before the first;
-    ``scores`` its best accuracies on the validation part, as source and fraction; ``missing`` names
+    ``scores`` its best accuracies on the validation part, by source; ``missing`` names
     the weights, or the server, that are not there."""
 
     name: str
     entry: Entry
     missing: tuple[str, ...] = ()
     seconds: float | None = None
-    scores: tuple[tuple[str, float], ...] = ()
+    scores: tuple[tuple[str, ShownScore], ...] = ()
 
     @property
     def sentence(self) -> str:
@@ -84,18 +86,28 @@ def _seconds(world: World) -> dict[str, float]:
     return {parser: median(each) for parser, each in times.items()}
 
 
-def _scores(world: World, split: Split | None) -> dict[str, dict[str, float]]:
-    """Return the best accuracy by parser and source."""
-    best: dict[str, dict[str, float]] = defaultdict(dict)
+def _scores(world: World, split: Split | None) -> dict[str, dict[str, ShownScore]]:
+    """Return the best score by parser and source; by form that with the highest harmonic mean."""
+    best: dict[str, dict[str, ShownScore]] = defaultdict(dict)
+    if split is None:
+        return best
     rows = Evaluation.objects.filter(
         run__world=world,
         run__split=split,
         run__status=Status.SUCCEEDED,
         run__train_share=1,
-        part="validation",
+        part__in=["validation", KNOWN],
         test_source__in=SOURCES,
-    ).order_by("test_source")
-    for parser, source, accuracy in rows.values_list("run__parser", "test_source", "accuracy"):
-        known = best[parser].get(SOURCES[source], 0.0)
-        best[parser][SOURCES[source]] = max(known, accuracy)
+    )
+    of_runs: dict[tuple[str, int], list[Evaluation]] = defaultdict(list)
+    for row in rows.select_related("run").defer("outcomes").order_by("test_source"):
+        of_runs[row.run.parser, row.run_id].append(row)
+    for (parser, _), of_run in of_runs.items():
+        for (_, source), score in shown_scores(of_run, split.criterion).items():
+            name = SOURCES[source]
+            best[parser][name] = max(score, best[parser].get(name, score), key=_rank)
     return best
+
+
+def _rank(score: ShownScore) -> tuple[bool, float]:
+    return not score.alone, score.accuracy

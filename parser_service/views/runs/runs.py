@@ -19,7 +19,7 @@ from parser_service.models.runs import Status
 from parser_service.parsers.registry import PARSERS
 from parser_service.promotion import promoted_run
 from parser_service.results.learning_curves import curves_url
-from parser_service.results.reports import KNOWN_FORMS, order_of
+from parser_service.results.reports import KNOWN_FORMS, order_of, scores_by_form
 from parser_service.reviewing.earlier import history_of_errors
 from parser_service.runs import lifecycle
 from parser_service.runs.curves import CURVES, loss_curves, will_have_curves
@@ -85,6 +85,7 @@ def state_of(world: World, pk: int) -> dict[str, Any]:
         "curves_url": curves_url(world, run),
         "loss_title": f"Loss by epoch, {entry.loss_unit if entry else 'nats'}",
         "evaluations": sorted(run.evaluations.all(), key=order_of),
+        "by_form": scores_by_form(run),
         "known_forms": KNOWN_FORMS,
         "history": history_of_errors(run) if run.is_ended else None,
         "epochs": list(run.epochs.all()),

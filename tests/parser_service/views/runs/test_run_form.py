@@ -54,7 +54,8 @@ def test_a_parser_says_how_long_it_took_and_how_well_it_did_here(sample, other_s
     TrainingRun.objects.filter(pk=other_sample.run.pk).update(seconds_trained=5000)
     Evaluation.objects.filter(run=other_sample.run).update(accuracy=1)
     option = options_of(sample.world, sample.split)["knn"]
-    assert (option.seconds, option.scores) == (90, (("commands", 0.25),))
+    ((source, score),) = option.scores
+    assert (option.seconds, source, score.accuracy) == (90, "commands", 0.25)
     page = words_of(adam.get(NEW))
     assert "about 1 min 30 s · validation commands 25.0" in page
     assert options_of(sample.world, sample.split)["seq2seq"].seconds is None
