@@ -14,9 +14,9 @@ from annotations.language.decoding import decode
 from annotations.language.errors import LanguageError
 from annotations.language.limits import MAX_FORM, MAX_PATTERN
 from annotations.models import Origin, Production, SemanticTemplate, TaskCategory, World
-from annotations.models.comments import MOST_CHARACTERS as MOST_CHARACTERS_OF_COMMENT
+from annotations.models.description import TemplateStatus, template_status_choices
+from annotations.models.editing import MOST_CHARACTERS_OF_COMMENT
 from annotations.models.splits import criterion_choices
-from annotations.models.templates import Status, template_status_choices
 
 
 def posted(request: HttpRequest) -> QueryDict | None:
@@ -42,7 +42,7 @@ class TemplateForm(forms.Form):
     )
     status = forms.ChoiceField(
         choices=template_status_choices,
-        initial=Status.READY,
+        initial=TemplateStatus.READY,
         help_text="Only ready templates make commands.",
     )
     version = forms.IntegerField(widget=forms.HiddenInput, required=False)
@@ -64,7 +64,7 @@ class TemplateForm(forms.Form):
             self.world, self.chosen_category, cleaned["pattern"], cleaned["form"]
         )
         errors = [problem for problem in self.checked.problems if problem.is_error]
-        for problem in errors if cleaned["status"] != Status.DRAFT else ():
+        for problem in errors if cleaned["status"] != TemplateStatus.DRAFT else ():
             side = "form" if problem.position.source == "form" else "pattern"
             hint = f" ({problem.hint})" if problem.hint else ""
             self.add_error(side, f"{problem.message}{hint}")
@@ -83,7 +83,9 @@ class TemplateForm(forms.Form):
 
 def example_template(world: World) -> dict[str, str]:
     """Return a pattern and a form of this world to show in the empty fields of a new template."""
-    template = SemanticTemplate.objects.filter(grammar__world=world, status=Status.READY).first()
+    template = SemanticTemplate.objects.filter(
+        grammar__world=world, status=TemplateStatus.READY
+    ).first()
     if template:
         return {"pattern": template.pattern, "form": template.form}
     production = Production.objects.filter(grammar__world=world).order_by("position").first()

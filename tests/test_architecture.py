@@ -38,6 +38,9 @@ ROOMS = {
         "renaming",
         "commenting", "labelling", "queueing", "auditing", "forms", "templatetags",
     ),
+    "annotations/models": (
+        "people", "worlds", "background", "editing", "description", "corpus", "splits", "queueing",
+    ),
     "annotations/language": (
         "errors", "limits", "decoding", "english", "symbols", "forms", "grammar", "ontology", "predicates", "templates",
         "writing", "suggesting", "grounding", "dialogue", "plans", "renaming", "corpus", "agreement", "auditing",
@@ -119,15 +122,17 @@ def test_rooms_import_only_from_rooms_before_them(folder):
                 assert order.index(other) < order.index(room), f"{path} imports {name}"
 
 
-def test_a_room_of_the_language_core_is_entered_by_its_front_door():
-    rooms = {path.name for path in (ROOT / "annotations/language").iterdir() if path.is_dir()}
+@pytest.mark.parametrize("package", ["annotations/language", "annotations/models"])
+def test_a_room_is_entered_by_its_front_door(package):
+    rooms = {path.name for path in (ROOT / package).iterdir() if path.is_dir()}
+    dotted = package.replace("/", ".")
     for folder in OURS:
         for path in modules_below(folder):
             for name in imports_of(path):
-                room, _, module = name.removeprefix("annotations.language.").partition(".")
-                is_inside = ROOT / "annotations/language" / room in path.parents
-                if name.startswith("annotations.language.") and room in rooms and not is_inside:
-                    assert not module, f"{path} imports {name}, not annotations.language.{room}"
+                room, _, module = name.removeprefix(f"{dotted}.").partition(".")
+                is_inside = ROOT / package / room in path.parents
+                if name.startswith(f"{dotted}.") and room in rooms and not is_inside:
+                    assert not module, f"{path} imports {name}, not {dotted}.{room}"
 
 
 def test_a_network_imports_nothing_of_another_one():
@@ -141,7 +146,10 @@ def test_a_network_imports_nothing_of_another_one():
 
 @pytest.mark.parametrize(
     "folder",
-    ["annotations/language", "annotations/views", "parser_service/neural", "parser_service/views"],
+    [
+        *("annotations/language", "annotations/models", "annotations/views"),
+        *("parser_service/neural", "parser_service/views"),
+    ],
 )
 def test_a_package_fits_a_glance(folder):
     top = [path for path in (ROOT / folder).glob("*.py") if path.name != "__init__.py"]

@@ -8,8 +8,8 @@ from django.utils import timezone
 from annotations.auditing.pairs import change_back, change_pair
 from annotations.labelling import canonical_label
 from annotations.models import AuditDecision, AuditFinding, FindingStatus, User, WorkKind
-from annotations.models.audit import decision_choices
-from annotations.models.utterances import MOST_CHARACTERS
+from annotations.models.corpus import MOST_CHARACTERS
+from annotations.models.queueing import decision_choices
 from annotations.queueing import NotForThem, settle, unsettle
 from annotations.queueing.giving import kinds_for
 

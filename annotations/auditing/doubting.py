@@ -15,7 +15,7 @@ from annotations.models import (
     Utterance,
     WorkKind,
 )
-from annotations.models.audit import REVIEWER
+from annotations.models.queueing import REVIEWER
 from annotations.queueing import WantedItem, enqueue
 
 FIRST = 1  # the rank of what people doubt: before most of what an audit finds

@@ -17,7 +17,7 @@ from annotations.models import (
     WorkKind,
     World,
 )
-from annotations.models.audit import REVIEWER
+from annotations.models.queueing import REVIEWER
 from annotations.queueing import WantedItem, enqueue
 from annotations.queueing.enqueuing import Subject
 from annotations.queueing.giving import close_item

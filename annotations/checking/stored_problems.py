@@ -6,7 +6,7 @@ from annotations.generation.template_problems import check_unready_templates
 from annotations.language.errors import LanguageError, Problem
 from annotations.language.ontology import ontology_problems
 from annotations.models import Editable, Entity, Predicate, Production, TaskCategory, World
-from annotations.models.problems import Subject
+from annotations.models.description import Subject
 from annotations.rows.from_rows import grammar_of, ontology_of
 from annotations.rows.problems import store_problems
 

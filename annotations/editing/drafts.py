@@ -9,7 +9,7 @@ from django.utils import timezone
 
 from annotations.editing.once import made_before
 from annotations.models import Draft, User, World
-from annotations.models.drafts import NEW
+from annotations.models.editing import NEW
 
 MOST_BYTES = 64 * 1024  # of a request that saves one
 MOST_DRAFTS = 200  # of one person in one world; beyond it the oldest goes

@@ -10,7 +10,7 @@ from django.db import models
 from annotations.importing.predicates_file import PREDICATES_FILE, write_predicates
 from annotations.language.ontology import write_ontology
 from annotations.models import Production, SemanticTemplate, TaskCategory, World
-from annotations.models.templates import Status
+from annotations.models.description import TemplateStatus
 from annotations.rows.composition import split_entry
 from annotations.rows.from_rows import ontology_of, predicates_of
 
@@ -60,7 +60,7 @@ def _grammar_files(world: World) -> dict[str, str]:
 
 def _template_files(world: World) -> dict[str, str]:
     templates: dict[str, list[str]] = defaultdict(list)
-    for row in SemanticTemplate.objects.filter(grammar__world=world, status=Status.READY):
+    for row in SemanticTemplate.objects.filter(grammar__world=world, status=TemplateStatus.READY):
         templates[row.source].append(f"{row.pattern} = {row.form}")
     return _texts(templates)
 

@@ -9,12 +9,8 @@ from annotations import models
 from annotations.generation.kept_expansions import generate_at_once
 from annotations.language.english import say_count
 from annotations.language.errors import LanguageError
-from annotations.language.templates import (
-    Consequences,
-    GeneratedState,
-    consequences_of,
-)
-from annotations.models.templates import Status
+from annotations.language.templates import Consequences, GeneratedState, consequences_of
+from annotations.models.description import TemplateStatus
 from annotations.rows.from_rows import Lines, annotated_categories, ready_templates
 from annotations.splits.stale import StaleSplits, stale_splits
 
@@ -34,7 +30,7 @@ class TemplateChange:
     def apply(self, ready: Sequence[models.SemanticTemplate]) -> list[models.SemanticTemplate]:
         """Return the templates that are ready after the change, in order."""
         rows = [each for each in ready if self.row is None or each.pk != self.row.pk]
-        if self.after is not None and self.after.status == Status.READY:
+        if self.after is not None and self.after.status == TemplateStatus.READY:
             self.after.pk = self.row.pk if self.row else NEW
             self.after.position = self.row.position if self.row else len(rows)
             if self.row is None:

@@ -13,7 +13,7 @@ from annotations.generation.template_problems import store_template_problems
 from annotations.language.errors import Problem, warning_at
 from annotations.language.forms import depth, head_predicate, read_form
 from annotations.language.templates import Expansion, Generated, Kept, SemanticTemplate
-from annotations.models.problems import Subject
+from annotations.models.description import Subject
 from annotations.rows.from_rows import AnnotatedCategory
 from annotations.rows.problems import store_problems
 from annotations.rows.synchronise import Changes, synchronise

@@ -9,13 +9,8 @@ from annotations import models
 from annotations.generation.kept_expansions import checker_of, problems_of
 from annotations.language.errors import LanguageError
 from annotations.language.grammar import CHECK_STEPS, Budget
-from annotations.language.templates import (
-    Generated,
-    TemplateChecker,
-    read_sides,
-    shared_problems,
-)
-from annotations.models.templates import Status
+from annotations.language.templates import Generated, TemplateChecker, read_sides, shared_problems
+from annotations.models.description import TemplateStatus
 from annotations.rows.from_rows import AnnotatedCategory, grammar_of, predicates_of
 from annotations.rows.template_problems import StoredRemark, as_stored
 
@@ -44,7 +39,7 @@ def check_unready_templates(world: models.World) -> None:
     Beyond ``MOST_STEPS`` the rest keep what was said of them before.
     """
     unready = models.SemanticTemplate.objects.filter(grammar__world=world)
-    rows = list(unready.exclude(status=Status.READY))
+    rows = list(unready.exclude(status=TemplateStatus.READY))
     changed, steps, declared = [], 0, predicates_of(world)
     for category in models.TaskCategory.objects.filter(grammar__world=world) if rows else ():
         try:

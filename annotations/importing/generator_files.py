@@ -20,7 +20,7 @@ from annotations.language.templates import (
     read_generator_files,
     set_problems,
 )
-from annotations.models.problems import Subject
+from annotations.models.description import Subject
 from annotations.rows.problems import first_problems
 
 # Above this many pairs signatures are inferred from the templates as they are, unexpanded.

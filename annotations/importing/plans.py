@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, field
 from annotations import models
 from annotations.importing.generator_files import Generator
 from annotations.language.symbols import print_sequence
-from annotations.models.templates import Status
+from annotations.models.description import TemplateStatus
 from annotations.rows.composition import owners
 from annotations.rows.decisions import respect
 from annotations.rows.history import keys_changed_by_people
@@ -145,7 +145,11 @@ def _key_of_template(row: models.SemanticTemplate) -> tuple[str, str]:
 def _is_of_people(template: models.SemanticTemplate) -> bool:
     """Return whether somebody wrote, changed or put aside the template since its file was imported."""
     is_as_imported = template.imported_text == f"{template.pattern} = {template.form}"
-    return template.author_id is not None or template.status != Status.READY or not is_as_imported
+    return (
+        template.author_id is not None
+        or template.status != TemplateStatus.READY
+        or not is_as_imported
+    )
 
 
 def plan_entities(

@@ -12,7 +12,7 @@ from annotations.importing.plans import (
     plan_productions,
     plan_templates,
 )
-from annotations.models.problems import Subject
+from annotations.models.description import Subject
 from annotations.rows.composition import rule_sources, template_sources
 from annotations.rows.problems import store_problems
 from annotations.rows.staging import Staging

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from annotations.models.jobs import JobKind
+from annotations.models.background import JobKind
 
 _REGISTERED: dict[JobKind, str] = {}
 

@@ -13,7 +13,7 @@ from django.utils import timezone
 
 from annotations.labelling.form_check import canonical_label
 from annotations.models import Label, User, Utterance, UtteranceStatus, Verdict
-from annotations.models.utterances import MOST_CHARACTERS
+from annotations.models.corpus import MOST_CHARACTERS
 from annotations.rows.history import keep_change
 
 # What an accepted answer makes of an utterance.

@@ -13,7 +13,7 @@ from annotations.labelling.spans import anonymized_by, anonymizer_of
 from annotations.language.errors import LanguageError, Position, Problem, error_at
 from annotations.language.limits import require_writable
 from annotations.models import Origin, User, Utterance, World
-from annotations.models.utterances import MOST_CHARACTERS
+from annotations.models.corpus import MOST_CHARACTERS
 from annotations.rows.synchronise import BATCH, batches
 
 MOST_AT_ONCE = 5_000  # utterances of one paste or upload

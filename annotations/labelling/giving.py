@@ -9,7 +9,7 @@ from django.db.models import Avg, Exists, OuterRef, QuerySet
 from django.utils import timezone
 
 from annotations.models import Assignment, Label, User, Utterance, UtteranceStatus, World
-from annotations.models.utterances import UtteranceQuerySet
+from annotations.models.corpus import UtteranceQuerySet
 
 LAST_SHOWN = 5
 

@@ -16,22 +16,21 @@ from annotations.lists.choices import (
     template_file_choices,
 )
 from annotations.lists.filtering import EntitySearch, Head, Key, Mentions, PageFilters, Search
-from annotations.models import (
-    Production,
-    SemanticTemplate,
-    TaskCategory,
+from annotations.models import Production, SemanticTemplate, TaskCategory
+from annotations.models.corpus import (
+    origin_choices,
+    paraphrase_status_choices,
+    utterance_status_choices,
 )
-from annotations.models.audit import (
+from annotations.models.description import predicate_kind_choices, template_status_choices
+from annotations.models.queueing import (
     AuditFindingQuerySet,
+    WorkItemQuerySet,
     audit_reason_choices,
     finding_status_choices,
+    work_kind_choices,
 )
-from annotations.models.corpus import paraphrase_status_choices
-from annotations.models.predicates import predicate_kind_choices
 from annotations.models.splits import part_choices, source_choices
-from annotations.models.templates import template_status_choices
-from annotations.models.utterances import origin_choices, utterance_status_choices
-from annotations.models.work_items import WorkItemQuerySet, work_kind_choices
 from annotations.rows.composition import split_entry
 
 CHOICES_OF_FORMS = {

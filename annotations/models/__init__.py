@@ -1,29 +1,44 @@
-from annotations.models.audit import AuditDecision, AuditFinding, AuditReason, FindingStatus
-from annotations.models.audit_entries import AuditEntry
-from annotations.models.comments import Comment, EarlierText, Notice
-from annotations.models.corpus import Command, LogicalForm, Paraphrase
-from annotations.models.drafts import Draft
-from annotations.models.editable import Editable
-from annotations.models.grammar import Grammar, Production, TaskCategory
-from annotations.models.invitations import Invitation
-from annotations.models.jobs import Job, JobKind
-from annotations.models.ontology import Entity, Ontology
-from annotations.models.people import ApiToken, Scope, User
-from annotations.models.predicates import Predicate
-from annotations.models.problems import StoredProblem
-from annotations.models.proposals import CommandProposal, Proposal
-from annotations.models.sessions import LogInSession
-from annotations.models.splits import Example, Split
-from annotations.models.templates import SemanticTemplate
-from annotations.models.utterances import (
+"""What is stored, one noun a module, in rooms. Models are imported from here; choices, limits and query sets
+from the front door of their room.
+"""
+
+from annotations.models.background import Job, JobKind
+from annotations.models.corpus import (
+    Command,
+    CommandProposal,
     Label,
+    LogicalForm,
     Origin,
+    Paraphrase,
+    Proposal,
     Utterance,
     UtteranceStatus,
     Verdict,
 )
-from annotations.models.work_items import Assignment, WorkItem, WorkKind, WorkShare
-from annotations.models.worlds import Duty, Membership, World
+from annotations.models.description import (
+    Entity,
+    Grammar,
+    Ontology,
+    Predicate,
+    Production,
+    SemanticTemplate,
+    StoredProblem,
+    TaskCategory,
+)
+from annotations.models.editing import Comment, Draft, EarlierText, Editable, Notice
+from annotations.models.people import ApiToken, LogInSession, Scope, User
+from annotations.models.queueing import (
+    Assignment,
+    AuditDecision,
+    AuditFinding,
+    AuditReason,
+    FindingStatus,
+    WorkItem,
+    WorkKind,
+    WorkShare,
+)
+from annotations.models.splits import Example, Split
+from annotations.models.worlds import AuditEntry, Duty, Invitation, Membership, World
 
 __all__ = [
     "ApiToken",

@@ -18,7 +18,7 @@ from annotations.language.forms import (
     read_form,
 )
 from annotations.models import Assignment, WorkItem, World
-from annotations.models.utterances import Verdict
+from annotations.models.corpus import Verdict
 
 MOST_ITEMS = 1000  # the newest, so that the page answers at once
 MOST_FORMS = 100  # distinct ones between which distances are computed

@@ -8,7 +8,7 @@ from typing import Any
 from django.db.models import QuerySet
 
 from annotations.models import SemanticTemplate, User, WorkKind, World
-from annotations.models.work_items import WorkItemQuerySet
+from annotations.models.queueing import WorkItemQuerySet
 from annotations.queueing.enqueuing import Subject, WantedItem, enqueue
 from annotations.queueing.giving import NotForThem, assign
 

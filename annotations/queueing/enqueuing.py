@@ -9,13 +9,7 @@ from dataclasses import dataclass
 from django.db import transaction
 
 from annotations.models import Paraphrase, SemanticTemplate, User, Utterance, WorkItem, World
-from annotations.models.work_items import (
-    DRAWS,
-    LONGEST_REASON,
-    LONGEST_TITLE,
-    PRIORITIES,
-    WorkKind,
-)
+from annotations.models.queueing import DRAWS, LONGEST_REASON, LONGEST_TITLE, PRIORITIES, WorkKind
 from annotations.queueing.shares import DOUBLE_KINDS, people_for, shares_of
 from annotations.rows.synchronise import batches
 

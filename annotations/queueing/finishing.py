@@ -10,15 +10,8 @@ from django.utils import timezone
 
 from annotations.language.forms import equivalent, read_form
 from annotations.models import Assignment, Label, WorkItem
-from annotations.models.utterances import Verdict
-from annotations.models.work_items import (
-    FREE_AGAIN,
-    LEASE,
-    OCCUPYING,
-    PRIORITIES,
-    Outcome,
-    WorkKind,
-)
+from annotations.models.corpus import Verdict
+from annotations.models.queueing import FREE_AGAIN, LEASE, OCCUPYING, PRIORITIES, Outcome, WorkKind
 from annotations.queueing.giving import NoLongerYours
 
 

@@ -15,7 +15,7 @@ from django.db.models import F
 from django.utils import timezone
 
 from annotations.models import Assignment, Duty, User, WorkItem, World
-from annotations.models.work_items import (
+from annotations.models.queueing import (
     LEASE,
     AssignmentQuerySet,
     Outcome,

@@ -17,9 +17,8 @@ from annotations.language.english import say_count
 from annotations.language.errors import LanguageError, Position
 from annotations.language.limits import require_writable
 from annotations.models import Example, Origin, Paraphrase, User, Utterance, WorkKind, World
-from annotations.models.corpus import ParaphraseStatus
+from annotations.models.corpus import MOST_CHARACTERS, ParaphraseStatus
 from annotations.models.splits import Source
-from annotations.models.utterances import MOST_CHARACTERS
 from annotations.queueing.enqueuing import Subject, WantedItem, enqueue
 from annotations.rows.synchronise import BATCH, batches
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from django.db import transaction
 
 from annotations.models import User, WorkItem, WorkKind
-from annotations.models.work_items import WorkItemQuerySet
+from annotations.models.queueing import WorkItemQuerySet
 from annotations.queueing.enqueuing import Subject, field_of
 from annotations.queueing.finishing import finish, take_back
 from annotations.queueing.giving import NotForThem, close_item, take

@@ -6,7 +6,7 @@ from django.db import transaction
 from django.db.models import Q
 
 from annotations.models import WorkItem, WorkShare, World
-from annotations.models.work_items import DRAWS, WorkKind
+from annotations.models.queueing import DRAWS, WorkKind
 
 # An adjudication compares two labels already, and a dispute is settled by one person.
 DOUBLE_KINDS = (

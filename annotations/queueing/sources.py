@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from django.db.models import Exists, OuterRef
 
 from annotations.models import SemanticTemplate, Utterance, WorkItem, World
-from annotations.models.templates import Status as TemplateStatus
-from annotations.models.utterances import UtteranceStatus
-from annotations.models.work_items import WorkKind
+from annotations.models.corpus import UtteranceStatus
+from annotations.models.description import TemplateStatus
+from annotations.models.queueing import WorkKind
 from annotations.queueing.enqueuing import WantedItem, enqueue
 
 MOST_AT_ONCE = 1000  # of each kind, so that nobody waits long for it

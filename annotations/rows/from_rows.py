@@ -10,16 +10,11 @@ from django.db.models import QuerySet
 
 from annotations import models
 from annotations.language.errors import Position
-from annotations.language.grammar import (
-    Grammar,
-    Production,
-    apply_alias,
-    read_production,
-)
+from annotations.language.grammar import Grammar, Production, apply_alias, read_production
 from annotations.language.ontology import Entity, Ontology
 from annotations.language.predicates import ArgumentKind, Predicate, PredicateKind, Signature
 from annotations.language.templates import Kept, SemanticTemplate, TaskCategory, make_template
-from annotations.models.templates import Status
+from annotations.models.description import TemplateStatus
 from annotations.rows.composition import split_entry
 
 # Texts read before, in this process: an editor asks for the same grammar with every key.
@@ -69,7 +64,7 @@ def annotated_categories(
 
 def ready_templates(world: models.World) -> QuerySet[models.SemanticTemplate]:
     """Return the templates of ``world`` that make commands, in order."""
-    return models.SemanticTemplate.objects.filter(grammar__world=world, status=Status.READY)
+    return models.SemanticTemplate.objects.filter(grammar__world=world, status=TemplateStatus.READY)
 
 
 def lines_of(world: models.World) -> Lines:

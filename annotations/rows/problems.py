@@ -10,7 +10,7 @@ from typing import Any
 from annotations import models
 from annotations.language.english import say_count
 from annotations.language.errors import Position, Problem, Severity
-from annotations.models.problems import Subject
+from annotations.models.description import Subject
 from annotations.rows.synchronise import Changes, synchronise
 
 # Of one part of an upload. A file of another kind can have a problem in each of 200,000 lines.

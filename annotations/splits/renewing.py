@@ -16,9 +16,8 @@ from django.db import transaction
 from annotations.language.corpus import DEFAULT_PROPORTIONS, Criterion, Part, SplitItem, split
 from annotations.language.errors import LanguageError
 from annotations.models import Example, Paraphrase, Split, User, World
-from annotations.models.corpus import ParaphraseStatus
+from annotations.models.corpus import ParaphraseStatus, UtteranceStatus
 from annotations.models.splits import Source
-from annotations.models.utterances import UtteranceStatus
 from annotations.rows.history import DELETED, history_of
 from annotations.rows.synchronise import BATCH
 from annotations.splits.freezing import (

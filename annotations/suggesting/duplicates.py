@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from annotations.generation.kept_expansions import expansions_of
 from annotations.language.errors import LanguageError
 from annotations.models import SemanticTemplate, TaskCategory, World
-from annotations.models.templates import Status
+from annotations.models.description import TemplateStatus
 from annotations.rows.from_rows import grammar_of, ready_templates, template_of
 from annotations.suggesting.parser_answers import command_for
 
@@ -22,7 +22,7 @@ class Duplicate:
 
 def duplicate_of(world: World, row: SemanticTemplate) -> Duplicate | None:
     """Return the first template that is ready, says the same as ``row`` and shares a task category with it."""
-    if row.status != Status.READY:
+    if row.status != TemplateStatus.READY:
         return None
     same = _same(world, row)
     categories = TaskCategory.objects.filter(grammar=row.grammar_id)

@@ -19,7 +19,7 @@ from annotations.language.errors import Position
 from annotations.language.forms import Change, predicates
 from annotations.language.renaming import CLASS_OF_ATTRIBUTE
 from annotations.models import Predicate
-from annotations.models.drafts import NEW
+from annotations.models.editing import NEW
 from annotations.presentation import (
     Piece,
     answer_difference,

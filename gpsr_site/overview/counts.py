@@ -28,8 +28,7 @@ from annotations.models import (
     World,
 )
 from annotations.models.corpus import ParaphraseStatus
-from annotations.models.problems import Subject
-from annotations.models.templates import Status as TemplateStatus
+from annotations.models.description import Subject, TemplateStatus
 from parser_service.models import Promotion, TrainingRun
 from parser_service.models.runs import Status as RunStatus
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from gpsr_site.settings.places import env
 
 AUTH_USER_MODEL = "annotations.User"
-SESSION_ENGINE = "annotations.models.sessions"
+SESSION_ENGINE = "annotations.models.people.sessions"
 AUTH_PASSWORD_VALIDATORS = [
     {"NAME": f"django.contrib.auth.password_validation.{name}"}
     for name in (

@@ -20,7 +20,7 @@ from annotations.api.routes import WorldRoute
 from annotations.language.errors import LanguageError
 from annotations.language.limits import MAX_FORM, MAX_PATTERN
 from annotations.models import Duty, Scope, TaskCategory, Utterance
-from annotations.models.utterances import MOST_CHARACTERS
+from annotations.models.corpus import MOST_CHARACTERS
 from annotations.suggesting import MOST_COMMAND
 from parser_service.candidates import candidates_for
 from parser_service.candidates.for_templates import suggest_with_parsers

@@ -17,7 +17,7 @@ from annotations.api.problems import Refused as Problematic
 from annotations.api.reading import Fields
 from annotations.api.routes import RowsRoute, WorldRoute
 from annotations.models import Duty
-from annotations.models.utterances import MOST_CHARACTERS
+from annotations.models.corpus import MOST_CHARACTERS
 from parser_service.api.parsing import Away, Refused
 from parser_service.conversing.keeping import keep
 from parser_service.conversing.showing import as_json

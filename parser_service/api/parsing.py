@@ -20,7 +20,7 @@ from annotations.api.parsing import BoundedJSONParser
 from annotations.api.permissions import HasDuty
 from annotations.api.reading import Fields
 from annotations.models import Duty, Scope, World
-from annotations.models.utterances import MOST_CHARACTERS
+from annotations.models.corpus import MOST_CHARACTERS
 from parser_service.serving.client import ParserAway, ParserRefused, client
 from parser_service.serving.preparing import MOST_CANDIDATES
 

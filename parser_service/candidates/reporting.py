@@ -8,7 +8,7 @@ from annotations import auditing
 from annotations.labelling import canonical_label, collect
 from annotations.language.forms import UNKNOWN, canonical_text
 from annotations.models import Origin, Proposal, User, Utterance, WorkKind, World
-from annotations.models.utterances import UtteranceStatus
+from annotations.models.corpus import UtteranceStatus
 from annotations.queueing import WantedItem, enqueue
 from parser_service.candidates.composing import PERSON
 from parser_service.models import TrainingRun

@@ -12,7 +12,7 @@ from annotations.language.dialogue import Phase, Reaction, State, reaction_of
 from annotations.language.errors import LanguageError
 from annotations.language.forms import UNKNOWN, Form, read_form
 from annotations.models import User, World
-from annotations.models.utterances import MOST_CHARACTERS
+from annotations.models.corpus import MOST_CHARACTERS
 from parser_service.conversing.offering import offer
 from parser_service.models import Dialogue
 from parser_service.serving.client import client

@@ -11,7 +11,7 @@ from django.db import models
 from django.utils import timezone
 
 from annotations.models import User, Utterance, World
-from annotations.models.utterances import MOST_CHARACTERS
+from annotations.models.corpus import MOST_CHARACTERS
 from parser_service.models.runs import TrainingRun
 
 

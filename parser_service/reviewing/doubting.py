@@ -5,8 +5,7 @@ from __future__ import annotations
 from annotations import auditing
 from annotations.language.forms import canonical_text
 from annotations.models import Example, Paraphrase, SemanticTemplate, User, Utterance
-from annotations.models.corpus import ParaphraseStatus
-from annotations.models.utterances import UtteranceStatus
+from annotations.models.corpus import ParaphraseStatus, UtteranceStatus
 from annotations.queueing import send_examples
 from annotations.queueing.enqueuing import Subject
 from annotations.queueing.sending import subject_of_example

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from annotations.jobs import request_job
 from annotations.models import Job, JobKind, User
-from annotations.models.jobs import JobQuerySet
+from annotations.models.background import JobQuerySet
 from parser_service.models import TrainingRun
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from annotations.language.corpus import KNOWN_SHARE, Criterion
 from annotations.models import Split, World
-from annotations.models.templates import Status
+from annotations.models.description import TemplateStatus
 from parser_service.parsers.registry import entry
 
 
@@ -78,7 +78,7 @@ def _grammar(world: World) -> dict[str, Any]:
             grammar.productions.order_by("position").values("source", "nonterminal", "expansion")
         ),
         "templates": list(
-            grammar.templates.filter(status=Status.READY)
+            grammar.templates.filter(status=TemplateStatus.READY)
             .order_by("position")
             .values("source", "pattern", "form")
         ),

@@ -11,7 +11,7 @@ from annotations.language.ontology import Ontology
 from annotations.language.plans import ActionName, Lookup
 from annotations.language.predicates import Predicate
 from annotations.models import World
-from annotations.models.utterances import MOST_CHARACTERS
+from annotations.models.corpus import MOST_CHARACTERS
 from annotations.rows.from_rows import ontology_of, predicates_of
 from parser_service.robots.action_names import names_of
 from parser_service.robots.evidence import evidence_of

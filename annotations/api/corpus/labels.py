@@ -21,7 +21,7 @@ from annotations.labelling import AnsweredMeanwhile, mend_span
 from annotations.language.errors import LanguageError
 from annotations.language.limits import MAX_FORM
 from annotations.models import Duty, Entity, Label
-from annotations.models.utterances import MOST_CHARACTERS, verdict_choices
+from annotations.models.corpus import MOST_CHARACTERS, verdict_choices
 from annotations.queueing import NoLongerYours, answer, take_answer_back
 
 LARGEST_KEY = 2**63 - 1

@@ -18,7 +18,7 @@ from annotations.labelling import collect
 from annotations.labelling.collecting import MOST_AT_ONCE
 from annotations.lists.filters import UtteranceFilters
 from annotations.models import Duty, Origin, Utterance
-from annotations.models.utterances import origin_choices
+from annotations.models.corpus import origin_choices
 from annotations.rows.problems import as_json
 
 

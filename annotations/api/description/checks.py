@@ -33,7 +33,7 @@ from annotations.labelling.spans import anonymizer_of
 from annotations.language.errors import Problem
 from annotations.language.limits import MAX_FORM
 from annotations.models import Duty, Scope, SemanticTemplate
-from annotations.models.utterances import MOST_CHARACTERS
+from annotations.models.corpus import MOST_CHARACTERS
 from annotations.rows.problems import as_json
 from annotations.views.templates.template_consequences import consequences_of_form
 

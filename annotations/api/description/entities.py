@@ -15,7 +15,7 @@ from annotations.language.errors import Problem
 from annotations.language.limits import MAX_ENTITY
 from annotations.lists.filters import EntityFilters
 from annotations.models import Entity
-from annotations.models.ontology import entity_class_choices
+from annotations.models.description import entity_class_choices
 from annotations.views.description.entities import initial_values, ontology_in
 from annotations.views.description.world_forms import EntityForm
 

@@ -15,7 +15,7 @@ from annotations.api.routes import EditableRow, EditableRows, Noun
 from annotations.language.limits import MAX_GLOSS, MAX_PREDICATE
 from annotations.lists.filters import PredicateFilters
 from annotations.models import Predicate
-from annotations.models.predicates import predicate_kind_choices
+from annotations.models.description import predicate_kind_choices
 from annotations.views.description.predicate_forms import PredicateForm
 from annotations.views.description.predicates import initial_values
 

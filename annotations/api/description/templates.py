@@ -16,7 +16,7 @@ from annotations.forms import TemplateForm
 from annotations.language.limits import MAX_FORM, MAX_PATTERN
 from annotations.lists.filters import TemplateFilters
 from annotations.models import SemanticTemplate, TaskCategory, World
-from annotations.models.templates import Status, template_status_choices
+from annotations.models.description import TemplateStatus, template_status_choices
 from annotations.views.templates.template_repairs import with_counts
 from annotations.views.templates.templates import initial_of, values_of
 
@@ -41,7 +41,9 @@ class TemplateChange(Fields):
     task_category = LineField(max_length=60)
     pattern = serializers.CharField(max_length=MAX_PATTERN)
     form = serializers.CharField(max_length=MAX_FORM)
-    status = serializers.ChoiceField(choices=template_status_choices(), default=Status.READY)
+    status = serializers.ChoiceField(
+        choices=template_status_choices(), default=TemplateStatus.READY
+    )
 
 
 class TemplateQuery(TemplateFilters):

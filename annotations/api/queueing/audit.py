@@ -20,13 +20,13 @@ from annotations.labelling import AnsweredMeanwhile
 from annotations.language.errors import LanguageError
 from annotations.language.limits import MAX_FORM
 from annotations.models import AuditDecision, AuditFinding, AuditReason
-from annotations.models.audit import (
+from annotations.models.corpus import MOST_CHARACTERS
+from annotations.models.queueing import (
     AuditFindingQuerySet,
     audit_reason_choices,
     decision_choices,
     finding_status_choices,
 )
-from annotations.models.utterances import MOST_CHARACTERS
 from annotations.queueing import NotForThem
 
 

@@ -27,7 +27,7 @@ from annotations.commenting import (
     restore_comment,
 )
 from annotations.models import Comment
-from annotations.models.comments import MOST_CHARACTERS
+from annotations.models.editing import MOST_CHARACTERS_OF_COMMENT
 from annotations.views.editing.comments import COMMENTS, TOO_MANY
 
 
@@ -47,7 +47,7 @@ class CommentSerializer(serializers.ModelSerializer):
 class CommentText(Fields):
     """Write ``@name`` to reach a member of the world."""
 
-    text = serializers.CharField(max_length=MOST_CHARACTERS)
+    text = serializers.CharField(max_length=MOST_CHARACTERS_OF_COMMENT)
 
 
 class CommentNoun:

@@ -22,8 +22,8 @@ from annotations.auditing import end_item
 from annotations.labelling import AnsweredMeanwhile
 from annotations.language.errors import LanguageError
 from annotations.models import Assignment, Duty, Label, Verdict, WorkItem, WorkKind
-from annotations.models.utterances import MOST_CHARACTERS, verdict_choices
-from annotations.models.work_items import WorkItemQuerySet, work_kind_choices
+from annotations.models.corpus import MOST_CHARACTERS, verdict_choices
+from annotations.models.queueing import WorkItemQuerySet, work_kind_choices
 from annotations.queueing import (
     ASKABLE,
     NoLongerYours,

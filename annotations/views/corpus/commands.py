@@ -9,7 +9,7 @@ from annotations.generation.complexity import complexity as complexity_of
 from annotations.lists.filters import CommandFilters
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.models import Duty, World
-from annotations.models.problems import Subject
+from annotations.models.description import Subject
 from annotations.people.access import world_view
 from annotations.rows.occurrences import MOST_SHOWN
 

@@ -13,7 +13,7 @@ from annotations.language.errors import LanguageError
 from annotations.lists.filters import ProductionFilters
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.models import Duty, Production, World
-from annotations.models.problems import Subject
+from annotations.models.description import Subject
 from annotations.people.access import world_view
 
 SORTS = {

@@ -7,7 +7,7 @@ from django.http import HttpRequest, HttpResponse
 from annotations.lists.filters import EntityFilters, PredicateFilters
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.models import Duty, Entity, World
-from annotations.models.problems import Subject
+from annotations.models.description import Subject
 from annotations.people.access import world_view
 
 SORTS = {

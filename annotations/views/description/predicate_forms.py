@@ -19,7 +19,7 @@ from annotations.language.predicates import (
 from annotations.language.renaming import require_predicate
 from annotations.models import Predicate as StoredPredicate
 from annotations.models import World
-from annotations.models.predicates import predicate_kind_choices
+from annotations.models.description import predicate_kind_choices
 from annotations.views.description.world_forms import sentence_of
 
 

@@ -13,7 +13,7 @@ from annotations.language.ontology import Additions, additions_to, read_entities
 from annotations.language.ontology import Entity as EntityValue
 from annotations.language.renaming import require_entity_name
 from annotations.models import Editable, Entity, Production, World
-from annotations.models.ontology import entity_class_choices
+from annotations.models.description import entity_class_choices
 from annotations.renaming import Touched, touched_by
 from annotations.rows.from_rows import ontology_of
 

@@ -10,7 +10,7 @@ from django.views.decorators.cache import never_cache
 
 from annotations.editing.drafts import MOST_BYTES, discard_draft, read_draft, save_draft
 from annotations.models import Draft, Duty, World
-from annotations.models.drafts import NEW
+from annotations.models.editing import NEW
 from annotations.people.access import READ_AND_WRITE, world_view
 from annotations.views.editing.history import kind_named, number_in
 

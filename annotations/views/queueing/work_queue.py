@@ -18,7 +18,7 @@ from annotations.language.english import say_count
 from annotations.lists.filters import WorkItemFilters
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.models import Assignment, Duty, WorkItem, WorkKind, World
-from annotations.models.work_items import OCCUPYING
+from annotations.models.queueing import OCCUPYING
 from annotations.people.access import READ_AND_WRITE, WRITE, demand, world_view
 from annotations.queueing import (
     ASKABLE,

@@ -8,7 +8,7 @@ from django.shortcuts import get_object_or_404, redirect
 
 from annotations.editing.edits import add
 from annotations.models import Duty, SemanticTemplate, World
-from annotations.models.templates import Status
+from annotations.models.description import TemplateStatus
 from annotations.people.access import WRITE, world_view
 
 
@@ -18,6 +18,6 @@ def template_duplicate(request: HttpRequest, world: World, pk: int) -> HttpRespo
     row = get_object_or_404(SemanticTemplate, grammar__world=world, pk=pk)
     names = ("grammar", "source", "task_category", "pattern", "form", "problems")
     values = {name: getattr(row, name) for name in names}
-    copy = add(SemanticTemplate(status=Status.DRAFT, **values), request.user)
+    copy = add(SemanticTemplate(status=TemplateStatus.DRAFT, **values), request.user)
     messages.success(request, "This is a copy. It makes no commands until its status is Ready.")
     return redirect("template", world=world.name, pk=copy.pk)

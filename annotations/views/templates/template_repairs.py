@@ -15,7 +15,7 @@ from annotations.generation.conflicts import conflicts_of
 from annotations.lists.filters import TemplateFilters
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.models import Duty, SemanticTemplate, TaskCategory, World
-from annotations.models.templates import Status
+from annotations.models.description import TemplateStatus
 from annotations.people.access import WRITE, world_view
 from annotations.suggesting import moved_form
 from annotations.views.editing.history import number_in
@@ -103,7 +103,9 @@ def _move(request: HttpRequest, world: World, row: SemanticTemplate, version: in
 def with_counts(world: World) -> QuerySet[SemanticTemplate]:
     """Return the ready templates with how many of their commands are in the grammar and outside it."""
     is_outside = Q(commands__is_in_grammar=False)
-    return SemanticTemplate.objects.filter(grammar__world=world, status=Status.READY).annotate(
+    return SemanticTemplate.objects.filter(
+        grammar__world=world, status=TemplateStatus.READY
+    ).annotate(
         n_inside=Count("commands", filter=~is_outside & Q(commands__isnull=False)),
         n_outside=Count("commands", filter=is_outside),
         example=Min("commands__anonymized_text", filter=is_outside),

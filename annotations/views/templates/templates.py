@@ -32,8 +32,7 @@ from annotations.language.symbols import places_in_form, places_in_pattern
 from annotations.lists.filters import TemplateFilters
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.models import Duty, SemanticTemplate, StoredProblem, TaskCategory, User, World
-from annotations.models.problems import Subject
-from annotations.models.templates import Status
+from annotations.models.description import Subject, TemplateStatus
 from annotations.people.access import READ_AND_WRITE, WRITE, world_view
 from annotations.presentation import form_of
 from annotations.rows.kinds import KINDS
@@ -89,7 +88,9 @@ def example_templates(world: World) -> list[SemanticTemplate]:
 
     First those that name the same slot on both sides, then others. None with ``UNKNOWN`` in its form.
     """
-    rows = SemanticTemplate.objects.filter(grammar__world=world, status=Status.READY, problems=[])
+    rows = SemanticTemplate.objects.filter(
+        grammar__world=world, status=TemplateStatus.READY, problems=[]
+    )
     known = rows.exclude(form__contains="UNKNOWN").order_by(Length("form"), "position")
     by_predicate: dict[str, SemanticTemplate] = {}
     for row in sorted(known[:MOST_EXAMPLES], key=lambda row: not has_shared_slot(row)):
@@ -165,7 +166,9 @@ def template(request: HttpRequest, world: World, pk: int) -> HttpResponse:
         return redirect("template", world=world.name, pk=pk)
     if request.GET.get("nearest") and Duty.ANNOTATE in request.duties:
         context["nearest"] = suggest_nearest(world, row)
-    if not form.is_bound and row.status == Status.DRAFT:  # a draft may make too much to look at
+    if (
+        not form.is_bound and row.status == TemplateStatus.DRAFT
+    ):  # a draft may make too much to look at
         context["checked"] = recall_check(world, row)
     else:
         context["checked"] = checked = form.checked or checked_of(world, form)

@@ -15,7 +15,7 @@ from django_htmx.http import replace_url
 
 from annotations.language.errors import LanguageError
 from annotations.models import Duty, World
-from annotations.models.utterances import MOST_CHARACTERS
+from annotations.models.corpus import MOST_CHARACTERS
 from annotations.people.access import WRITE, world_view
 from parser_service.analysis.probing import PAPER_PROBES
 from parser_service.candidates.reporting import report_wrong, say_parser

@@ -12,7 +12,7 @@ from annotations.language.dialogue import Phase
 from annotations.language.forms import to_corpus
 from annotations.language.predicates import gloss
 from annotations.models import Duty, World
-from annotations.models.utterances import MOST_CHARACTERS
+from annotations.models.corpus import MOST_CHARACTERS
 from annotations.people.access import READ_AND_WRITE, WRITE, world_view
 from annotations.people.audit_log import note
 from parser_service.conversing.keeping import keep

@@ -9,7 +9,7 @@ from django.db import transaction
 from annotations.editing.edits import Overtaken, add, change, delete, restore
 from annotations.importing import import_generator
 from annotations.models import Entity, Paraphrase, Predicate, Production, SemanticTemplate
-from annotations.models.templates import Status
+from annotations.models.description import TemplateStatus
 from annotations.worlds.world_deletion import delete_world
 from tests.sample_world import make_paraphrase
 
@@ -133,7 +133,7 @@ def test_what_makes_commands_makes_the_world_stale(tiny_world, annotator):
 
     template = tiny_world.grammar.templates.first()
     revision()
-    template = change(template, {"status": Status.DRAFT}, annotator, 1)
+    template = change(template, {"status": TemplateStatus.DRAFT}, annotator, 1)
     revision()
     change(template, {"pattern": "a draft"}, annotator, 2)
     change(tiny_world.predicates.first(), {"gloss": "do it"}, annotator, 1)

@@ -8,7 +8,7 @@ import annotations
 from annotations.exporting.generator_export import generator_files
 from annotations.importing import import_generator
 from annotations.models import SemanticTemplate, World
-from annotations.models.templates import Status
+from annotations.models.description import TemplateStatus
 from tests.annotations.rows_of import contents_of
 
 STARTER = Path(annotations.__file__).parent / "starter"
@@ -51,7 +51,7 @@ def test_importing_its_own_export_changes_nothing_in_a_world(tiny_world):
 
 
 def test_drafts_stay_behind(tiny_world):
-    SemanticTemplate.objects.filter(pattern__startswith="go").update(status=Status.DRAFT)
+    SemanticTemplate.objects.filter(pattern__startswith="go").update(status=TemplateStatus.DRAFT)
     text = generator_files(tiny_world)["tiny_category_1_semantics.txt"]
     assert text == "$vbfind the $object = (find (λ$1:e (is_a $1 $object)))\n"
 

@@ -13,7 +13,7 @@ from annotations.generation.generating import generate_pairs
 from annotations.importing import import_generator
 from annotations.language.templates import Kept
 from annotations.models import SemanticTemplate, TaskCategory
-from annotations.models.templates import Status
+from annotations.models.description import TemplateStatus
 from annotations.splits.freezing import freeze_split
 from annotations.views.templates.template_consequences import change_to
 from tests.annotations.conftest import as_bytes
@@ -36,7 +36,7 @@ def category(world, name):
     return TaskCategory.objects.get(grammar__world=world, name=name)
 
 
-def values(pattern, form, status=Status.READY):
+def values(pattern, form, status=TemplateStatus.READY):
     return {"pattern": pattern, "form": form, "status": status}
 
 
@@ -44,7 +44,10 @@ def values(pattern, form, status=Status.READY):
     max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
 @given(
-    st.sampled_from(PATTERNS), st.sampled_from(FORMS), st.integers(0, 10), st.sampled_from(Status)
+    st.sampled_from(PATTERNS),
+    st.sampled_from(FORMS),
+    st.integers(0, 10),
+    st.sampled_from(TemplateStatus),
 )
 def test_saving_does_what_was_said(two_categories, annotator, pattern, form, number, status):
     rows = list(SemanticTemplate.objects.filter(grammar__world=two_categories))

@@ -7,7 +7,7 @@ from annotations.generation.generating import generate_pairs
 from annotations.importing import import_generator
 from annotations.language.errors import LanguageError
 from annotations.models import Command, LogicalForm, World
-from annotations.models.problems import Subject
+from annotations.models.description import Subject
 from tests.annotations.rows_of import rows_of
 from tests.sample_world import make_paraphrase
 

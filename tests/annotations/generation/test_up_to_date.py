@@ -12,16 +12,8 @@ from annotations.generation import kept_expansions
 from annotations.generation.generating import generate_pairs
 from annotations.importing import import_generator
 from annotations.language.templates import Kept
-from annotations.models import (
-    Job,
-    JobKind,
-    Production,
-    SemanticTemplate,
-    TaskCategory,
-    World,
-)
-from annotations.models.problems import Subject
-from annotations.models.templates import Status
+from annotations.models import Job, JobKind, Production, SemanticTemplate, TaskCategory, World
+from annotations.models.description import Subject, TemplateStatus
 from tests.annotations.conftest import as_bytes
 from tests.annotations.rows_of import rows_of
 from tests.sample_world import make_paraphrase
@@ -74,7 +66,7 @@ def edit(world, by, kind, first, second):
         if kind == "delete":
             delete(row, by, row.version)
         else:
-            status = list(Status)[second % len(Status)]
+            status = list(TemplateStatus)[second % len(TemplateStatus)]
             change(row, values if kind == "change" else {"status": status}, by, row.version)
 
 
@@ -144,7 +136,7 @@ def test_a_draft_changes_nothing(two_categories, annotator):
     before = rows_of(two_categories)["Command"]
     category = TaskCategory.objects.filter(grammar__world=two_categories).first()
     draft = SemanticTemplate.for_category(category, pattern="$go $fetch", form="(go)")
-    draft.status = Status.DRAFT
+    draft.status = TemplateStatus.DRAFT
     add(draft, annotator)
     assert rows_of(two_categories)["Command"] == before
 
@@ -163,10 +155,10 @@ def test_paraphrases_keep_their_commands_and_find_them_again(two_categories, ann
     said.refresh_from_db()
     assert said.command.anonymized_text == "go to the <room>"
     own = SemanticTemplate.objects.get(form="(go {room})")
-    draft = change(own, {"status": Status.DRAFT}, annotator, own.version)
+    draft = change(own, {"status": TemplateStatus.DRAFT}, annotator, own.version)
     said.refresh_from_db()
     assert (said.command, said.command_text) == (None, "go to the <room>")
-    change(draft, {"status": Status.READY}, annotator, draft.version)
+    change(draft, {"status": TemplateStatus.READY}, annotator, draft.version)
     said.refresh_from_db()
     assert (said.command.anonymized_text, said.command_text) == ("go to the <room>", "")
 

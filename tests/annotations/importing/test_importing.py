@@ -8,8 +8,7 @@ from annotations.generation.generating import generate_pairs
 from annotations.importing import import_generator
 from annotations.language.predicates import ArgumentKind
 from annotations.models import SemanticTemplate, World
-from annotations.models.problems import Subject
-from annotations.models.templates import Status
+from annotations.models.description import Subject, TemplateStatus
 from annotations.models.worlds import Duty
 from annotations.rows.from_rows import predicates_of, task_categories
 from tests.annotations.rows_of import counts, rows_of
@@ -76,7 +75,7 @@ def test_drafts_and_templates_of_people_stay_behind_those_of_the_files(tiny_worl
     grammar = tiny_world.grammar
     common = {"grammar": grammar, "source": "tiny_category_1_semantics.txt", "form": "(go {room})"}
     draft = SemanticTemplate.objects.create(
-        **common, pattern="drive to the {room}", status=Status.DRAFT, position=2
+        **common, pattern="drive to the {room}", status=TemplateStatus.DRAFT, position=2
     )
     written = SemanticTemplate.objects.create(
         **common, pattern="walk to the {room}", author=annotator, position=3

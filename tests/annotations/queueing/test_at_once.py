@@ -9,7 +9,7 @@ import pytest
 from django.db import connections
 
 from annotations.models import Assignment, Utterance, Verdict, WorkKind, World
-from annotations.models.work_items import Outcome
+from annotations.models.queueing import Outcome
 from annotations.models.worlds import Role
 from annotations.queueing import answer, next_item, set_share
 from annotations.queueing.sources import refill

@@ -11,7 +11,7 @@ from django.utils import timezone
 
 from annotations.labelling import label
 from annotations.models import Assignment, Label, Verdict, WorkItem, WorkKind
-from annotations.models.work_items import Outcome
+from annotations.models.queueing import Outcome
 from annotations.queueing import (
     NoLongerYours,
     NotForThem,

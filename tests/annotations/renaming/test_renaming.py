@@ -19,7 +19,7 @@ from annotations.models import (
     TaskCategory,
     World,
 )
-from annotations.models.templates import Status
+from annotations.models.description import TemplateStatus
 from annotations.renaming import rename, touched_by
 from annotations.rows.history import history_of
 from tests.doubted_labels import doubt
@@ -145,7 +145,10 @@ def test_a_name_that_clashes_is_refused_with_a_sentence(home, admin, model, name
 
 def test_what_the_checker_says_names_the_new_name_in_drafts_too(home, admin):
     category = TaskCategory.objects.get()
-    for form, status in (("(find $vbfind)", Status.DRAFT), ("(find $vbfind)", Status.READY)):
+    for form, status in (
+        ("(find $vbfind)", TemplateStatus.DRAFT),
+        ("(find $vbfind)", TemplateStatus.READY),
+    ):
         checked = check_template(home, category, "$vbfind it", form)
         values = {"form": form, "status": status, "problems": checked.stored_problems}
         add(SemanticTemplate.for_category(category, pattern="$vbfind it", **values), admin)
@@ -160,7 +163,7 @@ def test_what_the_checker_says_names_the_new_name_in_drafts_too(home, admin):
 
 def test_a_deleted_predicate_is_missed_in_drafts_and_restored_there(home, admin):
     row = SemanticTemplate.objects.get(form="(go {room})")
-    change(row, {"status": Status.DRAFT}, admin, 1)
+    change(row, {"status": TemplateStatus.DRAFT}, admin, 1)
     delete(Predicate.objects.get(name="go"), admin, 1)
     row.refresh_from_db()
     assert [each["message"] for each in row.problems] == ["there is no predicate go"]

@@ -8,7 +8,7 @@ from annotations.commenting import SUBJECTS, add_comment
 from annotations.commenting.comments import mentioned_in
 from annotations.editing.edits import delete
 from annotations.models import Comment, Membership, Notice, User, Utterance
-from annotations.models.comments import MOST_CHARACTERS
+from annotations.models.editing import MOST_CHARACTERS_OF_COMMENT
 from tests.sample_world import paraphrase_in
 
 
@@ -120,6 +120,6 @@ def test_a_form_that_is_generated_anew_keeps_its_comments(sample, anna, annotato
 def test_texts_are_escaped_and_bounded(sample, anna):
     anna.post(address(sample), {"text": "<script>1</script> @<b>"})
     assert "<script>1" not in page_of_template(anna, sample)
-    answer = anna.post(address(sample), {"text": "a" * (MOST_CHARACTERS + 1)})
+    answer = anna.post(address(sample), {"text": "a" * (MOST_CHARACTERS_OF_COMMENT + 1)})
     assert answer.status_code == 200
     assert Comment.objects.count() == 1

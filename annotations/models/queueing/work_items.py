@@ -7,11 +7,10 @@ from datetime import timedelta
 from django.db import models
 from django.utils import timezone
 
-from annotations.models.audit import AuditFinding
-from annotations.models.corpus import Paraphrase
+from annotations.models.corpus import Label, Paraphrase, Utterance, UtteranceStatus
+from annotations.models.description import SemanticTemplate
 from annotations.models.people import User
-from annotations.models.templates import SemanticTemplate
-from annotations.models.utterances import Label, Utterance, UtteranceStatus
+from annotations.models.queueing.audit import AuditFinding
 from annotations.models.worlds import World
 
 LEASE = timedelta(minutes=30)

@@ -9,8 +9,8 @@ from django.db import models
 from annotations.language.corpus import Criterion, Part
 from annotations.language.errors import LanguageError
 from annotations.language.forms import depth, head_predicate, read_form
-from annotations.models.derived import DerivedCharField, DerivedIntegerField
 from annotations.models.people import User
+from annotations.models.splits.derived import DerivedCharField, DerivedIntegerField
 from annotations.models.worlds import World
 
 HEAD_LENGTH = 80  # of the name of a predicate, as in ``LogicalForm``

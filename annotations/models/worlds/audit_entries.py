@@ -6,7 +6,7 @@ from django.conf import settings
 from django.db import models
 from django.utils import timezone
 
-from annotations.models.worlds import World
+from annotations.models.worlds.worlds import World
 
 
 class AuditEntry(models.Model):

@@ -6,19 +6,19 @@ from typing import Any
 
 from django.db import models
 
-from annotations.models.editable import Editable
-from annotations.models.grammar import Grammar, TaskCategory
+from annotations.models.description.grammar import Grammar, TaskCategory
+from annotations.models.editing import Editable
 from annotations.models.people import User
 
 
-class Status(models.TextChoices):
+class TemplateStatus(models.TextChoices):
     DRAFT = "draft"
     READY = "ready"
     DISPUTED = "disputed"
 
 
 def template_status_choices() -> list[tuple[str, str]]:
-    return Status.choices
+    return TemplateStatus.choices
 
 
 class SemanticTemplateQuerySet(models.QuerySet["SemanticTemplate"]):
@@ -48,7 +48,9 @@ class SemanticTemplate(Editable):
     pattern = models.TextField()
     form = models.TextField()
     imported_text = models.TextField(blank=True)
-    status = models.CharField(max_length=20, choices=template_status_choices, default=Status.READY)
+    status = models.CharField(
+        max_length=20, choices=template_status_choices, default=TemplateStatus.READY
+    )
     author = models.ForeignKey(User, null=True, blank=True, on_delete=models.SET_NULL)
     position = models.PositiveIntegerField()
     problems = models.JSONField(default=list, blank=True)
@@ -84,7 +86,7 @@ class SemanticTemplate(Editable):
 
     @property
     def makes_commands(self) -> bool:
-        return self.status == Status.READY
+        return self.status == TemplateStatus.READY
 
     def note_editor(self, by: User) -> None:
         self.author = by

@@ -8,7 +8,7 @@ from django.utils import timezone
 from annotations.models.people import User
 from annotations.models.worlds import Duty, World
 
-MOST_CHARACTERS = 4_000  # of a comment
+MOST_CHARACTERS_OF_COMMENT = 4_000  # of a comment
 
 
 class CommentQuerySet(models.QuerySet["Comment"]):
@@ -31,7 +31,7 @@ class Comment(models.Model):
     subject = models.PositiveBigIntegerField(null=True)
     about = models.TextField()
     author = models.ForeignKey(User, null=True, on_delete=models.SET_NULL)
-    text = models.TextField(max_length=MOST_CHARACTERS)
+    text = models.TextField(max_length=MOST_CHARACTERS_OF_COMMENT)
     version = models.PositiveIntegerField(default=1)
     created_at = models.DateTimeField(default=timezone.now)
     edited_at = models.DateTimeField(null=True, default=None)

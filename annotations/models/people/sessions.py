@@ -10,7 +10,7 @@ from django.contrib.sessions.backends.db import SessionStore as DatabaseStore
 from django.contrib.sessions.base_session import AbstractBaseSession
 from django.db import models
 
-from annotations.models.people import User
+from annotations.models.people.users import User
 
 
 class LogInSession(AbstractBaseSession):

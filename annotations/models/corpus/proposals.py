@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from django.db import models
 
-from annotations.models.utterances import MOST_CHARACTERS, Utterance
+from annotations.models.corpus.utterances import MOST_CHARACTERS, Utterance
 from annotations.models.worlds import World
 
 

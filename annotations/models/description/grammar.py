@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from django.db import models
 
-from annotations.models.editable import Editable
+from annotations.models.editing import Editable
 from annotations.models.worlds import World
 
 

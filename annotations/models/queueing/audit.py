@@ -8,9 +8,15 @@ from django.utils import timezone
 
 from annotations.language.auditing import Reason
 from annotations.language.forms import UNKNOWN, canonical_text
-from annotations.models.corpus import Paraphrase, ParaphraseStatus
+from annotations.models.corpus import (
+    MOST_CHARACTERS,
+    Label,
+    Paraphrase,
+    ParaphraseStatus,
+    Utterance,
+    UtteranceStatus,
+)
 from annotations.models.people import User
-from annotations.models.utterances import MOST_CHARACTERS, Label, Utterance, UtteranceStatus
 from annotations.models.worlds import World
 
 

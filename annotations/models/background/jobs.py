@@ -6,7 +6,12 @@ from typing import ClassVar
 
 from django.db import models
 
-from annotations.models.background import ENDED, BackgroundWork, Status, WorkQuerySet
+from annotations.models.background.work import (
+    ENDED,
+    BackgroundWork,
+    Status,
+    WorkQuerySet,
+)
 from annotations.models.people import User
 from annotations.models.worlds import Duty, World
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from django.db import models
 from django.utils import timezone
 
-from annotations.models.editable import Editable
+from annotations.models.editing import Editable
 from annotations.models.people import User
 from annotations.models.worlds import World
 

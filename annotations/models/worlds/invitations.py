@@ -9,7 +9,7 @@ from django.db import models
 from django.utils import timezone
 
 from annotations.models.people import User, digest_of
-from annotations.models.worlds import Role, World
+from annotations.models.worlds.worlds import Role, World
 
 
 class InvitationQuerySet(models.QuerySet["Invitation"]):

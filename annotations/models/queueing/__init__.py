@@ -1,0 +1,61 @@
+"""What people are asked next: the work queue, and labels in doubt."""
+
+from __future__ import annotations
+
+from annotations.models.queueing.audit import (
+    REVIEWER,
+    AuditDecision,
+    AuditFinding,
+    AuditFindingQuerySet,
+    AuditReason,
+    FindingStatus,
+    audit_reason_choices,
+    decision_choices,
+    finding_status_choices,
+)
+from annotations.models.queueing.work_items import (
+    DRAWS,
+    FREE_AGAIN,
+    LEASE,
+    LONGEST_REASON,
+    LONGEST_TITLE,
+    OCCUPYING,
+    PRIORITIES,
+    Assignment,
+    AssignmentQuerySet,
+    Outcome,
+    WorkItem,
+    WorkItemQuerySet,
+    WorkKind,
+    WorkShare,
+    outcome_choices,
+    work_kind_choices,
+)
+
+__all__ = [
+    "DRAWS",
+    "FREE_AGAIN",
+    "LEASE",
+    "LONGEST_REASON",
+    "LONGEST_TITLE",
+    "OCCUPYING",
+    "PRIORITIES",
+    "REVIEWER",
+    "Assignment",
+    "AssignmentQuerySet",
+    "AuditDecision",
+    "AuditFinding",
+    "AuditFindingQuerySet",
+    "AuditReason",
+    "FindingStatus",
+    "Outcome",
+    "WorkItem",
+    "WorkItemQuerySet",
+    "WorkKind",
+    "WorkShare",
+    "audit_reason_choices",
+    "decision_choices",
+    "finding_status_choices",
+    "outcome_choices",
+    "work_kind_choices",
+]
