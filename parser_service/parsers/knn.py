@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Self
 
 import numpy as np
 
@@ -18,14 +16,11 @@ from parser_service.parsers.interface import (
     Knowledge,
     Observer,
     Pair,
-    Parser,
     ScoreKind,
     keep_going,
 )
-from parser_service.parsers.storage import open_sealed, read_json, seal, write_json
-from parser_service.parsers.word_overlap import WordOverlap
+from parser_service.parsers.nearest_pairs import PairKeeper, WordOverlap
 
-PAIRS = "pairs.json"
 VALIDATION = "validation"  # the origin of a form that no training pair has
 
 
@@ -44,7 +39,7 @@ class NearestNeighbourConfig:
         validate(self)
 
 
-class NearestNeighbour(Parser):
+class NearestNeighbour(PairKeeper):
     """K = 1 under the Jaccard distance between sets of words (Walker et al. 2019, baselines).
 
     Ties: of several nearest utterances, the form that most of them have wins; of equally frequent
@@ -69,7 +64,7 @@ class NearestNeighbour(Parser):
         knowledge: Knowledge | None = None,
     ):
         super().__init__(config, seed, knowledge)
-        self._pairs: list[tuple[str, str]] = []
+        self._pairs = []
 
     def fit(
         self,
@@ -81,13 +76,13 @@ class NearestNeighbour(Parser):
         if not train:
             raise ValueError("There is no training pair, so there is no neighbour to answer with.")
         (observe or Observer()).check()
-        self._store([(pair.utterance, pair.form) for pair in train])
+        self.keep([(pair.utterance, pair.form) for pair in train])
 
     def for_test_part(self, validation: Sequence[Pair]) -> NearestNeighbour:
         """Return a nearest neighbour among the training pairs and ``validation``."""
         other = NearestNeighbour(self.config, self.seed, self.knowledge)
         added = [(pair.utterance, pair.form) for pair in validation]
-        other._store(self._pairs + added, trained=len(self._pairs))
+        other.keep(self._pairs + added, trained=len(self._pairs))
         return other
 
     def predict(
@@ -101,22 +96,7 @@ class NearestNeighbour(Parser):
             answers.append(self._nearest(utterance, beam_width))
         return answers
 
-    def save(self, folder: Path) -> None:
-        folder.mkdir(parents=True, exist_ok=True)
-        write_json(folder / PAIRS, self._pairs)
-        seal(folder, self, [PAIRS])
-
-    @classmethod
-    def load(cls, folder: Path, knowledge: Knowledge | None = None) -> Self:
-        saved = open_sealed(folder, cls, [PAIRS])
-        parser = cls(saved.config, saved.seed, knowledge)
-        parser._store([(utterance, form) for utterance, form in read_json(folder / PAIRS)])
-        return parser
-
-    def parameters(self) -> int:
-        return 0
-
-    def _store(self, pairs: list[tuple[str, str]], trained: int | None = None) -> None:
+    def keep(self, pairs: list[tuple[str, str]], trained: int | None = None) -> None:
         """Keep ``pairs``, of which the first ``trained``, by default all, are training pairs."""
         self._pairs = pairs
         self._trained_forms = {form for _, form in pairs[:trained]}

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from pathlib import Path
-from typing import Self
 
 import numpy as np
 
@@ -17,7 +15,6 @@ from parser_service.parsers.interface import (
     Knowledge,
     Observer,
     Pair,
-    Parser,
     keep_going,
 )
 from parser_service.parsers.llm.asking import Asker
@@ -26,14 +23,12 @@ from parser_service.parsers.llm.places import problem_of, server
 from parser_service.parsers.llm.prompts import FORM, UNKNOWN, form_in, messages_for, schema_of
 from parser_service.parsers.llm.protocol import MOST_NAME, Question
 from parser_service.parsers.logical_forms import canonical
-from parser_service.parsers.storage import open_sealed, read_json, seal, write_json
-from parser_service.parsers.word_overlap import WordOverlap
+from parser_service.parsers.nearest_pairs import PairKeeper, WordOverlap
 
-PAIRS = "pairs.json"
 WRITTEN = "written"  # the origin of a form that no training pair has
 
 
-class LanguageModel(Parser):
+class LanguageModel(PairKeeper):
     """Few-shot parsing: the nearest training pairs are shown to a language model as turns of a conversation
     (examples by similarity after Liu et al. 2022, "What Makes Good In-Context Examples for GPT-3?").
 
@@ -108,21 +103,6 @@ class LanguageModel(Parser):
             self._read(answer.text, question)
             for answer, question in zip(answers, questions, strict=True)
         ]
-
-    def save(self, folder: Path) -> None:
-        folder.mkdir(parents=True, exist_ok=True)
-        write_json(folder / PAIRS, self._pairs)
-        seal(folder, self, [PAIRS])
-
-    @classmethod
-    def load(cls, folder: Path, knowledge: Knowledge | None = None) -> Self:
-        saved = open_sealed(folder, cls, [PAIRS])
-        parser = cls(saved.config, saved.seed, knowledge)
-        parser.keep([(utterance, form) for utterance, form in read_json(folder / PAIRS)])
-        return parser
-
-    def parameters(self) -> int:
-        return 0
 
     def keep(self, pairs: list[tuple[str, str]]) -> None:
         """Keep the utterances and forms that examples are taken from; nothing is asked."""

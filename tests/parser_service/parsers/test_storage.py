@@ -3,7 +3,8 @@ import json
 import pytest
 
 from parser_service.parsers.interface import Pair
-from parser_service.parsers.knn import PAIRS, NearestNeighbour
+from parser_service.parsers.knn import NearestNeighbour
+from parser_service.parsers.nearest_pairs import PAIRS
 from parser_service.parsers.storage import CONFIG
 
 
