@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 
 from annotations.language.decoding import decode
 from annotations.language.errors import LanguageError, Position, Problem, error_at, warning_at
@@ -45,30 +46,17 @@ def _read(
     return entities, [each for each in results if isinstance(each, Problem)]
 
 
-def _read_objects(text: str, source: str) -> Found:
-    root = read_xml(text, source, "categories")
-    for category in _children(root, "category"):
-        if isinstance(category, Problem):
-            yield category
+def _read_nested(text: str, source: str, root: str, outer: str, inner: str) -> Found:
+    """Yield the rows of the ``outer`` elements below ``root``, and those of the ``inner`` ones within, which
+    have the name of the outer one as an attribute."""
+    for holder in _children(read_xml(text, source, root), outer):
+        if isinstance(holder, Problem):
+            yield holder
             continue
-        yield from _read_named(category, "category")
-        for item in _children(category, "object"):
-            belongs = {"category": category.attributes.get("name", "")}
-            yield from [item] if isinstance(item, Problem) else _read_named(item, "object", belongs)
-
-
-def _read_locations(text: str, source: str) -> Found:
-    root = read_xml(text, source, "rooms")
-    for room in _children(root, "room"):
-        if isinstance(room, Problem):
-            yield room
-            continue
-        yield from _read_named(room, "room")
-        for item in _children(room, "location"):
-            belongs = {"room": room.attributes.get("name", "")}
-            yield from (
-                [item] if isinstance(item, Problem) else _read_named(item, "location", belongs)
-            )
+        yield from _read_named(holder, outer)
+        belongs = {outer: holder.attributes.get("name", "")}
+        for item in _children(holder, inner):
+            yield from [item] if isinstance(item, Problem) else _read_named(item, inner, belongs)
 
 
 def _read_names(text: str, source: str) -> Found:
@@ -135,8 +123,8 @@ def _read_sayings(text: str, source: str) -> Found:
 
 # Rows are kept in this order.
 _READERS: dict[str, Callable[[str, str], Found]] = {
-    "objects.xml": _read_objects,
-    "locations.xml": _read_locations,
+    "objects.xml": partial(_read_nested, root="categories", outer="category", inner="object"),
+    "locations.xml": partial(_read_nested, root="rooms", outer="room", inner="location"),
     "names.xml": _read_names,
     "gestures.xml": _read_gestures,
     "questions.xml": _read_questions,
