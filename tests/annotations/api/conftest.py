@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.models import ApiToken, Example, Scope, Split
+from annotations.models import ApiToken, Example, Split
 
 
 @pytest.fixture
@@ -16,24 +16,6 @@ def caller(client):
         return client.get(url, headers=headers)
 
     return get
-
-
-@pytest.fixture
-def call_as(client):
-    """A function: the answer to a request below ``/api/v1/`` with a fresh token of ``user``.
-
-    ``data`` is sent as JSON, ``files`` as a form; further names are headers.
-    """
-
-    def send(user, method, path, data=None, files=None, scope=Scope.ADMIN, **headers):
-        _, key = ApiToken.issue(user, "notebook", scope=scope)
-        headers = {name.replace("_", "-"): value for name, value in headers.items()}
-        headers["authorization"] = f"Bearer {key}"
-        options = {} if files else {"content_type": "application/json"}
-        address = f"/api/v1/{path}"
-        return getattr(client, method)(address, files or data, headers=headers, **options)
-
-    return send
 
 
 def make_split(world, name="walker-command"):

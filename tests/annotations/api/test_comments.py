@@ -4,25 +4,18 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.models import ApiToken, Notice
+from annotations.models import Notice
 from annotations.people.rate_limits import Rate
 
-API = "/api/v1/worlds/home/"
+HOME = "worlds/home/"
 
 
 @pytest.fixture
-def call(client):
-    """A function: the answer to a request of somebody."""
-
-    def send(by, method, path, data=None, **headers):
-        _, key = ApiToken.issue(by, "notebook")
-        headers = {name.replace("_", "-"): value for name, value in headers.items()}
-        headers["authorization"] = f"Bearer {key}"
-        return getattr(client, method)(
-            API + path, data, content_type="application/json", headers=headers
-        )
-
-    return send
+def call(call_as):
+    """A function: the answer to a request of somebody about the world."""
+    return lambda by, method, path, data=None, **headers: call_as(
+        by, method, HOME + path, data, **headers
+    )
 
 
 @pytest.fixture

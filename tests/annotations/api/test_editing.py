@@ -6,11 +6,11 @@ import pytest
 
 from annotations.editing.edits import change
 from annotations.generation.generating import generate_pairs
-from annotations.models import ApiToken, Entity, SemanticTemplate
+from annotations.models import Entity, SemanticTemplate
 from annotations.rows.history import history_of
 from tests.sample_world import make_paraphrase
 
-API = "/api/v1/worlds/home/"
+HOME = "worlds/home/"
 MILK = {"entity_class": "object", "text": "oat milk", "aliases": ["oat drink"]}
 GO = {"task_category": "Category 1", "pattern": "go to the {room}", "form": "(go {room})"}
 # What is sent of a new row, what is changed of it then, and what of the change is shown.
@@ -39,18 +39,11 @@ NOUNS = {
 
 
 @pytest.fixture
-def call(client, annotator):
+def call(call_as, annotator):
     """A function: the answer to a request of the annotator, with JSON and headers."""
-    _, key = ApiToken.issue(annotator, "notebook")
-
-    def send(method, path, data=None, **headers):
-        headers = {name.replace("_", "-"): value for name, value in headers.items()}
-        headers["authorization"] = f"Bearer {key}"
-        return getattr(client, method)(
-            API + path, data, content_type="application/json", headers=headers
-        )
-
-    return send
+    return lambda method, path, data=None, **headers: call_as(
+        annotator, method, HOME + path, data, **headers
+    )
 
 
 @pytest.fixture

@@ -5,25 +5,19 @@ from __future__ import annotations
 import pytest
 from django.core.files.uploadedfile import SimpleUploadedFile
 
-from annotations.models import ApiToken, Entity, Job, SemanticTemplate
+from annotations.models import Entity, Job, SemanticTemplate
 from tests.annotations.conftest import TINY, as_bytes
 
-API = "/api/v1/worlds/home/"
+HOME = "worlds/home/"
 
 
 @pytest.fixture
-def call(client, admin, monkeypatch):
+def call(call_as, admin, monkeypatch):
     """A function: the answer to a request of the admin; data is JSON, unless it is a form with files."""
     monkeypatch.setattr("annotations.background.waking.send_wake_up", lambda queue: None)
-    _, key = ApiToken.issue(admin, "notebook")
-
-    def send(method, path, data=None, files=None, **headers):
-        headers = {name.replace("_", "-"): value for name, value in headers.items()}
-        headers["authorization"] = f"Bearer {key}"
-        options = {} if files else {"content_type": "application/json"}
-        return getattr(client, method)(API + path, files or data, headers=headers, **options)
-
-    return send
+    return lambda method, path, data=None, files=None, **headers: call_as(
+        admin, method, HOME + path, data, files, **headers
+    )
 
 
 def uploads(**changes: str) -> dict[str, object]:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 
 from annotations.labelling import collect
-from annotations.models import ApiToken, WorkKind
+from annotations.models import WorkKind
 from annotations.queueing import WantedItem, enqueue
 from annotations.queueing.sources import refill
 
-ALL = "/api/v1/worlds/home/work-items/"
+ALL = "worlds/home/work-items/"
 
 
 @pytest.fixture
@@ -20,18 +20,8 @@ def queue(tiny_world, annotator):
 
 
 @pytest.fixture
-def call(client, annotator):
-    _, key = ApiToken.issue(annotator, "notebook")
-
-    def send(method, path="", **data):
-        return getattr(client, method)(
-            ALL + path,
-            data or None,
-            content_type="application/json",
-            headers={"authorization": f"Bearer {key}"},
-        )
-
-    return send
+def call(call_as, annotator):
+    return lambda method, path="", **data: call_as(annotator, method, ALL + path, data or None)
 
 
 def test_the_rows_are_those_of_the_pages(call, queue, anna):

@@ -4,23 +4,16 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.models import ApiToken, Proposal, Utterance, WorkItem
+from annotations.models import Proposal, Utterance, WorkItem
 
-HOME = "/api/v1/worlds/home/"
+HOME = "worlds/home/"
 GO = '( go " <room> " )'
 
 
 @pytest.fixture
-def call_as(client, monkeypatch):
+def call_as(call_as, monkeypatch):
     monkeypatch.setattr("annotations.background.waking.send_wake_up", lambda queue: None)
-
-    def send(user, path, data, **headers):
-        _, key = ApiToken.issue(user, "notebook")
-        headers = {"authorization": f"Bearer {key}", **headers}
-        kind = "application/json"
-        return client.post(HOME + path, data, content_type=kind, headers=headers)
-
-    return send
+    return lambda user, path, data: call_as(user, "post", HOME + path, data)
 
 
 def test_a_wrong_answer_is_sent_to_the_work_queue(call_as, sample, reviewer):

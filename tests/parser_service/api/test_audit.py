@@ -5,23 +5,16 @@ from __future__ import annotations
 import pytest
 
 from annotations.auditing import store_findings
-from annotations.models import ApiToken, Job
+from annotations.models import Job
 from tests.doubted_labels import FEMALE, MALE, doubt, say
 
-HOME = "/api/v1/worlds/home/"
+HOME = "worlds/home/"
 
 
 @pytest.fixture
-def call_as(client, monkeypatch):
+def call_as(call_as, monkeypatch):
     monkeypatch.setattr("annotations.background.waking.send_wake_up", lambda queue: None)
-
-    def send(user, method, path, data=None):
-        _, key = ApiToken.issue(user, "notebook")
-        headers = {"authorization": f"Bearer {key}"}
-        kind = "application/json"
-        return getattr(client, method)(HOME + path, data, content_type=kind, headers=headers)
-
-    return send
+    return lambda user, method, path, data=None: call_as(user, method, HOME + path, data)
 
 
 @pytest.fixture

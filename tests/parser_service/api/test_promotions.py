@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.models import ApiToken
 from parser_service.models import Promotion
 from parser_service.promotion import promote, promoted_run
 from tests.parser_service.served import make_home, trained_run
 
-ALL = "/api/v1/worlds/home/promotions/"
+ALL = "worlds/home/promotions/"
 
 
 @pytest.fixture
@@ -21,18 +20,8 @@ def runs(world):
 
 
 @pytest.fixture
-def call(client, admin):
-    _, key = ApiToken.issue(admin, "notebook")
-
-    def send(method, path="", data=None):
-        return getattr(client, method)(
-            ALL + path,
-            data,
-            content_type="application/json",
-            headers={"authorization": f"Bearer {key}"},
-        )
-
-    return send
+def call(call_as, admin):
+    return lambda method, path="", data=None: call_as(admin, method, ALL + path, data)
 
 
 def test_a_run_is_promoted_and_rolled_back(call, runs, world):

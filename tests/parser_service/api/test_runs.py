@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.models import ApiToken, Scope
 from annotations.people.rate_limits import Rate
 from parser_service.models import TrainingRun
 
-API = "/api/v1/worlds/home/"
+HOME = "worlds/home/"
 
 
 @pytest.fixture(autouse=True)
@@ -17,18 +16,11 @@ def nobody_listens(monkeypatch):
 
 
 @pytest.fixture
-def call(client, admin):
+def call(call_as, admin):
     """A function: the answer to a request of the admin, with JSON and headers."""
-    _, key = ApiToken.issue(admin, "notebook", scope=Scope.ADMIN)
-
-    def send(method, path, data=None, **headers):
-        headers = {name.replace("_", "-"): value for name, value in headers.items()}
-        headers["authorization"] = f"Bearer {key}"
-        return getattr(client, method)(
-            API + path, data, content_type="application/json", headers=headers
-        )
-
-    return send
+    return lambda method, path, data=None, **headers: call_as(
+        admin, method, HOME + path, data, **headers
+    )
 
 
 def test_runs_are_started_once_watched_and_cancelled(call, sample):
