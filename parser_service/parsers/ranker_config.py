@@ -19,6 +19,13 @@ class RankerConfig:
         "Pretrained sentence encoder: its name in GPSR_ENCODERS_DIR, or a package.",
     )
     steps: int = hyperparameter(400, "Optimisation steps, rounded up to whole epochs.", 1, 100_000)
+    minutes: float = hyperparameter(
+        15.0,
+        "Minutes of processor time on each core that a training may take; where all steps would last "
+        "longer, it takes fewer. 0: no bound.",
+        minimum=0.0,
+        maximum=100_000.0,
+    )
     batch_size: int = hyperparameter(32, "Pairs per step.", minimum=1, maximum=4096)
     learning_rate: float = hyperparameter(
         2e-4, "Highest learning rate of AdamW for the encoder.", minimum=1e-7, maximum=1.0

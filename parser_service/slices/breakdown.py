@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from parser_service.analysis.labels import Labels
 from parser_service.analysis.slicing import SliceAccuracies, accuracy_of_labels, accuracy_where
 from parser_service.models import Slice
 from parser_service.slices.addresses import Addresses
@@ -21,8 +20,7 @@ MOST_ASKED = 50_000  # examples of a part, up to which a page also counts slices
 
 @dataclass(frozen=True, slots=True)
 class Accuracy:
-    """The accuracy of one run in one slice, in percent; None in an empty one. ``is_best``: better than every other
-    run, beyond chance."""
+    """The accuracy of one run in one slice, in percent; None in an empty one."""
 
     correct: int
     count: int
@@ -72,10 +70,12 @@ def break_down_by_slices(compared: Compared, addresses: Addresses) -> Breakdown:
 
 
 def _by_group(compared: Compared, grouping: Grouping, addresses: Addresses) -> Breakdown:
-    labels, n_groups = _most_frequent(grouping.labels(compared), grouping.is_ordered)
-    accuracies = accuracy_of_labels(compared.correct, labels, compared.clusters)
+    accuracies = accuracy_of_labels(compared.correct, grouping.labels(compared))
+    there = np.flatnonzero(accuracies.counts)
+    if not grouping.is_ordered:
+        there = there[np.argsort(-accuracies.counts[there], kind="stable")]
     rows, titles = [], grouping.titles(compared)
-    for place in range(len(labels.values)):
+    for place in there[:MOST_ROWS].tolist():
         label = str(accuracies.values[place])
         chosen = grouping.parameters(label)
         url = "" if chosen is None else addresses.of_base(chosen)
@@ -85,24 +85,9 @@ def _by_group(compared: Compared, grouping: Grouping, addresses: Addresses) -> B
         grouping.name,
         grouping.title,
         tuple(rows) if len(rows) > 1 else (),
-        n_groups - len(labels.values),
+        max(0, len(there) - MOST_ROWS),
         grouping.is_of_base,
     )
-
-
-def _most_frequent(labels: Labels[str], is_ordered: bool) -> tuple[Labels[str], int]:
-    """Return the groups to show, in their order or the frequent ones first, and how many groups there are.
-
-    An example of another group has a code of none.
-    """
-    counts = labels.counts()
-    there = np.flatnonzero(counts)
-    if not is_ordered:
-        there = there[np.argsort(-counts[there], kind="stable")]
-    shown = there[:MOST_ROWS]
-    codes = np.full(len(counts), len(shown))
-    codes[shown] = np.arange(len(shown))
-    return Labels(tuple(labels.values[place] for place in shown), codes[labels.codes]), len(there)
 
 
 def _slice_rows(compared: Compared, addresses: Addresses) -> Iterator[Row]:
@@ -115,8 +100,7 @@ def _slice_rows(compared: Compared, addresses: Addresses) -> Iterator[Row]:
         if not is_quick and not are_in_columns(conditions, compared):
             yield Row(saved.name, None, addresses.compare(chosen))
             continue
-        mask = compared.mask(conditions)
-        accuracies = accuracy_where(compared.correct, mask, compared.clusters)
+        accuracies = accuracy_where(compared.correct, compared.mask(conditions))
         cells = _cells(accuracies, 0, addresses, chosen)
         yield Row(saved.name, int(accuracies.counts[0]), addresses.compare(chosen), cells)
 
@@ -128,6 +112,8 @@ def _cells(
     chosen: Mapping[str, str] | None,
 ) -> tuple[Accuracy, ...]:
     count, right = int(accuracies.counts[place]), accuracies.correct[:, place]
+    best = int(right.max(initial=0))
+    is_telling = len(right) > 1 and int(right.min(initial=0)) < best
     return tuple(
         Accuracy(
             correct=correct,
@@ -138,7 +124,7 @@ def _cells(
             url=""
             if chosen is None
             else addresses.of_run(run, chosen, "wrong" if correct < count else ""),
-            is_best=bool(accuracies.is_best[run, place]),
+            is_best=is_telling and correct == best,
         )
         for run, correct in enumerate(right.tolist())
     )

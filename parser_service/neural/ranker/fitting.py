@@ -15,7 +15,6 @@ from parser_service.neural.ranker.calibration import (
     USUAL_NOVELTY,
     Decision,
     best_novelty,
-    weigh,
 )
 from parser_service.neural.ranker.checkpoints import load_training, save_training
 from parser_service.neural.ranker.holding_out import HeldOut, hold_out
@@ -25,24 +24,22 @@ from parser_service.neural.ranker.slot_term import SlotTerm
 from parser_service.neural.ranker.training import (
     RankerTraining,
     Span,
+    cut,
     plan,
     reduced_precision,
 )
+from parser_service.neural.ranker.weighing import Report, weigh_by
 from parser_service.neural.sentence_encoder import SentenceEncoder
-from parser_service.neural.training import TRAINING, resume
+from parser_service.neural.training import TRAINING, Clock, resume
 from parser_service.parsers.candidates.slot_filling import SlotFiller
 from parser_service.parsers.encoder_places import encoders_folder
 from parser_service.parsers.interface import Check, EpochReport, Knowledge, Observer, Pair
 from parser_service.parsers.ranker_config import RankerConfig
-from parser_service.parsers.spreading import spread
 from parser_service.parsers.storage import read_json
 
 VALIDATIONS = 4  # in a training; each re-encodes all examples, which takes a while
 FIRST_SHARE = 0.5  # of the steps, before the forms that were held out are learned as well
-MOST_SCORES = 5_000_000  # of validation utterances and forms, to choose weights by
-LEAST_VALIDATED = 64
-
-Report = tuple[float | None, float | None]
+TOLERANCE = 1.05  # fewer steps than this share too many are no reason to change the schedule
 
 
 class Fitting:
@@ -64,6 +61,8 @@ class Fitting:
         self.config, self.seed, self.knowledge = config, seed, knowledge
         self.validation, self.observe = validation, observe
         self.decision = Decision()
+        self._clock = Clock(config.minutes, config.threads or torch.get_num_threads())
+        self._seconds_to_encode = 0.0  # all examples and glosses
 
     @property
     def ranked(self) -> RankedForms:
@@ -82,13 +81,13 @@ class Fitting:
         """Learn from ``train``. Checkpoints are sealed by ``seal`` and checked by ``check_sealed``."""
         is_open = self.config.forms == "open"
         held = hold_out(train, self.seed) if is_open else None
-        self._prepare([held.train, train] if held else [train], is_open)
         self._seal, self._at, self._is_started = seal, 0, False
+        self._prepare([held.train, train] if held else [train], is_open)
         resume(self.observe, check_sealed, self._load, "step")
         while True:
             training = self._trainings[self._at]
             if not self._is_started and not training.is_over():
-                training.start(self.observe.check)
+                self._encode(training.start)
             was_over = training.is_over()
             while not training.is_over():
                 self._run_pass(training)
@@ -118,10 +117,12 @@ class Fitting:
         ontology = self.knowledge.ontology
         fill = SlotFiller(ontology).fill if ontology is not None else None
         self._trainings = [
-            RankerTraining(model, self.config, self.seed, of_set, self._average, span, fill)
+            RankerTraining(
+                model, self.config, self.seed, of_set, self._average, span, fill, self._clock
+            )
             for model, of_set, span in zip(models, examples, spans, strict=True)
         ]
-        self._passes = sum(span.passes for span in spans)
+        self._set_spans(spans)
 
     def _make_average(self, model: RankerModel) -> Average:
         config = self.config
@@ -154,11 +155,34 @@ class Fitting:
         observe.epoch(EpochReport(epoch, loss, *result, time.monotonic() - begin))
         self._after_step()
 
+    def _keep_to_time(self) -> None:
+        """Take fewer steps where those that are left would last too long, and say so."""
+        training = self._trainings[self._at]
+        left = training.span.total - training.step
+        validations = VALIDATIONS - self._epoch() * VALIDATIONS // self._passes
+        others = 2 * (len(self._trainings) - 1 - self._at)  # novelty, and the start of the next one
+        steps = self._clock.steps_left((validations + others) * self._seconds_to_encode)
+        if left <= TOLERANCE * steps:
+            return
+        self._set_spans(cut([each.span for each in self._trainings], training.step, steps))
+        self.observe.log(
+            f"A step takes {self._clock.a_step:.1f} s, so {self.config.minutes:g} minutes are not enough for "
+            f"{training.step + left:,} of them: the training ends after {training.span.total:,}."
+        )
+
+    def _set_spans(self, spans: Sequence[Span]) -> None:
+        for training, span in zip(self._trainings, spans, strict=True):
+            training.span = span
+        for later in self._trainings[self._at + 1 :]:
+            later.step = later.span.first
+        self._passes = sum(span.passes for span in spans)
+
     def _epoch(self) -> int:
         """Return how many passes are over."""
         return sum(each.passes for each in self._trainings[: self._at + 1])
 
     def _after_step(self) -> None:
+        self._keep_to_time()
         step, total = self._trainings[self._at].step, self._trainings[-1].span.end
         epoch = min(self._epoch() + 1, self._passes)
         self.observe.progress(step / total, f"epoch {epoch} of {self._passes}")
@@ -169,7 +193,13 @@ class Fitting:
 
     def _save(self, folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
-        about = {"training": self._at, "novelty": self.decision.novelty}
+        about = {
+            "training": self._at,
+            "novelty": self.decision.novelty,
+            "seconds": self._clock.spent,
+            "seconds_to_encode": self._seconds_to_encode,
+            "spans": [each.span for each in self._trainings],
+        }
         save_training(folder, self._trainings[self._at], about)
         self._seal(folder)
 
@@ -177,6 +207,9 @@ class Fitting:
         state = read_json(folder / TRAINING)
         self._at, self._is_started = state["training"], True
         self.decision = Decision(state["novelty"])
+        self._clock.before = state["seconds"]
+        self._seconds_to_encode = state["seconds_to_encode"]
+        self._set_spans([Span(*span) for span in state["spans"]])
         for earlier in self._trainings[: self._at]:
             earlier.step = earlier.span.end
         training = self._trainings[self._at]
@@ -187,7 +220,7 @@ class Fitting:
         """Return when a form is new, from the pairs that the first training did not see."""
         model, check = self._trainings[self._at].model, self.observe.check
         with self._average.in_force(), reduced_precision(model, self.config.precision):
-            self._encode(check)
+            self._encode(self._encode_examples)
             of_new, of_known = (
                 model.scores([pair.utterance for pair in pairs], check).evidence
                 for pairs in (held.new, held.known)
@@ -201,14 +234,20 @@ class Fitting:
         )
         return novelty
 
-    def _encode(self, check: Check) -> None:
+    def _encode_examples(self, check: Check) -> None:
         training = self._trainings[self._at]
         training.model.encode([each.utterance for each in training.examples], check)
+
+    def _encode(self, work: Callable[[Check], None]) -> None:
+        """Do ``work``, which encodes all examples and glosses, and keep how long it takes."""
+        begin = self._clock.now()
+        work(self.observe.check)
+        self._seconds_to_encode = self._clock.now() - begin
 
     def _validate(self, check: Check) -> Report:
         """Encode examples and glosses and weigh the experts; return loss and accuracy on the validation
         pairs."""
-        self._encode(check)
+        self._encode(self._encode_examples)
         self.decision, report = weigh_by(
             self.validation,
             self.decision.novelty,
@@ -217,30 +256,6 @@ class Fitting:
             check,
         )
         return report
-
-
-def weigh_by(
-    validation: Sequence[Pair],
-    novelty: float,
-    ranked: RankedForms,
-    model: RankerModel,
-    check: Check,
-) -> tuple[Decision, Report]:
-    """Return the decision with the weights that ``validation`` tells, and its loss and accuracy there; of very
-    many pairs, some of each form tell."""
-    most = max(LEAST_VALIDATED, MOST_SCORES // len(ranked.forms))
-    asked = spread(validation, most, lambda pair: pair.form)
-    if not asked:
-        return Decision(novelty), (None, None)
-    number = {form: at for at, form in enumerate(ranked.forms)}
-    targets = torch.tensor([number.get(pair.form, -1) for pair in asked])
-    scores = model.scores([pair.utterance for pair in asked], check)
-    spoken = torch.tensor([pair.source == "paraphrased" for pair in asked])
-    decision = weigh(novelty, scores, targets, spoken)
-    logs = decision.log_probabilities(scores)
-    of_targets = logs[targets >= 0].gather(1, targets[targets >= 0, None])
-    loss = -float(of_targets.mean()) if len(of_targets) else None
-    return decision, (loss, float((logs.argmax(-1) == targets).float().mean()))
 
 
 def make_model(encoder: SentenceEncoder, ranked: RankedForms, knowledge: Knowledge) -> RankerModel:

@@ -12,9 +12,10 @@ from typing import Self
 from parser_service.neural.device import threads
 from parser_service.neural.ranker.calibration import TERMS, Decision, Scores
 from parser_service.neural.ranker.checkpoints import FILES
-from parser_service.neural.ranker.fitting import Fitting, make_model, weigh_by
+from parser_service.neural.ranker.fitting import Fitting, make_model
 from parser_service.neural.ranker.model import RankerModel
 from parser_service.neural.ranker.ranked_forms import RankedForms
+from parser_service.neural.ranker.weighing import weigh_by
 from parser_service.neural.sentence_encoder import ENCODER, TOKENIZER, SentenceEncoder
 from parser_service.neural.weights import WEIGHTS, load_weights, save_weights
 from parser_service.parsers.conditions import Protocol

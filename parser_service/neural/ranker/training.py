@@ -18,7 +18,7 @@ from parser_service.neural.ranker.averaging import Average
 from parser_service.neural.ranker.model import RankerModel
 from parser_service.neural.ranker.prototype_head import PrototypeHead
 from parser_service.neural.ranker.ranked_forms import RankedExample
-from parser_service.neural.training import finite_mean, random_state_kept
+from parser_service.neural.training import Clock, finite_mean, random_state_kept
 from parser_service.parsers.interface import Check
 from parser_service.parsers.ranker_config import RankerConfig
 
@@ -64,6 +64,23 @@ def plan(shares: Sequence[float], pairs: Sequence[int], config: RankerConfig) ->
     ]
 
 
+def cut(spans: Sequence[Span], step: int, steps: float) -> list[Span]:
+    """Return ``spans`` with about ``steps`` steps after ``step``: what is left of each shrinks by the same
+    share, to one step at least. Those that are over stay."""
+    share = steps / (spans[-1].end - step)
+    firsts, ends = [], []
+    for span in spans:
+        first = ends[-1] if ends else span.first
+        done = max(0, min(step, span.end) - span.first)
+        left = span.end - span.first - done
+        firsts.append(first)
+        ends.append(first + done + min(left, max(1, int(share * left))))
+    return [
+        Span(first, end, ends[-1], span.a_pass)
+        for first, end, span in zip(firsts, ends, spans, strict=True)
+    ]
+
+
 @dataclass
 class RankerTraining:
     """AdamW and the average of the encoder's weights.
@@ -83,6 +100,7 @@ class RankerTraining:
     average: Average
     span: Span
     fill: Fill | None = None
+    clock: Clock = field(default_factory=Clock)
     losses: list[float] = field(default_factory=list)  # of this pass
 
     def __post_init__(self) -> None:
@@ -103,7 +121,8 @@ class RankerTraining:
     @property
     def passes(self) -> int:
         """The number of passes that are over."""
-        return (self.step - self.span.first) // self.span.a_pass
+        done, a_pass = self.step - self.span.first, self.span.a_pass
+        return math.ceil(done / a_pass) if self.is_over() else done // a_pass
 
     def is_over(self) -> bool:
         return self.step >= self.span.end
@@ -115,17 +134,20 @@ class RankerTraining:
 
     def run_pass(self, check: Check, after_step: Callable[[], None] = lambda: None) -> float:
         """Train until the pass is over; return its mean loss in nats per example. ``after_step`` is called
-        after each step but the last. Raises ValueError where the loss is not finite."""
+        after each step but the last, and may end the span earlier. Raises ValueError where the loss is not finite."""
         self.model.train()
         number = self.passes
         precision = reduced_precision(self.model, self.config.precision)
         with random_state_kept(), denormals_flushed(), precision:
             for batch in self._shuffle()[len(self.losses) : self.span.a_pass]:
                 check()
-                self.losses.append(self._train_on(batch, check))
+                with self.clock.step():
+                    self.losses.append(self._train_on(batch, check))
                 self.step += 1
-                if len(self.losses) < self.span.a_pass:
+                if len(self.losses) < self.span.a_pass and not self.is_over():
                     after_step()
+                if self.is_over():
+                    break
         self.model.eval()
         losses, self.losses = self.losses, []
         return finite_mean(losses, number + 1, self.config.learning_rate)
