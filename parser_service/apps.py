@@ -18,7 +18,7 @@ class ParserServiceConfig(AppConfig):
         from annotations.worlds.parts import register_part
         from parser_service.models import TrainingRun
 
-        register(TrainingRun, "parser_service.runs.training.train")
+        register(TrainingRun, "parser_service.runs.carrying_out.training.train")
         register_verb(JobKind.AUDIT, "parser_service.audit.carrying_out.audit")
         register_verb(JobKind.PROPOSE, "parser_service.candidates.proposing.propose")
         register_verb(JobKind.ANALYSE, "parser_service.analysing.carrying_out.analyse")

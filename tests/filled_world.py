@@ -36,9 +36,9 @@ from parser_service.promotion import promote
 from parser_service.reviewing.categories import ensure_categories
 from parser_service.reviewing.proposing import propose_for_run
 from parser_service.reviewing.tagging import tag, write_note
+from parser_service.runs.carrying_out.examples import pairs_of
+from parser_service.runs.carrying_out.training import make_parser
 from parser_service.runs.checkpoints import model_folder, write_folder
-from parser_service.runs.examples import pairs_of
-from parser_service.runs.training import make_parser
 from tests.doubted_labels import doubt
 
 SAID = ["bring me the tea", "go to the kitchen now", "where is my milk"]

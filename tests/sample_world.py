@@ -20,8 +20,8 @@ from parser_service.analysis.outcomes import outcomes_of
 from parser_service.analysis.scores import Judgement
 from parser_service.models import EpochMetric, Evaluation, Prediction, TrainingRun
 from parser_service.models.runs import Status
-from parser_service.runs import requesting
-from parser_service.runs.examples import cluster_of
+from parser_service.runs.carrying_out.examples import cluster_of
+from parser_service.runs.requests import requesting
 from tests.annotations.conftest import TINY, as_bytes
 from tests.parser_service.made_up import make_split
 

@@ -31,7 +31,7 @@ def support_of_forms(protocol: str, splits: int) -> Iterator[dict[str, object]]:
     from annotations.models import World
     from parser_service.benchmarking.corpus import new_split
     from parser_service.parsers.candidates.generation import reach
-    from parser_service.runs.knowledge import knowledge_of
+    from parser_service.runs.carrying_out.knowledge import knowledge_of
 
     knowledge = knowledge_of(World.objects.get(name=WORLD), protocol)
     for seed in range(splits):

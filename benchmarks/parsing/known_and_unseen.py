@@ -55,7 +55,7 @@ def train(protocol: str, setting: str, seed: int) -> tuple[Parser, dict[str, lis
     from parser_service.benchmarking.corpus import read_corpus, source_commands
     from parser_service.parsers.conditions import Setting
     from parser_service.parsers.registry import load_class, make_config
-    from parser_service.runs.knowledge import anonymizer_of, knowledge_of
+    from parser_service.runs.carrying_out.knowledge import anonymizer_of, knowledge_of
 
     world = World.objects.get(name=WORLD)
     corpus = read_corpus(DATA / "walker2019", "logical_form")

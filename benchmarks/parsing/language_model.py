@@ -39,7 +39,7 @@ def main() -> None:
 def lengths(criterion: str) -> Iterator[str]:
     from annotations.models import World
     from parser_service.parsers.llm.config import FREE, LISTED
-    from parser_service.runs.knowledge import knowledge_of
+    from parser_service.runs.carrying_out.knowledge import knowledge_of
 
     for protocol in ("strict", "domain"):
         knowledge = knowledge_of(World.objects.get(name=WORLD), protocol)

@@ -55,7 +55,7 @@ def _train(split: int, setting: str) -> Trained:
     from parser_service.benchmarking.plan import load_corpus
     from parser_service.parsers.conditions import Setting
     from parser_service.parsers.registry import load_class, make_config
-    from parser_service.runs.knowledge import knowledge_of
+    from parser_service.runs.carrying_out.knowledge import knowledge_of
 
     world = World.objects.get(name=WORLD)
     corpus = load_corpus(DATA / "walker2019", CRITERION, split, world)

@@ -118,7 +118,7 @@ def fastest(rounds: Sequence[np.ndarray]) -> np.ndarray:
 
 def measure(client: Any, parser: Any, utterances: Sequence[str], rounds: int) -> None:
     """Print a line for single parses and one for batches."""
-    from parser_service.runs.evaluating import BEAM_WIDTH
+    from parser_service.runs.carrying_out.evaluating import BEAM_WIDTH
     from parser_service.serving.shelf import LINES_TOGETHER
 
     def bare(texts: Sequence[str]) -> None:

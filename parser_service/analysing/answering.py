@@ -12,7 +12,7 @@ from annotations.background.progress import Progress
 from annotations.models import Job, World
 from parser_service.models import TrainingRun, Tryout, Worker
 from parser_service.parsers.interface import Parser
-from parser_service.runs.evaluating import BEAM_WIDTH
+from parser_service.runs.carrying_out.evaluating import BEAM_WIDTH
 from parser_service.serving.loading import load_parser
 
 STAY_SECONDS = 20.0  # after the last text

@@ -11,7 +11,7 @@ from parser_service.analysing.target import Target
 from parser_service.analysis.reading import is_same_answer
 from parser_service.models import Expectation, Probe, ProbeAnswer
 from parser_service.parsers.interface import Candidate
-from parser_service.runs.evaluating import AT_ONCE, BEAM_WIDTH
+from parser_service.runs.carrying_out.evaluating import AT_ONCE, BEAM_WIDTH
 from parser_service.serving.loading import load_parser
 
 REFUSALS = ("", canonical_text(UNKNOWN))

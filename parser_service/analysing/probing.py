@@ -23,7 +23,7 @@ from parser_service.analysis.probing import make_probes
 from parser_service.analysis.resampling import SEED
 from parser_service.analysis.sensitivity import remove_words
 from parser_service.models import Expectation, Probe, TrainingRun
-from parser_service.runs.evaluating import ROWS_AT_ONCE
+from parser_service.runs.carrying_out.evaluating import ROWS_AT_ONCE
 
 MOST_EDITED = 200  # utterances, one edit of each kind
 MOST_OF_A_KIND = 40  # shuffled, truncated and unrelated texts

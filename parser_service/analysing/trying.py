@@ -13,7 +13,7 @@ from annotations.jobs import request_job
 from annotations.models import Job, JobKind, User, World
 from annotations.models.background import JobQuerySet
 from parser_service.models import TrainingRun, Tryout
-from parser_service.runs.evaluating import BEAM_WIDTH
+from parser_service.runs.carrying_out.evaluating import BEAM_WIDTH
 from parser_service.serving.client import ParserAway, ParserRefused, client
 
 MOST_TEXT = 500  # characters

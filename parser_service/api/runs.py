@@ -25,9 +25,14 @@ from parser_service.parsers.conditions import Protocol, TrainSources
 from parser_service.parsers.registry import PARSERS, config_fields
 from parser_service.runs import lifecycle
 from parser_service.runs.analysis_requests import request_analysis
-from parser_service.runs.learning_curve import MOST_SEEDS as MOST_CURVE_SEEDS
-from parser_service.runs.requesting import LARGEST_SEED, LEAST_SHARE, MOST_SEEDS
-from parser_service.runs.starting import TooMany, start_again, start_learning_curve, start_runs
+from parser_service.runs.requests.learning_curve import MOST_SEEDS as MOST_CURVE_SEEDS
+from parser_service.runs.requests.requesting import LARGEST_SEED, LEAST_SHARE, MOST_SEEDS
+from parser_service.runs.requests.starting import (
+    TooMany,
+    start_again,
+    start_learning_curve,
+    start_runs,
+)
 from parser_service.views.runs.run_forms import PREFIX, RunForm
 
 

@@ -17,8 +17,8 @@ from parser_service.analysis.probabilities import NO_PROBABILITY, calibration, p
 from parser_service.analysis.risk_coverage import risk_coverage
 from parser_service.analysis.scores import NO_ANSWER, Judgement, judge
 from parser_service.parsers.interface import Candidate, Pair, Parser, ScoreKind
-from parser_service.runs.cross_fitting import calibrated_folds
-from parser_service.runs.evaluating import BEAM_WIDTH
+from parser_service.runs.carrying_out.cross_fitting import calibrated_folds
+from parser_service.runs.carrying_out.evaluating import BEAM_WIDTH
 
 NAME_DIGITS = 12  # of the SHA-256 that stands for a cluster: a form is long
 CURVE_POINTS = 50

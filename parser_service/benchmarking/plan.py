@@ -15,8 +15,8 @@ from parser_service.benchmarking.corpus import Corpus, new_split, read_corpus
 from parser_service.benchmarking.in_parallel import measure_in_parallel
 from parser_service.benchmarking.sources import Sources, find_sources
 from parser_service.parsers.interface import Knowledge
-from parser_service.runs.content_key import knowledge_hash
-from parser_service.runs.knowledge import knowledge_of
+from parser_service.runs.carrying_out.knowledge import knowledge_of
+from parser_service.runs.requests.content_key import knowledge_hash
 
 
 def find_missing(

@@ -19,7 +19,7 @@ from parser_service.results.accuracy import TableMaker, by_part, rank_of
 from parser_service.results.cells import Cell
 from parser_service.results.measures import Measure
 from parser_service.results.tables import Changes, Column, title_of
-from parser_service.runs.learning_curve import MOST_SEEDS, SHARES, points_of
+from parser_service.runs.requests.learning_curve import MOST_SEEDS, SHARES, points_of
 
 _SEEDS = (1, 3, MOST_SEEDS)  # what is offered
 

@@ -8,8 +8,8 @@ from annotations.models.background import Status
 from parser_service.models import TrainingRun
 from parser_service.parsers.interface import Parser
 from parser_service.parsers.registry import load_class
+from parser_service.runs.carrying_out.knowledge import knowledge_of
 from parser_service.runs.checkpoints import model_folder
-from parser_service.runs.knowledge import knowledge_of
 
 LOADED_PARSERS = 2
 

@@ -14,7 +14,7 @@ from parser_service.models import TrainingRun
 from parser_service.reviewing.proposing import propose_for_run
 from tests.parser_service.made_up import TINY
 from tests.parser_service.neural.tiny_encoder import write_tiny_encoder
-from tests.parser_service.runs.test_training import trained
+from tests.parser_service.runs.carrying_out.test_training import trained
 
 IS_FULL = os.environ.get("TEST_WALK") == "full"
 UNKNOWN = "UNKNOWN"

@@ -13,7 +13,7 @@ from gpsr_site.frame import PLACES
 from gpsr_site.overview.counts import counts_of, counts_of_all
 from gpsr_site.workers import workers_now
 from parser_service.models import Worker
-from parser_service.runs import requesting
+from parser_service.runs.requests import requesting
 from tests.gpsr_site.routes.listing import ROUTES_OF_WORLDS
 
 

@@ -7,7 +7,7 @@ from django.utils import timezone
 
 from gpsr_site.workers import workers_now
 from parser_service.models import TrainingRun, Worker
-from parser_service.runs import requesting
+from parser_service.runs.requests import requesting
 
 
 def alive(*queues: str) -> None:

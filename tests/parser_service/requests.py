@@ -9,7 +9,8 @@ from typing import Any
 from django.db import connections
 
 from parser_service.models import TrainingRun
-from parser_service.runs import lifecycle, requesting
+from parser_service.runs import lifecycle
+from parser_service.runs.requests import requesting
 
 
 def ask(split, **changes) -> TrainingRun:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from annotations.models import Entity, Ontology, Split, World
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.models.runs import Status
-from parser_service.runs import requesting
+from parser_service.runs.carrying_out.examples import training_pairs
+from parser_service.runs.carrying_out.training import make_parser
 from parser_service.runs.checkpoints import model_folder, write_folder
-from parser_service.runs.examples import training_pairs
-from parser_service.runs.training import make_parser
+from parser_service.runs.requests import requesting
 from tests.parser_service.made_up import make_split
 
 THINGS = [("object", "red cup"), ("object", "bowl"), ("room", "kitchen"), ("location", "desk")]

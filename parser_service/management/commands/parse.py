@@ -10,7 +10,7 @@ from django.core.management.base import CommandParser
 from annotations.management.base import ReportingCommand, find_world
 from annotations.models import World
 from parser_service.models import TrainingRun
-from parser_service.runs.evaluating import BEAM_WIDTH
+from parser_service.runs.carrying_out.evaluating import BEAM_WIDTH
 from parser_service.serving.answers import parse
 from parser_service.serving.choosing import best_run
 

@@ -20,8 +20,9 @@ from parser_service.models import TrainingRun
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.registry import PARSERS
 from parser_service.results.reports import report_run, report_seeds, with_reach
-from parser_service.runs import lifecycle, requesting
-from parser_service.runs.training import train
+from parser_service.runs import lifecycle
+from parser_service.runs.carrying_out.training import train
+from parser_service.runs.requests import requesting
 
 LOOK_EVERY = 1.0
 

@@ -17,8 +17,8 @@ from parser_service.parsers.conditions import SETTINGS, Protocol, Setting
 from parser_service.results.choices import PARTS, default_part, scored_splits
 from parser_service.results.learning_curves import LearningCurves, curves_url, learning_curves
 from parser_service.results.measures import Measure
-from parser_service.runs.learning_curve import MOST_SEEDS
-from parser_service.runs.starting import start_learning_curve
+from parser_service.runs.requests.learning_curve import MOST_SEEDS
+from parser_service.runs.requests.starting import start_learning_curve
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,8 +10,8 @@ from django.views.decorators.cache import never_cache
 from annotations.models import Duty, Split, World
 from annotations.people.access import WRITE, world_view
 from parser_service.models import TrainingRun
-from parser_service.runs.retraining import retrainable
-from parser_service.runs.starting import start_again
+from parser_service.runs.requests.retraining import retrainable
+from parser_service.runs.requests.starting import start_again
 from parser_service.views.runs.run_new import in_words
 
 

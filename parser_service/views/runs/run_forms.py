@@ -11,7 +11,12 @@ from parser_service.parsers.conditions import Protocol, TrainSources
 from parser_service.parsers.config_fields import ConfigField
 from parser_service.parsers.registry import config_fields, entry, make_config
 from parser_service.parsers.weight_files import missing_weights
-from parser_service.runs.requesting import LARGEST_SEED, LEAST_SHARE, MOST_SEEDS, seeds_from
+from parser_service.runs.requests.requesting import (
+    LARGEST_SEED,
+    LEAST_SHARE,
+    MOST_SEEDS,
+    seeds_from,
+)
 
 SOURCE_LABELS = {
     TrainSources.GENERATED: "generated",

@@ -12,7 +12,7 @@ from annotations.people.access import READ_AND_WRITE, world_view
 from parser_service.models import TrainingRun
 from parser_service.parsers.registry import PARSERS
 from parser_service.results.accuracy import seeds_url
-from parser_service.runs.starting import start_runs
+from parser_service.runs.requests.starting import start_runs
 from parser_service.views.runs.parser_picker import parser_groups
 from parser_service.views.runs.run_choices import RunChoices, choices_in, query_of
 from parser_service.views.runs.run_forms import RunForm

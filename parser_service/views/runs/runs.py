@@ -23,7 +23,7 @@ from parser_service.results.reports import KNOWN_FORMS, order_of, scores_by_form
 from parser_service.reviewing.earlier import history_of_errors
 from parser_service.runs import lifecycle
 from parser_service.runs.curves import CURVES, loss_curves, will_have_curves
-from parser_service.runs.retraining import retrained
+from parser_service.runs.requests.retraining import retrained
 from parser_service.runs.waiting import waiting_of
 
 SORTS = {

@@ -22,7 +22,7 @@ from gpsr_site.overview.work_list import WorkList
 from gpsr_site.workers import Workers
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.models.runs import Status
-from parser_service.runs import requesting
+from parser_service.runs.requests import requesting
 from tests.parser_service.made_up import make_split
 from tests.sample_world import make_paraphrase, scored_run
 

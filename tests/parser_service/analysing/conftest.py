@@ -13,7 +13,7 @@ from parser_service.models import TrainingRun
 from parser_service.runs.analysis_requests import analysis_jobs, request_analysis
 from parser_service.serving import loading
 from tests.parser_service.analysing.made_parsers import register_all
-from tests.parser_service.runs.test_training import trained
+from tests.parser_service.runs.carrying_out.test_training import trained
 from tests.sample_world import SampleWorld
 
 

@@ -11,7 +11,7 @@ from annotations.models import World
 from parser_service.benchmarking.corpus import Corpus, new_split, read_corpus, source_commands
 from parser_service.benchmarking.plan import load_corpus
 from parser_service.benchmarking.sources import find_sources
-from parser_service.runs.knowledge import anonymizer_of
+from parser_service.runs.carrying_out.knowledge import anonymizer_of
 from tests.parser_service.made_up import make_folder
 
 BOTH = ("generated", "paraphrased")

@@ -15,7 +15,7 @@ from parser_service.candidates import candidates_for
 from parser_service.candidates.composing import MOST_CANDIDATES
 from parser_service.candidates.doubting import enqueue_doubts
 from parser_service.runs import lifecycle
-from parser_service.runs.training import train
+from parser_service.runs.carrying_out.training import train
 from tests.parser_service.requests import ask
 
 FIND = '( find ( lambda $1 e ( is_a $1 " <object> " ) ) )'

@@ -17,7 +17,7 @@ from annotations.models import (
 )
 from parser_service.candidates.for_templates import suggest_with_parsers
 from parser_service.runs import lifecycle
-from parser_service.runs.training import train
+from parser_service.runs.carrying_out.training import train
 from parser_service.serving.loading import _load
 from tests.parser_service.requests import ask
 

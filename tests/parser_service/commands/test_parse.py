@@ -10,9 +10,10 @@ from django.core.management import CommandError, call_command
 
 from annotations.models import Entity, Ontology, Split
 from parser_service.models import TrainingRun
-from parser_service.runs import lifecycle, requesting
+from parser_service.runs import lifecycle
+from parser_service.runs.carrying_out.training import train
 from parser_service.runs.checkpoints import model_folder, remove_folder
-from parser_service.runs.training import train
+from parser_service.runs.requests import requesting
 from parser_service.serving.choosing import best_run
 from tests.parser_service.made_up import TINY, make_split
 

@@ -17,8 +17,9 @@ from parser_service.promotion import (
     promoted_run,
     roll_back,
 )
-from parser_service.runs import lifecycle, requesting
-from parser_service.runs.training import train
+from parser_service.runs import lifecycle
+from parser_service.runs.carrying_out.training import train
+from parser_service.runs.requests import requesting
 from tests.parser_service.made_up import make_split
 from tests.parser_service.served import score, trained_run
 

@@ -8,8 +8,9 @@ from itertools import groupby
 import pytest
 
 from parser_service.models import Worker
-from parser_service.runs import lifecycle, requesting
-from parser_service.runs.training import train
+from parser_service.runs import lifecycle
+from parser_service.runs.carrying_out.training import train
+from parser_service.runs.requests import requesting
 from tests.parser_service.made_up import LONG, TINY
 from tests.parser_service.worker_process import wait_for_epochs, wait_for_status
 from tests.waiting import wait_for

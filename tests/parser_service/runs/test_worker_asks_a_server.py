@@ -9,7 +9,8 @@ import pytest
 
 from parser_service.models import Worker
 from parser_service.parsers.llm.places import Server
-from parser_service.runs import lifecycle, requesting
+from parser_service.runs import lifecycle
+from parser_service.runs.requests import requesting
 from tests.parser_service.llm_server import KEY, MODEL, REPORTED, fails, installed, tiny_server
 from tests.parser_service.runs.test_worker import has_loaded_torch
 from tests.parser_service.worker_process import wait_for_status

@@ -8,9 +8,9 @@ import pytest
 
 from annotations.models import Entity, World
 from parser_service.promotion import promote
-from parser_service.runs import requesting
+from parser_service.runs.carrying_out.knowledge import knowledge_of
 from parser_service.runs.checkpoints import model_folder, remove_folder
-from parser_service.runs.knowledge import knowledge_of
+from parser_service.runs.requests import requesting
 from parser_service.serving.metrics import Metrics
 from parser_service.serving.shelf import NotServed, Shelf
 from tests.parser_service.served import make_home, trained_run

@@ -8,7 +8,7 @@ from annotations.generation import kept_expansions
 from annotations.language.templates import Kept
 from annotations.models import SemanticTemplate
 from annotations.splits.freezing import freeze_split
-from parser_service.runs import requesting
+from parser_service.runs.requests import requesting
 
 
 @pytest.fixture

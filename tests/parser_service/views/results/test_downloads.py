@@ -16,7 +16,7 @@ from parser_service.models import TrainingRun
 from parser_service.parsers.registry import config_values, make_config
 from parser_service.results.latex import escape
 from parser_service.results.tables import MAY_KNOW_CORPORA
-from parser_service.runs import requesting
+from parser_service.runs.requests import requesting
 from tests.parser_service.made_up import make_split
 from tests.parser_service.views.results.conftest import equivalents, seeds
 from tests.sample_world import scored_run

@@ -14,7 +14,7 @@ from parser_service.analysis.outcomes import outcomes_of
 from parser_service.analysis.scores import Judgement
 from parser_service.models import TrainingRun
 from parser_service.results.accuracy import accuracy_tables
-from parser_service.runs import requesting
+from parser_service.runs.requests import requesting
 from tests.parser_service.made_up import make_split
 from tests.parser_service.views.results.conftest import seeds
 from tests.sample_world import scored_run

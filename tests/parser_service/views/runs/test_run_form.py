@@ -9,7 +9,7 @@ import pytest
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.parsers import encoder_places
 from parser_service.parsers.registry import PARSERS, Needs
-from parser_service.runs import requesting
+from parser_service.runs.requests import requesting
 from parser_service.views.runs.parser_picker import parser_groups
 from tests.parser_service.made_up import make_split
 from tests.parser_service.views.runs.forms_of_pages import PageForm

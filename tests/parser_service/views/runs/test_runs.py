@@ -11,7 +11,8 @@ from annotations.people.rate_limits import STARTED_RUNS
 from parser_service.models import RunEvent, TrainingRun, Worker
 from parser_service.parsers.interface import EpochReport
 from parser_service.parsers.registry import PARSERS, config_fields
-from parser_service.runs import lifecycle, requesting
+from parser_service.runs import lifecycle
+from parser_service.runs.requests import requesting
 from tests.parser_service.made_up import make_split
 from tests.sample_world import scored_run
 

@@ -15,7 +15,7 @@ from parser_service.parsers import registry
 from parser_service.parsers.conditions import TrainSources
 from parser_service.parsers.config_fields import refuse_unnamed
 from parser_service.parsers.weight_files import refuse_missing_weights
-from parser_service.runs.content_key import content_key
+from parser_service.runs.requests.content_key import content_key
 
 LARGEST_SEED = 2**32 - 1
 LEAST_SHARE = 0.01  # of the training pairs

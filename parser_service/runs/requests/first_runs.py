@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from annotations.models import Split
 from annotations.models.splits import Criterion
 from parser_service.models import TrainingRun
-from parser_service.runs import requesting
+from parser_service.runs.requests import requesting
 
 
 class FirstRun(NamedTuple):

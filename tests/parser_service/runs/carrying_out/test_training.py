@@ -15,10 +15,11 @@ from parser_service.parsers import registry
 from parser_service.parsers.interface import Parser
 from parser_service.parsers.knn import NearestNeighbour
 from parser_service.parsers.weight_files import missing_weights
-from parser_service.runs import lifecycle, requesting
+from parser_service.runs import lifecycle
+from parser_service.runs.carrying_out.knowledge import knowledge_of
+from parser_service.runs.carrying_out.training import make_parser, sentence_of, train
 from parser_service.runs.checkpoints import model_folder, stored_folder
-from parser_service.runs.knowledge import knowledge_of
-from parser_service.runs.training import make_parser, sentence_of, train
+from parser_service.runs.requests import requesting
 from tests.parser_service.made_up import LONG, TINY, make_split
 
 SHORT = {**TINY, "epochs": 4, "patience": 4}

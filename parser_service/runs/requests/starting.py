@@ -11,8 +11,8 @@ from annotations.models import User, World
 from annotations.people.rate_limits import STARTED_RUNS
 from annotations.splits.renewing import last_of
 from parser_service.models import TrainingRun
-from parser_service.runs.learning_curve import request_learning_curve
-from parser_service.runs.requesting import request_seeds, retrain
+from parser_service.runs.requests.learning_curve import request_learning_curve
+from parser_service.runs.requests.requesting import request_seeds, retrain
 
 Answer = tuple[TrainingRun, bool]
 

@@ -7,7 +7,8 @@ import pytest
 from annotations.background import send_wake_up
 from annotations.models import Entity, Ontology
 from parser_service.models import TrainingRun
-from parser_service.runs import lifecycle, requesting
+from parser_service.runs import lifecycle
+from parser_service.runs.requests import requesting
 from tests.parser_service.made_up import make_split
 from tests.parser_service.requests import ask, at_once, claim
 

@@ -16,9 +16,9 @@ from parser_service.models import Evaluation, Prediction, TrainingRun
 from parser_service.parsers.conditions import TEST_SOURCES, TrainSources
 from parser_service.parsers.interface import TRAINING, Candidate, Pair, Parser
 from parser_service.runs import lifecycle
-from parser_service.runs.cross_fitting import calibrated_folds
-from parser_service.runs.examples import as_pairs, cluster_of
-from parser_service.runs.observing import RunObserver
+from parser_service.runs.carrying_out.cross_fitting import calibrated_folds
+from parser_service.runs.carrying_out.examples import as_pairs, cluster_of
+from parser_service.runs.carrying_out.observing import RunObserver
 
 BEAM_WIDTH = 5
 AT_ONCE = 64

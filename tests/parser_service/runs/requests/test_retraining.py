@@ -7,8 +7,8 @@ import pytest
 from annotations.models import Split
 from parser_service.models import TrainingRun
 from parser_service.models.runs import Status
-from parser_service.runs.requesting import request, retrain
-from parser_service.runs.retraining import retrainable, retrained
+from parser_service.runs.requests.requesting import request, retrain
+from parser_service.runs.requests.retraining import retrainable, retrained
 from tests.parser_service.made_up import make_split
 
 

@@ -8,11 +8,11 @@ import pytest
 
 from annotations.models import Split
 from parser_service.models import TrainingRun
-from parser_service.runs import requesting
-from parser_service.runs.examples import pairs_of, training_pairs
-from parser_service.runs.learning_curve import SHARES, request_learning_curve
+from parser_service.runs.carrying_out.examples import pairs_of, training_pairs
+from parser_service.runs.requests import requesting
+from parser_service.runs.requests.learning_curve import SHARES, request_learning_curve
 from tests.parser_service.made_up import make_split
-from tests.parser_service.runs.test_training import trained
+from tests.parser_service.runs.carrying_out.test_training import trained
 
 
 @pytest.mark.parametrize("criterion", ["command", "source_command", "logical_form"])

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from parser_service.runs import observing
-from parser_service.runs.observing import RunObserver
+from parser_service.runs.carrying_out import observing
+from parser_service.runs.carrying_out.observing import RunObserver
 from tests.parser_service.made_up import make_split
-from tests.parser_service.runs.test_training import claimed
+from tests.parser_service.runs.carrying_out.test_training import claimed
 
 
 class Held:

@@ -20,12 +20,12 @@ from parser_service.parsers.interface import Cancelled, Parser
 from parser_service.promotion import consider
 from parser_service.runs import lifecycle
 from parser_service.runs.analysis_requests import request_analysis
+from parser_service.runs.carrying_out.evaluating import evaluate
+from parser_service.runs.carrying_out.examples import known_examples, pairs_of, training_pairs
+from parser_service.runs.carrying_out.knowledge import knowledge_of
+from parser_service.runs.carrying_out.observing import TRAINING_SHARE, RunObserver, tell_nobody
 from parser_service.runs.checkpoints import model_folder, write_folder
-from parser_service.runs.evaluating import evaluate
-from parser_service.runs.examples import known_examples, pairs_of, training_pairs
 from parser_service.runs.folders import keep_track_of
-from parser_service.runs.knowledge import knowledge_of
-from parser_service.runs.observing import TRAINING_SHARE, RunObserver, tell_nobody
 
 
 def train(

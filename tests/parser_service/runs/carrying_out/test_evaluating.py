@@ -9,7 +9,7 @@ import pytest
 from annotations.models import Example
 from parser_service.models import TrainingRun
 from tests.parser_service.made_up import TINY, make_split
-from tests.parser_service.runs.test_training import trained
+from tests.parser_service.runs.carrying_out.test_training import trained
 
 
 @pytest.fixture

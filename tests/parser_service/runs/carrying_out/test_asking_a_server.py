@@ -15,9 +15,10 @@ from annotations.models import JobKind
 from parser_service.models import Promotion, TrainingRun
 from parser_service.parsers.llm.places import Server
 from parser_service.promotion import promoted_run
-from parser_service.runs import lifecycle, requesting
+from parser_service.runs import lifecycle
+from parser_service.runs.carrying_out.training import train
 from parser_service.runs.checkpoints import model_folder
-from parser_service.runs.training import train
+from parser_service.runs.requests import requesting
 from parser_service.serving.choosing import best_run
 from tests.parser_service.llm_server import (
     KEY,
@@ -28,7 +29,7 @@ from tests.parser_service.llm_server import (
     installed_tiny_server,
     says,
 )
-from tests.parser_service.runs.test_training import trained
+from tests.parser_service.runs.carrying_out.test_training import trained
 
 pytestmark = pytest.mark.django_db(transaction=True)
 CONFIG = {"model": MODEL, "at_once": 1}

@@ -6,10 +6,15 @@ import pytest
 
 from annotations.language.corpus import Criterion
 from annotations.models import Split
-from parser_service.runs import requesting
-from parser_service.runs.examples import cluster_of, item_of, known_examples, training_pairs
+from parser_service.runs.carrying_out.examples import (
+    cluster_of,
+    item_of,
+    known_examples,
+    training_pairs,
+)
+from parser_service.runs.requests import requesting
 from tests.parser_service.made_up import make_split
-from tests.parser_service.runs.test_training import trained
+from tests.parser_service.runs.carrying_out.test_training import trained
 
 
 @pytest.fixture
@@ -60,7 +65,7 @@ def test_on_other_splits_nothing_is_held_out(split, criterion):
 
 def test_a_run_by_form_is_another_one_than_before_known_forms_were_held_out(split, monkeypatch):
     run, _ = requesting.request(split.world, split, "knn", send=False)
-    monkeypatch.setattr("parser_service.runs.content_key.KNOWN_SHARE", 0.2)
+    monkeypatch.setattr("parser_service.runs.requests.content_key.KNOWN_SHARE", 0.2)
     other, is_new = requesting.request(split.world, split, "knn", send=False)
     assert is_new
     assert other.content_key != run.content_key

@@ -6,7 +6,7 @@ from django.db import transaction
 
 from annotations.models import User
 from parser_service.models import TrainingRun
-from parser_service.runs import requesting
+from parser_service.runs.requests import requesting
 
 SHARES = (0.1, 0.25, 0.5, 1.0)
 MOST_SEEDS = 5

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from parser_service.parsers.interface import Pair
 from parser_service.parsers.knn import NearestNeighbour
-from parser_service.runs.cross_fitting import calibrated_folds
+from parser_service.runs.carrying_out.cross_fitting import calibrated_folds
 
 PAIRS = [Pair(f"say {n}", "( go )") for n in range(12)]
 CLUSTERS = [f"cluster {n % 5}" for n in range(12)]
