@@ -1,8 +1,8 @@
 from django.apps import AppConfig
 from django.conf import settings
 
-from parser_service.parsers.encoder_places import keep_encoders_in
 from parser_service.parsers.llm.places import Patience, Server, use_server
+from parser_service.parsers.weights.encoder_places import keep_encoders_in
 
 
 class ParserServiceConfig(AppConfig):

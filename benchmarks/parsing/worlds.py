@@ -124,7 +124,7 @@ def size_of(folder: Path) -> int:
 def measure(name: str, steps: int) -> dict[str, float]:
     """Train, cancel, resume, save and ask in this process."""
     from parser_service.neural.ranker.parser import FormRanker
-    from parser_service.parsers.ranker_config import RankerConfig
+    from parser_service.parsers.hyperparameters.ranker import RankerConfig
 
     pairs = made_up(*WORLDS[name])
     config = RankerConfig(threads=2, steps=steps)

@@ -12,8 +12,8 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from parser_service.parsers.encoder_places import CONFIG, TOKENIZERS, WEIGHTS, find_encoder
 from parser_service.parsers.storage import file_hash
+from parser_service.parsers.weights.encoder_places import CONFIG, TOKENIZERS, WEIGHTS, find_encoder
 
 if TYPE_CHECKING:
     from tokenizers import Tokenizer

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from parser_service.parsers.conditions import Protocol
-from parser_service.parsers.config_fields import hyperparameter, validate
+from parser_service.parsers.hyperparameters.fields import hyperparameter, validate
 from parser_service.parsers.interface import (
     TRAINING,
     Candidate,

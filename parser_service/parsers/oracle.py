@@ -17,7 +17,7 @@ from annotations.language.templates import (
     read_template,
 )
 from parser_service.parsers.conditions import Protocol
-from parser_service.parsers.config_fields import validate
+from parser_service.parsers.hyperparameters.fields import validate
 from parser_service.parsers.interface import (
     Candidate,
     Check,

@@ -11,7 +11,7 @@ from importlib import import_module
 from typing import Any
 
 from parser_service.parsers.conditions import Protocol
-from parser_service.parsers.config_fields import ConfigField, describe, read_config
+from parser_service.parsers.hyperparameters.fields import ConfigField, describe, read_config
 from parser_service.parsers.interface import Parser
 
 
@@ -83,7 +83,7 @@ PARSERS: dict[str, Entry] = {
     ),
     "seq2seq": Entry(
         dotted="parser_service.neural.seq2seq.parser.Seq2Seq",
-        config="parser_service.parsers.seq2seq_config.Seq2SeqConfig",
+        config="parser_service.parsers.hyperparameters.seq2seq.Seq2SeqConfig",
         title="Sequence to sequence",
         description="Bidirectional LSTM encoder, bilinear attention, LSTM decoder, beam search; "
         "word vectors learned from the training pairs alone.",
@@ -93,7 +93,7 @@ PARSERS: dict[str, Entry] = {
     ),
     "seq2seq-glove": Entry(
         dotted="parser_service.neural.seq2seq.rows.Seq2SeqGlove",
-        config="parser_service.parsers.vectors_config.GloveConfig",
+        config="parser_service.parsers.hyperparameters.vectors.GloveConfig",
         title="Seq2seq + GloVe",
         description="Sequence to sequence with word vectors that start as GloVe's and are "
         "trained further.",
@@ -104,7 +104,7 @@ PARSERS: dict[str, Entry] = {
     ),
     "seq2seq-glove-elmo": Entry(
         dotted="parser_service.neural.seq2seq.rows.Seq2SeqGloveElmo",
-        config="parser_service.parsers.vectors_config.GloveElmoConfig",
+        config="parser_service.parsers.hyperparameters.vectors.GloveElmoConfig",
         title="Seq2seq + GloVe, ELMo",
         description="Sequence to sequence with GloVe and, frozen, the layers of ELMo under a "
         "learned mix.",
@@ -115,7 +115,7 @@ PARSERS: dict[str, Entry] = {
     ),
     "seq2seq-glove-gpt": Entry(
         dotted="parser_service.neural.seq2seq.rows.Seq2SeqGloveGpt",
-        config="parser_service.parsers.vectors_config.GloveGptConfig",
+        config="parser_service.parsers.hyperparameters.vectors.GloveGptConfig",
         title="Seq2seq + GloVe, GPT",
         description="Sequence to sequence with GloVe and, frozen, the last layer of OpenAI's GPT.",
         version=1,
@@ -125,7 +125,7 @@ PARSERS: dict[str, Entry] = {
     ),
     "seq2seq-glove-bert-base": Entry(
         dotted="parser_service.neural.seq2seq.rows.Seq2SeqGloveBertBase",
-        config="parser_service.parsers.vectors_config.GloveBertBaseConfig",
+        config="parser_service.parsers.hyperparameters.vectors.GloveBertBaseConfig",
         title="Seq2seq + GloVe, BERT base",
         description="Sequence to sequence with GloVe and, frozen, the last layer of BERT base.",
         version=1,
@@ -135,7 +135,7 @@ PARSERS: dict[str, Entry] = {
     ),
     "seq2seq-glove-bert-large": Entry(
         dotted="parser_service.neural.seq2seq.rows.Seq2SeqGloveBertLarge",
-        config="parser_service.parsers.vectors_config.GloveBertLargeConfig",
+        config="parser_service.parsers.hyperparameters.vectors.GloveBertLargeConfig",
         title="Seq2seq + GloVe, BERT large",
         description="Sequence to sequence with GloVe and, frozen, the last layer of BERT large.",
         version=1,
@@ -145,7 +145,7 @@ PARSERS: dict[str, Entry] = {
     ),
     "seq2seq-minilm": Entry(
         dotted="parser_service.neural.seq2seq.rows.Seq2SeqMiniLm",
-        config="parser_service.parsers.vectors_config.MiniLmConfig",
+        config="parser_service.parsers.hyperparameters.vectors.MiniLmConfig",
         title="Seq2seq + MiniLM",
         description="Sequence to sequence with learned word vectors and, frozen, the last layer of "
         "a small sentence encoder.",
@@ -155,7 +155,7 @@ PARSERS: dict[str, Entry] = {
     ),
     "ranker": Entry(
         dotted="parser_service.neural.ranker.parser.FormRanker",
-        config="parser_service.parsers.ranker_config.RankerConfig",
+        config="parser_service.parsers.hyperparameters.ranker.RankerConfig",
         title="Form ranker",
         description="A fine-tuned sentence encoder chooses among whole forms, by their examples and "
         "by their English glosses; new forms, made from those of the training pairs, are among them.",
@@ -167,7 +167,7 @@ PARSERS: dict[str, Entry] = {
     ),
     "t5": Entry(
         dotted="parser_service.neural.t5.parser.T5",
-        config="parser_service.parsers.t5_config.EncoderDecoderConfig",
+        config="parser_service.parsers.hyperparameters.t5.EncoderDecoderConfig",
         title="Encoder–decoder (T5, BART)",
         description="Fine-tunes a pretrained encoder–decoder to write forms; what it may write is "
         "free, one of a list of forms, or whatever the signatures of predicates allow.",

@@ -9,7 +9,7 @@ from hashlib import file_digest
 from pathlib import Path
 from typing import Any
 
-from parser_service.parsers.config_fields import read_config
+from parser_service.parsers.hyperparameters.fields import read_config
 from parser_service.parsers.interface import Parser
 
 CONFIG = "config.json"

@@ -32,10 +32,10 @@ from parser_service.neural.ranker.weighing import Report, weigh_by
 from parser_service.neural.sentence_encoder import SentenceEncoder
 from parser_service.neural.training import TRAINING, Clock, resume
 from parser_service.parsers.candidates.slot_filling import SlotFiller
-from parser_service.parsers.encoder_places import encoders_folder
+from parser_service.parsers.hyperparameters.ranker import RankerConfig
 from parser_service.parsers.interface import Check, EpochReport, Knowledge, Observer, Pair
-from parser_service.parsers.ranker_config import RankerConfig
 from parser_service.parsers.storage import read_json
+from parser_service.parsers.weights.encoder_places import encoders_folder
 
 VALIDATIONS = 4  # in a training; each re-encodes all examples, which takes a while
 FIRST_SHARE = 0.5  # of the steps, before the forms that were held out are learned as well

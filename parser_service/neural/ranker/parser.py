@@ -19,6 +19,7 @@ from parser_service.neural.ranker.weighing import weigh_by
 from parser_service.neural.sentence_encoder import ENCODER, TOKENIZER, SentenceEncoder
 from parser_service.neural.weights import WEIGHTS, load_weights, save_weights
 from parser_service.parsers.conditions import Protocol
+from parser_service.parsers.hyperparameters.ranker import RankerConfig
 from parser_service.parsers.interface import (
     Candidate,
     Check,
@@ -29,7 +30,6 @@ from parser_service.parsers.interface import (
     ScoreKind,
     keep_going,
 )
-from parser_service.parsers.ranker_config import RankerConfig
 from parser_service.parsers.storage import open_sealed, read_json, seal, write_json
 
 FORMS = "forms.json"

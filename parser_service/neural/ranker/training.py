@@ -19,8 +19,8 @@ from parser_service.neural.ranker.model import RankerModel
 from parser_service.neural.ranker.prototype_head import PrototypeHead
 from parser_service.neural.ranker.ranked_forms import RankedExample
 from parser_service.neural.training import Clock, finite_mean, random_state_kept
+from parser_service.parsers.hyperparameters.ranker import RankerConfig
 from parser_service.parsers.interface import Check
-from parser_service.parsers.ranker_config import RankerConfig
 
 WARM_UP = 0.06  # share of the steps over which the rate grows
 LEAST_RATE = 0.02  # share of the rate that is left at the end

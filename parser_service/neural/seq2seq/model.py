@@ -13,7 +13,7 @@ from parser_service.neural.seq2seq.embeddings import Dropout, WordEmbedding
 from parser_service.neural.seq2seq.encoder import Encoder
 from parser_service.neural.seq2seq.vocabulary import PADDING
 from parser_service.neural.word_vectors.scalar_mix import ContextShape, ScalarMix
-from parser_service.parsers.seq2seq_config import Seq2SeqConfig
+from parser_service.parsers.hyperparameters.seq2seq import Seq2SeqConfig
 
 
 class Seq2SeqModel(nn.Module):

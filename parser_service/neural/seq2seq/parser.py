@@ -21,6 +21,7 @@ from parser_service.neural.training import resume
 from parser_service.neural.weights import WEIGHTS, load_weights, save_weights
 from parser_service.neural.word_vectors.scalar_mix import ContextShape
 from parser_service.parsers.conditions import Protocol
+from parser_service.parsers.hyperparameters.seq2seq import Seq2SeqConfig
 from parser_service.parsers.interface import (
     Candidate,
     Check,
@@ -33,7 +34,6 @@ from parser_service.parsers.interface import (
     keep_going,
 )
 from parser_service.parsers.logical_forms import canonical_or_same
-from parser_service.parsers.seq2seq_config import Seq2SeqConfig
 from parser_service.parsers.storage import open_sealed, read_json, seal, write_json
 from parser_service.parsers.words import words
 

@@ -8,7 +8,7 @@ from parser_service.neural.seq2seq.with_context import WithContext
 from parser_service.neural.seq2seq.with_glove import WithGlove
 from parser_service.neural.word_vectors.contextual import ContextualEncoder, TransformerWords
 from parser_service.neural.word_vectors.elmo import Elmo
-from parser_service.parsers.vectors_config import (
+from parser_service.parsers.hyperparameters.vectors import (
     GloveBertBaseConfig,
     GloveBertLargeConfig,
     GloveConfig,

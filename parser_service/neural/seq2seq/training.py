@@ -11,8 +11,8 @@ from torch import Tensor
 from parser_service.neural.seq2seq.batches import Batch, Example, in_order, shuffle
 from parser_service.neural.seq2seq.model import Seq2SeqModel
 from parser_service.neural.training import finite_mean
+from parser_service.parsers.hyperparameters.seq2seq import Seq2SeqConfig
 from parser_service.parsers.interface import Check
-from parser_service.parsers.seq2seq_config import Seq2SeqConfig
 
 VALIDATION_BATCH = 64
 

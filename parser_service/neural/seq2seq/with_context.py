@@ -14,9 +14,9 @@ from parser_service.neural.seq2seq.parser import Seq2Seq
 from parser_service.neural.word_vectors.contextual import ContextualEncoder
 from parser_service.neural.word_vectors.scalar_mix import ContextShape
 from parser_service.neural.word_vectors.vector_cache import VectorCache
-from parser_service.parsers.encoder_places import encoders_folder, vectors_folder
 from parser_service.parsers.interface import Observer, Pair
-from parser_service.parsers.weight_files import refuse_missing_weights
+from parser_service.parsers.weights.encoder_places import encoders_folder, vectors_folder
+from parser_service.parsers.weights.files import refuse_missing_weights
 from parser_service.parsers.words import words
 
 ENCODER = "encoder"  # what is saved of it, beside the vocabularies

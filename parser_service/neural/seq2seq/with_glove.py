@@ -11,10 +11,10 @@ from torch import Tensor
 from parser_service.neural.seq2seq.parser import Seq2Seq
 from parser_service.neural.seq2seq.vocabulary import Vocabulary
 from parser_service.neural.word_vectors.glove import read_glove
-from parser_service.parsers.encoder_places import encoders_folder
+from parser_service.parsers.hyperparameters.vectors import GloveConfig
 from parser_service.parsers.interface import Observer, Pair
-from parser_service.parsers.vectors_config import GloveConfig
-from parser_service.parsers.weight_files import find_glove, refuse_missing_weights
+from parser_service.parsers.weights.encoder_places import encoders_folder
+from parser_service.parsers.weights.files import find_glove, refuse_missing_weights
 
 
 class WithGlove(Seq2Seq):

@@ -21,7 +21,7 @@ from parser_service.neural.t5.training import Example, Training, validation_loss
 from parser_service.neural.t5.trie import Trie
 from parser_service.neural.training import random_state_kept, resume
 from parser_service.parsers.conditions import Protocol
-from parser_service.parsers.encoder_places import encoders_folder
+from parser_service.parsers.hyperparameters.t5 import EncoderDecoderConfig
 from parser_service.parsers.interface import (
     Candidate,
     Check,
@@ -36,8 +36,8 @@ from parser_service.parsers.interface import (
 from parser_service.parsers.logical_forms import canonical_or_same
 from parser_service.parsers.spreading import spread
 from parser_service.parsers.storage import open_sealed, read_json, seal, write_json
-from parser_service.parsers.t5_config import EncoderDecoderConfig
-from parser_service.parsers.weight_files import refuse_missing_weights
+from parser_service.parsers.weights.encoder_places import encoders_folder
+from parser_service.parsers.weights.files import refuse_missing_weights
 
 FORMS = "forms.json"
 SAVED = (FORMS, *FILES)

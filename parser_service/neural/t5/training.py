@@ -16,8 +16,8 @@ from torch.nn.functional import cross_entropy
 from parser_service.neural.device import denormals_flushed, has_bf16
 from parser_service.neural.t5.network import EncoderDecoder, Source
 from parser_service.neural.training import finite_mean, random_state_kept
+from parser_service.parsers.hyperparameters.t5 import EncoderDecoderConfig
 from parser_service.parsers.interface import Check
-from parser_service.parsers.t5_config import EncoderDecoderConfig
 
 WEIGHT_DECAY = 0.01
 POOL = 8  # batches sorted by length together: little padding, yet another mix each epoch

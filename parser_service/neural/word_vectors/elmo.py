@@ -15,7 +15,7 @@ from parser_service.neural.word_vectors.elmo_layers import ProjectedLstm
 from parser_service.neural.word_vectors.elmo_options import ElmoOptions, read_elmo_options
 from parser_service.neural.word_vectors.elmo_weights import BACKWARD, FORWARD, open_weights
 from parser_service.parsers.storage import file_hash
-from parser_service.parsers.weight_files import find_elmo
+from parser_service.parsers.weights.files import find_elmo
 
 
 class Elmo:

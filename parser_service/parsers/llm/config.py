@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from parser_service.parsers.config_fields import hyperparameter, validate
+from parser_service.parsers.hyperparameters.fields import hyperparameter, validate
 
 LISTED, FREE = "listed", "free"
 

@@ -13,8 +13,8 @@ from annotations.models.background import Status
 from parser_service.models import TrainingRun
 from parser_service.parsers import registry
 from parser_service.parsers.conditions import TrainSources
-from parser_service.parsers.config_fields import refuse_unnamed
-from parser_service.parsers.weight_files import refuse_missing_weights
+from parser_service.parsers.hyperparameters.fields import refuse_unnamed
+from parser_service.parsers.weights.files import refuse_missing_weights
 from parser_service.runs.requests.content_key import content_key
 
 LARGEST_SEED = 2**32 - 1

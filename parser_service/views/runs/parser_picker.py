@@ -13,7 +13,7 @@ from parser_service.models import Evaluation
 from parser_service.models.runs import Status
 from parser_service.models.shown_scores import ShownScore, shown_scores
 from parser_service.parsers.registry import PARSERS, Entry, Needs, make_config
-from parser_service.parsers.weight_files import find_gaps
+from parser_service.parsers.weights.files import find_gaps
 
 MOST_RUNS = 200  # the newest that times are taken from
 TITLES = {

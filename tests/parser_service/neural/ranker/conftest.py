@@ -6,7 +6,7 @@ import pytest
 
 from parser_service.neural.ranker.parser import FormRanker
 from parser_service.parsers.candidates.glosses import glosses
-from parser_service.parsers.ranker_config import RankerConfig
+from parser_service.parsers.hyperparameters.ranker import RankerConfig
 from tests.parser_service.neural.conftest import toy_pairs
 from tests.parser_service.neural.ranker.sample_domain import UNSEEN
 from tests.parser_service.neural.tiny_encoder import write_tiny_encoder

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from parser_service.neural.ranker.parser import FormRanker
 from parser_service.neural.ranker.training import cut, plan
 from parser_service.neural.training.clock import LEAST_TIMED, Clock
+from parser_service.parsers.hyperparameters.ranker import RankerConfig
 from parser_service.parsers.interface import Cancelled
-from parser_service.parsers.ranker_config import RankerConfig
 from tests.parser_service.neural.conftest import Recorder
 from tests.parser_service.neural.ranker.sample_domain import utterances
 

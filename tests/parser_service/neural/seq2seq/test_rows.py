@@ -7,9 +7,9 @@ import torch
 
 from parser_service.neural.seq2seq.rows import Seq2SeqGlove, Seq2SeqGloveElmo, Seq2SeqMiniLm
 from parser_service.neural.word_vectors.vector_cache import VectorCache
-from parser_service.parsers import encoder_places
 from parser_service.parsers.interface import Cancelled, Pair
 from parser_service.parsers.registry import PARSERS
+from parser_service.parsers.weights import encoder_places
 from parser_service.parsers.words import words
 from tests.parser_service.neural.conftest import PRETRAINED, Recorder, StoppedOnce, parser_of
 from tests.parser_service.neural.tampering import alter_weights

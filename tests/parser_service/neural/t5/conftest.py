@@ -7,8 +7,8 @@ import pytest
 from annotations.language.forms import read_form
 from annotations.language.predicates import infer_signatures
 from parser_service.neural.t5.parser import T5
-from parser_service.parsers import encoder_places
-from parser_service.parsers.t5_config import EncoderDecoderConfig
+from parser_service.parsers.hyperparameters.t5 import EncoderDecoderConfig
+from parser_service.parsers.weights import encoder_places
 from tests.parser_service.neural.conftest import toy_pairs
 from tests.parser_service.neural.tiny_encoder_decoder import write_bart, write_t5
 

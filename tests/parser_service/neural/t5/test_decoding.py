@@ -26,7 +26,7 @@ def untrained(writers):
         return parser
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("parser_service.parsers.encoder_places._encoders", writers)
+        patch.setattr("parser_service.parsers.weights.encoder_places._encoders", writers)
         domain = Knowledge(predicates=DECLARED)
         return {
             "free": after_a_step("free"),

@@ -11,7 +11,7 @@ import pytest
 
 from parser_service.parsers.llm.places import Patience, Server, is_this_machine, problem_of
 from parser_service.parsers.registry import make_config
-from parser_service.parsers.weight_files import find_gaps
+from parser_service.parsers.weights.files import find_gaps
 from tests.parser_service.llm_server import KEY, installed
 
 HERE = "http://127.0.0.1:8080/v1"

@@ -14,7 +14,7 @@ from parser_service.models import TrainingRun
 from parser_service.parsers import registry
 from parser_service.parsers.interface import Parser
 from parser_service.parsers.knn import NearestNeighbour
-from parser_service.parsers.weight_files import missing_weights
+from parser_service.parsers.weights.files import missing_weights
 from parser_service.runs import lifecycle
 from parser_service.runs.carrying_out.knowledge import knowledge_of
 from parser_service.runs.carrying_out.training import make_parser, sentence_of, train

@@ -12,9 +12,9 @@ from django.core.management import CommandError, call_command
 
 from annotations.language.corpus import by_length, write_pairs
 from parser_service.models import TrainingRun
-from parser_service.parsers import encoder_places
 from parser_service.parsers.registry import config_fields, make_config
-from parser_service.parsers.weight_files import missing_weights
+from parser_service.parsers.weights import encoder_places
+from parser_service.parsers.weights.files import missing_weights
 from parser_service.runs.requests import requesting
 from tests.parser_service.made_up import made_up_pairs
 from tests.sample_world import fill_world

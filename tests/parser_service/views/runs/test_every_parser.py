@@ -9,10 +9,10 @@ from math import isfinite
 import pytest
 
 from parser_service.models import TrainingRun
-from parser_service.parsers import encoder_places
-from parser_service.parsers.config_fields import ConfigField
+from parser_service.parsers.hyperparameters.fields import ConfigField
 from parser_service.parsers.registry import PARSERS, config_fields, config_values, make_config
-from parser_service.parsers.weight_files import missing_weights
+from parser_service.parsers.weights import encoder_places
+from parser_service.parsers.weights.files import missing_weights
 from parser_service.runs.worker import work_next
 from tests.parser_service.llm_server import installed_tiny_server
 from tests.parser_service.made_up import TINY, VERBS, made_up_pairs

@@ -7,8 +7,8 @@ from urllib.parse import parse_qs, urlsplit
 import pytest
 
 from parser_service.models import Evaluation, TrainingRun
-from parser_service.parsers import encoder_places
 from parser_service.parsers.registry import PARSERS, Needs
+from parser_service.parsers.weights import encoder_places
 from parser_service.runs.requests import requesting
 from parser_service.views.runs.parser_picker import parser_groups
 from tests.parser_service.made_up import make_split

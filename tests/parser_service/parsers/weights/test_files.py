@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import pytest
 
-from parser_service.parsers import encoder_places
 from parser_service.parsers.registry import make_config
-from parser_service.parsers.weight_files import (
+from parser_service.parsers.weights import encoder_places
+from parser_service.parsers.weights.files import (
     ElmoFiles,
     find_elmo,
     find_glove,
@@ -95,7 +95,7 @@ def test_a_row_of_the_paper_names_all_its_weights(row, tmp_path):
 def test_looking_for_weights_loads_no_torch():
     code = (
         "import sys; from parser_service.parsers.registry import PARSERS, make_config\n"
-        "from parser_service.parsers.weight_files import missing_weights\n"
+        "from parser_service.parsers.weights.files import missing_weights\n"
         "for name in PARSERS: missing_weights(make_config(name))\n"
         "sys.exit('torch' in sys.modules)"
     )

@@ -10,13 +10,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from parser_service.parsers.encoder_places import (
+from parser_service.parsers.llm.places import ADDRESS, problem_of, server
+from parser_service.parsers.weights.encoder_places import (
     encoders_folder,
     find_encoder,
     inside,
     refuse_path,
 )
-from parser_service.parsers.llm.places import ADDRESS, problem_of, server
 
 OPTIONS_ENDING = "options.json"
 WEIGHTS_ENDING = "weights.hdf5"

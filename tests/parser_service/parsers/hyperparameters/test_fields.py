@@ -2,7 +2,12 @@ from dataclasses import dataclass
 
 import pytest
 
-from parser_service.parsers.config_fields import describe, hyperparameter, read_config, validate
+from parser_service.parsers.hyperparameters.fields import (
+    describe,
+    hyperparameter,
+    read_config,
+    validate,
+)
 
 
 @dataclass(frozen=True)

