@@ -22,7 +22,7 @@ class ParserServiceConfig(AppConfig):
         register_verb(JobKind.AUDIT, "parser_service.audit.carrying_out.audit")
         register_verb(JobKind.PROPOSE, "parser_service.candidates.proposing.propose")
         register_verb(JobKind.ANALYSE, "parser_service.analysing.carrying_out.analyse")
-        register_verb(JobKind.ANSWER, "parser_service.analysing.answering.answer")
+        register_verb(JobKind.ANSWER, "parser_service.analysing.tryouts.answering.answer")
         register_part("parser_service.robots.archived.ACTION_NAMES")
         register_results("run", lambda keys: TrainingRun.objects.filter(split__in=keys).count())
         keep_encoders_in(

@@ -12,7 +12,7 @@ from django.http import HttpRequest
 from annotations.lists.choices import Choices
 from annotations.lists.filtering import PageFilters, Search
 from annotations.models import Split
-from parser_service.analysing.probe_kinds import PROBE_KINDS
+from parser_service.analysing.probes.kinds import PROBE_KINDS
 from parser_service.models import Probe, TrainingRun
 from parser_service.models.runs import TrainingRunQuerySet, status_choices
 from parser_service.parsers.registry import PARSERS

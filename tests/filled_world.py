@@ -28,7 +28,7 @@ from annotations.models.worlds import Role
 from annotations.queueing import answer, set_share
 from annotations.queueing.sources import refill
 from parser_service.analysing.carrying_out import analyse
-from parser_service.analysing.trying import ask
+from parser_service.analysing.tryouts.trying import ask
 from parser_service.conversing.offering import offer, refuse
 from parser_service.conversing.talking import reply, start
 from parser_service.models import Promotion, PromotionState, Slice, TrainingRun

@@ -9,18 +9,18 @@ from typing import Any
 
 from annotations.background.progress import Progress
 from annotations.models import Job
-from parser_service.analysing.asking import answer_findings
 from parser_service.analysing.attracting import attractor_findings
 from parser_service.analysing.confusing import confusion_findings
 from parser_service.analysing.findings import findings_of, keep_finding
-from parser_service.analysing.probing import probe_findings
-from parser_service.analysing.proposing import proposal_findings
-from parser_service.analysing.refusing import refusal_findings
-from parser_service.analysing.sensing import (
+from parser_service.analysing.probes.asking import answer_findings
+from parser_service.analysing.probes.probing import probe_findings
+from parser_service.analysing.probes.sensing import (
     deciding_word_findings,
     pair_findings,
     sensitivity_findings,
 )
+from parser_service.analysing.proposing import proposal_findings
+from parser_service.analysing.refusals.refusing import refusal_findings
 from parser_service.analysing.target import Target, parts_of
 from parser_service.models import TrainingRun
 from parser_service.models.runs import Status

@@ -7,7 +7,7 @@ from typing import Any
 
 from django.utils.safestring import SafeString
 
-from parser_service.analysing.probe_kinds import PROBE_KINDS
+from parser_service.analysing.probes.kinds import PROBE_KINDS
 from parser_service.analysis.sensitivity import ALL_KINDS
 from parser_service.reporting.charts import Line, draw_lines
 

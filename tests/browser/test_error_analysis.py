@@ -12,7 +12,7 @@ from annotations.models import Job, JobKind
 from parser_service.analysing.carrying_out import OF_PARTS
 from parser_service.analysing.findings import keep_finding
 from parser_service.analysing.target import Target
-from parser_service.analysing.trying import answer_jobs
+from parser_service.analysing.tryouts.trying import answer_jobs
 from parser_service.models import Tryout
 from tests.filled_world import save_parser
 from tests.parser_service.analysing.conftest import done

@@ -11,8 +11,8 @@ from django.shortcuts import get_object_or_404, render
 from annotations.models import Duty, World
 from annotations.people.access import world_view
 from parser_service.analysing.findings import findings_of
-from parser_service.analysing.probe_summaries import paper_texts, runs_beside, summaries_of
-from parser_service.analysing.refusal_points import FACTS, curve_chart, place_of, points_of
+from parser_service.analysing.probes.summaries import paper_texts, runs_beside, summaries_of
+from parser_service.analysing.refusals.points import FACTS, curve_chart, place_of, points_of
 from parser_service.analysing.state import analysis_of
 from parser_service.analysing.target import SOURCES, parts_of
 from parser_service.models import TrainingRun

@@ -12,8 +12,8 @@ from django.shortcuts import get_object_or_404, render
 from annotations.models import Duty, World
 from annotations.people.access import world_view
 from parser_service.analysing.findings import findings_of
-from parser_service.analysing.probe_kinds import PROBE_KINDS
-from parser_service.analysing.probe_summaries import paper_texts, runs_beside
+from parser_service.analysing.probes.kinds import PROBE_KINDS
+from parser_service.analysing.probes.summaries import paper_texts, runs_beside
 from parser_service.analysing.state import analysis_of
 from parser_service.analysing.target import parts_of
 from parser_service.analysis.edits import EditKind

@@ -13,7 +13,7 @@ from django_htmx.http import replace_url
 
 from annotations.models import Duty, Example, World
 from annotations.people.access import WRITE, world_view
-from parser_service.analysing.trying import MOST_TEXT, ask, request_answers
+from parser_service.analysing.tryouts.trying import MOST_TEXT, ask, request_answers
 from parser_service.analysis.probing import PAPER_PROBES
 from parser_service.models import TrainingRun, Tryout
 from parser_service.serving.choosing import best_run

@@ -12,7 +12,7 @@ from annotations.models import Job, JobKind
 from parser_service.analysing import findings as findings_module
 from parser_service.analysing.carrying_out import names_of_steps
 from parser_service.analysing.findings import findings_of
-from parser_service.analysing.refusing import refusal_findings
+from parser_service.analysing.refusals.refusing import refusal_findings
 from parser_service.analysing.state import analysis_of
 from parser_service.analysing.target import Target
 from parser_service.models import ProbeAnswer

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from annotations.models import Job
-from parser_service.analysing.trying import MOST_TEXT, answer_jobs
+from parser_service.analysing.tryouts.trying import MOST_TEXT, answer_jobs
 from parser_service.models import Tryout
 from parser_service.promotion import promote
 from tests.parser_service.analysing.conftest import done, home, train_one  # noqa: F401

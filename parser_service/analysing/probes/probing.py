@@ -11,7 +11,7 @@ from annotations.language.errors import LanguageError
 from annotations.language.forms import UNKNOWN, canonical_text, read_form
 from annotations.models import Example, World
 from annotations.rows.from_rows import ontology_of, predicates_of, task_categories
-from parser_service.analysing.probe_kinds import REMOVAL
+from parser_service.analysing.probes.kinds import REMOVAL
 from parser_service.analysing.target import Target
 from parser_service.analysis.edits import (
     WorldFacts,

@@ -37,7 +37,7 @@ FACTS = (
 
 
 def points_of(curve: Mapping[str, Any]) -> list[RefusalPoint]:
-    """Return the points of a curve (``analysing.refusing``), from the lowest bound, where everything is
+    """Return the points of a curve (``analysing.refusals.refusing``), from the lowest bound, where everything is
     answered, to the highest."""
     return [_point(curve, place) for place in reversed(range(len(curve["bounds"])))]
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from annotations.background.progress import Progress
-from parser_service.analysing.probe_kinds import REMOVAL
+from parser_service.analysing.probes.kinds import REMOVAL
 from parser_service.analysing.target import Target
 from parser_service.analysis.edits import mine_pairs
 from parser_service.analysis.labels import encode

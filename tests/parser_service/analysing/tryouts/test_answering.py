@@ -7,8 +7,8 @@ import pytest
 from annotations import background
 from annotations.jobs import request_job
 from annotations.models import Job, JobKind
-from parser_service.analysing import answering
-from parser_service.analysing.trying import answer_jobs, ask
+from parser_service.analysing.tryouts import answering
+from parser_service.analysing.tryouts.trying import answer_jobs, ask
 from parser_service.models import Tryout
 from parser_service.runs.checkpoints import model_folder, remove_folder
 from tests.parser_service.analysing.conftest import done

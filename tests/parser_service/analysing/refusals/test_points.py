@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from parser_service.analysing.refusal_points import curve_chart, place_of, points_of
+from parser_service.analysing.refusals.points import curve_chart, place_of, points_of
 
 # Log-probabilities, as a curve of seq2seq has them, from the highest bound to the lowest.
 CURVE = {

@@ -6,7 +6,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from parser_service.analysing.asking import is_refusal
+from parser_service.analysing.probes.asking import is_refusal
 from parser_service.analysis.probing import PAPER_PROBES, ProbeKind
 from parser_service.models import ProbeAnswer, RunAnalysis, TrainingRun
 

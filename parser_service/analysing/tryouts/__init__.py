@@ -1,0 +1,1 @@
+"""Texts that people try on runs: one asks, a worker answers."""
