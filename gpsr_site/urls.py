@@ -12,15 +12,15 @@ from annotations.views.people.audit_log import site_log
 from annotations.views.people.joining import join
 from annotations.views.worlds import jobs
 from annotations.views.worlds.worlds import world_import, world_new
-from gpsr_site import pages
-from gpsr_site.accounts import ChangePassword, LogIn, SetPassword
-from gpsr_site.search import search
+from gpsr_site.accounts.passwords import ChangePassword, LogIn, SetPassword
+from gpsr_site.pages.search import search
+from gpsr_site.pages.worlds import banner, healthz, home, world
 from parser_service.api.urls import urlpatterns as parser_routes
 
 API_ROUTES = [*corpus_routes, *parser_routes]
 
 urlpatterns = [
-    path("", pages.home, name="home"),
+    path("", home, name="home"),
     path("login/", LogIn.as_view(), name="login"),
     path("logout/", LogoutView.as_view(), name="logout"),
     path("password/", ChangePassword.as_view(), name="password"),
@@ -35,8 +35,8 @@ urlpatterns = [
     path("account/sessions/end/", account.sessions_end, name="sessions_end"),
     path("account/sessions/<slug:handle>/end/", account.session_end, name="session_end"),
     path("join/<str:key>/", join, name="join"),
-    path("banner/", pages.banner, name="banner"),
-    path("healthz", pages.healthz, name="healthz"),
+    path("banner/", banner, name="banner"),
+    path("healthz", healthz, name="healthz"),
     path("worlds/new/", world_new, name="world_new"),
     path("worlds/import/", world_import, name="world_import"),
     path("inbox/", comments.inbox, name="inbox"),
@@ -45,7 +45,7 @@ urlpatterns = [
     path("jobs/<int:pk>/state/", jobs.job_state, name="job_state"),
     path("jobs/<int:pk>/cancel/", jobs.job_cancel, name="job_cancel"),
     path("jobs/<int:pk>/answer/", jobs.job_answer, name="job_answer"),
-    path("w/<slug:world>/", pages.world, name="world"),
+    path("w/<slug:world>/", world, name="world"),
     path("w/<slug:world>/search/", search, name="search"),
     path("w/<slug:world>/", include("annotations.urls")),
     path("w/<slug:world>/", include("parser_service.urls")),

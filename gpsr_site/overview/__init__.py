@@ -1,0 +1,1 @@
+"""What the overview of a world and the frame of every page say: counts, steps, work, workers."""

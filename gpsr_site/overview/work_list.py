@@ -1,6 +1,6 @@
 """What waits in a world, sorted by who does it. The overview shows it, the reader's own work first.
 
-Each count is the number of rows on the page that its link opens: tests/gpsr_site/test_work_list.py.
+Each count is the number of rows on the page that its link opens: tests/gpsr_site/overview/test_work_list.py.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from annotations.models import Duty, Job, World
 from annotations.models.worlds import Role
 from gpsr_site.overview.best_runs import BestRuns
 from gpsr_site.overview.counts import Counts
-from gpsr_site.workers import Workers
+from gpsr_site.overview.workers import Workers
 
 # The duty that makes somebody one of a role, the role with most to decide first.
 ROLES = {Role.ADMIN: Duty.MANAGE, Role.ANNOTATOR: Duty.ANNOTATE, Role.REVIEWER: Duty.REVIEW}

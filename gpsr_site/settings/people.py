@@ -27,11 +27,11 @@ if SSO_SERVER_URL:
         "django.contrib.auth.backends.ModelBackend",
         "allauth.account.auth_backends.AuthenticationBackend",
     ]
-    ACCOUNT_ADAPTER = "gpsr_site.single_sign_on.Accounts"
+    ACCOUNT_ADAPTER = "gpsr_site.accounts.single_sign_on.Accounts"
     ACCOUNT_EMAIL_VERIFICATION = "none"
     ACCOUNT_SIGNUP_FIELDS = ["username*"]
     ACCOUNT_UNIQUE_EMAIL = False
-    SOCIALACCOUNT_ADAPTER = "gpsr_site.single_sign_on.SignOn"
+    SOCIALACCOUNT_ADAPTER = "gpsr_site.accounts.single_sign_on.SignOn"
     SOCIALACCOUNT_AUTO_SIGNUP = True
     SOCIALACCOUNT_OPENID_CONNECT_URL_PREFIX = ""
     SOCIALACCOUNT_PROVIDERS = {

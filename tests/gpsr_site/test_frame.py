@@ -9,9 +9,9 @@ import pytest
 from django.utils import timezone
 
 from annotations.models import StoredProblem, World
-from gpsr_site.frame import PLACES
 from gpsr_site.overview.counts import counts_of, counts_of_all
-from gpsr_site.workers import workers_now
+from gpsr_site.overview.workers import workers_now
+from gpsr_site.pages.frame import PLACES
 from parser_service.models import Worker
 from parser_service.runs.requests import requesting
 from tests.gpsr_site.routes.listing import ROUTES_OF_WORLDS

@@ -19,7 +19,7 @@ from gpsr_site.overview.best_runs import best_runs
 from gpsr_site.overview.counts import counts_of
 from gpsr_site.overview.first_steps import first_steps
 from gpsr_site.overview.work_list import WorkList
-from gpsr_site.workers import Workers
+from gpsr_site.overview.workers import Workers
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.models.runs import Status
 from parser_service.runs.requests import requesting

@@ -99,7 +99,7 @@ def test_an_error_of_the_program_is_a_500_in_plain_words(annotator, visitor, mon
     def fail(*args):
         raise ZeroDivisionError
 
-    monkeypatch.setattr("gpsr_site.pages.counts_of_all", fail)
+    monkeypatch.setattr("gpsr_site.pages.worlds.counts_of_all", fail)
     visitor.force_login(annotator)
     answer = visitor.get("/")
     assert answer.status_code == 500

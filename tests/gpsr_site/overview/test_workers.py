@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from django.utils import timezone
 
-from gpsr_site.workers import workers_now
+from gpsr_site.overview.workers import workers_now
 from parser_service.models import TrainingRun, Worker
 from parser_service.runs.requests import requesting
 

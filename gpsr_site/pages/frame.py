@@ -15,7 +15,7 @@ from annotations.language.english import say_count
 from annotations.models import Duty, Notice, World
 from annotations.rows.kinds import KINDS
 from gpsr_site.overview.counts import Counts, counts_of
-from gpsr_site.workers import workers_now
+from gpsr_site.overview.workers import workers_now
 
 
 @dataclass(frozen=True, slots=True)

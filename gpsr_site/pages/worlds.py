@@ -16,7 +16,7 @@ from gpsr_site.overview.counts import counts_of, counts_of_all
 from gpsr_site.overview.first_steps import first_steps
 from gpsr_site.overview.flow import stages
 from gpsr_site.overview.work_list import WorkList
-from gpsr_site.workers import workers_now
+from gpsr_site.overview.workers import workers_now
 
 MOST_SHOWN = 3  # things that wait, for each world of the list
 MOST_JOBS = 5  # in the work list; the page of jobs has them all

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from django.conf import settings
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 
 
 def test_without_a_server_there_is_none(db, client):
@@ -21,6 +21,6 @@ def test_without_a_server_there_is_none(db, client):
 @pytest.mark.processes
 def test_with_a_server_people_sign_on(migrated_folder):
     pytest.importorskip("allauth")
-    walk = [sys.executable, "-m", "tests.gpsr_site.sign_on_walk", str(migrated_folder)]
+    walk = [sys.executable, "-m", "tests.gpsr_site.accounts.sign_on_walk", str(migrated_folder)]
     done = subprocess.run(walk, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr

@@ -1,6 +1,6 @@
 """Walks through single sign-on in a process of its own, whose settings name a server that runs beside.
 
-Usage: python -m tests.gpsr_site.sign_on_walk FOLDER; exits with an error where something is not as it should be.
+Usage: python -m tests.gpsr_site.accounts.sign_on_walk FOLDER; exits with an error where something is wrong.
 """
 
 from __future__ import annotations

@@ -1,0 +1,1 @@
+"""Pages that look at both apps, and what every page shows around its content."""
