@@ -18,7 +18,7 @@ import pytest
 from tests.migrated import copy_installation
 from tests.waiting import PATIENCE_SECONDS, wait_for
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 pytestmark = [pytest.mark.processes, pytest.mark.services]
 # Below those that systems give to whoever asks for any free port.
 PORTS = range(15_000, 30_000)

@@ -13,7 +13,7 @@ from playwright.sync_api import Locator, Page, expect
 from annotations.models import Example, Paraphrase
 from parser_service.models import Review, TrainingRun
 from tests.browser.arriving import arrive, arrive_at
-from tests.browser.trained_world import IS_FULL, doubtful, train_three
+from tests.browser.reviewing.trained_world import IS_FULL, doubtful, train_three
 from tests.browser.walking import enter, follow, place, skip_to_content, tab_to
 from tests.parser_service.worker_process import TEMPO, RunningWorker
 from tests.waiting import wait_for
