@@ -11,7 +11,7 @@ from __future__ import annotations
 import argparse
 import resource
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -25,6 +25,7 @@ from parser_service.analysis.categories import RunEvidence, propose_categories
 from parser_service.analysis.comparing import compare_runs
 from parser_service.analysis.confusions import confuse_heads, confuse_slots
 from parser_service.analysis.edits import gather_facts, generate_edits, mine_pairs
+from parser_service.analysis.outcomes import MOST_CLUSTERS
 from parser_service.analysis.probing import make_probes
 from parser_service.analysis.risk_coverage import risk_coverage
 from parser_service.analysis.sensitivity import (
@@ -61,21 +62,25 @@ class World:
         luck, others = random.random(count), random.integers(len(expansions), size=count)
         answers = np.where(luck < 0.8, drawn, np.where(luck < 0.9, 0, others))
         self.predicted = [self.forms[place] for place in answers.tolist()]
+        self.clusters = drawn % MOST_CLUSTERS
         self.correct = random.random((RUNS, count)) < np.linspace(0.7, 0.9, RUNS)[:, None]
         self.scores = random.random(count)
         pairs = set(zip(self.gold, self.predicted, strict=True))
         self.errors = [pair for pair in pairs if pair[0] != pair[1]]
 
+    def slice_by(self, labels: Sequence[object]) -> None:
+        accuracy_by(self.correct, labels, self.clusters)
+
 
 def tasks(world: World) -> dict[str, Callable[[], object]]:
     right = world.correct[0]
     return {
-        "comparing": lambda: compare_runs(world.correct),
-        "slicing: head predicate": lambda: accuracy_by(world.correct, head_predicates(world.gold)),
-        "slicing: length": lambda: accuracy_by(world.correct, length_bins(world.utterances)),
-        "slicing: depth": lambda: accuracy_by(world.correct, form_depths(world.gold)),
-        "slicing: form seen": lambda: accuracy_by(
-            world.correct, are_seen(world.gold, world.forms[::2]).tolist()
+        "comparing": lambda: compare_runs(world.correct, world.clusters),
+        "slicing: head predicate": lambda: world.slice_by(head_predicates(world.gold)),
+        "slicing: length": lambda: world.slice_by(length_bins(world.utterances)),
+        "slicing: depth": lambda: world.slice_by(form_depths(world.gold)),
+        "slicing: form seen": lambda: world.slice_by(
+            are_seen(world.gold, world.forms[::2]).tolist()
         ),
         "confusions: heads": lambda: confuse_heads(world.gold, world.predicted),
         "confusions: slots": lambda: confuse_slots(world.gold, world.predicted),

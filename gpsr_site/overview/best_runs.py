@@ -38,9 +38,13 @@ class BestRun:
         return self.score.run.protocol
 
     @property
+    def parser(self) -> str:
+        return self.score.run.parser
+
+    @property
     def title(self) -> str:
-        entry = PARSERS.get(self.score.run.parser)
-        return entry.title if entry else self.score.run.parser
+        entry = PARSERS.get(self.parser)
+        return entry.title if entry else self.parser
 
     @property
     def wrong(self) -> int:

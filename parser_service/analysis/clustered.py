@@ -13,8 +13,9 @@ from functools import lru_cache
 from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from parser_service.analysis.arrays import Floats
+from parser_service.analysis.arrays import Floats, Ints
 from parser_service.analysis.proportions import wilson_interval
 from parser_service.analysis.resampling import SAMPLES, SEED
 
@@ -95,7 +96,8 @@ def interval_of(parts: Parts, samples: int = SAMPLES) -> Interval:
     """Return the 95 % interval of the mean figure over the trainings, fractions of 1.
 
     The 2.5th and 97.5th percentile under resampling of clusters and trainings. Where every cluster is
-    right, or every one wrong, samples do not differ: then it is Wilson's interval over the clusters.
+    right, or every one wrong, or there is one alone, samples do not differ: then it is Wilson's interval over
+    the clusters.
     """
     return _interval_of(_Numbers(parts), samples)
 
@@ -103,7 +105,7 @@ def interval_of(parts: Parts, samples: int = SAMPLES) -> Interval:
 @lru_cache(maxsize=1024)
 def _interval_of(numbers: _Numbers, samples: int) -> Interval:
     parts = numbers.parts
-    if any(set(part.accuracies) <= {0.0} or set(part.accuracies) <= {1.0} for part in parts):
+    if any(_is_flat(part) for part in parts):
         ends = np.array([_ends(part, samples) for part in parts])  # [parts, low and high]
         low, high = _combine(list(ends))
     else:
@@ -115,7 +117,8 @@ def compare(first: Parts, second: Parts, samples: int = SAMPLES) -> tuple[Interv
     """Return the 95 % interval of the mean figure of ``first`` less that of ``second``, and its two-sided
     p-value, by a paired bootstrap: both are drawn with the same clusters.
 
-    The p-value is the level at which the percentile interval would just reach 0.
+    The p-value is the level at which the percentile interval would just reach 0, and never below the
+    least of a sign test over the clusters: of few clusters samples say too much.
     """
     names = [
         sorted({*one.names, *other.names}, key=str)
@@ -132,9 +135,39 @@ def compare(first: Parts, second: Parts, samples: int = SAMPLES) -> tuple[Interv
 def _compare(first: _Numbers, second: _Numbers, samples: int) -> tuple[Interval, float]:
     differences = _sample(first.parts, samples) - _sample(second.parts, samples, stream=1)
     low, high = np.percentile(differences, [2.5, 97.5])
+    clusters = sum(part.clusters for part in first.parts)
+    return (float(low), float(high)), float(p_values(differences, clusters))
+
+
+def p_values(differences: Floats, clusters: ArrayLike) -> Floats:
+    """Return the two-sided p-values of differences in samples, [samples, …], of that many clusters, […].
+
+    No p-value is below the least that a sign test over the clusters can have, 2^(1 − clusters).
+    """
     # The data itself counts as one sample, so that p is never 0 (Davison and Hinkley 1997, p. 141).
-    tails = min((differences <= 0).sum(), (differences >= 0).sum())
-    return (float(low), float(high)), min(1.0, 2 * (1 + int(tails)) / (1 + samples))
+    tails = np.minimum((differences <= 0).sum(0), (differences >= 0).sum(0))
+    least = 2.0 ** (1 - np.asarray(clusters, dtype=float))
+    return np.asarray(np.minimum(1.0, np.maximum(2 * (1 + tails) / (1 + len(differences)), least)))
+
+
+def accuracies_in_samples(right: Ints, count: Ints, samples: int = SAMPLES) -> Floats:
+    """Return the accuracy of each of several runs in each sample of clusters, all drawn alike.
+
+    Args:
+        right: the number of examples that a run has right in each cluster, [runs, …, clusters].
+        count: the number of examples in each cluster, at least one in all, […, clusters].
+
+    Returns:
+        Fractions of 1, [samples, runs, …]; a sample without an example has the accuracy of all.
+    """
+    drawn = _draws(count.shape[-1], 0, samples)
+    counts = drawn @ count.reshape(-1, count.shape[-1]).T.astype(np.float32)
+    rights = drawn @ right.reshape(-1, right.shape[-1]).T.astype(np.float32)
+    shape = (samples, len(right), *count.shape[:-1])
+    counts = np.broadcast_to(counts.reshape(samples, 1, *count.shape[:-1]), shape)
+    overall = right.sum(-1) / count.sum(-1)
+    is_there = counts > 0
+    return np.where(is_there, rights.reshape(shape) / np.where(is_there, counts, 1), overall)
 
 
 def _sample(parts: Sequence[Clustered], samples: int, stream: int = 0) -> Floats:
@@ -179,8 +212,14 @@ def _combine(accuracies: Sequence[Floats]) -> Floats:
 
 
 def _ends(part: Clustered, samples: int) -> Interval:
-    accuracies = set(part.accuracies)
-    if accuracies <= {0.0} or accuracies <= {1.0}:
-        return wilson_interval(part.clusters if accuracies == {1.0} else 0, part.clusters)
+    if _is_flat(part):
+        share = float(part.accuracies.mean())
+        return wilson_interval(share * part.clusters, part.clusters)
     low, high = np.percentile(_sample((part,), samples), [2.5, 97.5])
     return float(low), float(high)
+
+
+def _is_flat(part: Clustered) -> bool:
+    """Return whether samples of clusters do not differ."""
+    accuracies = set(part.accuracies)
+    return part.clusters == 1 or accuracies <= {0.0} or accuracies <= {1.0}

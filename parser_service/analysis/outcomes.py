@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from hashlib import sha256
 from statistics import fmean
 from typing import Literal, TypeAlias
 
+import numpy as np
+
 from annotations.language.corpus import harmonic_mean
+from parser_service.analysis.arrays import Ints
 from parser_service.analysis.clustered import Clustered, Interval, Parts, interval_of
 from parser_service.analysis.scores import Judgement
 
@@ -22,13 +25,24 @@ Outcomes: TypeAlias = dict[str, list[int]]
 """Cluster, as digits of its SHA-256 → number of examples, and how many are exact, equivalent and well-formed."""
 
 
+def name_clusters(clusters: Collection[str]) -> dict[str, str]:
+    """Return the name under which each of distinct clusters is counted; of many several share one."""
+    digests = {cluster: sha256(cluster.encode()).hexdigest() for cluster in clusters}
+    if len(digests) > MOST_CLUSTERS:
+        return {each: str(int(digest, 16) % MOST_CLUSTERS) for each, digest in digests.items()}
+    return {each: digest[:NAME_DIGITS] for each, digest in digests.items()}
+
+
+def encode_clusters(clusters: Sequence[str]) -> Ints:
+    """Return the place of each cluster among the names under which they are counted, in their order: [clusters]."""
+    names = name_clusters(set(clusters))
+    places = {name: place for place, name in enumerate(sorted(set(names.values())))}
+    return np.array([places[names[each]] for each in clusters], dtype=np.int64)
+
+
 def outcomes_of(clusters: Sequence[str], judgements: Sequence[Judgement]) -> Outcomes:
     """Count the answers to examples, whose clusters are given, by cluster. Shapes: [examples] each."""
-    digests = {cluster: sha256(cluster.encode()).hexdigest() for cluster in set(clusters)}
-    if len(digests) > MOST_CLUSTERS:
-        names = {each: str(int(digest, 16) % MOST_CLUSTERS) for each, digest in digests.items()}
-    else:
-        names = {each: digest[:NAME_DIGITS] for each, digest in digests.items()}
+    names = name_clusters(set(clusters))
     outcomes: Outcomes = {}
     for cluster, judgement in zip(clusters, judgements, strict=True):
         counts = outcomes.setdefault(names[cluster], [0, 0, 0, 0])

@@ -14,7 +14,7 @@ from parser_service.analysis.arrays import Floats
 Z_95 = 1.959963984540054
 
 
-def wilson_interval(correct: int, count: int) -> tuple[float, float]:
+def wilson_interval(correct: float, count: float) -> tuple[float, float]:
     """Return the 95 % interval of ``correct`` out of ``count``, at least 1. Both ends are in 0–1."""
     low, high = wilson_intervals(correct, count)
     return float(low), float(high)

@@ -18,6 +18,7 @@ from parser_service.reporting.document import Section, write_document
 from parser_service.reporting.findings import attractor_tables, edit_rows, refusal_curves
 from parser_service.reporting.wrong_answers import MOST_WRONG, count_wrong, wrong_answers
 from parser_service.results.reports import KNOWN_FORMS, order_of, scores_by_form
+from parser_service.results.tables import marked, title_of
 from parser_service.slices import filters_of
 from parser_service.slices.addresses import Addresses
 from parser_service.slices.breakdown import break_down, break_down_by_slices
@@ -30,8 +31,7 @@ MOST_CONFUSIONS = 15
 def run_report(run: TrainingRun, part: str) -> Iterator[str]:
     """Yield the report of ``run``, which has answers on ``part``, as pieces of one HTML file."""
     report = _RunReport(run, part)
-    entry = PARSERS.get(run.parser)
-    title = f"{entry.title if entry else run.parser}, run {run.pk}"
+    title = f"{marked(title_of(run.parser), run.parser)}, run {run.pk}"
     about = {"run": run, "world": run.world, "part": part}
     yield from write_document(title, about, report.sections)
 

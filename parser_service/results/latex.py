@@ -8,7 +8,7 @@ from itertools import accumulate, pairwise
 from parser_service.results.cells import Cell
 from parser_service.results.choices import ResultsChoices
 from parser_service.results.figures import Figure
-from parser_service.results.tables import MAY_KNOW_CORPORA, Column, Row, Table
+from parser_service.results.tables import MAY_KNOW_CORPORA, Column, Row, Table, may_know_corpora
 
 ESCAPES = {
     "\\": r"\textbackslash{}",
@@ -72,7 +72,9 @@ def _caption(choices: ResultsChoices, table: Table) -> str:
     if table.is_published and choices.published:
         sentences.append("In parentheses: Walker, Peng and Cakmak (2019).")
     caption = escape(" ".join(sentences)).replace("±", r"$\pm$")
-    return f"{caption} {SIGN} {escape(MAY_KNOW_CORPORA)}" if table.is_marked else caption
+    if any(may_know_corpora(row.parser) for row in table.rows):
+        return f"{caption} {SIGN} {escape(MAY_KNOW_CORPORA)}"
+    return caption
 
 
 def _all_figures(table: Table) -> Iterator[Figure]:
@@ -104,7 +106,7 @@ def _line(first: str, others: Iterable[str]) -> str:
 def _row_name(row: Row) -> str:
     changes = ", ".join(f"{name} {value}" for name, value in row.changes)
     name = escape(f"{row.title} ({changes})" if changes else row.title)
-    return f"{name}{SIGN if row.mark else ''}"
+    return f"{name}{SIGN if may_know_corpora(row.parser) else ''}"
 
 
 def _figures(cells: Iterable[tuple[Column, Cell | None]], table: Table) -> Iterator[str]:

@@ -18,7 +18,7 @@ from parser_service.parsers.conditions import SETTINGS, Setting
 from parser_service.results.accuracy import TableMaker, by_part, rank_of
 from parser_service.results.cells import Cell
 from parser_service.results.measures import Measure
-from parser_service.results.tables import Changes, Column, title_of
+from parser_service.results.tables import Changes, Column, marked, title_of
 from parser_service.runs.requests.learning_curve import MOST_SEEDS, SHARES, points_of
 
 _SEEDS = (1, 3, MOST_SEEDS)  # what is offered
@@ -100,7 +100,8 @@ class LearningCurves:
             "x": {"label": "training pairs"},
             "y": {"label": self.measure.in_words, "max": 100, "unit": "%"},
             "series": [
-                {"name": curve.label, "points": list(_drawn(curve))} for curve in self.curves
+                {"name": marked(curve.label, curve.parser), "points": list(_drawn(curve))}
+                for curve in self.curves
             ],
             "done": not self.is_active,
         }

@@ -98,11 +98,6 @@ class Row:
     def title(self) -> str:
         return title_of(self.parser)
 
-    @property
-    def mark(self) -> str:
-        """The sign that a footnote explains; empty where the figures mean what they say."""
-        return MARK if may_know_corpora(self.parser) else ""
-
 
 @dataclass(frozen=True, slots=True)
 class Table:
@@ -150,11 +145,6 @@ class Table:
         return any(cell and cell.published is not None for cell in cells)
 
     @property
-    def is_marked(self) -> bool:
-        """Whether a row bears the mark."""
-        return any(row.mark for row in self.rows)
-
-    @property
     def filled(self) -> list[tuple[Row, list[tuple[Column, Cell | None]]]]:
         """Each row with its cells beside their columns."""
         return [(row, list(zip(self.columns, row.cells, strict=True))) for row in self.rows]
@@ -163,6 +153,11 @@ class Table:
 def title_of(parser: str) -> str:
     """Return what pages call a parser; its name where the registry no longer has it."""
     return PARSERS[parser].title if parser in PARSERS else parser
+
+
+def marked(title: str, parser: str) -> str:
+    """Return what a parser is called with the sign that a footnote explains, if it bears one."""
+    return f"{title} {MARK}" if may_know_corpora(parser) else title
 
 
 def may_know_corpora(parser: str) -> bool:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from parser_service.analysis.labels import Labels
 from parser_service.analysis.slicing import SliceAccuracies, accuracy_of_labels, accuracy_where
 from parser_service.models import Slice
 from parser_service.slices.addresses import Addresses
@@ -20,7 +21,8 @@ MOST_ASKED = 50_000  # examples of a part, up to which a page also counts slices
 
 @dataclass(frozen=True, slots=True)
 class Accuracy:
-    """The accuracy of one run in one slice, in percent; None in an empty one."""
+    """The accuracy of one run in one slice, in percent; None in an empty one. ``is_best``: better than every other
+    run, beyond chance."""
 
     correct: int
     count: int
@@ -70,12 +72,10 @@ def break_down_by_slices(compared: Compared, addresses: Addresses) -> Breakdown:
 
 
 def _by_group(compared: Compared, grouping: Grouping, addresses: Addresses) -> Breakdown:
-    accuracies = accuracy_of_labels(compared.correct, grouping.labels(compared))
-    there = np.flatnonzero(accuracies.counts)
-    if not grouping.is_ordered:
-        there = there[np.argsort(-accuracies.counts[there], kind="stable")]
+    labels, n_groups = _most_frequent(grouping.labels(compared), grouping.is_ordered)
+    accuracies = accuracy_of_labels(compared.correct, labels, compared.clusters)
     rows, titles = [], grouping.titles(compared)
-    for place in there[:MOST_ROWS].tolist():
+    for place in range(len(labels.values)):
         label = str(accuracies.values[place])
         chosen = grouping.parameters(label)
         url = "" if chosen is None else addresses.of_base(chosen)
@@ -85,9 +85,24 @@ def _by_group(compared: Compared, grouping: Grouping, addresses: Addresses) -> B
         grouping.name,
         grouping.title,
         tuple(rows) if len(rows) > 1 else (),
-        max(0, len(there) - MOST_ROWS),
+        n_groups - len(labels.values),
         grouping.is_of_base,
     )
+
+
+def _most_frequent(labels: Labels[str], is_ordered: bool) -> tuple[Labels[str], int]:
+    """Return the groups to show, in their order or the frequent ones first, and how many groups there are.
+
+    An example of another group has a code of none.
+    """
+    counts = labels.counts()
+    there = np.flatnonzero(counts)
+    if not is_ordered:
+        there = there[np.argsort(-counts[there], kind="stable")]
+    shown = there[:MOST_ROWS]
+    codes = np.full(len(counts), len(shown))
+    codes[shown] = np.arange(len(shown))
+    return Labels(tuple(labels.values[place] for place in shown), codes[labels.codes]), len(there)
 
 
 def _slice_rows(compared: Compared, addresses: Addresses) -> Iterator[Row]:
@@ -100,7 +115,8 @@ def _slice_rows(compared: Compared, addresses: Addresses) -> Iterator[Row]:
         if not is_quick and not are_in_columns(conditions, compared):
             yield Row(saved.name, None, addresses.compare(chosen))
             continue
-        accuracies = accuracy_where(compared.correct, compared.mask(conditions))
+        mask = compared.mask(conditions)
+        accuracies = accuracy_where(compared.correct, mask, compared.clusters)
         cells = _cells(accuracies, 0, addresses, chosen)
         yield Row(saved.name, int(accuracies.counts[0]), addresses.compare(chosen), cells)
 
@@ -112,8 +128,6 @@ def _cells(
     chosen: Mapping[str, str] | None,
 ) -> tuple[Accuracy, ...]:
     count, right = int(accuracies.counts[place]), accuracies.correct[:, place]
-    best = int(right.max(initial=0))
-    is_telling = len(right) > 1 and int(right.min(initial=0)) < best
     return tuple(
         Accuracy(
             correct=correct,
@@ -124,7 +138,7 @@ def _cells(
             url=""
             if chosen is None
             else addresses.of_run(run, chosen, "wrong" if correct < count else ""),
-            is_best=is_telling and correct == best,
+            is_best=bool(accuracies.is_best[run, place]),
         )
         for run, correct in enumerate(right.tolist())
     )

@@ -15,13 +15,16 @@ import numpy as np
 from django.db.models import QuerySet
 from numpy.typing import NDArray
 
+from annotations.language.corpus import SplitItem
 from annotations.models import Split
 from annotations.rows.synchronise import batches
 from parser_service.analysis.arrays import Bools, Ints
 from parser_service.analysis.labels import Labels, encode
+from parser_service.analysis.outcomes import encode_clusters
 from parser_service.analysis.slicing import NO_FORM, head_predicates
 from parser_service.models import AnswerColumns, ExampleColumns, TrainingRun
 from parser_service.models.runs import Status
+from parser_service.runs.carrying_out.examples import cluster_of
 
 TEXTS = ".values"  # ends the name of the array with the texts that codes stand for
 Column = "NDArray[Any] | Labels[str]"
@@ -32,7 +35,8 @@ AT_ONCE = 20_000  # rows read from the database
 @dataclass(frozen=True, eq=False, slots=True)
 class Examples:
     """The examples of one part: ``keys`` ascending, and by name the columns ``source``, ``task_category``,
-    ``head_predicate`` (texts), ``depth`` and ``word_count``, [examples] each."""
+    ``head_predicate`` (texts), ``depth``, ``word_count`` and ``cluster``, the place of what is right or wrong
+    together (``outcomes.encode_clusters``), [examples] each."""
 
     keys: Ints
     columns: Mapping[str, Any]
@@ -51,13 +55,13 @@ class Examples:
 def examples_of(split: Split, part: str) -> Examples:
     """Return the examples of a part. The first call for it reads every row."""
     stored = ExampleColumns.objects.filter(split=split, part=part).first()
-    if stored is None:
-        arrays = _read_examples(split, part)
-        stored, _ = ExampleColumns.objects.get_or_create(
-            split=split, part=part, defaults={"data": _pack(arrays)}
+    columns = _unpack(stored.data) if stored else {}
+    if "cluster" not in columns:  # nor in those that were stored before clusters were drawn
+        columns = _read_examples(split, part)
+        ExampleColumns.objects.update_or_create(
+            split=split, part=part, defaults={"data": _pack(columns)}
         )
-    columns = _unpack(stored.data)
-    return Examples(columns.pop("keys"), columns)
+    return Examples(columns["keys"], {name: columns[name] for name in columns if name != "keys"})
 
 
 def answers_of(run: TrainingRun, part: str, examples: Examples) -> dict[str, Any]:
@@ -96,7 +100,19 @@ def _read_examples(split: Split, part: str) -> dict[str, Any]:
         **dict(zip(texts, labels, strict=True)),
         "depth": depths,
         "word_count": words,
+        "cluster": _read_clusters(rows, split.criterion),
     }
+
+
+def _read_clusters(rows: QuerySet[Any], criterion: str) -> Ints:
+    """Return the cluster of each of ``rows``, in their order."""
+    texts = ("source", "utterance", "source_command", "logical_form")
+    codes: dict[str, int] = {}
+    of_rows = array.array("q")
+    for row in rows.values_list(*texts).iterator(chunk_size=AT_ONCE):
+        of_rows.append(codes.setdefault(cluster_of(SplitItem(*row), criterion), len(codes)))
+    places = encode_clusters(list(codes))
+    return places[np.frombuffer(of_rows, dtype=of_rows.typecode)]
 
 
 def _read_answers(run: TrainingRun, part: str, keys: Ints) -> dict[str, Any]:

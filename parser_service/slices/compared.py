@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from annotations.language.corpus import Criterion
 from annotations.models import World
-from parser_service.analysis.arrays import Bools
+from parser_service.analysis.arrays import Bools, Ints
 from parser_service.analysis.comparing import Comparison, compare_runs, count_wins
 from parser_service.analysis.confusions import HeadConfusion, confuse_labels
 from parser_service.analysis.labels import Labels
@@ -51,9 +52,21 @@ class Compared:
         return np.array([columns["is_exact_match"][self.chosen] for columns in self.answers])
 
     @cached_property
+    def clusters(self) -> Ints:
+        """The cluster of each chosen example, without those that have none, [chosen]."""
+        _, clusters = np.unique(self.column("cluster"), return_inverse=True)
+        return clusters.astype(np.int64)
+
+    @property
+    def clusters_in_words(self) -> str:
+        """What is drawn as a whole."""
+        is_by_form = self.base.split.criterion == Criterion.LOGICAL_FORM
+        return "logical forms" if is_by_form else "source commands"
+
+    @cached_property
     def accuracies(self) -> SliceAccuracies:
         """The accuracy of each run on the chosen examples: one slice."""
-        return accuracy_where(self.correct, np.ones(self.count, dtype=bool))
+        return accuracy_where(self.correct, np.ones(self.count, dtype=bool), self.clusters)
 
     @cached_property
     def wins(self) -> list[list[int]]:
@@ -63,7 +76,7 @@ class Compared:
     @cached_property
     def comparisons(self) -> tuple[Comparison, ...]:
         """Every pair of runs; none without an example."""
-        return compare_runs(self.correct) if self.count else ()
+        return compare_runs(self.correct, self.clusters) if self.count else ()
 
     def column(self, name: str, run: int = 0) -> Any:
         """Return a column of the examples, or of a run's answers, for the chosen examples."""

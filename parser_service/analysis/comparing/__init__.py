@@ -8,10 +8,13 @@ from parser_service.analysis.comparing.comparisons import (
     compare_runs,
     count_wins,
 )
+from parser_service.analysis.comparing.significance import LEVEL, holm
 
 __all__ = [
+    "LEVEL",
     "Comparison",
     "compare_runs",
     "count_wins",
+    "holm",
     "is_better",
 ]

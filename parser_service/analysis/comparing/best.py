@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from parser_service.analysis.clustered import Parts, compare
-from parser_service.analysis.comparing.significance import holm
-
-LEVEL = 0.05  # a corrected p-value up to this is called significant
+from parser_service.analysis.comparing.significance import LEVEL, holm
 
 
 def is_better(best: Parts, others: Sequence[Parts]) -> bool:

@@ -10,14 +10,10 @@ import numpy as np
 
 from annotations.language.english import say_count
 from parser_service.analysis.arrays import Bools, Ints
-from parser_service.analysis.comparing.best import LEVEL
-from parser_service.analysis.comparing.significance import (
-    SAMPLES,
-    holm,
-    mcnemar,
-    paired_bootstrap,
-)
-from parser_service.analysis.resampling import SEED
+from parser_service.analysis.clustered import accuracies_in_samples, p_values
+from parser_service.analysis.comparing.significance import LEVEL, holm
+
+SAMPLES = 5_000  # so that the least p-value of 66 pairs is significant after their correction
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +22,7 @@ class Comparison:
 
     ``wins`` counts the examples on which the first alone is right, ``losses`` the second alone, and ``ties``
     the rest. ``difference`` is first minus second accuracy, a fraction of 1, with the 95 % interval
-    and the p-value of a paired bootstrap. ``corrected_p`` is McNemar's p after Holm's correction.
+    and the p-value of a paired bootstrap of whole clusters. ``corrected_p`` is it after Holm's correction.
     """
 
     first: int
@@ -36,8 +32,7 @@ class Comparison:
     losses: int
     difference: float
     interval: tuple[float, float]
-    bootstrap_p: float
-    mcnemar_p: float
+    p: float
     corrected_p: float
 
     @property
@@ -63,7 +58,7 @@ class Comparison:
         low, high = sorted(100 * sign * end for end in self.interval)
         evidence = (
             f"95 % interval {_number(low)} to {_number(high)} points, "
-            f"{_p_value(self.corrected_p)} by McNemar's test with Holm's correction"
+            f"{_p_value(self.corrected_p)} after Holm's correction"
         )
         points = _number(abs(100 * self.difference))
         if self.is_significant:
@@ -89,42 +84,47 @@ def count_wins(correct: Bools) -> Ints:
     return np.array(rows, dtype=np.int64).reshape(len(packed), len(packed))
 
 
-def compare_runs(
-    correct: Bools, seed: int = SEED, samples: int = SAMPLES
-) -> tuple[Comparison, ...]:
-    """Compare every pair of runs on the same examples.
+def compare_runs(correct: Bools, clusters: Ints, samples: int = SAMPLES) -> tuple[Comparison, ...]:
+    """Compare every pair of runs on the same examples, by a paired bootstrap: all runs are drawn with the same
+    clusters. (Efron and Tibshirani, An Introduction to the Bootstrap, 1993; Koehn, Statistical
+    significance tests for machine translation evaluation, 2004.)
 
     Args:
         correct: whether each run is right on each example, [runs, examples].
-        seed: of the bootstrap; equal seeds give equal results.
+        clusters: the cluster of each example, as small whole numbers from 0 (``outcomes.encode_clusters``).
         samples: of the bootstrap.
 
     Raises:
         ValueError: there is no example.
     """
     count = correct.shape[1]
+    if not count:
+        raise ValueError("There is no example to compare runs on.")
     wins = count_wins(correct)
     pairs = list(combinations(range(len(correct)), 2))
-    p_values = mcnemar([wins[pair] for pair in pairs], [wins[pair[::-1]] for pair in pairs])
-    comparisons = []
-    for (first, second), p, corrected in zip(pairs, p_values, holm(p_values), strict=True):
-        won, lost = int(wins[first, second]), int(wins[second, first])
-        interval, bootstrap_p = paired_bootstrap(won, lost, count, seed, samples)
-        comparisons.append(
-            Comparison(
-                first=first,
-                second=second,
-                count=count,
-                wins=won,
-                losses=lost,
-                difference=(won - lost) / count,
-                interval=interval,
-                bootstrap_p=bootstrap_p,
-                mcnemar_p=float(p),
-                corrected_p=float(corrected),
-            )
+    firsts, seconds = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
+    in_cluster: Ints = np.bincount(clusters)
+    width = len(in_cluster)
+    right = np.array([np.bincount(clusters[run], minlength=width) for run in correct])
+    accuracies = accuracies_in_samples(right, in_cluster, samples)  # [samples, runs]
+    differences = accuracies[:, firsts] - accuracies[:, seconds]  # [samples, pairs]
+    p = p_values(differences, np.count_nonzero(in_cluster))
+    ends = np.percentile(differences, [2.5, 97.5], axis=0)
+    corrected = holm(p)
+    return tuple(
+        Comparison(
+            first=first,
+            second=second,
+            count=count,
+            wins=int(wins[first, second]),
+            losses=int(wins[second, first]),
+            difference=int(wins[first, second] - wins[second, first]) / count,
+            interval=(float(ends[0, at]), float(ends[1, at])),
+            p=float(p[at]),
+            corrected_p=float(corrected[at]),
         )
-    return tuple(comparisons)
+        for at, (first, second) in enumerate(pairs)
+    )
 
 
 def _number(points: float) -> str:

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from parser_service.analysis.arrays import Bools, Floats, Ints
+from parser_service.analysis.clustered import accuracies_in_samples, p_values
+from parser_service.analysis.comparing import LEVEL, holm
 from parser_service.analysis.labels import Labels, encode
 from parser_service.analysis.proportions import wilson_intervals
 
@@ -17,8 +19,10 @@ from parser_service.analysis.proportions import wilson_intervals
 class SliceAccuracies:
     """Slice ``values[s]`` has ``counts[s]`` examples, of which run r has ``correct[r, s]`` right.
 
-    ``low`` and ``high`` are the ends of Wilson's 95 % interval of the accuracy, [runs, slices]. An empty
-    slice has NaN for all three.
+    ``low`` and ``high`` are the ends of the 95 % interval of the accuracy, [runs, slices]: percentiles where whole
+    clusters are drawn, or, where samples do not differ, Wilson's over the clusters. An empty slice has NaN
+    for all three. ``is_best`` [runs, slices] marks the run that is better than each other one beyond chance,
+    by a paired bootstrap of the same samples with Holm's correction.
     """
 
     values: tuple[Hashable, ...]
@@ -26,6 +30,7 @@ class SliceAccuracies:
     correct: Ints  # [runs, slices]
     low: Floats
     high: Floats
+    is_best: Bools
 
     @property
     def accuracies(self) -> Floats:
@@ -35,39 +40,49 @@ class SliceAccuracies:
 
 
 def accuracy_by(
-    correct: Bools, labels: Sequence[Hashable], values: Sequence[Hashable] = ()
+    correct: Bools,
+    labels: Sequence[Hashable],
+    clusters: Ints,
+    values: Sequence[Hashable] = (),
 ) -> SliceAccuracies:
     """Return the accuracy of each run in each slice.
 
     Args:
         correct: whether each run is right on each example, [runs, examples].
         labels: the slice of each example, [examples].
+        clusters: the cluster of each example, as small whole numbers from 0 (``outcomes.encode_clusters``).
         values: slices to list first, in this order, even where empty; the others follow in the
             order of their first appearance.
 
     Raises:
-        ValueError: there are not as many labels as examples.
+        ValueError: there are not as many labels or clusters as examples.
     """
-    return accuracy_of_labels(correct, encode(labels, values))
+    return accuracy_of_labels(correct, encode(labels, values), clusters)
 
 
-def accuracy_of_labels(correct: Bools, labels: Labels[Any]) -> SliceAccuracies:
-    """Return the same for labels that are encoded already. Raises likewise."""
+def accuracy_of_labels(correct: Bools, labels: Labels[Any], clusters: Ints) -> SliceAccuracies:
+    """Return the same for labels that are encoded already; a code of no value is in no slice. Raises likewise."""
     _require_same_length(correct, len(labels.codes))
-    size = len(labels.values)
-    right = [np.bincount(labels.codes[run], minlength=size) for run in correct]
-    return _summarize(labels.values, labels.counts(), np.array(right).reshape(-1, size))
+    _require_same_length(correct, len(clusters))
+    shape = len(labels.values), int(clusters.max(initial=0)) + 1
+    size = shape[0] * shape[1]
+    places = labels.codes * shape[1] + clusters
+    count, *right = (
+        np.bincount(some, minlength=size)[:size]
+        for some in (places, *(places[run] for run in correct))
+    )
+    return _summarize(labels.values, count.reshape(shape), np.array(right).reshape(-1, *shape))
 
 
-def accuracy_where(correct: Bools, mask: Bools) -> SliceAccuracies:
+def accuracy_where(correct: Bools, mask: Bools, clusters: Ints) -> SliceAccuracies:
     """Return the accuracy of each run on the examples of a mask, [examples]: one slice, called True.
 
     Raises:
-        ValueError: the mask does not have the length of the examples.
+        ValueError: the mask or the clusters do not have the length of the examples.
     """
     _require_same_length(correct, len(mask))
-    right = np.count_nonzero(correct & mask, axis=1, keepdims=True)
-    return _summarize((True,), np.array([np.count_nonzero(mask)]), right)
+    _require_same_length(correct, len(clusters))
+    return accuracy_of_labels(correct, Labels((True,), (~mask).astype(np.int64)), clusters)
 
 
 def _require_same_length(correct: Bools, length: int) -> None:
@@ -75,6 +90,37 @@ def _require_same_length(correct: Bools, length: int) -> None:
         raise ValueError(f"{length} labels do not fit {correct.shape[1]} examples.")
 
 
-def _summarize(values: tuple[Hashable, ...], counts: Ints, correct: Ints) -> SliceAccuracies:
-    low, high = wilson_intervals(correct, counts)
-    return SliceAccuracies(values, counts, correct, low, high)
+def _summarize(values: tuple[Hashable, ...], count: Ints, right: Ints) -> SliceAccuracies:
+    """Summarize counts of examples, [slices, clusters], and of right answers, [runs, slices, clusters]."""
+    counts, correct = count.sum(-1), right.sum(-1)
+    clusters = np.count_nonzero(count, axis=-1)  # [slices]
+    low, high = np.full((2, *correct.shape), np.nan)
+    is_best = np.zeros(correct.shape, dtype=bool)
+    there = np.flatnonzero(counts)
+    if len(there) and len(right):
+        samples = accuracies_in_samples(right[:, there], count[there])
+        low[:, there], high[:, there] = np.percentile(samples, [2.5, 97.5], axis=0)
+        is_best[:, there] = _are_best(samples, correct[:, there], clusters[there])
+    is_flat = (counts > 0) & ((correct == 0) | (correct == counts) | (clusters == 1))
+    share = correct / np.maximum(counts, 1)
+    flat_low, flat_high = wilson_intervals(share * clusters, np.broadcast_to(clusters, share.shape))
+    low, high = np.where(is_flat, flat_low, low), np.where(is_flat, flat_high, high)
+    return SliceAccuracies(values, counts, correct, low, high, is_best)
+
+
+def _are_best(samples: Floats, correct: Ints, clusters: Ints) -> Bools:
+    """Return which run is better than each other one beyond chance, [runs, slices].
+
+    Args:
+        samples: accuracies, [samples, runs, slices].
+        correct: numbers of right answers, [runs, slices].
+        clusters: numbers of clusters, [slices].
+    """
+    best = correct.argmax(0)  # [slices]
+    slices = np.arange(correct.shape[1])
+    p = p_values(samples[:, best, slices][:, None] - samples, clusters)
+    are_best = np.zeros(correct.shape, dtype=bool)
+    for place in slices if len(correct) > 1 else ():
+        others = np.delete(p[:, place], best[place])
+        are_best[best[place], place] = bool((holm(others) <= LEVEL).all())
+    return are_best

@@ -49,14 +49,14 @@ def known_examples(split: Split, seed: int) -> list[Example]:
     return [each for each, is_held_out in zip(examples, held_out, strict=True) if is_held_out]
 
 
-def cluster_of(example: Example, criterion: str) -> str:
+def cluster_of(example: Example | SplitItem, criterion: str) -> str:
     """Return what examples share that are right or wrong together: the form where a split is by form, else
     the source command."""
     by_form = criterion == Criterion.LOGICAL_FORM
     return item_of(example).key(Criterion.LOGICAL_FORM if by_form else Criterion.SOURCE_COMMAND)
 
 
-def item_of(example: Example) -> SplitItem:
+def item_of(example: Example | SplitItem) -> SplitItem:
     texts = (example.source, example.utterance, example.source_command, example.logical_form)
     return SplitItem(*texts)
 

@@ -14,7 +14,6 @@ from annotations.people.access import world_view
 from parser_service.results.choices import read_choices, scored_splits
 from parser_service.results.export import HEADER, as_json, rows_of
 from parser_service.results.latex import as_latex
-from parser_service.results.tables import MAY_KNOW_CORPORA
 
 
 @world_view(Duty.VIEW)
@@ -79,8 +78,7 @@ def results_of(request: HttpRequest, world: World) -> dict[str, object]:
         "is_active": any(table.is_active for table in tables),
         "is_scored": any(table.is_scored for table in tables),
         "is_by_criterion": any(table.is_by_criterion for table in tables),
-        "is_marked": any(table.is_marked for table in tables),
-        "footnote": MAY_KNOW_CORPORA,
+        "rows": [row for table in tables for row in table.rows],
         "is_published": any(table.is_published for table in tables),
         "choices": choices,
         "part": choices.part,

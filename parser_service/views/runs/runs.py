@@ -20,6 +20,7 @@ from parser_service.parsers.registry import PARSERS
 from parser_service.promotion import promoted_run
 from parser_service.results.learning_curves import curves_url
 from parser_service.results.reports import KNOWN_FORMS, order_of, scores_by_form
+from parser_service.results.tables import marked, title_of
 from parser_service.reviewing.earlier import history_of_errors
 from parser_service.runs import lifecycle
 from parser_service.runs.curves import CURVES, loss_curves, will_have_curves
@@ -80,7 +81,7 @@ def state_of(world: World, pk: int) -> dict[str, Any]:
     entry = PARSERS.get(run.parser)
     return {
         "run": run,
-        "title": entry.title if entry else run.parser,
+        "title": marked(title_of(run.parser), run.parser),
         "aside": f"run {run.pk}",
         "curves_url": curves_url(world, run),
         "loss_title": f"Loss by epoch, {entry.loss_unit if entry else 'nats'}",

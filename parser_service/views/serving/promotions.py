@@ -31,14 +31,17 @@ def promotions(request: HttpRequest, world: World) -> HttpResponse:
         world.runs.succeeded().for_table().filter(pk=number_of(request.GET.get("run", ""))).first()
     )
     proposals = world.promotions.proposed().select_related("run__split")
+    candidates = _candidates(world, run)
+    shown = [run, chosen, *(each.run for each in proposals), *candidates]
     context = {
+        "shown": [each for each in shown if each],
         "present": present,
         "present_scores": compare_scores(run, None) if run else [],
         "previous": previous_run(world),
         "chosen": chosen if chosen != run else None,
         "chosen_scores": compare_scores(chosen, run) if chosen else [],
         "proposals": [(each, compare_scores(each.run, run)) for each in proposals],
-        "candidates": _candidates(world, run),
+        "candidates": candidates,
         "history": world.promotions.exclude(decided_at=None)
         .select_related("run", "decided_by")
         .order_by("-decided_at", "-pk")[:MOST_LISTED],

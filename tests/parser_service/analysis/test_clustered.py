@@ -98,6 +98,17 @@ def test_where_all_clusters_agree_it_is_wilsons_interval_over_them(right, expect
     assert interval_of((every,)) == pytest.approx(wilson_interval(*expected))
 
 
+def test_one_cluster_has_wilsons_interval_whatever_is_right_in_it():
+    low, high = interval_of((Clustered.of([{"go": (30, 50)}]),))
+    assert (low, high) == pytest.approx(wilson_interval(0.6, 1))
+    assert high - low > 0.7
+
+
+def test_few_clusters_are_never_more_significant_than_their_signs():
+    one, other = (Clustered.of([dict.fromkeys(range(4), (right, 10))]) for right in (9, 3))
+    assert compare((one,), (other,))[1] == pytest.approx(2**-3)
+
+
 def test_the_harmonic_mean_lies_between_its_parts_and_its_interval_around_it():
     unseen, known = of(0.4, 0.45), of(0.8, 0.85, seed=1)
     figures = figures_of((unseen, known))

@@ -7,10 +7,12 @@ import re
 import numpy as np
 import pytest
 
+from parser_service.analysis.outcomes import encode_clusters
 from parser_service.analysis.slicing import accuracy_by
 from parser_service.models import ErrorCategory, Prediction, Review, RunAnalysis
 from parser_service.reporting import wrong_answers
 from parser_service.reporting.run_report import part_of
+from parser_service.runs.carrying_out.examples import cluster_of
 from tests.parser_service.reporting.conftest import EVIL
 from tests.parser_service.reporting.reading import addresses, parse, table, texts
 from tests.parser_service.reporting.validating import validate
@@ -97,7 +99,8 @@ def test_the_figures_are_those_of_the_page(report, run, anna):
 def test_slices_are_those_of_the_analysis(report, run):
     rows = run.predictions.best().filter(example__part="validation").select_related("example")
     correct = np.array([[row.is_exact_match for row in rows]])
-    expected = accuracy_by(correct, [row.example.source for row in rows])
+    clusters = encode_clusters([cluster_of(row.example, run.split.criterion) for row in rows])
+    expected = accuracy_by(correct, [row.example.source for row in rows], clusters)
     document = parse(report())
     titles = texts(document, "#slices h3")
     shown = {row[0]: row[1:] for row in table(document, "slices", titles.index("Source"))}

@@ -9,8 +9,10 @@ import pytest
 
 from parser_service.analysis.comparing import compare_runs
 from parser_service.analysis.confusions import confuse_heads
+from parser_service.analysis.outcomes import encode_clusters
 from parser_service.analysis.slicing import accuracy_by, form_depths, length_bins
 from parser_service.models import ErrorCategory, Prediction, Review, Slice
+from parser_service.runs.carrying_out.examples import cluster_of
 from parser_service.slices import save_slice
 from tests.sample_world import scored_run
 
@@ -37,6 +39,12 @@ def outcomes(*runs):
     return np.array([each.values_list("is_exact_match", flat=True) for each in rows])
 
 
+def clusters_of(run):
+    """The cluster of each example, [examples]."""
+    rows = run.predictions.order_by("example_id").select_related("example")
+    return encode_clusters([cluster_of(each.example, run.split.criterion) for each in rows])
+
+
 def total_behind(client, url):
     return client.get(url).context["listing"].total
 
@@ -44,7 +52,7 @@ def total_behind(client, url):
 def test_wins_losses_and_what_they_mean_are_those_of_the_core(sample, second, third, anna):
     runs = (sample.run, second, third)
     context = compare(anna, *runs).context
-    expected = compare_runs(outcomes(*runs))
+    expected = compare_runs(outcomes(*runs), clusters_of(sample.run))
     assert [pair.comparison for pair in context["pairs"]] == list(expected)
     names = [f"Nearest neighbour (run {run.pk})" for run in runs]
     assert context["pairs"][0].letters == ("A", "B")
@@ -85,7 +93,7 @@ def test_slices_are_those_of_the_core_and_lead_to_their_answers(sample, second, 
         "head": [each.logical_form.split()[1] for each in examples],
     }
     for name, values in labels.items():
-        core = accuracy_by(outcomes(sample.run, second), values)
+        core = accuracy_by(outcomes(sample.run, second), values, clusters_of(sample.run))
         by_title = {row.title: row for row in tables[name].rows}
         for place, value in enumerate(core.values):
             row = by_title[value]

@@ -130,7 +130,7 @@ def test_a_model_that_may_have_read_the_corpus_is_marked_everywhere(sample, anna
         parser="llm", config=config, answered_by="tiny-2026-07"
     )
     page = anna.get("/w/home/results/").content.decode()
-    assert page.count(">†</a></sup>") == 1 and f"† {MAY_KNOW_CORPORA}" in page
+    assert page.count(">†</abbr></sup>") == 1 and f"† {MAY_KNOW_CORPORA}" in page
     assert "answered by tiny-2026-07" in page and "model tiny" in page
     lines = csv.DictReader(io.StringIO(anna.get("/w/home/results.csv").content.decode()))
     assert [(each["parser"], each["answered_by"], each["may_know_corpora"]) for each in lines] == [

@@ -1,0 +1,38 @@
+"""Template tags: the sign behind the name of a parser whose figures a footnote qualifies, and the footnote."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from django import template
+from django.utils.html import format_html
+from django.utils.safestring import SafeString
+
+from parser_service.results.tables import MARK, MAY_KNOW_CORPORA, may_know_corpora
+
+register = template.Library()
+NOTHING = SafeString()
+
+
+@register.simple_tag
+def mark(parser: str) -> SafeString:
+    """Return the sign of a parser, by its name; nothing where its figures mean what they say."""
+    if not may_know_corpora(parser):
+        return NOTHING
+    return format_html('<sup><abbr title="{}">{}</abbr></sup>', MAY_KNOW_CORPORA, MARK)
+
+
+@register.simple_tag
+def footnote(shown: str | Iterable[Any]) -> SafeString:
+    """Return what the sign says where something that is ``shown`` bears it: a parser, by its name, or rows, each
+    of a run or a parser."""
+    parsers = [shown] if isinstance(shown, str) else [_parser_of(row) for row in shown]
+    if not any(map(may_know_corpora, parsers)):
+        return NOTHING
+    return format_html('<p class="quiet small">{} {}</p>', MARK, MAY_KNOW_CORPORA)
+
+
+def _parser_of(row: Any) -> str:
+    parser: str = row.run.parser if hasattr(row, "run") else row.parser
+    return parser
