@@ -140,14 +140,16 @@ def _compare(first: _Numbers, second: _Numbers, samples: int) -> tuple[Interval,
 
 
 def p_values(differences: Floats, clusters: ArrayLike) -> Floats:
-    """Return the two-sided p-values of differences in samples, [samples, …], of that many clusters, […].
+    """Return the two-sided p-values of differences in samples, […, samples], of that many clusters, […].
 
     No p-value is below the least that a sign test over the clusters can have, 2^(1 − clusters).
     """
     # The data itself counts as one sample, so that p is never 0 (Davison and Hinkley 1997, p. 141).
-    tails = np.minimum((differences <= 0).sum(0), (differences >= 0).sum(0))
+    tails = np.minimum((differences <= 0).sum(-1), (differences >= 0).sum(-1))
     least = 2.0 ** (1 - np.asarray(clusters, dtype=float))
-    return np.asarray(np.minimum(1.0, np.maximum(2 * (1 + tails) / (1 + len(differences)), least)))
+    return np.asarray(
+        np.minimum(1.0, np.maximum(2 * (1 + tails) / (1 + differences.shape[-1]), least))
+    )
 
 
 def accuracies_in_samples(right: Ints, count: Ints, samples: int = SAMPLES) -> Floats:
@@ -158,16 +160,18 @@ def accuracies_in_samples(right: Ints, count: Ints, samples: int = SAMPLES) -> F
         count: the number of examples in each cluster, at least one in all, […, clusters].
 
     Returns:
-        Fractions of 1, [samples, runs, …]; a sample without an example has the accuracy of all.
+        Fractions of 1 in single precision, [runs, …, samples]; a sample without an example has the accuracy
+        of all.
     """
-    drawn = _draws(count.shape[-1], 0, samples)
-    counts = drawn @ count.reshape(-1, count.shape[-1]).T.astype(np.float32)
-    rights = drawn @ right.reshape(-1, right.shape[-1]).T.astype(np.float32)
-    shape = (samples, len(right), *count.shape[:-1])
-    counts = np.broadcast_to(counts.reshape(samples, 1, *count.shape[:-1]), shape)
-    overall = right.sum(-1) / count.sum(-1)
-    is_there = counts > 0
-    return np.where(is_there, rights.reshape(shape) / np.where(is_there, counts, 1), overall)
+    drawn = _draws(count.shape[-1], 0, samples).T
+    rows = np.concatenate([count[None], right]).astype(np.float32)  # [1 + runs, …, clusters]
+    sums = rows.reshape(-1, rows.shape[-1]) @ drawn  # one product of matrices is the quickest
+    counts, *rights = sums.reshape(*rows.shape[:-1], samples)
+    accuracies = np.array(rights) / np.maximum(counts, 1)
+    if (counts == 0).any():
+        overall = (right.sum(-1) / count.sum(-1))[..., None]
+        accuracies = np.where(counts > 0, accuracies, overall.astype(np.float32))
+    return np.asarray(accuracies)
 
 
 def _sample(parts: Sequence[Clustered], samples: int, stream: int = 0) -> Floats:

@@ -16,6 +16,7 @@ from parser_service.analysis.comparing import Comparison, compare_runs, count_wi
 from parser_service.analysis.confusions import HeadConfusion, confuse_labels
 from parser_service.analysis.labels import Labels
 from parser_service.analysis.reading import NO_FORM
+from parser_service.analysis.resampling import SAMPLES
 from parser_service.analysis.slicing import SliceAccuracies, accuracy_where
 from parser_service.models import TrainingRun
 from parser_service.slices.columns import Examples, answers_of, examples_of
@@ -66,7 +67,8 @@ class Compared:
     @cached_property
     def accuracies(self) -> SliceAccuracies:
         """The accuracy of each run on the chosen examples: one slice."""
-        return accuracy_where(self.correct, np.ones(self.count, dtype=bool), self.clusters)
+        everything = np.ones(self.count, dtype=bool)
+        return accuracy_where(self.correct, everything, self.clusters, SAMPLES)
 
     @cached_property
     def wins(self) -> list[list[int]]:

@@ -106,10 +106,10 @@ def compare_runs(correct: Bools, clusters: Ints, samples: int = SAMPLES) -> tupl
     in_cluster: Ints = np.bincount(clusters)
     width = len(in_cluster)
     right = np.array([np.bincount(clusters[run], minlength=width) for run in correct])
-    accuracies = accuracies_in_samples(right, in_cluster, samples)  # [samples, runs]
-    differences = accuracies[:, firsts] - accuracies[:, seconds]  # [samples, pairs]
+    accuracies = accuracies_in_samples(right, in_cluster, samples)  # [runs, samples]
+    differences = accuracies[firsts] - accuracies[seconds]  # [pairs, samples]
     p = p_values(differences, np.count_nonzero(in_cluster))
-    ends = np.percentile(differences, [2.5, 97.5], axis=0)
+    ends = np.percentile(differences, [2.5, 97.5], axis=-1)
     corrected = holm(p)
     return tuple(
         Comparison(

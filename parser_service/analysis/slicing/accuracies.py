@@ -14,6 +14,8 @@ from parser_service.analysis.comparing import LEVEL, holm
 from parser_service.analysis.labels import Labels, encode
 from parser_service.analysis.proportions import wilson_intervals
 
+SLICE_SAMPLES = 1_000  # a page has hundreds of intervals of slices
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SliceAccuracies:
@@ -60,7 +62,9 @@ def accuracy_by(
     return accuracy_of_labels(correct, encode(labels, values), clusters)
 
 
-def accuracy_of_labels(correct: Bools, labels: Labels[Any], clusters: Ints) -> SliceAccuracies:
+def accuracy_of_labels(
+    correct: Bools, labels: Labels[Any], clusters: Ints, samples: int = SLICE_SAMPLES
+) -> SliceAccuracies:
     """Return the same for labels that are encoded already; a code of no value is in no slice. Raises likewise."""
     _require_same_length(correct, len(labels.codes))
     _require_same_length(correct, len(clusters))
@@ -71,10 +75,13 @@ def accuracy_of_labels(correct: Bools, labels: Labels[Any], clusters: Ints) -> S
         np.bincount(some, minlength=size)[:size]
         for some in (places, *(places[run] for run in correct))
     )
-    return _summarize(labels.values, count.reshape(shape), np.array(right).reshape(-1, *shape))
+    rights = np.array(right).reshape(-1, *shape)
+    return _summarize(labels.values, count.reshape(shape), rights, samples)
 
 
-def accuracy_where(correct: Bools, mask: Bools, clusters: Ints) -> SliceAccuracies:
+def accuracy_where(
+    correct: Bools, mask: Bools, clusters: Ints, samples: int = SLICE_SAMPLES
+) -> SliceAccuracies:
     """Return the accuracy of each run on the examples of a mask, [examples]: one slice, called True.
 
     Raises:
@@ -82,7 +89,8 @@ def accuracy_where(correct: Bools, mask: Bools, clusters: Ints) -> SliceAccuraci
     """
     _require_same_length(correct, len(mask))
     _require_same_length(correct, len(clusters))
-    return accuracy_of_labels(correct, Labels((True,), (~mask).astype(np.int64)), clusters)
+    labels = Labels((True,), (~mask).astype(np.int64))
+    return accuracy_of_labels(correct, labels, clusters, samples)
 
 
 def _require_same_length(correct: Bools, length: int) -> None:
@@ -90,7 +98,9 @@ def _require_same_length(correct: Bools, length: int) -> None:
         raise ValueError(f"{length} labels do not fit {correct.shape[1]} examples.")
 
 
-def _summarize(values: tuple[Hashable, ...], count: Ints, right: Ints) -> SliceAccuracies:
+def _summarize(
+    values: tuple[Hashable, ...], count: Ints, right: Ints, samples: int
+) -> SliceAccuracies:
     """Summarize counts of examples, [slices, clusters], and of right answers, [runs, slices, clusters]."""
     counts, correct = count.sum(-1), right.sum(-1)
     clusters = np.count_nonzero(count, axis=-1)  # [slices]
@@ -98,9 +108,10 @@ def _summarize(values: tuple[Hashable, ...], count: Ints, right: Ints) -> SliceA
     is_best = np.zeros(correct.shape, dtype=bool)
     there = np.flatnonzero(counts)
     if len(there) and len(right):
-        samples = accuracies_in_samples(right[:, there], count[there])
-        low[:, there], high[:, there] = np.percentile(samples, [2.5, 97.5], axis=0)
-        is_best[:, there] = _are_best(samples, correct[:, there], clusters[there])
+        drawn = accuracies_in_samples(right[:, there], count[there], samples)
+        is_best[:, there] = _are_best(drawn, correct[:, there], clusters[there])
+        ends = np.percentile(drawn, [2.5, 97.5], axis=-1, overwrite_input=True)
+        low[:, there], high[:, there] = ends
     is_flat = (counts > 0) & ((correct == 0) | (correct == counts) | (clusters == 1))
     share = correct / np.maximum(counts, 1)
     flat_low, flat_high = wilson_intervals(share * clusters, np.broadcast_to(clusters, share.shape))
@@ -112,15 +123,17 @@ def _are_best(samples: Floats, correct: Ints, clusters: Ints) -> Bools:
     """Return which run is better than each other one beyond chance, [runs, slices].
 
     Args:
-        samples: accuracies, [samples, runs, slices].
+        samples: accuracies, [runs, slices, samples].
         correct: numbers of right answers, [runs, slices].
         clusters: numbers of clusters, [slices].
     """
+    are_best = np.zeros(correct.shape, dtype=bool)
+    if len(correct) < 2:
+        return are_best
     best = correct.argmax(0)  # [slices]
     slices = np.arange(correct.shape[1])
-    p = p_values(samples[:, best, slices][:, None] - samples, clusters)
-    are_best = np.zeros(correct.shape, dtype=bool)
-    for place in slices if len(correct) > 1 else ():
+    p = p_values(samples[best, slices] - samples, clusters)
+    for place in slices:
         others = np.delete(p[:, place], best[place])
         are_best[best[place], place] = bool((holm(others) <= LEVEL).all())
     return are_best

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from parser_service.analysis.clustered import Clustered, interval_of
 from parser_service.analysis.proportions import wilson_interval
+from parser_service.analysis.resampling import SAMPLES
 from parser_service.analysis.slicing import (
     NO_FORM,
     accuracy_by,
@@ -51,7 +52,7 @@ def test_the_slice_of_everything_has_the_interval_of_the_results():
     random = np.random.default_rng(3)
     clusters = random.integers(0, 60, 400)
     correct = random.random((1, 400)) < np.linspace(0.2, 1, 60)[clusters]
-    all_of_it = accuracy_where(correct, np.ones(400, dtype=bool), clusters)
+    all_of_it = accuracy_where(correct, np.ones(400, dtype=bool), clusters, SAMPLES)
     tally = {
         f"{n:02}": (int(correct[0, clusters == n].sum()), int((clusters == n).sum()))
         for n in range(60)
