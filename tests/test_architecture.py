@@ -6,6 +6,7 @@ import ast
 import subprocess
 import sys
 from collections import Counter
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -79,6 +80,7 @@ ROOMS = {
 MOST_MODULES, MOST_FILES = 3, 15
 
 
+@cache
 def imports_of(path: Path) -> set[str]:
     """The dotted names that a module imports, anywhere in it."""
     names = set()
@@ -100,6 +102,7 @@ def _is_ours(node: ast.ImportFrom, alias: ast.alias) -> bool:
     ).is_dir()
 
 
+@cache
 def modules_below(folder: str) -> list[Path]:
     return sorted((ROOT / folder).rglob("*.py"))
 

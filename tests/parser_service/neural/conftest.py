@@ -17,8 +17,8 @@ SMALL = Seq2SeqConfig(
     minimum_count=1,
     learning_rate=0.01,
     batch_size=8,
-    epochs=12,
-    patience=12,
+    epochs=6,
+    patience=6,
     beam_width=3,
     threads=1,
 )

@@ -10,7 +10,6 @@ from torch.optim import optimizer
 from torch.overrides import TorchFunctionMode
 from torch.utils import _foreach_utils
 from torch.utils._python_dispatch import TorchDispatchMode, return_and_correct_aliasing
-from torch.utils._pytree import tree_leaves, tree_map_only
 
 CPU = torch.device("cpu")
 FAKE = torch.device("meta")  # the only other device for which torch's autograd needs no hardware
@@ -89,23 +88,42 @@ class _FakeOperations(TorchDispatchMode):
 
     def __torch_dispatch__(self, function, types, args=(), kwargs=None):
         kwargs = dict(kwargs or {})
-        given = tree_leaves((args, kwargs))
+        given = [*_leaves((args, *kwargs.values()))]
         is_fake = any(isinstance(each, FakeTensor) for each in given)
         if is_fake and function not in MAY_MIX:
             _refuse_mixture(function, given)
         if kwargs.get("device") is not None:
             is_fake = kwargs["device"] == FAKE
             kwargs["device"] = CPU if is_fake else kwargs["device"]
-        inner_args, inner_kwargs = tree_map_only(
-            FakeTensor, lambda each: each.inner, (args, kwargs)
-        )
-        result = function(*inner_args, **inner_kwargs)
+        inner_kwargs = {name: _unwrap(each) for name, each in kwargs.items()}
+        result = function(*_unwrap(args), **inner_kwargs)
         if not is_fake:
             return result
         if function is PACK:
             return FakeTensor(result[0]), result[1]
-        result = tree_map_only(torch.Tensor, FakeTensor, result)
+        result = _wrap(result)
         return return_and_correct_aliasing(function, args, kwargs, result)
+
+
+def _leaves(value):
+    """What an operation is given or gives, without the lists and tuples around it."""
+    if isinstance(value, list | tuple):
+        for each in value:
+            yield from _leaves(each)
+    else:
+        yield value
+
+
+def _unwrap(value):
+    if isinstance(value, list | tuple):
+        return type(value)(map(_unwrap, value))
+    return value.inner if isinstance(value, FakeTensor) else value
+
+
+def _wrap(value):
+    if isinstance(value, list | tuple):
+        return type(value)(map(_wrap, value))
+    return FakeTensor(value) if isinstance(value, torch.Tensor) else value
 
 
 def _refuse_mixture(function, given):
