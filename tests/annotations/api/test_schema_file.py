@@ -22,7 +22,7 @@ def test_it_is_made_once_whoever_asks(client, adam, db, monkeypatch):
     monkeypatch.setattr(schema_view.SchemaFile, "generator_class", None)  # fails when called
     assert adam.get(ADDRESS).content == first.content
     assert client.get(f"{ADDRESS}?version=7").content == first.content
-    assert "/api/v1/worlds/" in yaml.safe_load(first.content)["paths"]
+    assert b"/api/v1/worlds/" in first.content
 
 
 def test_it_is_sent_again_only_where_it_has_changed(client, db):
@@ -36,6 +36,6 @@ def test_it_is_sent_again_only_where_it_has_changed(client, db):
 def test_it_comes_as_json_too(client, db):
     written = client.get(ADDRESS, headers={"accept": "application/json"})
     assert written["Content-Type"] == "application/json"
-    assert json.loads(written.content) == yaml.safe_load(client.get(ADDRESS).content)
+    assert json.loads(written.content) == yaml.load(client.get(ADDRESS).content, yaml.CSafeLoader)
     assert written["ETag"] != client.get(ADDRESS)["ETag"]
     assert client.get(ADDRESS, headers={"accept": "image/png"}).status_code == 406
