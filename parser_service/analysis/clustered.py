@@ -118,7 +118,7 @@ def compare(first: Parts, second: Parts, samples: int = SAMPLES) -> tuple[Interv
     p-value, by a paired bootstrap: both are drawn with the same clusters.
 
     The p-value is the level at which the percentile interval would just reach 0, and never below the
-    least of a sign test over the clusters: of few clusters samples say too much.
+    least of a sign test over the clusters in which they differ: few of them say less than samples do.
     """
     names = [
         sorted({*one.names, *other.names}, key=str)
@@ -135,18 +135,25 @@ def compare(first: Parts, second: Parts, samples: int = SAMPLES) -> tuple[Interv
 def _compare(first: _Numbers, second: _Numbers, samples: int) -> tuple[Interval, float]:
     differences = _sample(first.parts, samples) - _sample(second.parts, samples, stream=1)
     low, high = np.percentile(differences, [2.5, 97.5])
-    clusters = sum(part.clusters for part in first.parts)
-    return (float(low), float(high)), float(p_values(differences, clusters))
+    differing = sum(map(_count_differing, first.parts, second.parts))
+    return (float(low), float(high)), float(p_values(differences, differing))
 
 
-def p_values(differences: Floats, clusters: ArrayLike) -> Floats:
-    """Return the two-sided p-values of differences in samples, […, samples], of that many clusters, […].
+def _count_differing(first: Clustered, second: Clustered) -> int:
+    """Return in how many of the same clusters two parsers differ, over all trainings."""
+    shares = [each.right.sum(0) / np.maximum(each.count.sum(0), 1) for each in (first, second)]
+    return int((~np.isclose(*shares)).sum())
 
-    No p-value is below the least that a sign test over the clusters can have, 2^(1 − clusters).
+
+def p_values(differences: Floats, differing: ArrayLike) -> Floats:
+    """Return the two-sided p-values of differences in samples, […, samples], between what differs in that many
+    clusters, […].
+
+    No p-value is below the least that a sign test over these clusters can have, 2^(1 − differing).
     """
     # The data itself counts as one sample, so that p is never 0 (Davison and Hinkley 1997, p. 141).
     tails = np.minimum((differences <= 0).sum(-1), (differences >= 0).sum(-1))
-    least = 2.0 ** (1 - np.asarray(clusters, dtype=float))
+    least = 2.0 ** (1 - np.asarray(differing, dtype=float))
     return np.asarray(
         np.minimum(1.0, np.maximum(2 * (1 + tails) / (1 + differences.shape[-1]), least))
     )

@@ -11,7 +11,7 @@ import numpy as np
 from annotations.language.english import say_count
 from parser_service.analysis.arrays import Bools, Ints
 from parser_service.analysis.clustered import accuracies_in_samples, p_values
-from parser_service.analysis.comparing.significance import LEVEL, holm
+from parser_service.analysis.comparing.significance import LEVEL, holm, mcnemar
 
 SAMPLES = 5_000  # so that the least p-value of 66 pairs is significant after their correction
 
@@ -23,6 +23,7 @@ class Comparison:
     ``wins`` counts the examples on which the first alone is right, ``losses`` the second alone, and ``ties``
     the rest. ``difference`` is first minus second accuracy, a fraction of 1, with the 95 % interval
     and the p-value of a paired bootstrap of whole clusters. ``corrected_p`` is it after Holm's correction.
+    ``mcnemar_p`` is that of McNemar's test of single examples, with the same correction.
     """
 
     first: int
@@ -34,6 +35,7 @@ class Comparison:
     interval: tuple[float, float]
     p: float
     corrected_p: float
+    mcnemar_p: float
 
     @property
     def ties(self) -> int:
@@ -108,9 +110,10 @@ def compare_runs(correct: Bools, clusters: Ints, samples: int = SAMPLES) -> tupl
     right = np.array([np.bincount(clusters[run], minlength=width) for run in correct])
     accuracies = accuracies_in_samples(right, in_cluster, samples)  # [runs, samples]
     differences = accuracies[firsts] - accuracies[seconds]  # [pairs, samples]
-    p = p_values(differences, np.count_nonzero(in_cluster))
+    p = p_values(differences, (right[firsts] != right[seconds]).sum(-1))
     ends = np.percentile(differences, [2.5, 97.5], axis=-1)
     corrected = holm(p)
+    of_single = holm(mcnemar(wins[firsts, seconds], wins[seconds, firsts]))
     return tuple(
         Comparison(
             first=first,
@@ -122,6 +125,7 @@ def compare_runs(correct: Bools, clusters: Ints, samples: int = SAMPLES) -> tupl
             interval=(float(ends[0, at]), float(ends[1, at])),
             p=float(p[at]),
             corrected_p=float(corrected[at]),
+            mcnemar_p=float(of_single[at]),
         )
         for at, (first, second) in enumerate(pairs)
     )

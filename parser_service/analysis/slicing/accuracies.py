@@ -109,7 +109,7 @@ def _summarize(
     there = np.flatnonzero(counts)
     if len(there) and len(right):
         drawn = accuracies_in_samples(right[:, there], count[there], samples)
-        is_best[:, there] = _are_best(drawn, correct[:, there], clusters[there])
+        is_best[:, there] = _are_best(drawn, right[:, there])
         ends = np.percentile(drawn, [2.5, 97.5], axis=-1, overwrite_input=True)
         low[:, there], high[:, there] = ends
     is_flat = (counts > 0) & ((correct == 0) | (correct == counts) | (clusters == 1))
@@ -119,20 +119,20 @@ def _summarize(
     return SliceAccuracies(values, counts, correct, low, high, is_best)
 
 
-def _are_best(samples: Floats, correct: Ints, clusters: Ints) -> Bools:
+def _are_best(samples: Floats, right: Ints) -> Bools:
     """Return which run is better than each other one beyond chance, [runs, slices].
 
     Args:
         samples: accuracies, [runs, slices, samples].
-        correct: numbers of right answers, [runs, slices].
-        clusters: numbers of clusters, [slices].
+        right: numbers of right answers, [runs, slices, clusters].
     """
-    are_best = np.zeros(correct.shape, dtype=bool)
-    if len(correct) < 2:
+    are_best = np.zeros(right.shape[:-1], dtype=bool)
+    if len(right) < 2:
         return are_best
-    best = correct.argmax(0)  # [slices]
-    slices = np.arange(correct.shape[1])
-    p = p_values(samples[best, slices] - samples, clusters)
+    best = right.sum(-1).argmax(0)  # [slices]
+    slices = np.arange(right.shape[1])
+    differing = (right[best, slices] != right).sum(-1)  # [runs, slices]
+    p = p_values(samples[best, slices] - samples, differing)
     for place in slices:
         others = np.delete(p[:, place], best[place])
         are_best[best[place], place] = bool((holm(others) <= LEVEL).all())

@@ -63,7 +63,7 @@ class Command(ReportingCommand):
             default=1,
             metavar="N",
             help="number of runs: one per seed, counting up from --seed. The report has each of them "
-            "and the mean and spread of their accuracies, with the 95 % interval",
+            "and the mean and spread of their accuracies, with the 95 %% interval",
         )
         parser.add_argument(
             "--config", nargs="*", default=[], metavar="KEY=VALUE", help="hyperparameters"

@@ -81,14 +81,22 @@ def test_bold_is_what_is_better_beyond_chance(printed, better, is_bold):
 
 
 def test_with_more_rows_a_difference_has_to_be_clearer(printed):
-    """Four clusters of forty are enough (p = 0.03) against one other row, and not against five."""
-    better = cell("seq2seq", 0.725, outcomes={"validation": outcomes(29)})
+    """Seven clusters are enough (p = 1/64) against one other row, and not against five."""
+    better = cell("seq2seq", 0.8, outcomes={"validation": outcomes(32)})
     others = [
         cell(name, 0.625, outcomes={"validation": outcomes(25)})
         for name in ("knn", "ranker", "seq2seq-minilm", "seq2seq-glove", "seq2seq-glove-elmo")
     ]
-    assert "**72.5**" in printed([better, others[0]])
-    assert "**72.5**" not in printed([better, *others])
+    assert "**80.0**" in printed([better, others[0]])
+    assert "**80.0**" not in printed([better, *others])
+
+
+def test_four_clusters_are_no_evidence_however_many_examples_they_have(printed):
+    cells = [
+        cell("seq2seq", 0.725, outcomes={"validation": outcomes(29, size=500)}),
+        cell(accuracy=0.625, outcomes={"validation": outcomes(25, size=500)}),
+    ]
+    assert "**72.5**" not in printed(cells)
 
 
 def test_by_form_the_three_figures_stand_together(printed):

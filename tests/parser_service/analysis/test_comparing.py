@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
+from scipy import stats
 
 from parser_service.analysis.clustered import Clustered, compare
 from parser_service.analysis.comparing import (
@@ -14,6 +15,7 @@ from parser_service.analysis.comparing import (
     count_wins,
     holm,
 )
+from parser_service.analysis.comparing.significance import mcnemar
 
 matrices = arrays.arrays(
     bool, st.tuples(st.integers(1, 4), st.integers(1, 40)), elements=st.booleans()
@@ -40,7 +42,15 @@ def test_every_pair_is_compared_once_and_wins_less_losses_is_the_difference(corr
         assert each.wins + each.losses + each.ties == correct.shape[1]
         assert each.difference == pytest.approx(accuracies[each.first] - accuracies[each.second])
         assert each.corrected_p >= each.p
+        assert each.mcnemar_p >= mcnemar(each.wins, each.losses)
         assert -1 <= each.interval[0] <= each.interval[1] <= 1
+
+
+@pytest.mark.parametrize(("wins", "losses"), [(0, 0), (1, 0), (7, 2), (12, 30), (400, 350)])
+def test_mcnemar_is_the_binomial_test_of_scipy(wins, losses):
+    total = wins + losses
+    expected = stats.binomtest(wins, total, 0.5).pvalue if total else 1.0
+    assert mcnemar(wins, losses) == pytest.approx(expected)
 
 
 def test_holms_correction_of_the_published_example():
