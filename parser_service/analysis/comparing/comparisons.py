@@ -87,9 +87,8 @@ def count_wins(correct: Bools) -> Ints:
 
 
 def compare_runs(correct: Bools, clusters: Ints, samples: int = SAMPLES) -> tuple[Comparison, ...]:
-    """Compare every pair of runs on the same examples, by a paired bootstrap: all runs are drawn with the same
-    clusters. (Efron and Tibshirani, An Introduction to the Bootstrap, 1993; Koehn, Statistical
-    significance tests for machine translation evaluation, 2004.)
+    """Compare every pair of runs by a paired bootstrap: all are drawn with the same clusters. (Efron and Tibshirani
+    1993; Koehn, Statistical significance tests for machine translation evaluation, 2004.)
 
     Args:
         correct: whether each run is right on each example, [runs, examples].
@@ -105,9 +104,7 @@ def compare_runs(correct: Bools, clusters: Ints, samples: int = SAMPLES) -> tupl
     wins = count_wins(correct)
     pairs = list(combinations(range(len(correct)), 2))
     firsts, seconds = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
-    in_cluster: Ints = np.bincount(clusters)
-    width = len(in_cluster)
-    right = np.array([np.bincount(clusters[run], minlength=width) for run in correct])
+    right, in_cluster = _count_by_cluster(correct, clusters)
     accuracies = accuracies_in_samples(right, in_cluster, samples)  # [runs, samples]
     differences = accuracies[firsts] - accuracies[seconds]  # [pairs, samples]
     p = p_values(differences, (right[firsts] != right[seconds]).sum(-1))
@@ -129,6 +126,14 @@ def compare_runs(correct: Bools, clusters: Ints, samples: int = SAMPLES) -> tupl
         )
         for at, (first, second) in enumerate(pairs)
     )
+
+
+def _count_by_cluster(correct: Bools, clusters: Ints) -> tuple[Ints, Ints]:
+    """Return the number of right answers, [runs, clusters], and of examples, [clusters]."""
+    in_cluster: Ints = np.bincount(clusters)
+    width = len(in_cluster)
+    right: Ints = np.array([np.bincount(clusters[run], minlength=width) for run in correct])
+    return right, in_cluster
 
 
 def _number(points: float) -> str:
