@@ -22,9 +22,9 @@ SPREAD = 0.5  # standard deviation of the prior of the logarithm of a weight
 # has to be to say that it is known (docs/ranker-experiments.md).
 NEAREST_SHARE = 0.5
 NEAR = 11.0  # nats; a cosine of 0.55
-# A command means a new form a third as often as a known one. This is the novelty where nothing was held
+# A command means a new form a fifth as often as a known one. This is the novelty where nothing was held
 # out, too, and the scale of the prior around it.
-USUAL_NOVELTY, NOVELTY_SCALE = log(1 / 3), 0.5
+USUAL_NOVELTY, NOVELTY_SCALE = log(1 / 5), 0.5
 NOVELTIES = tuple(0.05 * step for step in range(-200, 201))  # nats
 LABEL_NOISE = 0.05  # share of the pairs that are taken to have any form
 WITHHELD = 0.05  # most of the right answers that may be withheld, to answer nothing that is unlike all examples

@@ -38,15 +38,15 @@ from parser_service.parsers.storage import read_json
 from parser_service.parsers.weights.encoder_places import encoders_folder
 
 VALIDATIONS = 4  # in a training; each re-encodes all examples, which takes a while
-FIRST_SHARE = 0.5  # of the steps, before the forms that were held out are learned as well
+FIRST_SHARE = 0.3  # of the steps, before the forms that were held out are learned as well
 TOLERANCE = 1.05  # fewer steps than this share too many are no reason to change the schedule
 
 
 class Fitting:
     """The training of a ranker.
 
-    Where there are forms enough, some are held out of its first half, which then tells when a form is
-    new (``holding_out``, ``calibration.best_novelty``); the second half continues with all. Afterwards
+    Where there are forms enough, some are held out of its first part, which then tells when a form is
+    new (``holding_out``, ``calibration.best_novelty``); the second part continues with all. Afterwards
     ``ranked``, ``model`` and ``decision`` are the parser.
     """
 
@@ -96,6 +96,7 @@ class Fitting:
             assert held is not None
             self.decision = Decision(self._learn_novelty(held))
             self._at, self._is_started = self._at + 1, False
+            self._trainings[self._at].continue_from(training)
         self._average.keep()
         if was_over:  # else the last pass has done this
             self._validate(self.observe.check)
@@ -228,7 +229,7 @@ class Fitting:
         forms = [[pair.form for pair in pairs] for pairs in (held.new, held.known)]
         novelty = best_novelty(of_new, forms[0], of_known, forms[1])
         self.observe.log(
-            f"{len(set(forms[0]))} forms were held out of the first half of the training, and "
+            f"{len(set(forms[0]))} forms were held out of the first part of the training, and "
             f"utterances of {len(set(forms[1]))} others; by them, a new form is answered where it fits "
             f"better by {USUAL_NOVELTY - novelty:.2f} nats than usual."
         )

@@ -46,7 +46,7 @@ class FormRanker(Parser):
     gloss alone; where the ontology is known, slots that no entity of the utterance fills lower the
     score. New forms are made from those of the training pairs (``candidates``) or taken from the
     grammar. Scores are log-probabilities. By how much a new form has to fit better is learned from forms
-    that are held out of the first half of the training, never from the validation pairs: those only
+    that are held out of the first part of the training, never from the validation pairs: those only
     weigh the experts.
     """
 

@@ -118,6 +118,12 @@ class RankerTraining:
             self.prototypes.start_from(vectors, [example.form for example in self.examples])
             self.model.glosses.encode(self.model.encoder, check)
 
+    def continue_from(self, earlier: RankerTraining) -> None:
+        """Let AdamW keep what it knows of the encoder that both train: without its moments, the first steps
+        with all forms are as rough as those of a new training."""
+        for _, weight in self.model.trained():
+            self.optimizer.state[weight] = earlier.optimizer.state[weight]
+
     @property
     def passes(self) -> int:
         """The number of passes that are over."""
