@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 import torch
 from tokenizers import Tokenizer
 from torch import Tensor, nn
-from torch.nn.functional import normalize
+from torch.nn.functional import normalize, pad
 
 from parser_service.neural.device import denormals_flushed
 from parser_service.neural.pretrained import Pretrained
@@ -24,7 +24,9 @@ if TYPE_CHECKING:
 ENCODER = "encoder.json"
 TOKENIZER = "tokenizer.json"
 LONGEST = 64  # subwords; the longest published paraphrase has 45
-LENGTH_STEP = 8  # subwords; torch keeps code for each shape, so fewer shapes need less memory
+BF16_LENGTH_STEP = (
+    8  # subwords; torch keeps code in bf16 for each shape, so fewer shapes need less memory
+)
 BATCH = 64
 
 
@@ -50,9 +52,7 @@ class SentenceEncoder(nn.Module):
         self.dropout = nn.Dropout(dropout)
         self.in_bf16 = False
         tokenizer.enable_truncation(LONGEST)
-        tokenizer.enable_padding(
-            pad_id=model.config.pad_token_id or 0, pad_to_multiple_of=LENGTH_STEP
-        )
+        tokenizer.enable_padding(pad_id=model.config.pad_token_id or 0)
         model.get_input_embeddings().weight.requires_grad_(False)
 
     @classmethod
@@ -95,6 +95,10 @@ class SentenceEncoder(nn.Module):
         subwords = torch.tensor([each.ids for each in encodings], device=device)  # [texts, length]
         mask = torch.tensor([each.attention_mask for each in encodings], device=device)
         bf16 = torch.autocast(device.type, torch.bfloat16) if self.in_bf16 else nullcontext()
+        if self.in_bf16:
+            more = -mask.shape[1] % BF16_LENGTH_STEP
+            subwords = pad(subwords, (0, more), value=self.model.config.pad_token_id or 0)
+            mask = pad(mask, (0, more))
         with bf16:
             states = self.model(input_ids=subwords, attention_mask=mask).last_hidden_state
         states = self.dropout(states.float())  # [texts, length, width]
@@ -113,12 +117,14 @@ class SentenceEncoder(nn.Module):
         if not texts:
             return torch.zeros(0, self.width, device=self.device)
         was_training = self.training
-        self.eval()
+        if was_training:  # each of its modules is asked, which takes a short text's share of time
+            self.eval()
         order = sorted(range(len(texts)), key=lambda index: len(texts[index]))
         batches = []
         for begin in range(0, len(order), at_once):
             check()
             batches.append(self([texts[index] for index in order[begin : begin + at_once]]))
-        self.train(was_training)
+        if was_training:
+            self.train()
         vectors = torch.cat(batches)
         return vectors[torch.tensor(order).argsort()]
