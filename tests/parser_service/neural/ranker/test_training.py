@@ -116,3 +116,21 @@ def test_the_encoder_goes_back_to_the_pretrained_one_as_far_as_the_protocol_says
     name = "encoder.layer.0.output.dense.weight"
     assert torch.equal(weights(domestic)[f"encoder.model.{name}"], pretrained[name])
     assert not torch.equal(weights(strict)[f"encoder.model.{name}"], pretrained[name])
+
+
+def test_the_optimizer_goes_on_with_its_moments_when_the_held_out_forms_join(
+    config, pairs, monkeypatch
+):
+    steps_seen = {}
+    train = RankerTraining._train_on
+
+    def note(training, *args):
+        loss = train(training, *args)
+        states = (training.optimizer.state[weight] for _, weight in training.model.trained())
+        steps_seen[training.step] = {int(state["step"]) for state in states if state}
+        return loss
+
+    monkeypatch.setattr(RankerTraining, "_train_on", note)
+    FormRanker(replace(config, steps=12)).fit(pairs)
+    assert len(steps_seen) >= 12
+    assert all(seen == {step + 1} for step, seen in steps_seen.items())
