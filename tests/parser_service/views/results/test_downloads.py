@@ -10,6 +10,7 @@ from shutil import which
 from statistics import mean, stdev
 
 import pytest
+from django.urls import reverse
 
 from annotations.models import Split
 from parser_service.models import TrainingRun
@@ -132,6 +133,9 @@ def test_a_model_that_may_have_read_the_corpus_is_marked_everywhere(sample, anna
     page = anna.get("/w/home/results/").content.decode()
     assert page.count(">†</abbr></sup>") == 1 and f"† {MAY_KNOW_CORPORA}" in page
     assert "answered by tiny-2026-07" in page and "model tiny" in page
+    for name in ("predictions", "defaults", "sensitivity", "probes"):
+        of_run = anna.get(reverse(name, args=["home", run.pk])).content.decode()
+        assert f"† {MAY_KNOW_CORPORA}" in of_run
     lines = csv.DictReader(io.StringIO(anna.get("/w/home/results.csv").content.decode()))
     assert [(each["parser"], each["answered_by"], each["may_know_corpora"]) for each in lines] == [
         ("knn", "", "False"),
