@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 import torch
 from tokenizers import Tokenizer
 from torch import Tensor, nn
-from torch.nn.functional import normalize, pad
+from torch.nn.functional import normalize
 
 from parser_service.neural.device import denormals_flushed
 from parser_service.neural.pretrained import Pretrained
@@ -28,6 +28,7 @@ BF16_LENGTH_STEP = (
     8  # subwords; torch keeps code in bf16 for each shape, so fewer shapes need less memory
 )
 BATCH = 64
+CPU_TOGETHER = 16  # texts that are padded to the longest of them; reading padding takes as long as reading words
 
 
 class SentenceEncoder(nn.Module):
@@ -52,7 +53,7 @@ class SentenceEncoder(nn.Module):
         self.dropout = nn.Dropout(dropout)
         self.in_bf16 = False
         tokenizer.enable_truncation(LONGEST)
-        tokenizer.enable_padding(pad_id=model.config.pad_token_id or 0)
+        tokenizer.no_padding()
         model.get_input_embeddings().weight.requires_grad_(False)
 
     @classmethod
@@ -90,15 +91,24 @@ class SentenceEncoder(nn.Module):
     def forward(self, texts: Sequence[str]) -> Tensor:
         """Return vectors of length 1 [texts, width], always in single precision; 0 for a text without a
         subword."""
-        device = self.device
-        encodings = self.tokenizer.encode_batch(list(texts))
-        subwords = torch.tensor([each.ids for each in encodings], device=device)  # [texts, length]
-        mask = torch.tensor([each.attention_mask for each in encodings], device=device)
-        bf16 = torch.autocast(device.type, torch.bfloat16) if self.in_bf16 else nullcontext()
+        read = [each.ids for each in self.tokenizer.encode_batch(list(texts))]
+        order = sorted(range(len(read)), key=lambda index: len(read[index]))
+        together = CPU_TOGETHER if self.device.type == "cpu" else len(read)
+        groups = (order[at : at + together] for at in range(0, len(order), together))
+        vectors = torch.cat([self._encode([read[index] for index in group]) for group in groups])
+        return vectors[torch.tensor(order, device=self.device).argsort()]
+
+    def _encode(self, read: Sequence[Sequence[int]]) -> Tensor:
+        """Return the vectors of the texts whose subwords are given, padded to the longest."""
+        device, longest = self.device, max(map(len, read))
         if self.in_bf16:
-            more = -mask.shape[1] % BF16_LENGTH_STEP
-            subwords = pad(subwords, (0, more), value=self.model.config.pad_token_id or 0)
-            mask = pad(mask, (0, more))
+            longest += -longest % BF16_LENGTH_STEP
+        filler = self.model.config.pad_token_id or 0
+        rows = [[*ids, *[filler] * (longest - len(ids))] for ids in read]
+        subwords = torch.tensor(rows, dtype=torch.long, device=device)  # [texts, length]
+        lengths = torch.tensor([len(ids) for ids in read], device=device)
+        mask = (torch.arange(longest, device=device) < lengths[:, None]).long()
+        bf16 = torch.autocast(device.type, torch.bfloat16) if self.in_bf16 else nullcontext()
         with bf16:
             states = self.model(input_ids=subwords, attention_mask=mask).last_hidden_state
         states = self.dropout(states.float())  # [texts, length, width]
