@@ -18,7 +18,6 @@ from typing import Any
 from prometheus_client import CONTENT_TYPE_LATEST
 
 from parser_service.serving.answers import as_json
-from parser_service.serving.batching import one_ahead
 from parser_service.serving.preparing import require_beam, require_utterance
 from parser_service.serving.shelf import Asked, NotServed, Service, Shelf
 
@@ -130,8 +129,10 @@ class Application:
     def _answer_lines(self, service: Service, lines: list[bytes], beam: int) -> Iterator[bytes]:
         numbered = [(number, line) for number, line in enumerate(lines, 1) if line.strip()]
         together = service.parser.lines_together
-        parts = [numbered[at : at + together] for at in range(0, len(numbered), together)]
-        for answers in one_ahead(lambda part: _ask_some(service, part, beam), parts):
+        for at in range(0, len(numbered), together):
+            # Not while another thread works on the next ones: the two would wait for each other's lock of the
+            # interpreter for longer than writing takes.
+            answers = _ask_some(service, numbered[at : at + together], beam)
             yield _write_some(service, answers)
             self._shelf.metrics.utterances.labels(world=service.world).inc(len(answers))
 

@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import TypeVar
 
 from parser_service.parsers.interface import Candidate
 
-Part = TypeVar("Part")
-Result = TypeVar("Result")
 Predict = Callable[[Sequence[str], int], list[list[Candidate]]]
 MOST_TOGETHER = 64  # texts
 
@@ -88,16 +84,3 @@ class Batcher:
         self._observe(len(texts))
         for request in requests:
             request.answers = [next(answers) for _ in request.texts]
-
-
-def one_ahead(work: Callable[[Part], Result], parts: Iterable[Part]) -> Iterator[Result]:
-    """Yield ``work`` of each part, in order. While the caller uses one, a thread works on the next."""
-    with ThreadPoolExecutor(1) as thread:
-        before: Future[Result] | None = None
-        for part in parts:
-            ahead = thread.submit(work, part)
-            if before is not None:
-                yield before.result()
-            before = ahead
-        if before is not None:
-            yield before.result()

@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 import os
 import signal
-import sys
 import threading
 from typing import Any
 
@@ -22,16 +21,12 @@ THREADS = 32  # requests that are answered together wait in a thread each
 CONNECTIONS = 500
 MOST_BODY_BYTES = 2 * 1024 * 1024  # the site takes no more than half of it
 LOOK_EVERY = 0.5  # seconds
-# A network takes the interpreter's lock anew after each of its operations. For as long as Python's own 5 ms, it would
-# wait each time for the thread that writes the answers before.
-SWITCH_EVERY = 0.0001  # seconds
 
 
 def serve(host: str, port: int, secret: str, most_bytes: int) -> None:
     """Answer on ``host:port`` until SIGTERM or SIGINT. Raises OSError where it cannot listen there."""
     # Read when torch is loaded. More threads wait for each other wherever something else computes too.
     os.environ.setdefault("OMP_NUM_THREADS", "1")
-    sys.setswitchinterval(SWITCH_EVERY)
     shelf = Shelf(most_bytes, Metrics())
     server = create_server(
         Application(shelf, secret, connections.close_all),

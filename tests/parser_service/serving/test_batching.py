@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from parser_service.parsers.interface import Candidate
-from parser_service.serving.batching import MOST_TOGETHER, Batcher, one_ahead
+from parser_service.serving.batching import MOST_TOGETHER, Batcher
 from tests.waiting import wait_for
 
 
@@ -73,19 +73,3 @@ def test_an_utterance_that_a_parser_refuses_harms_no_other(ask_while_busy):
     good, bad = ask_while_busy((["a"], 5), (["bad"], 5))
     assert good[0][0].form == "a"
     assert str(bad) == "bad is not said"
-
-
-def test_the_next_part_is_worked_on_while_one_is_used():
-    begun: list[int] = []
-    parts = one_ahead(lambda part: begun.append(part) or 10 * part, [1, 2, 3])
-    assert next(parts) == 10
-    wait_for(lambda: begun == [1, 2], "the second part")
-    assert [*parts] == [20, 30] and begun == [1, 2, 3]
-    assert [*one_ahead(str, [])] == []
-
-
-def test_a_part_that_fails_ends_the_others():
-    parts = one_ahead(lambda part: 1 / part, [1, 0, 2])
-    assert next(parts) == 1
-    with pytest.raises(ZeroDivisionError):
-        next(parts)
