@@ -51,7 +51,7 @@ class FormRanker(Parser):
     """
 
     name = "ranker"
-    version = 9
+    version = 10
     protocols = (Protocol.STRICT, Protocol.DOMAIN, Protocol.GRAMMAR)
     score_kind = ScoreKind.LOG_PROBABILITY
     Config = RankerConfig
