@@ -15,7 +15,6 @@ from parser_service.neural.ranker.slot_term import SlotTerm
 from parser_service.neural.sentence_encoder import SentenceEncoder
 from parser_service.parsers.interface import Check
 
-ASKED_AT_ONCE = 32  # utterances; with more, short ones are padded to long ones
 SUPPORT_WEIGHT = 1.0  # nats for each kind of step that arrives at a new form
 
 
@@ -52,7 +51,7 @@ class RankerModel(nn.Module):
     @torch.no_grad()
     def scores(self, utterances: Sequence[str], check: Check) -> Scores:
         """Return the scores of examples, glosses, slots and support, in the main memory."""
-        vectors = self.encoder.vectors(utterances, check, ASKED_AT_ONCE)  # [utterances, width]
+        vectors = self.encoder.vectors(utterances, check)  # [utterances, width]
         by_gloss = self.glosses.logits(vectors).cpu()  # [utterances, forms]
         scores = by_gloss.new_zeros(len(EXPERTS), *by_gloss.shape)
         by_example = self.nearest(vectors).cpu()  # [utterances, forms with examples]

@@ -24,11 +24,10 @@ if TYPE_CHECKING:
 ENCODER = "encoder.json"
 TOKENIZER = "tokenizer.json"
 LONGEST = 64  # subwords; the longest published paraphrase has 45
-BF16_LENGTH_STEP = (
-    8  # subwords; torch keeps code in bf16 for each shape, so fewer shapes need less memory
-)
-BATCH = 64
-CPU_TOGETHER = 16  # texts that are padded to the longest of them; reading padding takes as long as reading words
+# Subwords. In bf16 torch keeps code for each shape, so fewer shapes need less memory.
+BF16_LENGTH_STEP = 8
+# Texts that are padded to the longest of them. A CPU reads padding as slowly as words, so there are fewer.
+TOGETHER, TOGETHER_ON_CPU = 64, 16
 
 
 class SentenceEncoder(nn.Module):
@@ -88,19 +87,21 @@ class SentenceEncoder(nn.Module):
         """Return for each text whether it is longer than this encoder reads."""
         return [bool(each.overflowing) for each in self.tokenizer.encode_batch(list(texts))]
 
-    def forward(self, texts: Sequence[str]) -> Tensor:
+    def forward(self, texts: Sequence[str], check: Check = keep_going) -> Tensor:
         """Return vectors of length 1 [texts, width], always in single precision; 0 for a text without a
-        subword."""
+        subword. Texts of similar length go through the network together."""
         read = [each.ids for each in self.tokenizer.encode_batch(list(texts))]
         order = sorted(range(len(read)), key=lambda index: len(read[index]))
-        together = CPU_TOGETHER if self.device.type == "cpu" else len(read)
-        groups = (order[at : at + together] for at in range(0, len(order), together))
-        vectors = torch.cat([self._encode([read[index] for index in group]) for group in groups])
-        return vectors[torch.tensor(order, device=self.device).argsort()]
+        together = TOGETHER_ON_CPU if self.device.type == "cpu" else TOGETHER
+        vectors = []
+        for begin in range(0, len(order), together):
+            check()
+            vectors.append(self._encode([read[index] for index in order[begin : begin + together]]))
+        return torch.cat(vectors)[torch.tensor(order, device=self.device).argsort()]
 
     def _encode(self, read: Sequence[Sequence[int]]) -> Tensor:
         """Return the vectors of the texts whose subwords are given, padded to the longest."""
-        device, longest = self.device, max(map(len, read))
+        device, longest = self.device, max(1, *map(len, read))
         if self.in_bf16:
             longest += -longest % BF16_LENGTH_STEP
         filler = self.model.config.pad_token_id or 0
@@ -117,24 +118,14 @@ class SentenceEncoder(nn.Module):
 
     @torch.no_grad()
     @denormals_flushed()
-    def vectors(
-        self, texts: Sequence[str], check: Check = keep_going, at_once: int = BATCH
-    ) -> Tensor:
-        """Return the same without dropout and gradient, for any number of texts. Shape [texts, width].
-
-        Texts of similar length are encoded together, ``at_once`` at a time.
-        """
+    def vectors(self, texts: Sequence[str], check: Check = keep_going) -> Tensor:
+        """Return the same without dropout and gradient, for any number of texts. Shape [texts, width]."""
         if not texts:
             return torch.zeros(0, self.width, device=self.device)
         was_training = self.training
-        if was_training:  # each of its modules is asked, which takes a short text's share of time
+        if was_training:  # going through all modules takes as long as a part of a short text
             self.eval()
-        order = sorted(range(len(texts)), key=lambda index: len(texts[index]))
-        batches = []
-        for begin in range(0, len(order), at_once):
-            check()
-            batches.append(self([texts[index] for index in order[begin : begin + at_once]]))
+        vectors: Tensor = self(texts, check)
         if was_training:
             self.train()
-        vectors = torch.cat(batches)
-        return vectors[torch.tensor(order).argsort()]
+        return vectors

@@ -115,7 +115,7 @@ def test_a_loaded_ranker_encodes_the_utterance_and_nothing_else(learned, tmp_pat
     monkeypatch.setattr(
         SentenceEncoder,
         "forward",
-        lambda self, texts: encoded.extend(texts) or forward(self, texts),
+        lambda self, texts, *rest: encoded.extend(texts) or forward(self, texts, *rest),
     )
     FormRanker.load(tmp_path).predict(["bring the apple"])
     assert encoded == ["bring the apple"]

@@ -34,6 +34,8 @@ def test_vectors_come_in_the_order_asked_for(encoder):
     texts = TEXTS * 50
     vectors = encoder.vectors(texts)
     assert torch.allclose(vectors[: len(TEXTS)], vectors[-len(TEXTS) :], atol=1e-5)
+    alone = torch.cat([encoder.vectors([text]) for text in TEXTS])
+    assert torch.allclose(vectors, alone.repeat(50, 1), atol=1e-5)
 
 
 def test_no_text_no_vector(encoder):
@@ -44,6 +46,7 @@ def test_a_text_without_a_subword_has_a_vector_that_is_like_no_other(encoder):
     encoder.tokenizer.post_processor = TemplateProcessing(single="$A", pair="$A $B")
     vectors = encoder.vectors(["", "go"])
     assert vectors[0].tolist() == [0] * 32 and vectors[1].norm() == pytest.approx(1)
+    assert not encoder.vectors([""] * 20).any()
 
 
 def test_a_very_long_text_is_cut(encoder):
