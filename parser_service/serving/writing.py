@@ -137,16 +137,11 @@ class AnswerWriter:
         doubts = [each.as_json() for each in doubts_about(slots)]
         return {
             "score": as_json(score_of(candidate)),
-            "open_slots": _list(list(questions_of(given, self.language, sentence_of))),
-            "remarks": _list(remarks_on(given, self.language.ontology)),
-            "is_executable": "true" if outline.is_executable and not doubts else "false",
-            "problems": _list([*doubts, *outline.problems]),
+            "open_slots": as_json(list(questions_of(given, self.language, sentence_of))),
+            "remarks": as_json(remarks_on(given, self.language.ontology)),
+            "is_executable": as_json(outline.is_executable and not doubts),
+            "problems": as_json([*doubts, *outline.problems]),
         }
-
-
-def _list(values: Sequence[object]) -> str:
-    """Return the JSON of a list; that of an empty one, which most are, without an encoder."""
-    return as_json(values) if values else "[]"
 
 
 def _put_in(slot: Slot) -> str | None:
