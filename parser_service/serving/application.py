@@ -130,8 +130,8 @@ class Application:
         numbered = [(number, line) for number, line in enumerate(lines, 1) if line.strip()]
         together = service.parser.lines_together
         for at in range(0, len(numbered), together):
-            # Not while another thread works on the next ones: the two would wait for each other's lock of the
-            # interpreter for longer than writing takes.
+            # One thread does both. A second one that parsed the next lines meanwhile would have to wait for
+            # the interpreter's lock after each operation of the network, for longer than writing takes.
             answers = _ask_some(service, numbered[at : at + together], beam)
             yield _write_some(service, answers)
             self._shelf.metrics.utterances.labels(world=service.world).inc(len(answers))
