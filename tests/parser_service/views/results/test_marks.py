@@ -55,6 +55,13 @@ def test_its_own_page_and_report_bear_the_mark(model, sample, anna):
     assert MARK not in "".join(run_report(sample.run, "validation"))
 
 
+@pytest.mark.parametrize("name", ["predictions", "defaults", "sensitivity", "probes"])
+def test_pages_of_its_answers_bear_the_mark_beside_its_name(name, model, sample, anna):
+    text = text_of(anna, f"runs/{model.pk}/{name}/")
+    assert f">llm {MARK}, run {model.pk}</span></h1>" in text and FOOTNOTE in text
+    assert MARK not in text_of(anna, f"runs/{sample.run.pk}/{name}/")
+
+
 def test_the_chart_of_the_learning_curves_names_it_with_the_mark(model, sample, anna):
     data = anna.get("/w/home/results/curves/data/").json()
     assert [one["name"] for one in data["series"]] == [
