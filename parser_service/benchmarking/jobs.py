@@ -89,17 +89,17 @@ class Job:
 def jobs(
     parsers: Sequence[str],
     columns: Sequence[Column],
-    seeds: int,
+    seeds: Sequence[int],
     configurations: Mapping[str, Mapping[str, Any]] | None = None,
     new_splits: Sequence[int] = (),
     new_criteria: Collection[str] = tuple(Criterion),
 ) -> Iterator[Job]:
     """Yield all jobs; a parser only has those of the protocols that it supports.
 
-    Jobs of the same ``training`` follow each other. ``configurations`` changes hyperparameters of some
-    parsers. ``new_splits`` are the seeds of splits that replace the published one, or the one of seed 0
-    by source command, of which none was published, where the criterion is among ``new_criteria``. Raises
-    ValueError, a sentence.
+    Jobs of the same ``training`` follow each other. ``seeds`` are those of the trainings.
+    ``configurations`` changes hyperparameters of some parsers. ``new_splits`` are the seeds of splits
+    that replace the published one, or the one of seed 0 by source command, of which none was published,
+    where the criterion is among ``new_criteria``. Raises ValueError, a sentence.
     """
     changed = configurations or {}
     configured = {
@@ -109,7 +109,7 @@ def jobs(
         dict.fromkeys(parts) for parts in zip(*columns, strict=True)
     )
     # Settings last, so that those with the same training follow each other.
-    for criterion, name, protocol, seed in product(criteria, configured, protocols, range(seeds)):
+    for criterion, name, protocol, seed in product(criteria, configured, protocols, seeds):
         if protocol not in entry(name).protocols:
             continue
         splits = _splits(criterion, new_splits if criterion in new_criteria else ())

@@ -63,15 +63,18 @@ def read_column(text: str) -> Column:
     return Column(*(read_names(part, known)[0] for part, known in named), declared)
 
 
-def read_split_seeds(text: str) -> range:
-    """Read ``N`` as the seeds 0 to N - 1, ``A-B`` as those from A to B. Raises ValueError."""
+def read_seeds(option: str, text: str, at_least: int = 0) -> range:
+    """Read ``N`` as the seeds 0 to N - 1, ``A-B`` as those from A to B.
+
+    Raises ValueError, a sentence that names the option, also where there are fewer than ``at_least``.
+    """
     if match := re.fullmatch(r"(\d+)(?:-(\d+))?", text.strip()):
         first, last = match.groups()
         seeds = range(int(first)) if last is None else range(int(first), int(last) + 1)
-        if seeds or last is None:
+        if seeds or (last is None and not at_least):
             return seeds
     raise ValueError(
-        f"--new-splits is {text!r}; it has to be a number of splits (5), or a range of seeds (6-9)."
+        f"{option} is {text!r}; it has to be a number, {at_least} or more, or a range of seeds (6-9)."
     )
 
 

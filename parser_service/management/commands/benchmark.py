@@ -20,7 +20,7 @@ from parser_service.management.options import (
     read_columns,
     read_configurations,
     read_names,
-    read_split_seeds,
+    read_seeds,
 )
 from parser_service.parsers.conditions import SETTINGS, Protocol
 from parser_service.parsers.registry import PARSERS
@@ -76,9 +76,8 @@ class Command(BaseCommand):
     def _run(self, folder: Path, world: World | None, options: dict[str, Any]) -> list[str]:
         """Measure what is missing; return sentences for what could not be measured."""
         at_once = options["jobs"]
-        for name in ("jobs", "seeds"):
-            if (given := options[name]) < 1:
-                raise ValueError(f"--{name} is {given}; it has to be 1 or more.")
+        if at_once < 1:
+            raise ValueError(f"--jobs is {at_once}; it has to be 1 or more.")
         todo = list(
             jobs(
                 read_names(options["parsers"], list(PARSERS)),
@@ -88,9 +87,9 @@ class Command(BaseCommand):
                     options["criteria"],
                     options["protocols"],
                 ),
-                options["seeds"],
+                read_seeds("--seeds", options["seeds"], at_least=1),
                 read_configurations(options["config"]),
-                read_split_seeds(options["new_splits"]),
+                read_seeds("--new-splits", options["new_splits"]),
                 read_names(options["new_splits_by"], list(Criterion)),
             )
         )
@@ -133,7 +132,12 @@ def _add_choice_of_cells(parser: CommandParser) -> None:
         "TRAIN-TEST:CRITERION:PROTOCOL, under domain also with :training where only forms of training "
         "pairs declare predicates",
     )
-    parser.add_argument("--seeds", type=int, default=1, help="train with the seeds 0 to N - 1")
+    parser.add_argument(
+        "--seeds",
+        default="1",
+        metavar="N|A-B",
+        help="train with the seeds 0 to N - 1, or A to B",
+    )
     parser.add_argument(
         "--new-splits",
         default="0",

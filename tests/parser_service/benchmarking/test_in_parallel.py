@@ -54,7 +54,7 @@ def without_durations(cells: dict[str, dict]) -> dict[str, dict]:
 
 
 def measure(folder: Path, file: Path, **options) -> dict[str, dict]:
-    given = {"parsers": "knn", "columns": COLUMNS, "seeds": 3, **options}
+    given = {"parsers": "knn", "columns": COLUMNS, "seeds": "3", **options}
     call_command("benchmark", str(folder), json=file, **given)
     return read(file)
 
@@ -102,7 +102,7 @@ def test_a_network_is_trained_once_for_two_columns_and_answers_as_in_one_process
     folder, file, tmp_path
 ):
     tiny = [f"seq2seq.{name}={value}" for name, value in {**TINY, "epochs": 2}.items()]
-    asked = {"parsers": "seq2seq", "config": tiny, "columns": ALIKE, "seeds": 1}
+    asked = {"parsers": "seq2seq", "config": tiny, "columns": ALIKE, "seeds": "1"}
     side_by_side = measure(folder, file, jobs=2, **asked)
     first, second = (cell["seconds_train"] for cell in side_by_side.values())
     assert first == second > 0
@@ -113,7 +113,7 @@ def test_a_network_is_trained_once_for_two_columns_and_answers_as_in_one_process
 def test_a_process_knows_what_its_protocol_allows(shared_data, file, db):
     import_generator("gpsr2018", shared_data / "generator-2018")
     columns = "gen-gen:command:grammar,gen-gen:logical_form:grammar"
-    asked = {"world": "gpsr2018", "parsers": "grammar-oracle", "columns": columns, "seeds": 1}
+    asked = {"world": "gpsr2018", "parsers": "grammar-oracle", "columns": columns, "seeds": "1"}
     cells = measure(shared_data / "walker2019", file, jobs=2, **asked)
     assert [cell["accuracy_validation"] for cell in cells.values()] == [1.0, 1.0]
 
@@ -147,14 +147,14 @@ def test_an_interrupt_ends_all_processes_and_leaves_a_whole_file(file, started):
 def test_what_cannot_be_measured_is_said_and_the_rest_is_measured(folder, file):
     columns = f"gen-gen:logical_form:strict,{COLUMNS}"
     with pytest.raises(CommandError, match="has no split by logical_form"):
-        measure(folder, file, columns=columns, jobs=2, seeds=1)
+        measure(folder, file, columns=columns, jobs=2, seeds="1")
     assert len(read(file)) == 3
 
 
 def test_a_refusal_of_the_parser_itself_is_a_sentence(folder, file):
     asked = {"parsers": "grammar-oracle,knn", "columns": f"gen-gen:command:grammar,{COLUMNS}"}
     with pytest.raises(CommandError) as refused:
-        measure(folder, file, jobs=2, seeds=1, **asked)
+        measure(folder, file, jobs=2, seeds="1", **asked)
     assert str(refused.value).startswith("grammar-oracle, grammar: The grammar oracle parses with")
     assert len(read(file)) == 3
 
@@ -168,7 +168,7 @@ class Killed(Group):
 
 
 def test_a_process_that_dies_is_a_sentence_for_each_cell_that_it_owes(folder):
-    todo = tuple(jobs(["knn"], [read_column(text) for text in ALIKE.split(",")], seeds=1))
+    todo = tuple(jobs(["knn"], [read_column(text) for text in ALIKE.split(",")], seeds=[0]))
     known = (read_corpus(folder, "command"), Knowledge(), "")
     answers = list(measure_in_parallel([Killed(todo, *known), Group(todo, *known)], 2))
     sentences = [answer for answer in answers if isinstance(answer, str)]

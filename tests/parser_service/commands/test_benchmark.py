@@ -61,7 +61,7 @@ def test_settings_that_train_alike_share_one_training(folder, tmp_path, monkeypa
     monkeypatch.setattr(
         cells_module, "_fit", lambda job, *rest: fits.append(job) or fit(job, *rest)
     )
-    cells = run(folder, tmp_path / "cells.json", seeds=2)
+    cells = run(folder, tmp_path / "cells.json", seeds="2")
     assert len(cells) == 10 and len(fits) == 6
     alike = [cell for cell in cells if cell["setting"].startswith("gen+para-") and not cell["seed"]]
     assert alike[0]["seconds_train"] == alike[1]["seconds_train"]
@@ -83,7 +83,7 @@ def test_columns_that_train_alike_stand_together():
         "gen+para-mixed:logical_form:strict", "gen+para-mixed:command:strict",
         "gen-para:command:strict", "gen+para-para:logical_form:strict",
     )  # fmt: skip
-    todo = list(cells_module.jobs(["ranker", "knn"], [read_column(text) for text in texts], 2))
+    todo = list(cells_module.jobs(["ranker", "knn"], [read_column(text) for text in texts], [0, 1]))
     assert len(todo) == len(set(todo)) == 2 * (7 + 6)
     trainings = [training for training, _ in groupby(todo, key=lambda job: job.training)]
     assert len(trainings) == len(set(trainings)) == 2 * (4 + 3)
@@ -99,7 +99,7 @@ def test_whatever_decides_a_cell_makes_another_one(folder, tmp_path, monkeypatch
     elif change == "configuration":
         options["config"] = ["knn.least_overlap=0.5"]
     elif change == "seed":
-        options["seeds"] = 2
+        options["seeds"] = "2"
     else:
         path = folder / "gen" / "train.txt"
         path.write_text(path.read_text().replace("bring me", "give me"), encoding="utf-8")

@@ -40,7 +40,7 @@ def run(folder: Path, file: Path, **options) -> list[dict]:
 
 
 def test_by_form_a_cell_has_three_figures(folder, tmp_path):
-    for cell in run(folder, tmp_path / "cells.json", seeds=2):
+    for cell in run(folder, tmp_path / "cells.json", seeds="2"):
         assert cell["n_known"] > 0
         expected = harmonic_mean(cell["accuracy_validation"], cell["accuracy_known"])
         assert cell["harmonic_mean"] == expected
@@ -116,19 +116,19 @@ def test_what_a_score_says(score, kind, probability):
 
 @pytest.mark.parametrize("setting", ["gen-gen", "gen+para-mixed"])
 def test_what_the_grammar_gives_is_no_test(setting):
-    (job,) = jobs(["ranker"], [Column(setting, "logical_form", "grammar")], 1)
+    (job,) = jobs(["ranker"], [Column(setting, "logical_form", "grammar")], seeds=[0])
     [sentence] = Group((job,), None, Knowledge(), "").measure()
     assert sentence.startswith(f"ranker, grammar: {setting} would test it on what it has learned")
 
 
 def test_the_oracle_which_learns_nothing_may_be_tested_on_generated_commands():
-    (job,) = jobs(["grammar-oracle"], [Column("gen-gen", "command", "grammar")], 1)
+    (job,) = jobs(["grammar-oracle"], [Column("gen-gen", "command", "grammar")], seeds=[0])
     job.require_unseen()
 
 
 def test_declared_by_training_alone_is_a_training_of_its_own_under_domain():
     texts = ("command:strict", "command:domain", "command:domain:training")
-    todo = list(jobs(["ranker"], [read_column(f"para-para:{text}") for text in texts], 1))
+    todo = list(jobs(["ranker"], [read_column(f"para-para:{text}") for text in texts], seeds=[0]))
     assert [(job.protocol, job.declared) for job in todo] == [
         ("strict", "all"), ("domain", "all"), ("domain", "training"),
     ]  # fmt: skip
@@ -173,7 +173,7 @@ def test_only_known_ways_to_declare_are_taken(folder, tmp_path, column, sentence
 
 def test_new_splits_may_be_those_of_one_criterion_alone():
     columns = [read_column(f"para-para:{each}:strict") for each in ("command", "source_command")]
-    todo = jobs(["knn"], columns, 1, new_splits=range(14, 16), new_criteria=["source_command"])
+    todo = jobs(["knn"], columns, [0], new_splits=range(14, 16), new_criteria=["source_command"])
     assert [(job.criterion, job.split) for job in todo] == [
         ("command", None), ("source_command", 14), ("source_command", 15),
     ]  # fmt: skip

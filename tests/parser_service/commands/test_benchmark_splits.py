@@ -8,7 +8,7 @@ import pytest
 
 from annotations.importing import import_generator
 from parser_service.benchmarking.corpus import new_split, read_corpus, source_commands
-from parser_service.management.options import read_split_seeds
+from parser_service.management.options import read_seeds
 from tests.parser_service.commands.benchmark_run import run
 from tests.parser_service.made_up import made_up_pairs
 
@@ -53,10 +53,10 @@ def test_new_splits_stand_in_for_the_published_one(folder, tmp_path, criterion, 
     assert [cell["split"] for cell in published] == [0 if criterion == "source_command" else None]
 
 
-def test_new_splits_are_so_many_or_those_of_some_seeds():
-    assert list(read_split_seeds("3")) == [0, 1, 2]
-    assert list(read_split_seeds(" 6-7 ")) == [6, 7]
-    assert not read_split_seeds("0")
+def test_seeds_are_so_many_or_those_of_a_range():
+    assert list(read_seeds("--seeds", "3")) == [0, 1, 2]
+    assert list(read_seeds("--seeds", " 6-7 ")) == [6, 7]
+    assert not read_seeds("--new-splits", "0")
 
 
 def test_no_form_is_in_two_parts_of_a_new_split(folder):
