@@ -14,11 +14,12 @@ import pytest
 from django.conf import settings as site
 from django.core.cache import cache
 from django.db import connection
-from django.test import Client
+from django.test import Client, override_settings
 from hypothesis import HealthCheck
 
 from annotations.models import ApiToken, Membership, Scope, User, World
 from annotations.models.worlds import Role
+from tests.replaying import made_once
 from tests.sample_world import SampleWorld, fill_world
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -41,9 +42,11 @@ def pytest_configure() -> None:
 
 
 def pytest_collection_finish() -> None:
-    """Thousands of modules and tests stay to the end: the garbage collector need not visit them."""
-    gc.collect()
+    """Thousands of modules and tests stay to the end: the garbage collector need not visit them. What
+    a test makes is few megabytes: it need not come often either."""
     gc.freeze()
+    gc.set_threshold(100_000, 20, 100)
+    gc.enable()
 
 
 @pytest.hookimpl(wrapper=True)
@@ -59,15 +62,16 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> Iterator[None]:
     items.sort(key=lambda item: (item.path not in waiting, item.path))
 
 
-@pytest.fixture(autouse=True)
-def quick_and_plain(settings):
+@pytest.fixture(autouse=True, scope="session")
+def quick_and_plain() -> Iterator[None]:
     """Static files without a manifest, so that pages render unbuilt; a hasher that costs nothing."""
-    settings.STORAGES = {
-        **site.STORAGES,
-        "staticfiles": {"BACKEND": "django.contrib.staticfiles.storage.StaticFilesStorage"},
-    }
-    settings.PASSWORD_HASHERS = ["django.contrib.auth.hashers.MD5PasswordHasher"]
-    settings.REQUEST_SECONDS = 600  # for a page that a busy machine is slow to make
+    plain = {"BACKEND": "django.contrib.staticfiles.storage.StaticFilesStorage"}
+    with override_settings(
+        STORAGES={**site.STORAGES, "staticfiles": plain},
+        PASSWORD_HASHERS=["django.contrib.auth.hashers.MD5PasswordHasher"],
+        REQUEST_SECONDS=600,  # for a page that a busy machine is slow to make
+    ):
+        yield
 
 
 @pytest.fixture(autouse=True)
@@ -111,7 +115,7 @@ def world(db) -> World:
 @pytest.fixture
 def sample(world) -> SampleWorld:
     """``world`` with something of every kind in it."""
-    return fill_world(world)
+    return made_once(fill_world, world)
 
 
 @pytest.fixture
@@ -122,7 +126,7 @@ def other_world(db) -> World:
 
 @pytest.fixture
 def other_sample(other_world) -> SampleWorld:
-    return fill_world(other_world)
+    return made_once(fill_world, other_world)
 
 
 def member(world: World, name: str, role: Role) -> User:

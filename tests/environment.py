@@ -1,5 +1,6 @@
 """Sets the environment that the tests run in, before Django's settings are read (a ``-p`` plugin)."""
 
+import gc
 import os
 import tempfile
 
@@ -21,3 +22,4 @@ if url := os.environ.get("TEST_DATABASE_URL"):
     os.environ["DATABASE_URL"] = url
 else:
     os.environ.pop("DATABASE_URL", None)
+gc.disable()  # until the tests are collected: what is imported and collected stays

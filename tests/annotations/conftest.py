@@ -5,6 +5,8 @@ from __future__ import annotations
 import pytest
 
 from annotations.importing import import_generator
+from annotations.models import World
+from tests.replaying import made_once
 
 TINY = {
     "common_rules.txt": "; grammar name Common\n$vbfind = find | locate\n$object = {kobject}\n",
@@ -47,7 +49,11 @@ def tiny_folder(tmp_path, tiny):
 
 
 @pytest.fixture
-def tiny_world(world, tiny):
+def tiny_world(world) -> World:
     """``world`` with the tiny generator in it."""
-    assert not import_generator(world.name, tiny).problems
+    return made_once(import_tiny, world)
+
+
+def import_tiny(world: World) -> World:
+    assert not import_generator(world.name, as_bytes(TINY)).problems
     return world

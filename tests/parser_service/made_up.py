@@ -43,16 +43,18 @@ def make_split(world: World, name: str = "home") -> Split:
         world=world, name=name, criterion="command", content_hash=f"{name:0>64}"
     )
     parts = ("train", "train", "validation", "train", "test", "train")
-    for position, (command, utterance, form) in enumerate(made_up_pairs()):
-        for source, text in (("generated", command), ("paraphrased", utterance)):
-            Example.objects.create(
-                split=split,
-                position=position,
-                part=parts[position % len(parts)],
-                source=source,
-                utterance=text,
-                logical_form=form,
-            )
+    Example.objects.bulk_create(
+        Example(
+            split=split,
+            position=position,
+            part=parts[position % len(parts)],
+            source=source,
+            utterance=text,
+            logical_form=form,
+        )
+        for position, (command, utterance, form) in enumerate(made_up_pairs())
+        for source, text in (("generated", command), ("paraphrased", utterance))
+    )
     return split
 
 

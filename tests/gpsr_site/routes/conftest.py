@@ -8,7 +8,7 @@ from copy import deepcopy
 import pytest
 from django.conf import settings
 from django.db import transaction
-from django.test import Client, override_settings
+from django.test import Client
 
 from annotations.models import User, World
 from annotations.models.worlds import Role
@@ -42,8 +42,7 @@ def make_world(name: str) -> SampleWorld:
 def logged_in_people(filled_worlds, django_db_blocker) -> dict[str, tuple[User, str]]:
     """Everybody of the policy but the anonymous, with the key of a session of theirs."""
     home, laboratory = (sample.world for sample in filled_worlds)
-    plain = ["django.contrib.auth.hashers.MD5PasswordHasher"]  # no test of these logs in
-    with django_db_blocker.unblock(), override_settings(PASSWORD_HASHERS=plain):
+    with django_db_blocker.unblock():
         people = {
             "annotator": member(home, "anna", Role.ANNOTATOR),
             "reviewer": member(home, "rene", Role.REVIEWER),

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import signal
+import time
 from itertools import groupby
 
 import pytest
+from django.db import OperationalError, connection, transaction
 
-from parser_service.models import Worker
+from parser_service.models import TrainingRun, Worker
 from parser_service.runs import lifecycle
 from parser_service.runs.carrying_out.training import train
 from parser_service.runs.requests import requesting
 from tests.parser_service.made_up import LONG, TINY
 from tests.parser_service.worker_process import wait_for_epochs, wait_for_status
-from tests.waiting import wait_for
+from tests.waiting import LOOK_EVERY, wait_for
 
 pytestmark = [pytest.mark.processes, pytest.mark.django_db(transaction=True)]
 
@@ -101,7 +103,7 @@ def test_a_paused_worker_that_comes_back_late_writes_nothing(
     paused = start_worker()
     run, _ = requesting.request(world, split, "seq2seq", SHORT, seed=SEED)
     wait_for_epochs(run, 5)
-    paused.signal_all(signal.SIGSTOP)
+    pause_between_writes(paused, run)
     start_worker()
     wait_for(lambda: run.events.filter(attempt=2).exists(), "the other worker takes the run")
     paused.signal_all(signal.SIGCONT)
@@ -111,6 +113,30 @@ def test_a_paused_worker_that_comes_back_late_writes_nothing(
     assert not run.events.filter(attempt=1, id__gt=first_of_second.id).exists()
     assert list(run.epochs.values_list("epoch", flat=True)) == list(range(1, 31))
     assert predicted(run) == undisturbed
+
+
+def pause_between_writes(worker, run) -> None:
+    """Stops the worker's processes at a moment when none of them holds a lock that the run needs."""
+    worker.signal_all(signal.SIGSTOP)
+    while not can_be_written(run):
+        worker.signal_all(signal.SIGCONT)
+        time.sleep(LOOK_EVERY)
+        worker.signal_all(signal.SIGSTOP)
+
+
+def can_be_written(run) -> bool:
+    """Whether nobody else holds a lock on the run now."""
+    try:
+        with connection.cursor() as cursor:
+            if connection.vendor == "sqlite":
+                cursor.execute("PRAGMA busy_timeout = 0")
+        with transaction.atomic():
+            TrainingRun.objects.select_for_update(nowait=True).get(pk=run.pk)
+    except OperationalError:
+        return False
+    finally:
+        connection.close()  # with it goes the pragma
+    return True
 
 
 def test_a_run_that_loses_three_workers_is_lost_and_says_what_to_do(world, split, start_worker):
