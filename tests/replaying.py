@@ -57,10 +57,17 @@ def made_once(make: Callable[[World], Any], world: World) -> Any:
     if connection.vendor != "sqlite" or not connection.in_atomic_block:
         return make(world)
     recordings = RECORDINGS[make, world.pk, world.name]
-    before = last_ids()
+    numbers = last_ids()
     for recording in recordings:
-        if recording.fits(before):
+        if recording.fits(numbers):
             return recording.repeat(world)
+    returned, writes = call_and_note(make, world)
+    recordings.append(Recording(numbers, last_ids(), writes, *deepcopy((world, returned))))
+    return returned
+
+
+def call_and_note(make: Callable[[World], Any], world: World) -> tuple[Any, list[Write]]:
+    """Return ``make(world)`` and what it wrote."""
     writes: list[Write] = []
 
     def note(execute, sql, values, many, context):
@@ -70,10 +77,7 @@ def made_once(make: Callable[[World], Any], world: World) -> Any:
         return execute(sql, values, many, context)
 
     with connection.execute_wrapper(note):
-        returned = make(world)
-    kept_world, kept = deepcopy((world, returned))
-    recordings.append(Recording(before, last_ids(), writes, kept_world, kept))
-    return returned
+        return make(world), writes
 
 
 def last_ids() -> Numbers:
