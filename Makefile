@@ -1,7 +1,11 @@
 # make run   installs what is missing, starts web server and worker, prints the URL
 # make test  installs what the tests need, then runs all of them
 
-PYTHON ?= $(shell command -v python3.11 || command -v python3)
+# The first that is new enough and makes virtual environments. A distribution's is compiled with the
+# optimisations that pyenv leaves out: tests and pages take a tenth less time.
+PYTHON ?= $(shell for each in /usr/bin/python3 python3.11 python3.12 python3.13 python3; do \
+	$$each -c 'import ensurepip, sys; sys.exit(not (3, 11) <= sys.version_info < (3, 14))' 2>/dev/null \
+	&& command -v $$each && break; done)
 VENV := .venv
 BIN := $(VENV)/bin
 # Four at a time: on two cores the tests of whole processes mostly wait. A file's tests share what they set up.
@@ -35,6 +39,7 @@ lint: $(VENV)/.tested
 	$(BIN)/mypy
 
 $(BIN)/python:
+	@test -n "$(PYTHON)" || { echo "There is no Python 3.11 to 3.13 with venv here: install one, or name it: make PYTHON=…"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
 
 $(VENV)/.installed: pyproject.toml | $(BIN)/python

@@ -140,13 +140,15 @@ class Parser(ABC):
     """Maps utterances to logical forms.
 
     A subclass has the name that the registry gives it. Its ``version`` is raised whenever the same
-    pairs, configuration and seed may give another result, or saved parsers can no longer be loaded.
+    pairs, configuration and seed may give another result, or saved parsers can no longer be loaded. It
+    ``reads`` older versions whose saved parsers answer as they did, so that promoted runs go on answering.
     Forms are canonical corpus text on both sides. ``score_kind`` is None where scores only order the
     answers.
     """
 
     name: ClassVar[str]
     version: ClassVar[int]
+    reads: ClassVar[tuple[int, ...]] = ()
     protocols: ClassVar[tuple[Protocol, ...]]
     score_kind: ClassVar[ScoreKind | None] = None
     asks_a_server: ClassVar[bool] = False  # and waits for its answers, for seconds each

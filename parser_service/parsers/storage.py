@@ -49,8 +49,8 @@ def seal(folder: Path, parser: Parser, files: Sequence[str]) -> None:
 def open_sealed(folder: Path, parser: type[Parser], files: Sequence[str]) -> Saved:
     """Read what ``seal`` wrote, after checking that ``files`` have the bytes that were saved.
 
-    Raises ValueError, a sentence, where the folder holds another parser, another version of this
-    one, or a file that is missing or was altered.
+    Raises ValueError, a sentence, where the folder holds another parser, a version of this one that it
+    does not read, or a file that is missing or was altered.
     """
     about = read_json(folder / CONFIG)
     try:
@@ -58,7 +58,7 @@ def open_sealed(folder: Path, parser: type[Parser], files: Sequence[str]) -> Sav
         hashes, config, seed = dict(about["sha256"]), dict(about["config"]), int(about["seed"])
     except (KeyError, TypeError, ValueError):
         raise ValueError(f"{folder / CONFIG} does not describe a parser.") from None
-    if (name, version) != (parser.name, parser.version):
+    if name != parser.name or version not in (parser.version, *parser.reads):
         raise ValueError(
             f"{folder} holds version {version} of {name}, not version {parser.version} of "
             f"{parser.name}; train it again."

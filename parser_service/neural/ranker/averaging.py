@@ -8,6 +8,8 @@ from contextlib import contextmanager
 import torch
 from torch import Tensor, nn
 
+from parser_service.neural.sentence_encoder.linear import rounded
+
 
 class Average:
     """An exponential moving average of the trained weights, interpolated with the first weights.
@@ -15,7 +17,8 @@ class Average:
     The decay grows with the steps, min(``decay``, (1 + k) / (10 + k)), so that the first weights are
     soon forgotten. The weights used are on the line from the average to the first weights, the share
     ``kept`` of the way: fine-tuned weights do better on what the training pairs do not show when they
-    stay near the pretrained ones (Wortsman et al. 2022).
+    stay near the pretrained ones (Wortsman et al. 2022). Matrices are rounded to half precision, from
+    which single utterances are answered faster (``sentence_encoder.linear``).
     """
 
     def __init__(
@@ -58,12 +61,15 @@ class Average:
         self._set(self._interpolate())
 
     def _interpolate(self) -> dict[str, Tensor]:
-        """Return the averaged weights, moved towards the first ones by their shares."""
+        """Return the averaged weights, moved towards the first ones by their shares, and rounded."""
         pulled = {
             name: torch.lerp(self.values[name], self._first[name], share)
             for name, share in self._kept.items()
         }
-        return {**self.values, **pulled}
+        weights = {**self.values, **pulled}
+        return {
+            name: rounded(value) if value.dim() > 1 else value for name, value in weights.items()
+        }
 
     @torch.no_grad()
     def _set(self, values: dict[str, Tensor]) -> None:

@@ -51,7 +51,8 @@ class FormRanker(Parser):
     """
 
     name = "ranker"
-    version = 10
+    version = 11
+    reads = (10,)
     protocols = (Protocol.STRICT, Protocol.DOMAIN, Protocol.GRAMMAR)
     score_kind = ScoreKind.LOG_PROBABILITY
     Config = RankerConfig
@@ -86,6 +87,7 @@ class FormRanker(Parser):
             )
         self._ranked, self._model = fitting.ranked, fitting.model
         self._decision = fitting.decision
+        self._model.encoder.finish()
 
     def predict(
         self, utterances: Sequence[str], beam_width: int = 1, check: Check = keep_going
@@ -170,6 +172,7 @@ class FormRanker(Parser):
         parser._model = make_model(encoder, parser._ranked, parser.knowledge)
         load_weights(folder / WEIGHTS, parser._model)
         parser._model.eval()
+        parser._model.encoder.finish()
         return parser
 
     def parameters(self) -> int:

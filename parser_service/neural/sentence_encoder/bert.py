@@ -1,7 +1,8 @@
 """BERT (Devlin et al. 2019) without transformers, which takes seconds to import.
 
 Its weights have the names of transformers' ``BertModel``, and its vectors the same bits with the same
-weights: every operation is the one that transformers does with eager attention, in the same order.
+weights: every operation is the one that transformers does with eager attention, in the same order,
+until its layers are packed (``linear``).
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import torch
 from torch import Tensor, nn
 from torch.nn.functional import gelu, softmax
 
+from parser_service.neural.sentence_encoder.linear import Linear
 from parser_service.neural.sentence_encoder.shared_dropout import SharedDropout
 
 # What transformers' configuration may say and this network does not vary.
@@ -54,15 +56,9 @@ class States(NamedTuple):
     last_hidden_state: Tensor  # [texts, length, width]
 
 
-class Linear(nn.Linear):
-    """Has uninitialised memory for weights, as ``Embedding`` has: they are always loaded, and drawing
-    them first would take longer than reading them."""
-
-    def reset_parameters(self) -> None:
-        pass
-
-
 class Embedding(nn.Embedding):
+    """Has uninitialised memory for weights, as ``Linear`` has."""
+
     def reset_parameters(self) -> None:
         pass
 

@@ -15,6 +15,7 @@ from torch.nn.functional import normalize
 
 from parser_service.neural.device import denormals_flushed
 from parser_service.neural.pretrained import Pretrained
+from parser_service.neural.sentence_encoder.linear import pack
 from parser_service.neural.sentence_encoder.networks import describe, make_empty, make_trainable
 from parser_service.parsers.interface import Check, keep_going
 
@@ -74,6 +75,11 @@ class SentenceEncoder(nn.Module):
         text = json.dumps(self.description, indent=2, sort_keys=True)
         (folder / ENCODER).write_text(f"{text}\n", encoding="utf-8")
         self.tokenizer.save(str(folder / TOKENIZER))
+
+    def finish(self) -> None:
+        """Get ready to answer: the weights do not change any more."""
+        self.eval()
+        pack(self.model)
 
     @property
     def width(self) -> int:

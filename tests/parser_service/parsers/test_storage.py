@@ -62,6 +62,14 @@ def test_another_parser_or_version_is_refused(folder):
         NearestNeighbour.load(folder)
 
 
+def test_an_older_version_that_answers_as_it_did_is_read(folder, monkeypatch):
+    monkeypatch.setattr(NearestNeighbour, "version", 3)
+    with pytest.raises(ValueError, match="holds version 1 of knn, not version 3 of knn"):
+        NearestNeighbour.load(folder)
+    monkeypatch.setattr(NearestNeighbour, "reads", (1, 2))
+    assert NearestNeighbour.load(folder).predict(["go"])[0][0].form == '( go " <room> " )'
+
+
 def test_a_hyperparameter_out_of_bounds_is_refused(folder):
     rewrite(folder / CONFIG, config={"least_overlap": 2})
     with pytest.raises(ValueError, match="at most 1"):

@@ -47,6 +47,9 @@ def test_glosses_of_the_targets_carry_gradient_and_the_others_do_not(encoder):
         assert torch.allclose(*slopes, atol=1e-5) != is_trained
 
 
+SHAPES = {"matrix": (2, 3), "bias": (2,)}
+
+
 def test_the_average_follows_the_weights_and_gives_them_back():
     weight = torch.nn.Parameter(torch.zeros(1))
     average = Average([("weight", weight)], decay=0.5)
@@ -70,3 +73,12 @@ def test_the_average_goes_back_towards_the_first_weights():
     average.keep()
     assert first["near"].item() == pytest.approx(0.75) and first["far"].item() == 1.0
     assert average.values["near"].item() == 1.0
+
+
+def test_of_the_average_matrices_are_given_in_half_precision():
+    weights = {name: torch.nn.Parameter(torch.full(shape, 0.1)) for name, shape in SHAPES.items()}
+    average = Average(weights.items(), decay=0.5)
+    average.keep()
+    assert torch.equal(weights["matrix"], torch.full((2, 3), 0.1).half().float())
+    assert torch.equal(weights["bias"], torch.full((2,), 0.1))
+    assert torch.equal(average.values["matrix"], torch.full((2, 3), 0.1))

@@ -10,6 +10,7 @@ from transformers import BertConfig, BertModel
 
 from parser_service.neural.ranker.parser import FORMS, SAVED, FormRanker
 from parser_service.neural.sentence_encoder import SentenceEncoder
+from parser_service.neural.sentence_encoder.linear import Linear, rounded
 from parser_service.parsers.interface import Knowledge
 from parser_service.parsers.storage import read_json, seal, write_json
 from tests.parser_service.neural.conftest import Recorder
@@ -22,6 +23,7 @@ GPU = pytest.param(
     marks=pytest.mark.skipif(not torch.cuda.is_available(), reason="there is no GPU"),
 )
 PROCESSORS = [FAKE, GPU]
+CAN_PACK = "fbgemm" in torch.backends.quantized.supported_engines
 
 
 @pytest.mark.parametrize("device", PROCESSORS, ids=str)
@@ -51,6 +53,32 @@ def test_saved_and_loaded_it_answers_alike(learned, pairs, tmp_path):
     assert loaded.predict(asked, 3) == learned.predict(asked, 3)
     assert loaded.parameters() == learned.parameters() > 0
     assert (loaded.config, loaded.seed) == (learned.config, learned.seed)
+
+
+def test_trained_and_loaded_it_answers_from_weights_of_16_bits(learned, tmp_path):
+    """Where torch can; they are the numbers that are saved and that whole batches are answered from."""
+    learned.save(tmp_path)
+    loaded = FormRanker.load(tmp_path)
+    for parser in (learned, loaded):
+        layers = [each for each in parser._model.encoder.modules() if isinstance(each, Linear)]
+        assert len(layers) > 10
+        assert all(torch.equal(rounded(each.weight), each.weight) for each in layers)
+        assert {each._packed is not None for each in layers} == {CAN_PACK}
+
+
+def test_a_parser_of_version_10_answers_as_it_did(learned, pairs, tmp_path):
+    """Its weights have digits that 16 bits would lose."""
+    learned.save(tmp_path / "now")
+    older = FormRanker.load(tmp_path / "now")
+    older.version = 10
+    layer = older._model.encoder.model.encoder.layer[0].output.dense
+    with torch.no_grad():
+        layer.weight.mul_(1.0001)
+    layer._packed = None
+    older.save(tmp_path / "before")
+    loaded = FormRanker.load(tmp_path / "before")
+    assert loaded._model.encoder.model.encoder.layer[0].output.dense._packed is None
+    assert loaded.predict(utterances(pairs), 3) == older.predict(utterances(pairs), 3)
 
 
 def test_a_parser_of_the_domain_is_loaded_with_an_ontology(config, pairs, tmp_path):

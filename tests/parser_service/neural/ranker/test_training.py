@@ -9,6 +9,7 @@ from annotations.language.ontology import Entity, Ontology
 from parser_service.neural.pretrained import load_encoder
 from parser_service.neural.ranker.parser import FormRanker
 from parser_service.neural.ranker.training import RankerTraining
+from parser_service.neural.sentence_encoder.linear import rounded
 from parser_service.parsers.interface import Knowledge, Pair
 from tests.parser_service.neural.ranker.sample_domain import (
     domain,
@@ -114,8 +115,8 @@ def test_the_encoder_goes_back_to_the_pretrained_one_as_far_as_the_protocol_says
     for parser in (strict, domestic):
         parser.fit(pairs)
     name = "encoder.layer.0.output.dense.weight"
-    assert torch.equal(weights(domestic)[f"encoder.model.{name}"], pretrained[name])
-    assert not torch.equal(weights(strict)[f"encoder.model.{name}"], pretrained[name])
+    assert torch.equal(weights(domestic)[f"encoder.model.{name}"], rounded(pretrained[name]))
+    assert not torch.equal(weights(strict)[f"encoder.model.{name}"], rounded(pretrained[name]))
 
 
 def test_the_optimizer_goes_on_with_its_moments_when_the_held_out_forms_join(
