@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 from itertools import chain
 from pathlib import Path
 
@@ -30,6 +31,7 @@ OF_DJANGO = {"errorlist", "helptext", "debug", "info", "success", "warning", "er
 APPS = ("annotations", "parser_service", "gpsr_site")
 
 
+@cache
 def words_of_classes() -> set[str]:
     """Everything that may be a class in the templates, the scripts and the tags that render HTML."""
     python = chain.from_iterable((ROOT / app / "templatetags").glob("*.py") for app in APPS)
@@ -40,6 +42,14 @@ def words_of_classes() -> set[str]:
     return set(WORD.findall(TAG.sub(" ", " ".join(given)))) | set(WORD.findall(" ".join(strings)))
 
 
+@cache
+def beginnings() -> set[str]:
+    """What the classes begin with whose ends are filled in."""
+    found = (BEGINNING.findall(read(path)) for path in [*TEMPLATES, *SCRIPTS])
+    return set(chain.from_iterable(found)) - {"-", ""}
+
+
+@cache
 def read(path: Path) -> str:
     return path.read_text(encoding="utf-8")
 
@@ -53,11 +63,10 @@ def classes_of(style: Path) -> set[str]:
 @pytest.mark.parametrize("style", STYLES, ids=lambda path: path.name)
 def test_every_class_of_a_style_sheet_is_used(style):
     used = words_of_classes() | OF_DJANGO
-    beginnings = {each for path in [*TEMPLATES, *SCRIPTS] for each in BEGINNING.findall(read(path))}
     unused = {
         name
         for name in classes_of(style)
-        if name not in used and not name.startswith((*OF_LIBRARIES, *beginnings - {"-", ""}))
+        if name not in used and not name.startswith((*OF_LIBRARIES, *beginnings()))
     }
     assert not unused
 
