@@ -15,7 +15,7 @@ from torch.nn.functional import normalize
 
 from parser_service.neural.device import denormals_flushed
 from parser_service.neural.pretrained import Pretrained
-from parser_service.neural.sentence_encoder.linear import pack
+from parser_service.neural.sentence_encoder.bert import Bert
 from parser_service.neural.sentence_encoder.networks import describe, make_empty, make_trainable
 from parser_service.parsers.interface import Check, keep_going
 
@@ -79,7 +79,8 @@ class SentenceEncoder(nn.Module):
     def finish(self) -> None:
         """Get ready to answer: the weights do not change any more."""
         self.eval()
-        pack(self.model)
+        if isinstance(self.model, Bert):
+            self.model.pack()
 
     @property
     def width(self) -> int:

@@ -10,7 +10,7 @@ from transformers import BertConfig, BertModel
 
 from parser_service.neural.ranker.parser import FORMS, SAVED, FormRanker
 from parser_service.neural.sentence_encoder import SentenceEncoder
-from parser_service.neural.sentence_encoder.linear import Linear, rounded
+from parser_service.neural.sentence_encoder.linear import rounded
 from parser_service.parsers.interface import Knowledge
 from parser_service.parsers.storage import read_json, seal, write_json
 from tests.parser_service.neural.conftest import Recorder
@@ -60,10 +60,11 @@ def test_trained_and_loaded_it_answers_from_weights_of_16_bits(learned, tmp_path
     learned.save(tmp_path)
     loaded = FormRanker.load(tmp_path)
     for parser in (learned, loaded):
-        layers = [each for each in parser._model.encoder.modules() if isinstance(each, Linear)]
-        assert len(layers) > 10
-        assert all(torch.equal(rounded(each.weight), each.weight) for each in layers)
-        assert {each._packed is not None for each in layers} == {CAN_PACK}
+        layers = parser._model.encoder.model.encoder.layer
+        dense = [each.output.dense for each in layers]
+        assert all(torch.equal(rounded(each.weight), each.weight) for each in dense)
+        ready = [*dense, *(each.attention.self for each in layers)]
+        assert {each._packed is not None for each in ready} == {CAN_PACK}
 
 
 def test_a_parser_of_version_10_answers_as_it_did(learned, pairs, tmp_path):

@@ -3,7 +3,8 @@
 import pytest
 import torch
 
-from parser_service.neural.sentence_encoder.linear import FEW, Linear, pack, rounded
+from parser_service.neural.sentence_encoder.bert import Bert, BertConfig
+from parser_service.neural.sentence_encoder.linear import FEW, Linear, rounded
 
 pytestmark = pytest.mark.skipif(
     "fbgemm" not in torch.backends.quantized.supported_engines,
@@ -22,6 +23,17 @@ def layer():
         layer.weight.copy_(rounded(layer.weight))
         layer.bias.copy_(torch.randn(40, generator=generator))
     return layer
+
+
+@pytest.fixture
+def bert():
+    config = BertConfig(20, 48, 2, 4, 72, 16, 2, 1e-12, 0.1, 0.1, 0)
+    network = Bert(config).eval()
+    generator = torch.Generator().manual_seed(7)
+    with torch.no_grad():
+        for weight in network.parameters():
+            weight.copy_(rounded(torch.randn(weight.shape, generator=generator) / 4))
+    return network
 
 
 def rows(*shape):
@@ -57,10 +69,16 @@ def test_gradients_flow_through_a_packed_layer(layer):
     assert layer.weight.grad.any() and layer.bias.grad.any()
 
 
-def test_a_packed_network_has_the_same_weights_by_name(layer):
-    network = torch.nn.Sequential(layer, torch.nn.GELU(), torch.nn.Linear(40, 3))
-    before = {name: weight.clone() for name, weight in network.state_dict().items()}
-    pack(network)
-    assert layer._packed is not None
-    assert [*network.state_dict()] == [*before]
-    assert all(torch.equal(weight, before[name]) for name, weight in network.state_dict().items())
+def test_a_packed_network_has_the_same_weights_and_answers(bert):
+    subwords = torch.tensor([[5, 7, 2, 9], [1, 3, 0, 0]])
+    mask = torch.tensor([[1, 1, 1, 1], [1, 1, 0, 0]])
+    weights = {name: weight.clone() for name, weight in bert.state_dict().items()}
+    with torch.no_grad():
+        before = bert(subwords, mask).last_hidden_state
+        bert.pack()
+        after = bert(subwords, mask).last_hidden_state
+    assert bert.encoder.layer[0].attention.self._packed is not None
+    assert torch.allclose(before, after, atol=1e-4)
+    assert [*bert.state_dict()] == [*weights]
+    assert all(torch.equal(weight, weights[name]) for name, weight in bert.state_dict().items())
+    assert torch.equal(bert(subwords, mask).last_hidden_state, before)  # where gradients are wanted
