@@ -55,8 +55,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> Iterator[None]:
     with tests that mostly wait to the front: begun last, they would leave processors idle in the end."""
     for item in items:
         fixtures = set(getattr(item, "fixturenames", ()))
-        if item.get_closest_marker("one_database"):
-            continue
         if fixtures & {"db", "transactional_db"} or item.get_closest_marker("django_db"):
             item.add_marker("services")
     yield

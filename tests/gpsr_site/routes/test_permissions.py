@@ -32,9 +32,6 @@ OUTCOMES = {
     (rule.name, rule.method, person): getattr(rule, person) for rule in POLICY for person in PEOPLE
 }
 
-# Who may do what is decided before a database is asked for more than the person and the row.
-pytestmark = pytest.mark.one_database
-
 
 @pytest.fixture(autouse=True)
 def silence() -> Iterator[None]:
