@@ -2,7 +2,7 @@
 # make test  installs what the tests need, then runs all of them
 
 # The first that is new enough and makes virtual environments. A distribution's is compiled with the
-# optimisations that pyenv leaves out: tests and pages take a tenth less time.
+# optimisations that pyenv leaves out: the tests take a tenth less time.
 PYTHON ?= $(shell for each in /usr/bin/python3 python3.11 python3.12 python3.13 python3; do \
 	$$each -c 'import ensurepip, sys; sys.exit(not (3, 11) <= sys.version_info < (3, 14))' 2>/dev/null \
 	&& command -v $$each && break; done)

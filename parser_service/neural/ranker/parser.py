@@ -87,7 +87,7 @@ class FormRanker(Parser):
             )
         self._ranked, self._model = fitting.ranked, fitting.model
         self._decision = fitting.decision
-        self._model.encoder.finish()
+        self._model.encoder.pack()
 
     def predict(
         self, utterances: Sequence[str], beam_width: int = 1, check: Check = keep_going
@@ -172,7 +172,7 @@ class FormRanker(Parser):
         parser._model = make_model(encoder, parser._ranked, parser.knowledge)
         load_weights(folder / WEIGHTS, parser._model)
         parser._model.eval()
-        parser._model.encoder.finish()
+        parser._model.encoder.pack()
         return parser
 
     def parameters(self) -> int:

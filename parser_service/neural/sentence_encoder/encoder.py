@@ -76,9 +76,8 @@ class SentenceEncoder(nn.Module):
         (folder / ENCODER).write_text(f"{text}\n", encoding="utf-8")
         self.tokenizer.save(str(folder / TOKENIZER))
 
-    def finish(self) -> None:
+    def pack(self) -> None:
         """Get ready to answer: the weights do not change any more."""
-        self.eval()
         if isinstance(self.model, Bert):
             self.model.pack()
 
