@@ -8,8 +8,9 @@ PYTHON ?= $(shell for each in /usr/bin/python3 python3.11 python3.12 python3.13 
 	&& command -v $$each && break; done)
 VENV := .venv
 BIN := $(VENV)/bin
-# Four at a time: on two cores the tests of whole processes mostly wait. A file's tests share what they set up.
-PYTEST_ARGS ?= --numprocesses 4 --dist loadfile
+# Three at a time keep two cores busy while the tests of whole processes wait; a fourth only gets in their
+# way. A file's tests share what they set up.
+PYTEST_ARGS ?= --numprocesses 3 --dist loadfile
 SOURCES := $(wildcard static/src/*.js static/css/*.css) static/build.mjs
 
 # Some shells forbid it; the many processes of the tests would each compile every module anew.

@@ -12,8 +12,10 @@ from pathlib import Path
 import hypothesis
 import pytest
 from django.conf import settings as site
+from django.contrib.contenttypes.management import create_contenttypes
 from django.core.cache import cache
 from django.db import connection
+from django.db.models.signals import post_migrate
 from django.test import Client, override_settings
 from hypothesis import HealthCheck
 
@@ -60,6 +62,14 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> Iterator[None]:
     yield
     waiting = {item.path for item in items if WAITING & {mark.name for mark in item.iter_markers()}}
     items.sort(key=lambda item: (item.path not in waiting, item.path))
+
+
+@pytest.fixture(autouse=True, scope="session")
+def nothing_about_models() -> None:
+    """Django would write rows about all models again, permissions above all, whenever a test's database
+    is emptied; nothing here reads them."""
+    post_migrate.disconnect(create_contenttypes)
+    post_migrate.disconnect(dispatch_uid="django.contrib.auth.management.create_permissions")
 
 
 @pytest.fixture(autouse=True, scope="session")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from copy import deepcopy
 from dataclasses import dataclass
 from typing import Any
@@ -13,13 +13,13 @@ from django.db import connection
 from annotations.models import World
 
 Numbers = dict[str, int]  # the last id of each table
-Write = tuple[str, Any, bool]  # a statement, its values, and whether these are many
-READS = ("SELECT", "SAVEPOINT", "RELEASE")
+Rows = dict[int, tuple[Any, ...]]  # the rows of a table by their rowid
+Write = tuple[str, list[tuple[Any, ...]]]  # a statement, and values for each time it is executed
 
 
 @dataclass(frozen=True)
 class Recording:
-    """What a function wrote, the ids that it counted on from, and what it returned for ``world``."""
+    """What a function changed, the ids that it counted on from, and what it returned for ``world``."""
 
     before: Numbers
     after: Numbers
@@ -36,10 +36,8 @@ class Recording:
         )
 
     def repeat(self, world: World) -> Any:
-        with connection.cursor() as cursor:
-            for sql, values, many in self.writes:
-                (cursor.executemany if many else cursor.execute)(sql, values)
-                cursor.fetchall()  # a write that returns its row is done when that is read
+        for sql, values in self.writes:
+            connection.connection.executemany(sql, values)
         known = {id(self.world): world}
         vars(world).update(deepcopy(vars(self.world), known))
         return deepcopy(self.returned, known)
@@ -61,26 +59,44 @@ def made_once(make: Callable[[World], Any], world: World) -> Any:
     for recording in recordings:
         if recording.fits(numbers):
             return recording.repeat(world)
-    returned, writes = call_and_note(make, world)
+    tables = {name: rows_of(name, columns) for name, columns in columns_of_tables()}
+    returned = make(world)
+    writes = [
+        write
+        for name, columns in columns_of_tables()
+        for write in changes(name, columns, tables[name], rows_of(name, columns))
+    ]
     recordings.append(Recording(numbers, last_ids(), writes, *deepcopy((world, returned))))
     return returned
 
 
-def call_and_note(make: Callable[[World], Any], world: World) -> tuple[Any, list[Write]]:
-    """Return ``make(world)`` and what it wrote."""
-    writes: list[Write] = []
-
-    def note(execute, sql, values, many, context):
-        values = list(values) if many else values
-        if not sql.startswith(READS):
-            writes.append((sql, values, many))
-        return execute(sql, values, many, context)
-
-    with connection.execute_wrapper(note):
-        return make(world), writes
-
-
 def last_ids() -> Numbers:
-    with connection.cursor() as cursor:
-        cursor.execute("SELECT name, seq FROM sqlite_sequence")
-        return dict(cursor.fetchall())
+    return dict(connection.connection.execute("SELECT name, seq FROM sqlite_sequence").fetchall())
+
+
+def columns_of_tables() -> Iterator[tuple[str, list[str]]]:
+    """Yield each table with those of its columns that can be written."""
+    for name in connection.introspection.table_names():
+        about = connection.connection.execute(f'PRAGMA table_info("{name}")').fetchall()
+        yield name, [f'"{column[1]}"' for column in about]
+
+
+def rows_of(table: str, columns: list[str]) -> Rows:
+    selected = ", ".join(["rowid", *columns])
+    rows = connection.connection.execute(f'SELECT {selected} FROM "{table}"').fetchall()
+    return {number: values for number, *values in rows}
+
+
+def changes(table: str, columns: list[str], before: Rows, after: Rows) -> Iterator[Write]:
+    """Yield what makes the rows ``after`` of those ``before``. Rows are changed column by column, since
+    their other columns may hold something else the next time."""
+    new = [values for number, values in after.items() if number not in before]
+    if new:
+        places = ", ".join("?" * len(columns))
+        yield f'INSERT INTO "{table}" ({", ".join(columns)}) VALUES ({places})', new
+    for number in before.keys() & after.keys():
+        for column, was, value in zip(columns, before[number], after[number], strict=True):
+            if was != value:
+                yield f'UPDATE "{table}" SET {column} = ? WHERE rowid = ?', [(value, number)]
+    if gone := [(number,) for number in before.keys() - after.keys()]:
+        yield f'DELETE FROM "{table}" WHERE rowid = ?', gone

@@ -14,25 +14,38 @@ from annotations.models import User, World
 from annotations.models.worlds import Role
 from tests.conftest import client_of, member
 from tests.gpsr_site.routes.addresses import KEYS
+from tests.replaying import made_once
 from tests.sample_world import SampleWorld, fill_world
 
 
 @pytest.fixture(scope="module")
 def filled_worlds(django_db_setup, django_db_blocker) -> Iterator[tuple[SampleWorld, SampleWorld]]:
-    """Fill two worlds in a transaction around those of the module's tests, which are savepoints in it."""
+    """Fill two worlds in a transaction around those of the module's tests, which are savepoints in it.
+
+    SQLite reads its schema anew after each rollback of a transaction that has made a table, and filling
+    a world makes temporary ones: it is done before, in a transaction of its own, and only repeated here.
+    """
     with django_db_blocker.unblock():
+        with transaction.atomic():
+            make_worlds()
+            transaction.set_rollback(True)
         block = transaction.atomic()
         block.__enter__()
-        worlds = make_world("home"), make_world("laboratory")
+        worlds = make_worlds()
     yield worlds
     with django_db_blocker.unblock():
         transaction.set_rollback(True)
         block.__exit__(None, None, None)
 
 
-def make_world(name: str) -> SampleWorld:
-    """Make a world with something of every kind, and every row that a route is about."""
-    sample = fill_world(World.objects.create(name=name))
+def make_worlds() -> tuple[SampleWorld, SampleWorld]:
+    home, laboratory = (World.objects.create(name=name) for name in ("home", "laboratory"))
+    return made_once(fill_in_full, home), made_once(fill_in_full, laboratory)
+
+
+def fill_in_full(world: World) -> SampleWorld:
+    """Put something of every kind into an empty world, and every row that a route is about."""
+    sample = fill_world(world)
     for make_rows in KEYS.values():
         make_rows(sample)
     return sample

@@ -14,11 +14,27 @@ from tests.parser_service.neural.ranker.sample_domain import (
 )
 
 
+@pytest.fixture(scope="module")
+def undisturbed(config, pairs, tmp_path_factory) -> FormRanker:
+    """What ``config`` learns from the first 18 ``pairs`` when nothing stops it."""
+    parser = FormRanker(config, seed=5, knowledge=domain())
+    parser.fit(pairs[:18], pairs[18:], Recorder(tmp_path_factory.mktemp("undisturbed")))
+    return parser
+
+
+@pytest.fixture(scope="module")
+def undisturbed_by_all(config, pairs) -> FormRanker:
+    """What ``config`` learns from all ``pairs``, without a world, when nothing stops it."""
+    parser = FormRanker(config, seed=5)
+    parser.fit(pairs, pairs[:4])
+    return parser
+
+
 @pytest.mark.parametrize("checks", [3, 60, 130, 190])
-def test_a_stopped_run_goes_on_to_the_same_weights_and_predictions(config, pairs, tmp_path, checks):
+def test_a_stopped_run_goes_on_to_the_same_weights_and_predictions(
+    config, pairs, tmp_path, undisturbed, checks
+):
     train, validation = pairs[:18], pairs[18:]
-    undisturbed = FormRanker(config, seed=5, knowledge=domain())
-    undisturbed.fit(train, validation, Recorder(tmp_path / "undisturbed"))
     stopped = Recorder(tmp_path / "run", stop_after_checks=checks)
     with pytest.raises(Cancelled):
         FormRanker(config, seed=5, knowledge=domain()).fit(train, validation, stopped)
@@ -41,16 +57,16 @@ def test_a_run_lost_after_its_last_epoch_has_the_same_end(config, pairs, tmp_pat
     assert again.predict(utterances(pairs), 3) == finished.predict(utterances(pairs), 3)
 
 
-def test_an_unreadable_checkpoint_is_said_and_training_starts_again(config, pairs, tmp_path):
+def test_an_unreadable_checkpoint_is_said_and_training_starts_again(
+    config, pairs, tmp_path, undisturbed_by_all
+):
     with pytest.raises(Cancelled):
         FormRanker(config, 5).fit(pairs, pairs[:4], StoppedOnce(tmp_path))
     (tmp_path / "last" / "training.safetensors").write_bytes(b"torn")
-    undisturbed, resumed, observe = FormRanker(config, 5), FormRanker(config, 5), None
-    undisturbed.fit(pairs, pairs[:4])
-    observe = Recorder(tmp_path)
+    resumed, observe = FormRanker(config, 5), Recorder(tmp_path)
     resumed.fit(pairs, pairs[:4], observe)
     assert any("training starts from the beginning" in line for line in observe.lines)
-    assert same_weights(undisturbed, resumed)
+    assert same_weights(undisturbed_by_all, resumed)
 
 
 def test_a_checkpoint_holds_what_training_changes_and_nothing_else(config, pairs, tmp_path):
@@ -74,22 +90,20 @@ class Unhurried(Recorder):
 
 @pytest.mark.parametrize("stop", [0.3, 0.8], ids=["some forms held out", "with all forms"])
 def test_a_run_stopped_within_a_pass_goes_on_from_the_step_that_was_kept(
-    config, pairs, tmp_path, stop
+    config, pairs, tmp_path, undisturbed_by_all, stop
 ):
     class Stopped(Unhurried):
         def check(self):
             if self.fractions and self.fractions[-1] >= stop:
                 raise Cancelled
 
-    undisturbed = FormRanker(config, seed=5)
-    undisturbed.fit(pairs, pairs[:4])
     with pytest.raises(Cancelled):
         FormRanker(config, seed=5).fit(pairs, pairs[:4], Stopped(tmp_path))
     resumed, observe = FormRanker(config, seed=5), Unhurried(tmp_path)
     resumed.fit(pairs, pairs[:4], observe)
     assert any(line.startswith("Resuming after step") for line in observe.lines)
-    assert same_weights(undisturbed, resumed)
-    assert resumed._decision == undisturbed._decision
+    assert same_weights(undisturbed_by_all, resumed)
+    assert resumed._decision == undisturbed_by_all._decision
 
 
 def test_every_epoch_is_reported(config, pairs, tmp_path):
