@@ -73,20 +73,6 @@ def nothing_about_models() -> None:
 
 
 @pytest.fixture(autouse=True, scope="session")
-def rows_are_deleted() -> Iterator[None]:
-    """PostgreSQL empties tables by truncating them, which takes it longer than deleting the few rows
-    that a test leaves in them: about a second for all tables."""
-
-    def delete(operations, style, tables, **options) -> list[str]:
-        return ["; ".join(f"DELETE FROM {operations.quote_name(table)}" for table in tables)]
-
-    with pytest.MonkeyPatch.context() as patch:
-        if connection.vendor == "postgresql":
-            patch.setattr(type(connection.ops), "sql_flush", delete)
-        yield
-
-
-@pytest.fixture(autouse=True, scope="session")
 def quick_and_plain() -> Iterator[None]:
     """Static files without a manifest, so that pages render unbuilt; a hasher that costs nothing."""
     plain = {"BACKEND": "django.contrib.staticfiles.storage.StaticFilesStorage"}
