@@ -84,7 +84,7 @@ def columns_of_tables() -> Iterator[tuple[str, list[str]]]:
 def rows_of(table: str, columns: list[str]) -> Rows:
     selected = ", ".join(["rowid", *columns])
     rows = connection.connection.execute(f'SELECT {selected} FROM "{table}"').fetchall()
-    return {number: values for number, *values in rows}
+    return {row[0]: row[1:] for row in rows}
 
 
 def changes(table: str, columns: list[str], before: Rows, after: Rows) -> Iterator[Write]:

@@ -1,11 +1,13 @@
 """Rows that are written again are those that were made."""
 
+from collections import defaultdict
+
 import pytest
 from django.db import connection, transaction
 
 from annotations.models import World
 from tests import replaying
-from tests.replaying import columns_of_tables, made_once, rows_of
+from tests.replaying import columns_of_tables, last_ids, made_once, rows_of
 from tests.sample_world import fill_world
 
 only_sqlite = pytest.mark.skipif(
@@ -14,7 +16,8 @@ only_sqlite = pytest.mark.skipif(
 
 
 def all_rows():
-    return {name: rows_of(name, columns) for name, columns in columns_of_tables()}
+    """The rows of each table, and the ids that the next ones count on from."""
+    return {name: rows_of(name, columns) for name, columns in columns_of_tables()}, last_ids()
 
 
 def undone(fill, world):
@@ -28,7 +31,7 @@ def undone(fill, world):
 
 @only_sqlite
 def test_what_is_repeated_is_what_was_made(world, monkeypatch):
-    monkeypatch.setattr(replaying, "RECORDINGS", type(replaying.RECORDINGS)(list))
+    monkeypatch.setattr(replaying, "RECORDINGS", defaultdict(list))
     before = all_rows()
     made, rows = undone(fill_world, World.objects.get())
     repeated, again = undone(fill_world, World.objects.get())
@@ -38,7 +41,7 @@ def test_what_is_repeated_is_what_was_made(world, monkeypatch):
 
 @only_sqlite
 def test_rows_that_were_there_keep_what_was_not_changed(world, monkeypatch):
-    monkeypatch.setattr(replaying, "RECORDINGS", type(replaying.RECORDINGS)(list))
+    monkeypatch.setattr(replaying, "RECORDINGS", defaultdict(list))
     kept = World.objects.create(name="kept", description="as it was")
 
     def fill(world):
