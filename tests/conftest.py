@@ -26,6 +26,8 @@ from tests.sample_world import SampleWorld, fill_world
 
 ROOT = Path(__file__).resolve().parent.parent
 
+gc.disable()  # Django is loaded; until the tests are collected: what is collected stays
+
 # The same examples in every run, however slow the machine; --hypothesis-profile=search looks for others.
 STEADY = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
 hypothesis.settings.register_profile("steady", max_examples=60, derandomize=True, **STEADY)

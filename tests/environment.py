@@ -1,6 +1,5 @@
 """Sets the environment that the tests run in, before Django's settings are read (a ``-p`` plugin)."""
 
-import gc
 import os
 import tempfile
 
@@ -9,6 +8,7 @@ os.mkdir(os.path.join(var, "static"))  # where collectstatic would write, and wh
 os.environ["GPSR_VAR_DIR"] = var
 os.environ["DEBUG"] = "false"
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # tests run beside each other
+os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")  # so do those that need more threads
 os.environ["HOST"] = "127.0.0.1"
 os.environ["PARSER_PORT"] = "1"  # nobody answers there
 os.environ["GPSR_QUEUE_PREFIX"] = f"{os.path.basename(var)}-"  # processes of tests share a broker
@@ -22,4 +22,3 @@ if url := os.environ.get("TEST_DATABASE_URL"):
     os.environ["DATABASE_URL"] = url
 else:
     os.environ.pop("DATABASE_URL", None)
-gc.disable()  # until the tests are collected: what is imported and collected stays

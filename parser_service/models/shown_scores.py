@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from annotations.language.corpus import KNOWN, Criterion, harmonic_mean
-from parser_service.analysis.outcomes import interval_of_scores
 
 if TYPE_CHECKING:
     from parser_service.analysis.clustered import Interval
@@ -79,6 +78,9 @@ class ShownScore:
     @property
     def interval(self) -> Interval:
         """The 95 % interval of the figure, fractions of 1."""
+        # Not before a page shows one: it needs NumPy, and whatever starts loads the models.
+        from parser_service.analysis.outcomes import interval_of_scores
+
         sides = (self.score,) if self.known is None else (self.score, self.known)
         return interval_of_scores(
             [[each.outcomes] for each in sides],

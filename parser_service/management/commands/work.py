@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import logging
 import os
+import sys
+from socket import gethostname
 from typing import Any
 
 from celery import current_app
@@ -32,16 +34,15 @@ class Command(BaseCommand):
 
     def handle(self, *args: Any, queue: list[str], **options: Any) -> None:
         os.environ.setdefault("CELERY_SKIP_CHECKS", "1")  # they load the pages, which train nothing
-        level = logging.getLevelName(logging.getLogger().level)
-        current_app.worker_main(
-            [
-                "--quiet",
-                "worker",
-                f"--queues={','.join(map(message_queue, queue))}",
-                f"--hostname={'-'.join(queue)}-{os.getpid()}@%h",
-                f"--loglevel={level}",
-                "--without-gossip",
-                "--without-mingle",
-                "--without-heartbeat",
-            ]
+        # Celery's own command line says the same, and is a third of the time to start.
+        worker = current_app.Worker(
+            hostname=f"{'-'.join(queue)}-{os.getpid()}@{gethostname()}",
+            queues=[message_queue(each) for each in queue],
+            loglevel=logging.getLevelName(logging.getLogger().level),
+            quiet=True,
+            without_gossip=True,
+            without_mingle=True,
+            without_heartbeat=True,
         )
+        worker.start()
+        sys.exit(worker.exitcode)
