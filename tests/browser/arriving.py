@@ -8,9 +8,15 @@ from __future__ import annotations
 
 from playwright.sync_api import Locator, Page, expect
 
+# What a module takes over that is fetched only where a page needs it.
+ENHANCED = ", ".join(
+    f"[data-{name}]"
+    for name in ("chart", "tree", "editor", "label-page", "audit-page", "case", "refusal")
+)
+
 
 def arrive(page: Page, title: str) -> None:
-    """Wait for the page called ``title``, to which a key or a click leads, and for its scripts and editors."""
+    """Wait for the page called ``title``, to which a key or a click leads, and for its scripts and modules."""
     expect(page.locator("h1")).to_have_text(title)
     _wait_for_scripts(page)
 
@@ -23,7 +29,7 @@ def arrive_at(page: Page, part: Locator) -> None:
 
 def _wait_for_scripts(page: Page) -> None:
     page.wait_for_load_state("domcontentloaded")
-    expect(page.locator("[data-editor]:not([data-ready])")).to_have_count(0)
+    expect(page.locator(f":is({ENHANCED}):not([data-ready])")).to_have_count(0)
 
 
 def wait_for_swap(page: Page) -> None:

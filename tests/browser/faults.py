@@ -6,21 +6,21 @@ from pathlib import Path
 
 from playwright.sync_api import Page
 
+from tests.browser.arriving import ENHANCED
+
 AXE = Path(__file__).resolve().parents[2] / "node_modules" / "axe-core" / "axe.min.js"
 
 # The modules have taken over what they are for, no fragment is on its way, and two frames have passed,
 # so that also what waits for the sizes of things is done.
-SETTLED = """async () => {
+SETTLED = f"""async () => {{
   const frame = () => new Promise(requestAnimationFrame);
-  const enhanced =
-    "[data-chart], [data-tree], [data-editor], [data-label-page], [data-audit-page], [data-case]";
   const isBusy = () =>
-    [...document.querySelectorAll(enhanced)].some((element) => !("ready" in element.dataset)) ||
+    document.querySelector(":is({ENHANCED}):not([data-ready])") ||
     document.querySelector(".htmx-request, .htmx-added") ||
     [...document.querySelectorAll("[aria-busy=true]")].some((each) => each.checkVisibility());
   do await frame(); while (isBusy());
   await frame();
-}"""
+}}"""
 
 CONTROLS = """() => [...document.querySelectorAll("a[href], button, input, select, textarea, summary")]
   .filter((element) => element.type !== "hidden" && element.checkVisibility({visibilityProperty: true}))"""

@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 
 from django.conf import settings as site
@@ -75,6 +76,13 @@ class RunningWorker:
         """Sends a signal to parent and children."""
         os.killpg(self.pid, number)
 
+    def pause(self) -> None:
+        """Stop parent and children where they are, until SIGCONT; return once none of their threads runs."""
+        self.signal_all(signal.SIGSTOP)
+        # A signal is only sent by now: a system call ends first, and it may be one that takes a lock.
+        for process in (self.pid, *self.children()):
+            wait_for(lambda p=process: states(p) <= {"T", "Z"}, f"process {process} is paused")
+
     def stop(self) -> int:
         """Send SIGTERM and return the exit status once the process is gone."""
         self.process.terminate()
@@ -87,6 +95,18 @@ class RunningWorker:
             except ProcessLookupError:
                 return
         self.process.wait()
+
+
+def states(process: int) -> set[str]:
+    """How Linux calls what the threads of ``process`` do: R runs, S sleeps, T is stopped, Z has ended.
+
+    Empty for a process that is gone.
+    """
+    found = set()
+    for thread in Path(f"/proc/{process}/task").glob("*/stat"):
+        with suppress(OSError):
+            found.add(thread.read_text(encoding="ascii").rpartition(")")[2].split()[0])
+    return found
 
 
 def wait_for_status(run: TrainingRun, status: str) -> None:

@@ -14,7 +14,7 @@ from parser_service.runs import lifecycle
 from parser_service.runs.carrying_out.training import train
 from parser_service.runs.requests import requesting
 from tests.parser_service.made_up import LONG, TINY
-from tests.parser_service.worker_process import wait_for_epochs, wait_for_status
+from tests.parser_service.worker_process import states, wait_for_epochs, wait_for_status
 from tests.waiting import LOOK_EVERY, wait_for
 
 pytestmark = [pytest.mark.processes, pytest.mark.django_db(transaction=True)]
@@ -90,11 +90,7 @@ def test_a_child_does_not_outlive_its_killed_parent(world, split, start_worker):
 
 def is_alive(process: int) -> bool:
     """Whether the process runs; one that only its parent has not asked about yet does not."""
-    try:
-        with open(f"/proc/{process}/stat", encoding="ascii") as file:
-            return file.read().rpartition(")")[2].split()[0] != "Z"
-    except FileNotFoundError:
-        return False
+    return bool(states(process) - {"Z"})
 
 
 def test_a_paused_worker_that_comes_back_late_writes_nothing(
@@ -117,11 +113,11 @@ def test_a_paused_worker_that_comes_back_late_writes_nothing(
 
 def pause_between_writes(worker, run) -> None:
     """Stops the worker's processes at a moment when none of them holds a lock that the run needs."""
-    worker.signal_all(signal.SIGSTOP)
+    worker.pause()
     while not can_be_written(run):
         worker.signal_all(signal.SIGCONT)
         time.sleep(LOOK_EVERY)
-        worker.signal_all(signal.SIGSTOP)
+        worker.pause()
 
 
 def can_be_written(run) -> bool:
