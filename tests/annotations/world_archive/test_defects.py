@@ -57,6 +57,7 @@ def change_manifest(members, **values):
         ("commands", {"is_in_grammar": 1}, "is_in_grammar is not true or false"),
         ("commands", {"task_category": "x" * 61}, "task_category:"),
         ("commands", {"anonymized_text": "a\0b"}, "NUL"),
+        ("commands", {"anonymized_text": "a\\\0b"}, "NUL"),
         ("commands", {"anonymized_text": "\ud800"}, "JSON in UTF-8"),
         ("commands", {"world_id": 1}, "missing or unknown: world_id"),
         ("entities", {"entity_class": "planet"}, "entity_class cannot be “planet”"),

@@ -63,6 +63,12 @@ def test_a_world_without_anything(world):
     same_again(world)
 
 
+def test_text_that_looks_like_an_escape_sequence(world):
+    world.description = "\\u0000, \\\\u0000, \\ud800"
+    world.save()
+    same_again(world)
+
+
 def test_drafts_and_disputed_templates_keep_status_version_and_author(tiny_world, annotator):
     first, second = tiny_world.grammar.templates.all()
     SemanticTemplate.objects.filter(pk=first.pk).update(
