@@ -56,7 +56,8 @@ def parse_object(line: bytes, place: Position) -> dict[str, Any]:
         raise LanguageError("this is not a line of JSON in UTF-8", place) from error
     if not isinstance(values, dict):
         raise LanguageError("this is not a JSON object", place)
-    if "\\u0000" in text.replace("\\\\", ""):  # after an escaped backslash it is six characters
+    # Without the escaped backslashes: after one, "u0000" is text.
+    if "\\u0000" in text.replace("\\\\", ""):
         raise LanguageError("the text has a NUL character", place)
     return values
 

@@ -34,7 +34,7 @@ class Command(BaseCommand):
 
     def handle(self, *args: Any, queue: list[str], **options: Any) -> None:
         os.environ.setdefault("CELERY_SKIP_CHECKS", "1")  # they load the pages, which train nothing
-        # Celery's own command line says the same, and is a third of the time to start.
+        # Not by Celery's command line, which loads a shell with its prompt besides.
         worker = current_app.Worker(
             hostname=f"{'-'.join(queue)}-{os.getpid()}@{gethostname()}",
             queues=[message_queue(each) for each in queue],
