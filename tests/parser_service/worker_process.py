@@ -79,7 +79,7 @@ class RunningWorker:
     def pause(self) -> None:
         """Stop parent and children where they are, until SIGCONT; return once none of their threads runs."""
         self.signal_all(signal.SIGSTOP)
-        # A signal is only sent by now: a system call ends first, and it may be one that takes a lock.
+        # The signal is on its way: a thread finishes its system call first, which may take a lock.
         for process in (self.pid, *self.children()):
             wait_for(lambda p=process: states(p) <= {"T", "Z"}, f"process {process} is paused")
 
@@ -98,9 +98,9 @@ class RunningWorker:
 
 
 def states(process: int) -> set[str]:
-    """How Linux calls what the threads of ``process`` do: R runs, S sleeps, T is stopped, Z has ended.
+    """What the threads of ``process`` do, in Linux's letters: R runs, S sleeps, T is stopped, Z has ended.
 
-    Empty for a process that is gone.
+    Empty for a process that is gone, and where there is no /proc.
     """
     found = set()
     for thread in Path(f"/proc/{process}/task").glob("*/stat"):
