@@ -133,6 +133,8 @@ def acknowledge_cancel(work: BackgroundWork) -> None:
 
 def _end(work: BackgroundWork, status: Status, message: str) -> None:
     work.note(message)
+    # Before the row has it: its lease, in another thread, then knows that nobody else has ended it.
+    work.status = status
     write(work, status=status, finished_at=timezone.now(), lease_until=None, activity="")
 
 

@@ -85,7 +85,9 @@ class Lease:
                 self.outage = None
                 return now
         except Fenced as error:
-            self._lose(str(error))
+            # The block may go on for a moment after it has ended the work itself.
+            if not self.work.is_ended:
+                self._lose(str(error))
         except DatabaseError as error:
             if not self._is_away:
                 logger.warning("The lease of %s cannot be extended now: %s", self.work, error)
