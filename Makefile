@@ -1,5 +1,6 @@
 # make run   installs what is missing, starts web server and worker, prints the URL
 # make test  installs what the tests need, then runs all of them
+# make docs  builds docs/ as a site in site/
 
 # The first that is new enough and makes virtual environments. A distribution's is compiled with the
 # optimisations that pyenv leaves out: the tests take a tenth less time.
@@ -16,7 +17,7 @@ SOURCES := $(wildcard static/src/*.js static/css/*.css) static/build.mjs
 # Some shells forbid it; the many processes of the tests would each compile every module anew.
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: run test install lint
+.PHONY: run test install lint docs
 .DEFAULT_GOAL := run
 
 run: install
@@ -39,6 +40,12 @@ lint: $(VENV)/.tested
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
+# Strict: a link or a heading that is not there, or a page outside the navigation, fails. So does a page that
+# would load something from elsewhere.
+docs: $(VENV)/.documented
+	$(BIN)/mkdocs build --strict --quiet --clean
+	@! grep -rEn '<(script|link|img|iframe)[^>]*(src|href)="?(https?:)?//|(@import |url\()["'\'']?(https?:)?//' site --include='*.html' --include='*.css'
+
 $(BIN)/python:
 	@test -n "$(PYTHON)" || { echo "There is no Python 3.11 to 3.13 with venv here: install one, or name it: make PYTHON=…"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
@@ -49,6 +56,10 @@ $(VENV)/.installed: pyproject.toml | $(BIN)/python
 
 $(VENV)/.tested: pyproject.toml | $(VENV)/.installed
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[test]"
+	@touch $@
+
+$(VENV)/.documented: pyproject.toml | $(VENV)/.installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[docs]"
 	@touch $@
 
 static/dist/.built: package.json package-lock.json $(SOURCES) | $(VENV)/.installed

@@ -1,11 +1,13 @@
 #!/usr/bin/env python
 """Django's command line for GPSR Workbench."""
 
+import gc
 import os
 import sys
 
 
 def main() -> None:
+    gc.disable()  # until all apps are loaded: see SiteConfig.ready
     os.environ.setdefault("DJANGO_SETTINGS_MODULE", "gpsr_site.settings")
     from django.core.exceptions import ImproperlyConfigured
     from django.core.management import execute_from_command_line

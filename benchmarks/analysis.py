@@ -25,8 +25,9 @@ from parser_service.analysis.categories import RunEvidence, propose_categories
 from parser_service.analysis.comparing import compare_runs
 from parser_service.analysis.confusions import confuse_heads, confuse_slots
 from parser_service.analysis.edits import gather_facts, generate_edits, mine_pairs
+from parser_service.analysis.encoded_labels import encode
 from parser_service.analysis.outcomes import MOST_CLUSTERS
-from parser_service.analysis.probing import make_probes
+from parser_service.analysis.probe_texts import make_probes
 from parser_service.analysis.risk_coverage import risk_coverage
 from parser_service.analysis.sensitivity import (
     EditAnswers,
@@ -44,7 +45,7 @@ from parser_service.analysis.slicing import (
 RUNS = 5
 
 
-class World:
+class AnalysedData:
     """Predictions of five runs for commands of the starter world."""
 
     def __init__(self, count: int) -> None:
@@ -72,7 +73,7 @@ class World:
         accuracy_by(self.correct, labels, self.clusters)
 
 
-def tasks(world: World) -> dict[str, Callable[[], object]]:
+def tasks(world: AnalysedData) -> dict[str, Callable[[], object]]:
     right = world.correct[0]
     return {
         "comparing": lambda: compare_runs(world.correct, world.clusters),
@@ -82,7 +83,9 @@ def tasks(world: World) -> dict[str, Callable[[], object]]:
         "slicing: form seen": lambda: world.slice_by(
             are_seen(world.gold, world.forms[::2]).tolist()
         ),
-        "confusions: heads": lambda: confuse_heads(world.gold, world.predicted),
+        "confusions: heads": lambda: confuse_heads(
+            *(encode(head_predicates(forms)) for forms in (world.gold, world.predicted))
+        ),
         "confusions: slots": lambda: confuse_slots(world.gold, world.predicted),
         "attractors": lambda: find_attractors(world.utterances, world.gold, world.predicted),
         "risk and coverage": lambda: risk_coverage(world.scores, right).at(0.5),
@@ -99,7 +102,7 @@ def tasks(world: World) -> dict[str, Callable[[], object]]:
     }
 
 
-def edit(world: World) -> None:
+def edit(world: AnalysedData) -> None:
     known = list(zip(world.commands, map(read_form, world.forms), strict=True))
     grammars = [category.grammar for category in world.categories]
     predicates = infer_signatures(form for _, form in known)
@@ -108,7 +111,7 @@ def edit(world: World) -> None:
         generate_edits(utterance, form, facts)
 
 
-def measure(world: World) -> None:
+def measure(world: AnalysedData) -> None:
     count = len(world.gold)
     kinds = [("article", "entity", "place")[number % 3] for number in range(count)]
     bases = [number // 4 for number in range(count)]
@@ -121,7 +124,7 @@ def main() -> None:
     parser.add_argument("--predictions", type=int, default=1_000_000)
     parser.add_argument("--only", default="", help="measure what has this in its name")
     arguments = parser.parse_args()
-    world = World(arguments.predictions)
+    world = AnalysedData(arguments.predictions)
     print(
         f"{arguments.predictions:,} predictions, {len(set(world.utterances)):,} texts, "
         f"{len(set(world.forms)):,} forms, {len(world.errors):,} distinct errors"

@@ -64,6 +64,7 @@ def measure(site: Site, format_: str) -> dict[str, float]:
     """Request one format and return rows, seconds, bytes and the peak of memory, in megabytes."""
     site.enter()
     from django.conf import settings
+    from django.http import StreamingHttpResponse
     from django.test import Client
 
     from annotations.models import Split, User
@@ -78,6 +79,7 @@ def measure(site: Site, format_: str) -> dict[str, float]:
     began, busy = time.perf_counter(), time.process_time()
     size = 0
     answer = client.get(f"{path}/export/?as={format_}{chosen}")
+    assert isinstance(answer, StreamingHttpResponse)
     for piece in answer.streaming_content:
         size += len(piece)
     seconds, busy = time.perf_counter() - began, time.process_time() - busy
@@ -155,9 +157,9 @@ def main() -> None:
             fill(site, options.examples)
         formats = [options.only] if options.only else FORMATS
         good = [
-            report(each, measured_apart(folder, options.database, each))
-            for each in formats
-            if each != ROUND_TRIP
+            report(file_format, measured_apart(folder, options.database, file_format))
+            for file_format in formats
+            if file_format != ROUND_TRIP
         ]
         if options.only in (None, ROUND_TRIP):
             with tempfile.TemporaryDirectory(prefix="pairs-") as pairs:

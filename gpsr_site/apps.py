@@ -9,7 +9,10 @@ class SiteConfig(AppConfig):
     name = "gpsr_site"
 
     def ready(self) -> None:
-        """Let the garbage collector begin. What is loaded stays to the end of the process: looking
-        through it again and again while it is loaded would take a fifth of the time to start."""
+        """Start the garbage collector, which ``manage.py`` has stopped.
+
+        What is loaded stays to the end of the process. To look through it again and again while it
+        is loaded takes a fifth of the time to start.
+        """
         gc.freeze()
         gc.enable()

@@ -23,7 +23,7 @@ from kombu.utils.json import dumps, loads
 class Channel(filesystem.Channel):
     """A folder of messages, oldest first by name."""
 
-    def _get(self, queue: str) -> Any:
+    def _get(self, queue: str, timeout: float | None = None) -> Any:
         """Take the oldest message of ``queue``: whoever renames it first has it. Raises Empty."""
         for path in sorted(Path(self.data_folder_in).glob(f"*.{queue}.msg")):
             taken = path.with_suffix(".reading")
@@ -33,16 +33,17 @@ class Channel(filesystem.Channel):
                 continue
             text = taken.read_text(encoding="utf-8")
             taken.unlink()
-            return loads(text)
+            return loads(text)  # type: ignore[no-untyped-call]  # of kombu
         raise Empty
 
-    def _put(self, queue: str, payload: Any, **kwargs: Any) -> None:
+    def _put(self, queue: str, payload: Any, **kwargs: Any) -> None:  # type: ignore[override]  # kombu has two names for it
         """Put ``payload`` onto ``queue``. Raises ChannelError where the folder cannot be written."""
         folder = Path(self.data_folder_out)
         name = f"{time.time_ns():020}_{uuid.uuid4()}"
         unfinished = folder / f"{name}.writing"
         try:
-            unfinished.write_text(dumps(payload), encoding="utf-8")
+            text = dumps(payload)  # type: ignore[no-untyped-call]  # of kombu
+            unfinished.write_text(text, encoding="utf-8")
             os.replace(unfinished, folder / f"{name}.{queue}.msg")
         except OSError as error:
             raise ChannelError(f"Cannot write a message into {folder}: {error}") from error

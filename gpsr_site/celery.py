@@ -18,9 +18,10 @@ app.conf.update(
     worker_max_tasks_per_child=1,
     worker_enable_remote_control=False,
     worker_hijack_root_logger=False,
+    worker_consumer="gpsr_site.consumer:PatientConsumer",
     broker_connection_retry=True,
     broker_connection_retry_on_startup=True,
     broker_connection_max_retries=None,  # for ever: a worker never ends because the broker is away
 )
 app.autodiscover_tasks(["parser_service"], related_name="worker")
-app.steps["worker"].add("parser_service.runs.worker:Service")
+app.steps["worker"].add("parser_service.runs.worker:WorkerTimer")

@@ -1,4 +1,4 @@
-"""How log lines look, and what never stands in them."""
+"""The format of log lines, without secrets."""
 
 from __future__ import annotations
 

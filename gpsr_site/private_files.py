@@ -1,10 +1,16 @@
-"""Files that their owner alone may read, whatever the folder around them allows."""
+"""Files that their owner alone may read, whatever the folder around them allows, and the secret keys in them."""
 
 from __future__ import annotations
 
 import contextlib
 import os
+import secrets
+import time
 from pathlib import Path
+
+from django.core.exceptions import ImproperlyConfigured
+
+PATIENCE_SECONDS = 5.0  # with another process that starts at the same moment and makes the key
 
 
 def make_private(path: Path) -> None:
@@ -24,3 +30,27 @@ def make_database_private(path: Path) -> None:
         with contextlib.suppress(FileNotFoundError):
             beside.stat()
             make_private(beside)
+
+
+def read_or_make_secret_key(path: Path) -> str:
+    """Return the key in ``path``. If the file does not exist, write a new key to it with mode 0600.
+
+    Raises ImproperlyConfigured where the file stays empty.
+    """
+    try:
+        descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+    except FileExistsError:
+        return _read_when_written(path)
+    key = secrets.token_urlsafe(48)
+    with os.fdopen(descriptor, "w", encoding="ascii") as file:
+        file.write(key)
+    return key
+
+
+def _read_when_written(path: Path) -> str:
+    deadline = time.monotonic() + PATIENCE_SECONDS
+    while not (key := path.read_text(encoding="ascii").strip()):
+        if time.monotonic() > deadline:
+            raise ImproperlyConfigured(f"{path} is empty. Delete it, and a new key is made.")
+        time.sleep(0.01)
+    return key

@@ -1,4 +1,4 @@
-"""Runs the web server and the workers side by side, and stops them together."""
+"""Run the web server and the workers side by side, and stop them together."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from types import FrameType
 
-# A worker stops within 5 s of being asked (DESIGN §6); whoever is later than this is killed.
+# A worker stops within 5 s of being asked (docs/design/architecture.md); whoever is later than this is killed.
 PATIENCE_SECONDS = 7.0
 # A child that had worked for a while is started again at once, one that ends soon after its start later.
 SETTLED_SECONDS = 10.0
@@ -93,6 +93,7 @@ class Supervisor:
 
 def _end_with_parent(parent: int) -> None:
     """Ask Linux for a SIGTERM when ``parent`` ends. Called in the new child."""
+    assert LIBC is not None
     LIBC.prctl(PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
     if os.getppid() != parent:
         os._exit(1)

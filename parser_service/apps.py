@@ -1,8 +1,8 @@
 from django.apps import AppConfig
 from django.conf import settings
 
-from parser_service.parsers.llm.places import Patience, Server, use_server
-from parser_service.parsers.weights.encoder_places import keep_encoders_in
+from parser_service.parsers.llm.server_address import ModelServer, Patience, use_server
+from parser_service.parsers.pretrained_files import keep_encoders_in
 
 
 class ParserServiceConfig(AppConfig):
@@ -18,18 +18,19 @@ class ParserServiceConfig(AppConfig):
         from annotations.worlds.parts import register_part
         from parser_service.models import TrainingRun
 
-        register(TrainingRun, "parser_service.runs.carrying_out.training.train")
-        register_verb(JobKind.AUDIT, "parser_service.audit.carrying_out.audit")
-        register_verb(JobKind.PROPOSE, "parser_service.candidates.proposing.propose")
-        register_verb(JobKind.ANALYSE, "parser_service.analysing.carrying_out.analyse")
-        register_verb(JobKind.ANSWER, "parser_service.analysing.tryouts.answering.answer")
+        register(TrainingRun, "parser_service.runs.training.train_run.train")
+        register_verb(JobKind.AUDIT, "parser_service.label_audit.audit_job.audit_of")
+        register_verb(JobKind.PROPOSE, "parser_service.labelling.parser_proposals.propose")
+        register_verb(JobKind.ANALYSE, "parser_service.analyses.analysis_job.analyse")
+        register_verb(JobKind.ANSWER, "parser_service.analyses.tryout_answers.answer")
+        register_verb(JobKind.PARSE, "parser_service.serving.batch_job.parse_batch")
         register_part("parser_service.robots.archived.ACTION_NAMES")
         register_results("run", lambda keys: TrainingRun.objects.filter(split__in=keys).count())
         keep_encoders_in(
             settings.ENCODERS_DIR, settings.VAR_DIR / "vectors", settings.ENCODER_PACKAGES
         )
         use_server(
-            Server(
+            ModelServer(
                 settings.LLM_URL,
                 settings.LLM_KEY,
                 settings.LLM_MAY_BE_REMOTE,

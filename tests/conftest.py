@@ -23,6 +23,7 @@ from annotations.models import ApiToken, Membership, Scope, User, World
 from annotations.models.worlds import Role
 from tests.replaying import made_once
 from tests.sample_world import SampleWorld, fill_world
+from tests.write_transactions import measured_transactions
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -94,12 +95,22 @@ def no_earlier_attempts(request):
         cache.clear()
 
 
+@pytest.fixture(autouse=True)
+def nobody_waits_for_computing():
+    """A write transaction that computes keeps all others from writing; it has to be short."""
+    with measured_transactions() as lasted:
+        yield
+    assert not [each for each in lasted if each.is_too_long], (
+        "compute before the transaction, and only write in it"
+    )
+
+
 @pytest.fixture(scope="session")
 def django_db_modify_db_settings(django_db_modify_db_settings_parallel_suffix, request):
     """SQLite's test database is a file, which the workers and servers of a test can open too: a copy
     of one that is migrated."""
     database = connection.settings_dict
-    if connection.vendor == "sqlite" and not database["TEST"]["NAME"]:
+    if connection.vendor == "sqlite":
         database["TEST"]["NAME"] = str(site.VAR_DIR / "test.sqlite3")
         shutil.copy(request.getfixturevalue("migrated_database"), database["TEST"]["NAME"])
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from annotations.auditing import FoundPair
-from annotations.language.auditing import LabelledPair, Reason, Suspect
-from annotations.language.auditing.findings import Finding
+from annotations.label_audit.audit_findings import SuspectPair
+from annotations.language.label_errors import Finding, LabelledPair, Reason, Suspect
 from annotations.models import Paraphrase, Utterance
 from tests.sample_world import make_paraphrase
 
@@ -25,7 +24,7 @@ def say(world, utterance: str, form: str = MALE, **columns) -> Paraphrase:
     )
 
 
-def doubt(row: Paraphrase | Utterance, suggested: str = FEMALE, *reasons: Reason) -> FoundPair:
+def doubt(row: Paraphrase | Utterance, suggested: str = FEMALE, *reasons: Reason) -> SuspectPair:
     """Return what an audit says against the label of ``row``."""
     name = "utterance" if isinstance(row, Utterance) else "paraphrase"
     text = row.anonymized_text if name == "utterance" else row.utterance
@@ -34,4 +33,4 @@ def doubt(row: Paraphrase | Utterance, suggested: str = FEMALE, *reasons: Reason
         Finding(pair, reason, f"The {reason} says so.", suggested, 1.0)
         for reason in reasons or (Reason.COMMAND,)
     ]
-    return FoundPair((name, row.pk), Suspect(pair, tuple(findings)))
+    return SuspectPair((name, row.pk), Suspect(pair, tuple(findings)))

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from annotations.auditing import store_findings
 from annotations.background.progress import UNWATCHED
 from annotations.commenting import SUBJECTS, add_comment
 from annotations.editing.edits import add, change, delete
-from annotations.labelling import collect
+from annotations.label_audit.audit_findings import store_findings
+from annotations.labelling.collecting import collect
 from annotations.language.dialogue import Offer
 from annotations.models import (
     AuditEntry,
@@ -25,20 +25,20 @@ from annotations.models import (
 from annotations.models.background import Status
 from annotations.models.splits import Part
 from annotations.models.worlds import Role
-from annotations.queueing import answer, set_share
-from annotations.queueing.sources import refill
-from parser_service.analysing.carrying_out import analyse
-from parser_service.analysing.tryouts.trying import ask
-from parser_service.conversing.offering import offer, refuse
-from parser_service.conversing.talking import reply, start
+from annotations.queueing.enqueuing import refill, set_share
+from annotations.queueing.item_answers import answer
+from parser_service.analyses.analysis_job import analyse
+from parser_service.analyses.tryout_answers import ask
+from parser_service.dialogues.conversation import reply, start
+from parser_service.dialogues.entity_offers import offer, refuse
 from parser_service.models import Promotion, PromotionState, Slice, TrainingRun
-from parser_service.promotion import promote
-from parser_service.reviewing.categories import ensure_categories
-from parser_service.reviewing.proposing import propose_for_run
-from parser_service.reviewing.tagging import tag, write_note
-from parser_service.runs.carrying_out.examples import pairs_of
-from parser_service.runs.carrying_out.training import make_parser
+from parser_service.promotions.promoting import promote
+from parser_service.reviews.category_proposals import propose_for_run
+from parser_service.reviews.tagging import tag, write_note
+from parser_service.reviews.world_categories import ensure_categories
 from parser_service.runs.checkpoints import model_folder, write_folder
+from parser_service.runs.training.split_pairs import pairs_of
+from parser_service.runs.training.train_run import make_parser
 from tests.doubted_labels import doubt
 
 SAID = ["bring me the tea", "go to the kitchen now", "where is my milk"]

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from annotations.generation.generating import generate_pairs
-from annotations.importing import import_generator
+from annotations.importing.generator_import import import_generator
 from annotations.models import (
     Comment,
     Example,
+    Guidelines,
     LogicalForm,
     Paraphrase,
     SemanticTemplate,
@@ -20,8 +21,8 @@ from parser_service.analysis.outcomes import outcomes_of
 from parser_service.analysis.scores import Judgement
 from parser_service.models import EpochMetric, Evaluation, Prediction, TrainingRun
 from parser_service.models.runs import Status
-from parser_service.runs.carrying_out.examples import cluster_of
-from parser_service.runs.requests import requesting
+from parser_service.runs.requests import run_requests
+from parser_service.runs.training.split_pairs import cluster_of
 from tests.annotations.conftest import TINY, as_bytes
 from tests.parser_service.made_up import make_split
 
@@ -58,7 +59,7 @@ def scored_run(
     world: World, split: Split, parser: str = "knn", right: int = 3, seed: int = 0
 ) -> TrainingRun:
     """Store a run that succeeded and predicted the first ``right`` validation examples correctly."""
-    run, _ = requesting.request(world, split, parser, seed=seed, send=False)
+    run, _ = run_requests.request(world, split, parser, seed=seed, send=False)
     TrainingRun.objects.filter(pk=run.pk).update(status=Status.SUCCEEDED, progress=1)
     examples = list(split.examples.filter(part="validation"))
     clusters = [cluster_of(example, split.criterion) for example in examples]
@@ -105,6 +106,11 @@ def paraphrase_in(world: World) -> Paraphrase:
     return world.paraphrases.first() or make_paraphrase(
         world, grounded_form="go", logical_form="go"
     )
+
+
+def guidelines_in(world: World) -> Guidelines:
+    """Return the guidelines of ``world``, made where there are none: a sample world brings none."""
+    return Guidelines.objects.get_or_create(world=world, defaults={"text": "Say bring."})[0]
 
 
 def comment_in(world: World) -> Comment:

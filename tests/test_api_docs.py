@@ -1,4 +1,4 @@
-"""The examples of docs/api.md run as they are, and its table names every route."""
+"""The examples of docs/reference/rest.md run as they are, and its table names every route."""
 
 from __future__ import annotations
 
@@ -11,13 +11,15 @@ from pathlib import Path
 
 import pytest
 
-from annotations.importing import import_generator
+from annotations.importing.generator_import import import_generator
 from annotations.models import ApiToken, Entity
 from parser_service.models import TrainingRun
 from tests.annotations.conftest import TINY, as_bytes
 from tests.gpsr_site.routes.listing import ALL_ROUTES
 
-TEXT = (Path(__file__).resolve().parent.parent / "docs" / "api.md").read_text(encoding="utf-8")
+TEXT = (Path(__file__).resolve().parent.parent / "docs" / "reference" / "rest.md").read_text(
+    encoding="utf-8"
+)
 SECONDS = 120
 
 

@@ -1,4 +1,4 @@
-"""The README and the code say the same."""
+"""The README, the docs and the code say the same."""
 
 from __future__ import annotations
 
@@ -7,11 +7,22 @@ from pathlib import Path
 
 import pytest
 
+from parser_service.results.published import PUBLISHED, published_accuracy
+
 ROOT = Path(__file__).resolve().parent.parent
+DOCS = ROOT / "docs"
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-SETTINGS = "".join(
-    path.read_text(encoding="utf-8") for path in (ROOT / "gpsr_site" / "settings").glob("*.py")
-)
+VARIABLES = (DOCS / "reference" / "variables.md").read_text(encoding="utf-8")
+COMMANDS = (DOCS / "reference" / "commands.md").read_text(encoding="utf-8")
+PAGES = [
+    *sorted(ROOT.glob("*.md")),
+    *sorted(DOCS.rglob("*.md")),
+    ROOT / "clients" / "python" / "README.md",
+]
+SETTINGS = (ROOT / "gpsr_site" / "settings.py").read_text(encoding="utf-8")
+LINK = re.compile(r"\]\((?!https?:)([^)#\s]*)(?:#([^)\s]*))?\)")
+MODULE = re.compile(r"python -m ((?:benchmarks|tests)[\w.]*)")
+FILE = re.compile(r"`((?:annotations|benchmarks|gpsr_site|parser_service|tests)/[\w./-]*)`")
 TABLE_ROW = re.compile(r"^\| `([A-Z_]+)` \|", re.MULTILINE)
 # Django's and Celery's own; read by the shell, the tests or a library rather than by the settings.
 READ_ELSEWHERE = {
@@ -32,26 +43,111 @@ def variables_of_the_settings() -> set[str]:
 
 
 def test_every_variable_of_the_settings_is_documented_and_no_other():
-    assert set(TABLE_ROW.findall(README)) - READ_ELSEWHERE == variables_of_the_settings()
+    assert set(TABLE_ROW.findall(VARIABLES)) - READ_ELSEWHERE == variables_of_the_settings()
 
 
 def test_variables_of_the_tests_are_documented():
-    assert set(TABLE_ROW.findall(README)) >= READ_ELSEWHERE
+    assert set(TABLE_ROW.findall(VARIABLES)) >= READ_ELSEWHERE
 
 
-@pytest.mark.parametrize("target", ["run", "test"])
+@pytest.mark.parametrize("target", ["run", "test", "docs"])
 def test_the_commands_of_the_readme_exist_in_the_makefile(target):
     assert f"make {target}" in README
     assert re.search(rf"^{target}:", (ROOT / "Makefile").read_text(), re.MULTILINE)
 
 
-def test_every_management_command_is_named_in_the_readme():
+def test_every_target_of_the_makefile_is_documented():
+    [targets] = re.findall(r"^\.PHONY: (.*)$", (ROOT / "Makefile").read_text(), re.MULTILINE)
+    assert set(re.findall(r"^\| `make (\w+)` \|", COMMANDS, re.MULTILINE)) == set(targets.split())
+
+
+def test_every_management_command_is_documented():
     folders = ROOT.glob("*/management/commands")
     commands = {path.stem for folder in folders for path in folder.glob("[a-z]*.py")}
-    missing = {name for name in commands if f"`{name}" not in README}
+    missing = {name for name in commands if f"| `{name}" not in COMMANDS}
     assert not missing
 
 
-def test_links_of_the_readme_lead_to_files():
-    for target in re.findall(r"\]\((?!http)([^)#]+)", README):
-        assert (ROOT / target).exists(), target
+def links_of(page: Path) -> set[tuple[Path, str]]:
+    """Return what a page links to: a file, and the heading in it or nothing."""
+    targets = LINK.findall(page.read_text(encoding="utf-8"))
+    return {
+        ((page.parent / path).resolve() if path else page, heading) for path, heading in targets
+    }
+
+
+def headings_of(page: Path) -> set[str]:
+    """Return the headings of a page as links write them."""
+    titles = re.findall(r"^#+ (.*)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    return {re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-") for title in titles}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_links_lead_to_files_and_to_headings_in_them(page):
+    for target, heading in links_of(page):
+        assert target.exists(), target
+        assert not heading or heading in headings_of(target), f"{target}#{heading}"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_files_and_modules_that_a_page_names_are_there(page):
+    text = page.read_text(encoding="utf-8")
+    assert not {path for path in FILE.findall(text) if not (ROOT / path).exists()}
+    for path in (ROOT / name.replace(".", "/") for name in MODULE.findall(text)):
+        assert path.with_suffix(".py").exists() or (path / "__main__.py").exists(), path
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_the_modules_of_a_package_that_a_table_lists_are_there(page):
+    """The head of such a table is "module of `folder/`", and its first column has the names of the files."""
+    tables = re.findall(
+        r"^\| module of `([\w/]+)` \|.*\n\|.*\n((?:\|.*\n)+)", page.read_text("utf-8"), re.MULTILINE
+    )
+    for folder, rows in tables:
+        cells = [row.split("|")[1] for row in rows.splitlines()]
+        names = [name for cell in cells for name in re.findall(r"`([\w/]+\.py)`", cell)]
+        assert names and not [name for name in names if not (ROOT / folder / name).exists()]
+
+
+def test_every_page_of_the_docs_is_in_the_navigation_and_on_the_first_page():
+    pages = {str(page.relative_to(DOCS)) for page in DOCS.rglob("*.md")}
+    settings = (ROOT / "mkdocs.yml").read_text(encoding="utf-8")
+    navigation = re.findall(r"^ +- (?:\w+: )?([\w/-]+\.md)$", settings, re.MULTILINE)
+    assert sorted(navigation) == sorted(pages)
+    first = DOCS / "index.md"
+    assert pages == {str(target.relative_to(DOCS)) for target, _ in links_of(first)} | {"index.md"}
+
+
+@pytest.mark.parametrize("page", sorted(DOCS.rglob("*.md")), ids=lambda page: page.stem)
+def test_links_of_the_docs_stay_in_the_docs(page):
+    """The site has these pages alone: code and files beside them are named, not linked."""
+    assert not {target for target, _ in links_of(page) if not target.is_relative_to(DOCS)}
+
+
+def test_the_figures_of_the_paper_are_those_that_the_results_page_shows():
+    text = (DOCS / "research" / "reproducing.md").read_text(encoding="utf-8")
+    tables = zip(("command", "logical_form"), text.split("\n## By ")[1:3], strict=True)
+    for criterion, table in tables:
+        rows = re.findall(r"^\| `([\w-]+)` \| (.*) \|$", table, re.MULTILINE)
+        assert {name for name, _ in rows} == set(PUBLISHED)
+        for name, cells in rows:
+            theirs = [float(cell.split(" / ")[0]) for cell in cells.split(" | ")]
+            settings = (("gen", "gen"), ("gen", "para"), ("para", "para"), ("gen+para", "para"))
+            assert theirs == [published_accuracy(name, each, criterion) for each in settings], name
+
+
+def test_the_readme_has_the_figures_of_the_docs():
+    """Its table of the paper is a part of the page about it, which names the commands."""
+    text = (DOCS / "research" / "reproducing.md").read_text(encoding="utf-8")
+    rows = set(re.findall(r"^\| `[\w-]+` \| .*$", README, re.MULTILINE))
+    assert len(rows) == 4 and rows <= set(text.splitlines())
+
+
+def test_every_page_is_reached_from_the_readme():
+    reached, todo = set(), [ROOT / "README.md"]
+    while todo:
+        page = todo.pop()
+        if page not in reached and page.suffix == ".md":
+            reached.add(page)
+            todo += [target for target, _ in links_of(page)]
+    assert not set(PAGES) - reached

@@ -19,6 +19,7 @@ from annotations.background.outages import (
     outage_sentence,
 )
 from annotations.background.recovery import return_to_queue
+from annotations.language.errors import LanguageError
 from annotations.models.background import BackgroundWork
 
 logger = logging.getLogger(__name__)
@@ -66,6 +67,10 @@ def _do(
     except Stopped:
         if not lease.is_lost:
             acknowledge_cancel(work)
+    except LanguageError as error:
+        # A file is not what it should be: who sent it is told, and the log needs no traceback.
+        logger.warning("%s was refused: %s", work, error)
+        fail(work, explain(error))
     except Exception as error:
         logger.exception("%s failed.", work)
         fail(work, explain(error))

@@ -4,23 +4,41 @@ from __future__ import annotations
 
 import errno
 import re
+import sqlite3
 from collections.abc import Iterator
 
+from django.db import DatabaseError
+
 FULL = (errno.ENOSPC, errno.EDQUOT)
-POSTGRES_FULL = "53100"
-# What libraries say that pass no errno on: safetensors, SQLite, PostgreSQL, and the system itself.
+POSTGRES_FULL, SQLITE_FULL = "53100", sqlite3.SQLITE_FULL
+# What libraries say that pass no errno on: safetensors, and the system itself.
 SAYS_FULL = re.compile(
     r"no space left on device|os error 28\b|disk is full|disk quota exceeded", re.IGNORECASE
+)
+# A page that cannot be read: of PostgreSQL (SQLSTATE), of SQLite (the low byte of its code).
+POSTGRES_DAMAGED = ("XX001", "XX002")
+SQLITE_DAMAGED = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
+# A table or a column that is not there: the code is newer than the database.
+POSTGRES_OLDER = ("42P01", "42703")
+SQLITE_OLDER = re.compile(r"no such (table|column)|has no column named")
+
+FREE_SPACE = (
+    "Free space on the disk of GPSR_VAR_DIR (its folder vectors/ is a cache and may be emptied), or on that "
+    "of PostgreSQL"
+)
+DAMAGED = (
+    "The database is damaged: a part of it cannot be read, and what stood there may be lost. Stop the site and "
+    "its workers, keep a copy of the database as it is, and bring back the last backup with “manage.py "
+    "restore FILE --replace” (docs/guides/operations.md). What was saved after that backup is in the copy only."
 )
 
 
 def failure_sentence(error: Exception, noun: str = "job") -> str:
     """Say what stopped the work and what to do about it. A ValueError of ours says both itself."""
     if is_disk_full(error):
-        return (
-            "The disk is full. Free space on the disk of GPSR_VAR_DIR (its folder vectors/ is a cache "
-            f"and may be emptied), then start the {noun} again."
-        )
+        return f"The disk is full. {FREE_SPACE}, then start the {noun} again."
+    if is_damaged(error):
+        return DAMAGED
     if isinstance(error, ValueError):
         return str(error)
     if is_out_of_memory(error):
@@ -31,14 +49,43 @@ def failure_sentence(error: Exception, noun: str = "job") -> str:
     )
 
 
+def database_sentence(error: DatabaseError) -> str:
+    """Say why a command could not use the database, and what to do about it."""
+    if is_disk_full(error):
+        return (
+            f"The disk is full, and the command was not finished. {FREE_SPACE}, then run it again."
+        )
+    if is_damaged(error):
+        return DAMAGED
+    cause = error.__cause__
+    if getattr(cause, "sqlstate", None) in POSTGRES_OLDER or SQLITE_OLDER.search(str(error)):
+        return f"The database is older than this version ({error}). Run “manage.py migrate”, then this again."
+    return f"The database did not carry this out ({error}). Run it again when the database answers."
+
+
+def is_damaged(error: BaseException) -> bool:
+    """Tell whether the database has found a part of itself that cannot be read."""
+    damaged = {*POSTGRES_DAMAGED, *SQLITE_DAMAGED}
+    return any(_code_of(each) in damaged for each in _with_causes(error))
+
+
 def is_disk_full(error: BaseException) -> bool:
-    """Tell whether the error means a full disk, in any form in which libraries say so."""
-    return any(
-        getattr(each, "errno", None) in FULL
-        or getattr(each, "sqlstate", None) == POSTGRES_FULL
-        or SAYS_FULL.search(str(each))
-        for each in _with_causes(error)
-    )
+    """Tell whether the error means a full disk, in any form in which libraries say so.
+
+    A database says it by its code. Its words may be those of a row.
+    """
+    errors = list(_with_causes(error))
+    if any(getattr(each, "errno", None) in FULL for each in errors):
+        return True
+    if codes := [code for each in errors if (code := _code_of(each))]:
+        return POSTGRES_FULL in codes or SQLITE_FULL in codes
+    return any(SAYS_FULL.search(str(each)) for each in errors)
+
+
+def _code_of(error: BaseException) -> str | int | None:
+    """Return the code of an error of PostgreSQL (SQLSTATE) or SQLite (the low byte); None for any other."""
+    sqlite_code = getattr(error, "sqlite_errorcode", None)
+    return getattr(error, "sqlstate", None) or (sqlite_code and sqlite_code & 0xFF)
 
 
 def _with_causes(error: BaseException | None) -> Iterator[BaseException]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from http import HTTPStatus
 from typing import Any, TypeVar
 
 from django.db import transaction
@@ -18,7 +19,8 @@ from django.db.models.functions import Now
 from django.utils import timezone
 
 from annotations.background.outages import outlasting
-from annotations.models.background import LEASE, BackgroundWork, Status
+from annotations.language.errors import Refusal
+from annotations.models.background import LEASE, BackgroundWork, Status, rows_of
 
 Work = TypeVar("Work", bound=BackgroundWork)
 
@@ -52,13 +54,13 @@ def claim(
 
 
 def _waiting(queue: str, model: type[Work], work: BackgroundWork | None) -> QuerySet[Work]:
-    waiting = model.objects.queued().filter(queue=queue)
+    waiting = rows_of(model).queued().filter(queue=queue)
     return waiting.filter(pk=work.pk) if work else waiting
 
 
 def held_row(work: Work) -> QuerySet[Work]:
     """Return the row of ``work`` while this attempt holds it; no row otherwise."""
-    return type(work).objects.running().filter(pk=work.pk, attempt=work.attempt)
+    return rows_of(type(work)).running().filter(pk=work.pk, attempt=work.attempt)
 
 
 def fence(work: BackgroundWork) -> Fenced:
@@ -141,7 +143,7 @@ def _end(work: BackgroundWork, status: Status, message: str) -> None:
 def cancel(work: BackgroundWork) -> None:
     """Cancel the work: at once while it waits, within seconds while it runs.
 
-    Raises ValueError, a sentence, where it has already ended.
+    Raises Refusal where it has already ended.
     """
     row = type(work).objects.filter(pk=work.pk)
     while True:
@@ -156,4 +158,5 @@ def cancel(work: BackgroundWork) -> None:
         work.refresh_from_db()
         if work.is_ended:
             name = f"{work.noun.capitalize()} {work.pk}"
-            raise ValueError(f"{name} has already ended: {work.status}.")
+            sentence = f"{name} has already ended: {work.status}."
+            raise Refusal(sentence, "already_ended", HTTPStatus.CONFLICT)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 
 from django.utils.module_loading import import_string
 
@@ -49,7 +50,7 @@ def _last_queue(worker: str) -> str | None:
         for kind in kinds()
         if (work := kind.model.objects.filter(worker=worker).order_by("-started_at").first())
     ]
-    return max(begun, key=lambda work: work.started_at).queue if begun else None
+    return max(begun, key=attrgetter("started_at")).queue if begun else None
 
 
 def _claim_oldest(worker: str, queue: str) -> BackgroundWork | None:

@@ -56,4 +56,5 @@ def _database_clock() -> datetime:
         return timezone.now()
     with connection.cursor() as cursor:
         cursor.execute("SELECT CURRENT_TIMESTAMP")
-        return cursor.fetchone()[0]
+        now: datetime = cursor.fetchone()[0]
+        return now

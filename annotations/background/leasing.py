@@ -11,9 +11,9 @@ from typing import Any, Self
 from django.conf import settings
 from django.db import DatabaseError, connections
 
-from annotations.background.fencing import LEASE, Fenced, extend, is_cancel_requested
+from annotations.background.fencing import Fenced, extend, is_cancel_requested
 from annotations.background.outages import DatabaseAway
-from annotations.models.background import BackgroundWork
+from annotations.models.background import LEASE, BackgroundWork
 
 logger = logging.getLogger(__name__)
 

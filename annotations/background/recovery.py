@@ -10,7 +10,7 @@ from django.utils import timezone
 
 from annotations.background.fencing import Work, fence, held_row
 from annotations.background.waking import wake
-from annotations.models.background import BackgroundWork, Status
+from annotations.models.background import BackgroundWork, Status, rows_of
 
 MOST_RESUMES = 2
 
@@ -19,7 +19,7 @@ def hand_back(worker: str, model: type[Work]) -> list[Work]:
     """Queue the work of ``worker`` again when it stops in good order, without counting a resumption."""
     return [
         work
-        for work in list(model.objects.running().filter(worker=worker))
+        for work in list(rows_of(model).running().filter(worker=worker))
         if _take_back(work, held_row(work), "The worker was stopped", work.resumes)
     ]
 
@@ -28,7 +28,7 @@ def requeue_expired(model: type[Work]) -> list[Work]:
     """Queue work with an expired lease again, or end it as lost. Return the rows that were taken."""
     return [
         work
-        for work in list(model.objects.expired())
+        for work in list(rows_of(model).expired())
         # Unless its worker has extended the lease in the meantime.
         if _take_back(
             work,

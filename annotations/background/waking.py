@@ -44,8 +44,15 @@ def send_wake_up(queue: str) -> None:
             retry=True,
             retry_policy={"max_retries": 1, "interval_start": 0},
         )
-    except (KombuError, OperationalError, OSError) as error:
+    except _broker_errors() as error:
         logger.warning("No wake-up went to queue %s, a timer will find the work: %s", queue, error)
+
+
+def _broker_errors() -> tuple[type[Exception], ...]:
+    """Return what the library of this broker raises: for a virtual host that is gone, for one."""
+    connection = current_app.connection_for_write()
+    of_library = (*connection.connection_errors, *connection.channel_errors)
+    return (KombuError, OperationalError, OSError, *of_library)
 
 
 def wake_for_next(queues: Sequence[str]) -> None:

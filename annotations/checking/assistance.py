@@ -11,13 +11,8 @@ from typing import Any
 
 from django.core.cache import cache
 
-from annotations.checking.template_check import Checked, check_template
-from annotations.language.errors import LanguageError, Offsets, Problem, Repair
-from annotations.language.forms import to_reading
-from annotations.language.grammar import Grammar
-from annotations.language.symbols import SlotPlace
-from annotations.language.templates import Kept, SemanticTemplate
-from annotations.language.writing import (
+from annotations.checking.template_check import check_template
+from annotations.language.assistance import (
     Sides,
     Usage,
     completions,
@@ -27,14 +22,19 @@ from annotations.language.writing import (
     usage_of,
     with_repairs,
 )
+from annotations.language.errors import LanguageError, Offsets, Problem, Repair
+from annotations.language.forms import to_reading
+from annotations.language.grammar import Grammar
+from annotations.language.symbols import SlotPlace
+from annotations.language.templates import BoundedCache, SemanticTemplate
 from annotations.models import SemanticTemplate as StoredTemplate
 from annotations.models import TaskCategory, World
 from annotations.rows.from_rows import grammar_of, predicates_of, ready_templates, template_of
-from annotations.rows.template_problems import as_stored
+from annotations.rows.stored_problems import as_stored
 
 KEPT_SECONDS = 3600
 # World, its revision and the identity of a grammar → how its templates say slots. The grammar is kept with it.
-_USAGES: Kept[tuple[int, int, int], tuple[Usage, Grammar]] = Kept(12)
+_USAGES: BoundedCache[tuple[int, int, int], tuple[Usage, Grammar]] = BoundedCache(12)
 
 
 def assist(world: World, category: TaskCategory | None, pattern: str, form: str) -> dict[str, Any]:
@@ -52,7 +52,13 @@ def assist(world: World, category: TaskCategory | None, pattern: str, form: str)
     if checked.checker is not None:
         usage = partial(_usage, world, checked.checker.grammar)
         problems = with_repairs(problems, sides, checked.checker, usage)
-        slots = _slots(checked, sides)
+        slots = [
+            {
+                "pattern": _places(each.in_pattern, sides.pattern),
+                "form": _places(each.in_form, sides.form),
+            }
+            for each in correspondences(sides.pattern, sides.form, checked.checker.grammar)
+        ]
     return {
         "problems": [shown_problem(each, sides) for each in problems],
         "slots": slots,
@@ -87,13 +93,13 @@ def completion_tag(category: TaskCategory) -> str:
 
 def completions_of(category: TaskCategory) -> dict[str, Any]:
     """Return the fields of ``Completions`` as JSON; kept until something changes."""
-    return cache.get_or_set(
-        f"completions:{completion_tag(category)}", lambda: _completions(category), KEPT_SECONDS
+    kept: dict[str, Any] | None = cache.get_or_set(
+        f"completions:{completion_tag(category)}",
+        lambda: asdict(completions(grammar_of(category), predicates_of(category.grammar.world))),
+        KEPT_SECONDS,
     )
-
-
-def _completions(category: TaskCategory) -> dict[str, Any]:
-    return asdict(completions(grammar_of(category), predicates_of(category.grammar.world)))
+    assert kept is not None
+    return kept
 
 
 def shown_problem(problem: Problem, sides: Sides) -> dict[str, Any]:
@@ -122,17 +128,6 @@ def _repair(repair: Repair, sides: Sides) -> dict[str, Any]:
         for edit in repair.edits
     ]
     return {"label": repair.label, "edits": edits}
-
-
-def _slots(checked: Checked, sides: Sides) -> list[dict[str, Any]]:
-    assert checked.checker is not None
-    return [
-        {
-            "pattern": _places(each.in_pattern, sides.pattern),
-            "form": _places(each.in_form, sides.form),
-        }
-        for each in correspondences(sides.pattern, sides.form, checked.checker.grammar)
-    ]
 
 
 def _places(places: Iterable[SlotPlace], text: str) -> list[list[int]]:

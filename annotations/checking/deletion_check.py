@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
 
 from annotations.checking.predicate_check import BrokenTemplates, templates_without
 from annotations.checking.production_check import ProductionEdit, problems_without
-from annotations.generation.consequences import (
+from annotations.generation.world_consequences import (
     TemplateChange,
     WorldConsequences,
     consequences,
@@ -22,7 +20,7 @@ from annotations.rows.occurrences import EntityOccurrences, occurrences_of
 
 
 @dataclass(frozen=True)
-class Deletion:
+class DeletionCheck:
     """``expected`` is what becomes of commands and splits, ``problems`` what the checker says then and not now.
 
     ``templates`` are those with a new problem; ``occurrences`` are where an entity is named.
@@ -34,37 +32,22 @@ class Deletion:
     occurrences: EntityOccurrences | None = None
 
 
-def check_deletion(row: Editable) -> Deletion:
+def check_deletion(row: Editable) -> DeletionCheck:
     """Return what deleting ``row`` would do. Commands depend on templates and the grammar alone."""
-    return CHECKS.get(type(row), lambda row: Deletion())(row)
-
-
-def _of_template(row: SemanticTemplate) -> Deletion:
-    return Deletion(consequences(row.owning_world, TemplateChange(row, None)))
-
-
-def _of_production(row: Production) -> Deletion:
-    edit = ProductionEdit.of_stored(row)
-    expected = consequences_of_lines(edit.world, edit.delete(lines_of(edit.world)))
-    return Deletion(expected, problems_without(edit))
-
-
-def _of_predicate(row: Predicate) -> Deletion:
-    return Deletion(templates=templates_without(row.world, row.name))
-
-
-def _of_entity(row: Entity) -> Deletion:
-    world = row.owning_world
-    known = {problem.message for problem in ontology_problems(ontology_of(world))}
-    others = Entity.objects.filter(ontology=row.ontology_id).exclude(pk=row.pk)
-    after = ontology_problems(ontology_of(world, others))
-    new = (problem for problem in after if problem.message not in known)
-    return Deletion(problems=tuple(new), occurrences=occurrences_of(row))
-
-
-CHECKS: dict[type[Editable], Callable[[Any], Deletion]] = {
-    SemanticTemplate: _of_template,
-    Production: _of_production,
-    Predicate: _of_predicate,
-    Entity: _of_entity,
-}
+    match row:
+        case SemanticTemplate():
+            return DeletionCheck(consequences(row.owning_world, TemplateChange(row, None)))
+        case Production():
+            edit = ProductionEdit.of_stored(row)
+            expected = consequences_of_lines(edit.world, edit.delete(lines_of(edit.world)))
+            return DeletionCheck(expected, problems_without(edit))
+        case Predicate():
+            return DeletionCheck(templates=templates_without(row.world, row.name))
+        case Entity():
+            world = row.owning_world
+            known = {problem.message for problem in ontology_problems(ontology_of(world))}
+            others = Entity.objects.filter(ontology=row.ontology_id).exclude(pk=row.pk)
+            after = ontology_problems(ontology_of(world, others))
+            new = (problem for problem in after if problem.message not in known)
+            return DeletionCheck(problems=tuple(new), occurrences=occurrences_of(row))
+    return DeletionCheck()

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from annotations.language.errors import LanguageError, Position, Problem
+from annotations.language.errors import LanguageError, Position
 from annotations.language.forms import to_reading
 from annotations.language.predicates import Predicate, check_form, gloss, sample_forms
 from annotations.models import SemanticTemplate, World
@@ -17,7 +17,7 @@ BrokenTemplates: TypeAlias = "tuple[tuple[SemanticTemplate, tuple[str, ...]], ..
 
 
 @dataclass(frozen=True, slots=True)
-class Sample:
+class PredicateSample:
     """A form that uses the predicate, and its English sentence."""
 
     form: str
@@ -28,28 +28,17 @@ class Sample:
 class CheckedPredicate:
     """The English of a predicate, and the templates that it would break."""
 
-    samples: tuple[Sample, ...]
+    samples: tuple[PredicateSample, ...]
     templates: BrokenTemplates
-
-
-@dataclass(frozen=True, slots=True)
-class _Verdict:
-    """The problems that a template has with its predicates, now and then."""
-
-    row: SemanticTemplate
-    before: tuple[Problem, ...]
-    after: tuple[Problem, ...]
-
-    @property
-    def new(self) -> list[Problem]:
-        return [each for each in self.after if each not in self.before]
 
 
 def check_predicate(world: World, predicate: Predicate) -> CheckedPredicate:
     """Say ``predicate`` in English and check the templates of ``world`` with it."""
     before = predicates_of(world)
     after = {**before, predicate.name: predicate}
-    samples = (Sample(to_reading(form), gloss(form, after)) for form in sample_forms(predicate))
+    samples = (
+        PredicateSample(to_reading(form), gloss(form, after)) for form in sample_forms(predicate)
+    )
     return CheckedPredicate(tuple(samples), _broken(world, predicate.name, before, after))
 
 
@@ -63,23 +52,16 @@ def templates_without(world: World, name: str) -> BrokenTemplates:
 def _broken(
     world: World, name: str, before: Mapping[str, Predicate], after: Mapping[str, Predicate]
 ) -> BrokenTemplates:
-    verdicts = _verdicts(world, name, before, after)
-    messages = ((each.row, tuple(problem.message for problem in each.new)) for each in verdicts)
-    return tuple(each for each in messages if each[1])
-
-
-def _verdicts(
-    world: World, name: str, before: Mapping[str, Predicate], after: Mapping[str, Predicate]
-) -> Iterator[_Verdict]:
-    """Yield the templates that name the predicate and whose problems differ."""
+    """Return the templates that name the predicate and have a problem with ``after`` and not with ``before``."""
     place = Position("form")
+    broken = []
     for row in SemanticTemplate.objects.filter(grammar__world=world, form__contains=name):
         try:
             form = template_of(row).form
         except LanguageError:
             continue
-        verdict = _Verdict(
-            row, tuple(check_form(form, before, place)), tuple(check_form(form, after, place))
-        )
-        if verdict.before != verdict.after:
-            yield verdict
+        known = set(check_form(form, before, place))
+        problems = [each for each in check_form(form, after, place) if each not in known]
+        if problems:
+            broken.append((row, tuple(problem.message for problem in problems)))
+    return tuple(broken)

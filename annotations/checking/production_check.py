@@ -1,4 +1,4 @@
-"""Checks a production while somebody writes it, and shows what it would make."""
+"""Check a production while somebody writes it, and show what it would make."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from itertools import islice
 from typing import Any
 
 from annotations.checking.assistance import utf16_index
-from annotations.generation.consequences import WorldConsequences, consequences_of_lines
+from annotations.generation.world_consequences import WorldConsequences, consequences_of_lines
 from annotations.language.errors import LanguageError, Position, Problem
 from annotations.language.grammar import CHECK_STEPS, Budget, Grammar, readable
 from annotations.language.symbols import SymbolReader

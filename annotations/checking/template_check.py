@@ -1,32 +1,39 @@
-"""Checks a template while somebody writes it, and shows what it would make."""
+"""Check a template while somebody writes it, and show what it would make."""
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import islice
+from random import Random
 
 from annotations.generation.kept_expansions import checker_of
 from annotations.language.errors import LanguageError, Position, Problem
 from annotations.language.grammar import CHECK_STEPS, Budget, Grammar
+from annotations.language.grounding import ground
 from annotations.language.limits import MAX_FORM, MAX_PATTERN, require_length
 from annotations.language.predicates import gloss
 from annotations.language.templates import (
+    Derivation,
     SemanticTemplate,
     TemplateChecker,
     read_sides,
 )
 from annotations.models import SemanticTemplate as StoredTemplate
 from annotations.models import TaskCategory, World
-from annotations.rows.from_rows import grammar_of, predicates_of
-from annotations.rows.template_problems import StoredRemark, as_stored, from_stored
+from annotations.rows.from_rows import grammar_of, ontology_of, predicates_of
+from annotations.rows.stored_problems import StoredRemark, as_stored, from_stored
 
 MOST_COMMANDS = 2_000  # looked at to count and sample what a template makes
 SHOWN_COMMANDS = 12
 MOST_CHARACTERS = {"pattern": MAX_PATTERN, "form": MAX_FORM}
+SHOWN_SAMPLES = 5
+MOST_DERIVATIONS = 500  # that samples are drawn from
+LARGEST_SEED = 2**31
 
 
 @dataclass(frozen=True, slots=True)
-class Checked:
+class CheckedTemplate:
     """A pattern and a form as the checker sees them.
 
     ``checker`` is that of the task category; None where its grammar has an error or a side is too
@@ -56,31 +63,42 @@ class Checked:
         return [as_stored(problem) for problem in self.problems]
 
 
-def check_template(world: World, category: TaskCategory | None, pattern: str, form: str) -> Checked:
+def check_template(
+    world: World, category: TaskCategory | None, pattern: str, form: str
+) -> CheckedTemplate:
     """Check a template for ``category`` of ``world`` and expand some of it, within ``CHECK_STEPS``."""
     too_long = tuple(_too_long(name, text) for name, text in (("pattern", pattern), ("form", form)))
     if any(too_long):
-        return Checked(tuple(filter(None, too_long)))
+        return CheckedTemplate(tuple(filter(None, too_long)))
     try:
         declared = predicates_of(world)
         grammar = grammar_of(category) if category else Grammar(())
         checker = checker_of(grammar, declared, category.name if category else "")
     except LanguageError as error:
-        return Checked((error.problem,))
+        return CheckedTemplate((error.problem,))
     template, unread = read_sides(pattern, form)
     if template is None:
-        return Checked(unread, checker=checker)
-    checked = Checked(checker.problems(template), template, checker, gloss(template.form, declared))
-    return checked if checked.has_errors else _with_commands(checked, checker)
+        return CheckedTemplate(unread, checker=checker)
+    checked = CheckedTemplate(
+        checker.problems(template), template, checker, gloss(template.form, declared)
+    )
+    if checked.has_errors:
+        return checked
+    pairs = checker.expander.pairs(template, Budget(CHECK_STEPS))
+    try:
+        commands = list(dict(islice(pairs, MOST_COMMANDS)).items())
+    except LanguageError as error:
+        return replace(checked, problems=(*checked.problems, error.problem))
+    return replace(checked, commands=tuple(commands[:SHOWN_COMMANDS]), size=len(commands))
 
 
-def recall_check(world: World, row: StoredTemplate) -> Checked:
+def recall_check(world: World, row: StoredTemplate) -> CheckedTemplate:
     """Return what ``check_template`` said of ``row`` when it was saved, without expanding anything."""
     problems = tuple(from_stored(remark) for remark in row.problems)
     template, unread = read_sides(row.pattern, row.form)
     if template is None:
-        return Checked(problems or unread)
-    return Checked(problems, template, gloss=gloss(template.form, predicates_of(world)))
+        return CheckedTemplate(problems or unread)
+    return CheckedTemplate(problems, template, gloss=gloss(template.form, predicates_of(world)))
 
 
 def _too_long(source: str, text: str) -> Problem | None:
@@ -91,10 +109,51 @@ def _too_long(source: str, text: str) -> Problem | None:
     return None
 
 
-def _with_commands(checked: Checked, checker: TemplateChecker) -> Checked:
-    pairs = checker.expander.pairs(checked.template, Budget(CHECK_STEPS))
-    try:
-        commands = list(dict(islice(pairs, MOST_COMMANDS)).items())
-    except LanguageError as error:
-        return replace(checked, problems=(*checked.problems, error.problem))
-    return replace(checked, commands=tuple(commands[:SHOWN_COMMANDS]), size=len(commands))
+@dataclass(frozen=True, slots=True)
+class GroundedSample:
+    """A command as somebody would say it, and the English sentence of its form."""
+
+    text: str
+    gloss: str
+
+
+@dataclass(frozen=True, slots=True)
+class GroundedSamples:
+    """Some samples, the seed that gives others, and what the ontology lacks for more of them."""
+
+    rows: tuple[GroundedSample, ...]
+    next_seed: int
+    missing: str = ""
+
+
+def samples_of(world: World, checked: CheckedTemplate, seed: int = 0) -> GroundedSamples:
+    """Draw commands of a template with entities in the place of its wildcards.
+
+    The same template, ontology and ``seed`` give the same samples.
+    """
+    random, missing = Random(seed), ""
+    ontology, declared = ontology_of(world), predicates_of(world)
+    rows: dict[str, GroundedSample] = {}
+    derivations = _derivations(checked)
+    for derivation in random.choices(derivations, k=3 * SHOWN_SAMPLES) if derivations else ():
+        try:
+            grounded = ground(derivation.symbols, derivation.form, ontology, random)
+        except LanguageError as error:
+            missing = error.message
+            continue
+        rows.setdefault(
+            grounded.text, GroundedSample(grounded.text, gloss(grounded.form, declared))
+        )
+    shown = tuple(islice(rows.values(), SHOWN_SAMPLES))
+    return GroundedSamples(shown, (seed + 1) % LARGEST_SEED, missing)
+
+
+def _derivations(checked: CheckedTemplate) -> list[Derivation]:
+    """Return the first derivations of the template, as many as the budget of a check allows."""
+    if checked.template is None or checked.checker is None or checked.has_errors:
+        return []
+    stream = checked.checker.expander.derivations(checked.template, budget=Budget(CHECK_STEPS))
+    derivations: list[Derivation] = []
+    with suppress(LanguageError):  # when the budget is spent, those before it will do
+        derivations.extend(islice(stream, MOST_DERIVATIONS))
+    return derivations

@@ -1,4 +1,4 @@
-"""Keeps on the server what somebody types, until they save it: for a reload, and for their other devices."""
+"""Keep on the server what somebody types, until they save it: for a reload, and for their other devices."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from typing import Any
 from django.db import models, transaction
 from django.utils import timezone
 
-from annotations.editing.once import made_before
+from annotations.editing.once_keys import made_before
+from annotations.language.errors import Refusal
 from annotations.models import Draft, User, World
-from annotations.models.editing import NEW
+from annotations.models.editing import LONGEST_DEVICE, NEW
 
 MOST_BYTES = 64 * 1024  # of a request that saves one
 MOST_DRAFTS = 200  # of one person in one world; beyond it the oldest goes
@@ -23,27 +24,16 @@ def read_draft(sent: Any) -> dict[str, Any]:
     """
     fields = sent.get("fields") if isinstance(sent, dict) else None
     if not isinstance(fields, dict) or len(fields) > MOST_FIELDS:
-        raise ValueError("Send the fields of the form by their names.")
+        raise Refusal("Send the fields of the form by their names.", "draft_not_fields")
     for text in fields.values():
         if not isinstance(text, str):
-            raise ValueError("Send the text of each field.")
+            raise Refusal("Send the text of each field.", "draft_not_text")
     device, version = sent.get("device"), sent.get("version")
-    if not isinstance(device, str) or len(device) > Draft._meta.get_field("device").max_length:
-        raise ValueError("Send a short name of the device.")
+    if not isinstance(device, str) or len(device) > LONGEST_DEVICE:
+        raise Refusal("Send a short name of the device.", "draft_device")
     if version is not None and not (type(version) is int and 0 <= version < 2**31):
-        raise ValueError("Send the version that is edited as a number.")
-    for text in (device, *fields, *fields.values()):
-        _require_storable(text)
+        raise Refusal("Send the version that is edited as a number.", "draft_version")
     return {"fields": fields, "device": device, "base_version": version}
-
-
-def _require_storable(text: str) -> None:
-    try:
-        text.encode()
-    except UnicodeEncodeError as error:
-        raise ValueError("The text has half a character.") from error
-    if "\0" in text:
-        raise ValueError("The text has a NUL character.")
 
 
 def save_draft(
@@ -55,7 +45,7 @@ def save_draft(
     """
     if made_before(user, values["fields"].get("once", "")):
         return None
-    key = {"user": user, "world": world, "kind": kind, "subject": subject}
+    key: dict[str, Any] = {"user": user, "world": world, "kind": kind, "subject": subject}
     with transaction.atomic():
         values = {**values, "saved_at": timezone.now()}
         draft, is_new = Draft.objects.update_or_create(**key, defaults=values)

@@ -1,21 +1,26 @@
-"""Verbs: add, change, delete and restore a row that people edit. Nobody's work is overwritten unseen.
+"""Verbs: add, change, delete and restore a row that people edit. Nobody overwrites what they have not seen.
 
 Each is one transaction that keeps the history of the row and brings up to date what is made from it.
+Whoever writes to a version of a row goes through ``hold``, which compares it while nobody else can
+write, or holds it and calls ``require_version``: of several writers at once a single one is first.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any, TypeVar
 
-from django.db import models, transaction
+from django.core.exceptions import ValidationError
+from django.db import IntegrityError, models, transaction
 from django.db.models import Max
 
-from annotations.checking import check_again
+from annotations.checking.world_problems import check_again
 from annotations.editing.drafts import discard_draft_of_new
-from annotations.editing.once import made_before, remember
-from annotations.jobs.starting import start_update
+from annotations.editing.once_keys import made_before, remember
+from annotations.generation.up_to_date import start_update
 from annotations.models import Editable, User, World
+from annotations.models.editing import HistoryEntry, Placed
 from annotations.rows.history import (
     ADDED,
     CHANGED,
@@ -26,7 +31,7 @@ from annotations.rows.history import (
     keep,
     keep_first,
 )
-from annotations.rows.kinds import kind_of
+from annotations.rows.row_kinds import kind_of
 from annotations.rows.synchronise import BATCH, batches
 
 Row = TypeVar("Row", bound=Editable)
@@ -39,22 +44,29 @@ class Overtaken(Exception):
         current: the row as it is now; None where it was deleted.
         base: the history entry of the version that the reader edited; None where it is not known.
         last: the newest entry of its history, which says who was faster; None where there is none.
+        sentence: who did what, as the person reads it who was slower.
     """
 
     def __init__(
         self,
         current: Editable | None,
-        base: models.Model | None,
-        last: models.Model | None = None,
+        base: HistoryEntry | None,
+        last: HistoryEntry | None,
+        reader: User,
     ) -> None:
-        who = (last and last.history_user) or "Somebody"
-        what = f"saved version {current.version}" if current else "deleted this"
-        super().__init__(
-            f"{who} has {what} in the meantime. Compare it with yours below, then save again."
-        )
+        did = f"saved version {current.version}" if current else "deleted this"
+        self.sentence = say_who(last.history_user if last else None, reader, did)
+        super().__init__(f"{self.sentence} Compare both below, then save again.")
         self.current = current
         self.base = base
         self.last = last
+
+
+def say_who(who: User | None, reader: User, did: str) -> str:
+    """Return a sentence about who ``did`` something, such as ``deleted this``, before ``reader`` could."""
+    if who == reader:
+        return f"You {did} in another tab."
+    return f"{who or 'Somebody'} has {did} in the meantime."
 
 
 def add(row: Row, by: User, once: str = "") -> Row:
@@ -85,6 +97,7 @@ def add_many(rows: Sequence[Row], by: User, once: str = "") -> int:
     """Store unsaved ``rows`` of one model and one world, behind the others; all of them or none.
 
     Returns how many were added: 0 where ``once``, the key of the form, has added them before.
+    Raises ValidationError where one of them is there already.
     """
     if not rows:
         return 0
@@ -96,17 +109,23 @@ def add_many(rows: Sequence[Row], by: User, once: str = "") -> int:
         beside = type(first)._default_manager.filter(**{first.world_path: world})
         last = beside.aggregate(last=Max("position"))["last"]
         for position, row in enumerate(rows, start=0 if last is None else last + 1):
+            assert isinstance(row, Placed)
             row.position, row.version = position, 1
             row.note_editor(by)
-        stored = type(first)._default_manager.bulk_create(rows, batch_size=BATCH)
+        with _refuse_repeated(type(first)):
+            stored = type(first)._default_manager.bulk_create(rows, batch_size=BATCH)
         keep(stored, ADDED, by)
         remember(by, once, stored[0].pk)
         _follow(first, world, by)
         return len(stored)
 
 
-def change(row: Row, values: Mapping[str, Any], by: User, version: int) -> Row:
+def change(row: Row, values: Mapping[str, Any], by: User, version: int, again: bool = True) -> Row:
     """Make the next version of ``row``, which ``by`` edited while it was at ``version``.
+
+    Args:
+        again: whether the same change may be asked for once more, as by a form that is sent twice; the
+            row is found to hold the values then, whatever its version.
 
     Returns the row as it is stored; at the same version where it holds these values already.
     Raises Overtaken where it is at another version or was deleted, and ValidationError where another
@@ -114,10 +133,15 @@ def change(row: Row, values: Mapping[str, Any], by: User, version: int) -> Row:
     """
     with transaction.atomic():
         world = _lock_for(row)
-        stored = _read_stored(row, version)
-        if all(getattr(stored, name) == value for name, value in values.items()):
+        found = type(row)._default_manager.select_for_update().filter(pk=row.pk).first()
+        is_same = found is not None and all(
+            getattr(found, name) == value for name, value in values.items()
+        )
+        if found is not None and is_same and again:
+            return found
+        stored = require_version(row, found, version, by)
+        if is_same:
             return stored
-        _require_version(stored, version)
         keep_first(type(row), [row.pk])
         did_make_commands = stored.makes_commands
         for name, value in values.items():
@@ -136,7 +160,8 @@ def change_many(
 ) -> None:
     """Make the next version of each row of ``world``, all of them or none.
 
-    The rows are as they were read. Raises Overtaken where one has changed since.
+    The rows are as they were read. Raises Overtaken where one has changed since, and ValidationError
+    where another row says the same.
     """
     with transaction.atomic():
         _lock(world)
@@ -160,9 +185,7 @@ def _change_rows(
         keys = [row.pk for row in some]
         stored = model._default_manager.select_for_update().in_bulk(keys)
         for row in some:
-            if row.pk not in stored:
-                raise Overtaken(None, entry_at(row, row.version), _last_entry(row))
-            _require_version(stored[row.pk], row.version)
+            require_version(row, stored.get(row.pk), row.version, by)
     keep_first(model, [row.pk for row in rows])
     fields = {"version"}
     for row, values in changes:
@@ -172,7 +195,8 @@ def _change_rows(
         row.note_editor(by)
         fields |= values.keys()
     fields |= {name for name in ("author", "is_edited") if hasattr(model, name)}
-    model._default_manager.bulk_update(rows, sorted(fields), batch_size=BATCH)
+    with _refuse_repeated(model):
+        model._default_manager.bulk_update(rows, sorted(fields), batch_size=BATCH)
     keep(rows, CHANGED, by)
 
 
@@ -183,15 +207,14 @@ def delete(row: Editable, by: User, version: int) -> None:
     """
     with transaction.atomic():
         world = _lock_for(row)
-        stored = _read_stored(row, version)
-        _require_version(stored, version)
+        stored = hold(row, version, by)
         keep_first(type(row), [row.pk])
         keep([stored], DELETED, by)
         type(row)._default_manager.filter(pk=stored.pk).delete()
         _follow(stored, world, by)
 
 
-def restore(entry: models.Model, by: User) -> Editable:
+def restore(entry: HistoryEntry, by: User) -> Editable:
     """Make a row what the history ``entry`` says, as its next version; a deleted one is stored again.
 
     Raises ValidationError where another row says the same by now.
@@ -199,7 +222,7 @@ def restore(entry: models.Model, by: User) -> Editable:
     with transaction.atomic():
         row = _row_of(entry)
         world = _lock(row.owning_world)
-        stored = type(row)._default_manager.filter(pk=row.pk).first()
+        stored = type(row)._default_manager.select_for_update().filter(pk=row.pk).first()
         if stored is not None:
             names = row.edited_fields + row.fields_beside
             values = {name: getattr(row, name) for name in names}
@@ -222,8 +245,7 @@ def bring_back(row: Row, values: Mapping[str, Any], by: User, version: int) -> R
         _lock(row.owning_world)
         last = _last_entry(row)
         if last is not None and last.history_type == DELETED and last.version == version:
-            row = restore(last, by)
-            version = row.version
+            version = restore(last, by).version
         return change(row, values, by, version)
 
 
@@ -250,38 +272,61 @@ def _lock_for(row: Editable) -> World:
     return _lock(row.owning_world) if row.bears_on_commands else row.owning_world
 
 
-def _read_stored(row: Row, version: int) -> Row:
+def hold(row: Row, version: int, by: User) -> Row:
+    """Return the row as it is stored, which nobody else changes until the transaction is over.
+
+    Raises Overtaken where it is not at ``version``, which ``by`` has seen, or is gone.
+    """
     stored = type(row)._default_manager.select_for_update().filter(pk=row.pk).first()
-    if stored is None:
-        raise Overtaken(None, entry_at(row, version), _last_entry(row))
+    return require_version(row, stored, version, by)
+
+
+def require_version(row: Editable, stored: Row | None, version: int, by: User) -> Row:
+    """Return ``stored``, which is held. None is gone.
+
+    Raises Overtaken where it is gone, or not at ``version``, which ``by`` has seen.
+    """
+    if stored is None or stored.version != version:
+        raise Overtaken(stored, entry_at(row, version), _last_entry(row), by)
     return stored
 
 
-def _require_version(stored: Editable, version: int) -> None:
-    if stored.version != version:
-        raise Overtaken(stored, entry_at(stored, version), _last_entry(stored))
-
-
-def _last_entry(row: Editable) -> models.Model | None:
-    return history_of(type(row)).filter(id=row.pk).order_by("-history_id").first()
+def _last_entry(row: Editable) -> HistoryEntry | None:
+    entry: HistoryEntry | None = (
+        history_of(type(row)).filter(id=row.pk).order_by("-history_id").first()
+    )
+    return entry
 
 
 def _insert(row: Editable) -> None:
     """Store a row that is not there, at the end unless its own place is free."""
-    if any(field.name == "position" for field in row._meta.concrete_fields):
+    if isinstance(row, Placed):
         beside = type(row)._default_manager.filter(**{row.world_path: row.owning_world})
-        if row.position is None or beside.filter(position=row.position).exists():
+        if row.position is None or beside.filter(**{"position": row.position}).exists():
             last = beside.aggregate(last=Max("position"))["last"]
             row.position = 0 if last is None else last + 1
     row.validate_constraints(exclude={"position"})
     row.save(force_insert=True)
 
 
-def _row_of(entry: models.Model) -> Editable:
+@contextmanager
+def _refuse_repeated(model: type[Editable]) -> Iterator[None]:
+    """Raise ValidationError, with the sentence of the constraint, where the database refuses a repeated row."""
+    try:
+        with transaction.atomic():
+            yield
+    except IntegrityError as error:
+        named = (each for each in model._meta.constraints if each.name in str(error))
+        broken = next(named, None)
+        said = broken.get_violation_error_message() if broken else "There is such a row already."
+        raise ValidationError(said) from error
+
+
+def _row_of(entry: HistoryEntry) -> Editable:
     """Return an unsaved row that says what ``entry`` does, without what it refers to that is gone."""
-    row = entry.instance
+    row: Editable = entry.instance
     for field in row._meta.concrete_fields:
-        if field.many_to_one and field.null:
+        if isinstance(field, models.ForeignKey) and field.many_to_one and field.null:
             key = getattr(row, field.attname)
             is_there = field.related_model._default_manager.filter(pk=key).exists()
             setattr(row, field.attname, key if is_there else None)

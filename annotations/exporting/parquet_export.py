@@ -1,4 +1,4 @@
-"""Examples as a Parquet file, written while it is sent."""
+"""Rows as a Parquet file, written while it is sent."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ def parquet_pieces(
 ) -> Iterator[bytes]:
     """Yield a Parquet file of ``rows``; its metadata holds ``manifest`` as JSON.
 
-    The field ``position`` is a number and the others are texts.
+    The fields ``position``, ``id`` and ``version`` are numbers and the others are texts.
     """
     import pyarrow as pa  # takes a second and 60 MB, which nothing else of a web server needs
     import pyarrow.parquet as pq
 
-    types = {"position": pa.int32()}
+    types = {"position": pa.int32(), "id": pa.int64(), "version": pa.int64()}
     columns = [pa.field(name, types.get(name, pa.string()), nullable=False) for name in fields]
     written = json.dumps(manifest, ensure_ascii=False).encode()
     schema = pa.schema(columns, metadata={METADATA: written})

@@ -1,4 +1,4 @@
-"""Verb: give a split out, row by row: pair files (FORMATS §5), JSON Lines, CSV, Parquet."""
+"""Verb: export a split, row by row: pair files (docs/reference/formats.md, Pairs), JSON Lines, CSV, Parquet."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from typing import Any
 from django.db import models
 from django.db.models import Count
 
-from annotations.exporting.manifest import manifest_of
 from annotations.exporting.parquet_export import parquet_pieces
 from annotations.exporting.pipe import Pipe
-from annotations.language.corpus import CORPUS_FOLDERS, PART_FILES, write_pairs
+from annotations.exporting.split_manifest import manifest_of
+from annotations.language.corpus import CORPUS_FOLDERS, PART_FILES, Criterion, write_pairs
+from annotations.language.errors import Refusal
 from annotations.models import Split
-from annotations.models.splits import Criterion
 from annotations.rows.synchronise import batches
 
 # The keys of every export, in this order in every release.
@@ -39,7 +39,7 @@ FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")
 Row = tuple[Any, ...]
 
 
-class Format(models.TextChoices):
+class SplitFormat(models.TextChoices):
     """``zip`` holds the pair files of all parts with the manifest, as an import of pairs takes them."""
 
     TXT = "txt"
@@ -54,13 +54,13 @@ def export_pieces(
 ) -> Iterator[bytes]:
     """Return the chosen examples of ``split`` as a file in pieces, none of them large.
 
-    ``as_`` is a ``Format``. Raises ValueError for ``txt`` without ``part`` and ``source``.
+    ``as_`` is a ``SplitFormat``. Raises ValueError for ``txt`` without ``part`` and ``source``.
     """
-    match Format(as_):
-        case Format.PARQUET:
+    match SplitFormat(as_):
+        case SplitFormat.PARQUET:
             rows = _rows(split, part, source)
             return parquet_pieces(rows, FIELDS, manifest_of(split, part, source))
-        case Format.ZIP:
+        case SplitFormat.ZIP:
             return _pair_archive(split, part, source)
     lines = export_lines(split, as_, part, source)
     return ("".join(some).encode() for some in batches(lines, CHUNK))
@@ -71,12 +71,15 @@ def export_lines(
 ) -> Iterator[str]:
     """Return the chosen examples of ``split`` as lines of text, each with its line end.
 
-    ``as_`` is a ``Format`` of text. ``txt`` is one pair file, so it needs ``part`` and ``source``; of an
+    ``as_`` is a ``SplitFormat`` of text. ``txt`` is one pair file, so it needs ``part`` and ``source``; of an
     imported split it is the file that came in, byte for byte. Raises ValueError without them.
     """
-    if as_ == Format.TXT and not (part and source):
-        raise ValueError("A pair file holds one part of one source: say which part and source.")
-    return WRITERS[Format(as_)](split, part, source)
+    if as_ == SplitFormat.TXT and not (part and source):
+        raise Refusal(
+            "A pair file holds one part of one source: say which part and source.",
+            "part_and_source_needed",
+        )
+    return WRITERS[SplitFormat(as_)](split, part, source)
 
 
 def export_split(split: Split, as_: str, target: Path) -> dict[str, int]:
@@ -86,7 +89,7 @@ def export_split(split: Split, as_: str, target: Path) -> dict[str, int]:
     the other formats make the file ``target``. Raises OSError where that cannot be written.
     """
     counts = _count_files(split)
-    if as_ != Format.TXT:
+    if as_ != SplitFormat.TXT:
         _write(target, export_pieces(split, as_))
         return {str(target): sum(count for _, _, count in counts)}
     files: dict[str, int] = {}
@@ -146,11 +149,16 @@ class _Line:
 
 
 def _csv_lines(split: Split, part: str | None, source: str | None) -> Iterator[str]:
+    return csv_lines(FIELDS, _rows(split, part, source))
+
+
+def csv_lines(fields: Iterable[str], rows: Iterable[Iterable[Any]]) -> Iterator[str]:
+    """Yield a table with a head as lines of CSV; no cell is a formula for a spreadsheet."""
     line = _Line()
     writer = csv.writer(line)
-    writer.writerow(FIELDS)
+    writer.writerow(fields)
     yield line.text
-    for row in _rows(split, part, source):
+    for row in rows:
         writer.writerow([formula_safe(cell) for cell in row])
         yield line.text
 
@@ -167,7 +175,7 @@ def _pair_archive(split: Split, part: str | None, source: str | None) -> Iterato
         for of, where, _ in _count_files(split, part, source):
             path = f"{folder_of(split, of)}/{PART_FILES[where]}"
             with archive.open(path, "w", force_zip64=True) as file:
-                for piece in export_pieces(split, Format.TXT, where, of):
+                for piece in export_pieces(split, SplitFormat.TXT, where, of):
                     file.write(piece)
                     yield target.take()
         manifest = json.dumps(manifest_of(split, part, source), ensure_ascii=False, indent=2)
@@ -175,4 +183,8 @@ def _pair_archive(split: Split, part: str | None, source: str | None) -> Iterato
     yield target.take()
 
 
-WRITERS = {Format.TXT: _pair_lines, Format.JSONL: _json_lines, Format.CSV: _csv_lines}
+WRITERS = {
+    SplitFormat.TXT: _pair_lines,
+    SplitFormat.JSONL: _json_lines,
+    SplitFormat.CSV: _csv_lines,
+}

@@ -1,4 +1,4 @@
-"""How complex the commands of a world are: the table of FORMATS §3, computed by the database."""
+"""How complex the commands of a world are: a table by task category, computed by the database."""
 
 from __future__ import annotations
 
@@ -43,7 +43,8 @@ def complexity(world: World) -> list[Complexity]:
     """Return a column for each task category, in its order, and one for all. Three grouped queries."""
     commands = _sums(Command.objects.filter(world=world))
     forms = _sums(LogicalForm.objects.filter(world=world))
-    templates = _template_counts(world)
+    rows = SemanticTemplate.objects.filter(grammar__world=world).order_by()
+    templates = dict(rows.values_list("task_category").annotate(Count("id")))
     ordered = TaskCategory.objects.filter(grammar__world=world).values_list("name", flat=True)
     names = dict.fromkeys([*ordered, *commands, *forms])
     columns = [
@@ -55,23 +56,14 @@ def complexity(world: World) -> list[Complexity]:
         )
         for name in names
     ]
-    return [*columns, _total(columns)]
+    sums = {key: sum(asdict(column)[key] for column in columns) for key in SUMMED}
+    return [*columns, Complexity("", **sums)]
 
 
 def _sums(rows: Any) -> dict[str, tuple[int, int]]:
     """Return task category → number of rows and of their tokens."""
     grouped = rows.order_by().values("task_category").annotate(n=Count("id"), tokens=Sum("length"))
     return {group["task_category"]: (group["n"], group["tokens"]) for group in grouped}
-
-
-def _template_counts(world: World) -> dict[str, int]:
-    rows = SemanticTemplate.objects.filter(grammar__world=world).order_by()
-    return dict(rows.values_list("task_category").annotate(Count("id")))
-
-
-def _total(columns: list[Complexity]) -> Complexity:
-    sums = {key: sum(asdict(column)[key] for column in columns) for key in SUMMED}
-    return Complexity("", **sums)
 
 
 SUMMED = ("templates", "commands", "forms", "command_tokens", "form_tokens")

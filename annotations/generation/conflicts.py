@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from annotations import models
 from annotations.generation.kept_expansions import generate_at_once
 from annotations.language.errors import LanguageError
-from annotations.language.templates import Generated
-from annotations.rows.from_rows import AnnotatedCategory, annotated_categories
+from annotations.rows.from_rows import annotated_categories
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,12 +39,6 @@ def conflicts_of(world: models.World) -> ConflictReport:
         generated = generate_at_once([category.value for category in categories])
     except LanguageError as error:
         return ConflictReport(trouble=str(error))
-    return ConflictReport(tuple(_pairs(categories, generated)))
-
-
-def _pairs(
-    categories: tuple[AnnotatedCategory, ...], generated: Generated
-) -> list[ConflictingPair]:
     rows = {category.value.name: category.template_rows for category in categories}
     commands: dict[tuple[str, int, int], list[str]] = {}
     for conflict in generated.conflicts:
@@ -53,7 +46,8 @@ def _pairs(
         for loser, _ in losing:
             key = (conflict.task_category, winner, loser)
             commands.setdefault(key, []).append(conflict.command)
-    return [
+    pairs = (
         ConflictingPair(name, rows[name][winner], rows[name][loser], shared[0], len(shared))
         for (name, winner, loser), shared in commands.items()
-    ]
+    )
+    return ConflictReport(tuple(pairs))

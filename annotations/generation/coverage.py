@@ -33,7 +33,7 @@ class Coverage:
 
     @property
     def percent(self) -> float | None:
-        return 100 * self.covered / self.commands if self.commands else None
+        return 100 * (self.covered or 0) / self.commands if self.commands else None
 
     @property
     def n_uncovered(self) -> int | None:

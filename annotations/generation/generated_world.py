@@ -1,28 +1,123 @@
-"""Writes what was generated: commands, forms, the problems of both and the coverage of the grammar."""
+"""Write what was generated: commands, forms, the problems of both and the coverage of the grammar.
+
+All is compared with what is there first, then written in one short transaction.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack
+from functools import partial
 from typing import Any, Self, TypeAlias
+
+from django.db.models import OuterRef, Subquery
 
 from annotations import models
 from annotations.background.progress import UNWATCHED, Progress
 from annotations.generation.coverage import count_coverage, store_coverage
-from annotations.generation.generated_rows import CommandRows
 from annotations.generation.template_problems import store_template_problems
 from annotations.language.errors import Problem, warning_at
 from annotations.language.forms import depth, head_predicate, read_form
-from annotations.language.templates import Expansion, Generated, Kept, SemanticTemplate
-from annotations.models.description import Subject
+from annotations.language.templates import BoundedCache, Expansion, Generated, SemanticTemplate
+from annotations.models.description import ProblemSubject
 from annotations.rows.from_rows import AnnotatedCategory
-from annotations.rows.problems import store_problems
-from annotations.rows.synchronise import Changes, synchronise
+from annotations.rows.staging import Staging
+from annotations.rows.stored_problems import store_problems
+from annotations.rows.synchronise import Changes, batches, synchronise
 
+COLUMNS = ("anonymized_text", "template_id", "length", "task_category", "is_in_grammar", "position")
+# Template, form, length, task category, whether the grammar has it, position.
+Values = tuple[int | None, str, int, str, bool, int]
+STORED = (
+    *("pk", "anonymized_text", "template_id", "logical_form__text", "length", "task_category"),
+    *("is_in_grammar", "position"),
+)
 # What changes whenever templates or commands do: revision and generations of a world.
 Counters: TypeAlias = "tuple[int, int]"
 
 # Canonical form → head predicate and depth.
-_MEASURED: Kept[str, tuple[str, int]] = Kept(20_000)
+_MEASURED: BoundedCache[str, tuple[str, int]] = BoundedCache(20_000)
+
+
+class CommandRows:
+    """What has to be done so that the commands of a world are the generated ones.
+
+    Making one reads and collects; only ``apply``, inside a transaction, writes. ``new_forms`` counts the
+    commands that are there already and get another form.
+    """
+
+    def __init__(
+        self,
+        world: models.World,
+        expansions: Sequence[Expansion],
+        templates: Mapping[str, Sequence[models.SemanticTemplate]],
+        progress: Progress,
+    ) -> None:
+        self._world = world
+        self._wanted = {
+            expansion.command: (
+                templates[expansion.task_category][expansion.template_index].pk,
+                expansion.form_text,
+                len(expansion.command.split()),
+                expansion.task_category,
+                expansion.in_grammar,
+                position,
+            )
+            for position, expansion in enumerate(expansions)
+        }
+        self._progress = progress
+        self._stack = ExitStack()
+        self._counts = {"added": 0, "changed": 0, "moved": 0}
+        self.new_forms = 0
+        self._removed: list[int] = []
+
+    def __enter__(self) -> Self:
+        self._staging = self._stack.enter_context(Staging(models.Command, COLUMNS, ["form_text"]))
+        stored: dict[str, tuple[int, Values]] = {}
+        for pk, text, *values in self._world.commands.values_list(*STORED).iterator():
+            stored[text] = pk, tuple(values)
+        self._removed = [pk for text, (pk, _) in stored.items() if text not in self._wanted]
+        self._staging.add(self._differing(stored), self._progress)
+        return self
+
+    def __exit__(self, *raised: Any) -> None:
+        self._stack.__exit__(*raised)
+
+    def _differing(self, stored: Mapping[str, tuple[int, Values]]) -> Iterator[tuple[Any, ...]]:
+        for text, wanted in self._wanted.items():
+            pk, values = stored.get(text, (None, None))
+            if values == wanted:
+                continue
+            if values is None:
+                self._counts["added"] += 1
+            else:
+                self._counts["moved" if values[:-1] == wanted[:-1] else "changed"] += 1
+                self.new_forms += values[1] != wanted[1]
+            template, form, *others = wanted
+            yield pk, text, template, *others, form
+
+    def apply(self) -> Changes:
+        """Write the differences; the forms must be there by now."""
+        for keys in batches(self._removed):
+            gone = models.Command.objects.filter(pk__in=keys)
+            # Paraphrases of what goes keep its text, so that they find it when it is made again.
+            text = gone.filter(pk=OuterRef("command")).values("anonymized_text")
+            models.Paraphrase.objects.filter(command__in=gone).update(command_text=Subquery(text))
+            gone.delete()
+        form = (
+            "(SELECT f.id FROM annotations_logicalform f "
+            f"WHERE f.world_id = {int(self._world.pk)} AND f.text = s.form_text)"
+        )
+        self._staging.update(logical_form_id=form)
+        self._staging.insert(logical_form_id=form, world_id=str(int(self._world.pk)))
+        if self._counts["added"]:
+            lost = self._world.paraphrases.filter(command=None).exclude(command_text="").order_by()
+            for texts in batches(lost.values_list("command_text", flat=True).distinct()):
+                commands = self._world.commands.filter(anonymized_text__in=texts)
+                for command in commands.values("pk", "anonymized_text"):
+                    same = lost.filter(command_text=command["anonymized_text"])
+                    same.update(command=command["pk"], command_text="")
+        return Changes(removed=len(self._removed), **self._counts)
 
 
 def counters_of(world: models.World) -> Counters:
@@ -53,7 +148,22 @@ class GeneratedWorld:
         self.commands.__enter__()
         values = [category.value for category in self._categories]
         commands = frozenset(each.command for each in self._generated.expansions)
-        self._forms = _form_rows(self._world, self._generated)
+        first: dict[str, Expansion] = {}
+        for expansion in self._generated.expansions:
+            first.setdefault(expansion.form_text, expansion)
+        self._forms = []
+        for text, expansion in first.items():
+            head, height = _MEASURED.get(text, partial(_measure, text))
+            self._forms.append(
+                models.LogicalForm(
+                    world=self._world,
+                    text=text,
+                    head_predicate=head,
+                    depth=height,
+                    length=len(text.split()),
+                    task_category=expansion.task_category,
+                )
+            )
         self._coverage = count_coverage(values, commands)
         return self
 
@@ -62,10 +172,20 @@ class GeneratedWorld:
 
     def write(self, counters: Counters) -> Changes:
         """Write the differences; ``counters`` are the world's as it was generated from, and locked since."""
-        changes = _store_forms(self._world, self._forms) + self.commands.apply()
-        changes += _remove_unused_forms(self._world)
+        changes = synchronise(
+            self._world.logical_forms.all(),
+            self._forms,
+            key=lambda row: row.text,
+            fields=["head_predicate", "depth", "length", "task_category"],
+            is_kept=lambda row: True,  # while commands have it
+        )
+        changes += self.commands.apply()
+        unused = self._world.logical_forms.filter(commands__isnull=True)
+        if removed := unused.count():
+            unused.delete()
+        changes += Changes(removed=removed)
         problems = [*self._conflicts(), *self._left_out()]
-        store_problems(self._world, Subject.COMMANDS, problems)
+        store_problems(self._world, ProblemSubject.COMMANDS, problems)
         store_template_problems(self._world, self._categories, self._generated)
         store_coverage(self._world, self._coverage)
         revision, generations = counters
@@ -99,42 +219,6 @@ class GeneratedWorld:
         return {category.value.name: category.value.templates for category in self._categories}
 
 
-def _form_rows(world: models.World, generated: Generated) -> list[models.LogicalForm]:
-    """Return the distinct forms, in order of their first command."""
-    first: dict[str, Expansion] = {}
-    for expansion in generated.expansions:
-        first.setdefault(expansion.form_text, expansion)
-    return [_form_row(world, text, each.task_category) for text, each in first.items()]
-
-
-def _form_row(world: models.World, text: str, task_category: str) -> models.LogicalForm:
-    head, height = _MEASURED.get(text, lambda: _measure(text))
-    return models.LogicalForm(
-        world=world,
-        text=text,
-        head_predicate=head,
-        depth=height,
-        length=len(text.split()),
-        task_category=task_category,
-    )
-
-
 def _measure(text: str) -> tuple[str, int]:
     form = read_form(text)
     return head_predicate(form), depth(form)
-
-
-def _store_forms(world: models.World, forms: list[models.LogicalForm]) -> Changes:
-    """Store the distinct forms; those from before stay while commands have them."""
-    fields = ["head_predicate", "depth", "length", "task_category"]
-    return synchronise(
-        world.logical_forms.all(), forms, lambda row: row.text, fields, is_kept=lambda row: True
-    )
-
-
-def _remove_unused_forms(world: models.World) -> Changes:
-    unused = world.logical_forms.filter(commands__isnull=True)
-    removed = unused.count()
-    if removed:
-        unused.delete()
-    return Changes(removed=removed)

@@ -10,9 +10,18 @@ from annotations import models
 from annotations.background.progress import UNWATCHED, Progress
 from annotations.generation.complexity import Complexity, complexity
 from annotations.generation.generated_world import GeneratedWorld, counters_of
+from annotations.jobs.requesting import request_job
+from annotations.jobs.watching import JobProgress
+from annotations.jobs.weight import MOST_COMMANDS
 from annotations.language.errors import LanguageError
-from annotations.language.templates import DEFAULT_LIMIT, Conflict, Generated, generate
-from annotations.rows.from_rows import AnnotatedCategory, annotated_categories
+from annotations.language.templates import (
+    DEFAULT_LIMIT,
+    Conflict,
+    Generated,
+    generate,
+    generation_size,
+)
+from annotations.rows.from_rows import AnnotatedCategory, annotated_categories, task_categories
 from annotations.rows.synchronise import Changes
 
 MOST_ATTEMPTS = 3
@@ -67,6 +76,28 @@ class GenerationReport:
 
     def _place(self, task_category: str, index: int) -> object:
         return _templates(self.categories)[task_category][index].position
+
+
+def start_generation(world: models.World, by: models.User) -> models.Job | GenerationReport:
+    """Generate now, or queue a job. Raises LanguageError where the templates cannot be expanded."""
+    if is_heavy_generation(world):
+        return request_job(models.JobKind.GENERATE, world.name, by)
+    return generate_pairs(world)
+
+
+def is_heavy_generation(world: models.World) -> bool:
+    """Return whether the templates of ``world`` make many commands."""
+    try:
+        return generation_size(task_categories(world)) > MOST_COMMANDS
+    except LanguageError:
+        return False
+
+
+def generate_pairs_of(job: models.Job, progress: JobProgress) -> dict[str, Any]:
+    if job.world is None:
+        raise LanguageError(f"there is no world “{job.world_name}” any more")
+    limits = {"limit": job.arguments["limit"]} if "limit" in job.arguments else {}
+    return generate_pairs(job.world, progress=progress, **limits).as_json()
 
 
 def generate_pairs(

@@ -9,9 +9,9 @@ from annotations.language.errors import LanguageError, Problem
 from annotations.language.grammar import Budget, Grammar, readable
 from annotations.language.predicates import Predicate
 from annotations.language.templates import (
+    BoundedCache,
     Generated,
     GrammarExpansions,
-    Kept,
     SemanticTemplate,
     TaskCategory,
     TemplateChecker,
@@ -19,15 +19,15 @@ from annotations.language.templates import (
     generation_size,
 )
 
-# Pairs of a world that a request brings up to date: about two seconds on one core (docs/generation.md).
+# Pairs of a world that a request brings up to date: about two seconds on one core (docs/design/generation.md).
 MOST_AT_ONCE = 30_000
 STEPS_AT_ONCE = 10_000_000
 
 # Pairs of one grammar, about 200 bytes each: 12 grammars take at most 100 MB.
 MOST_PAIRS = 40_000
-_EXPANSIONS: Kept[int, GrammarExpansions] = Kept(12)
+_EXPANSIONS: BoundedCache[int, GrammarExpansions] = BoundedCache(12)
 # A world before and after a change: 100 bytes a command.
-_GENERATED: Kept[Hashable, Generated] = Kept(
+_GENERATED: BoundedCache[Hashable, Generated] = BoundedCache(
     4 * MOST_AT_ONCE, lambda generated: len(generated.expansions)
 )
 
@@ -38,10 +38,10 @@ class _Checks:
     def __init__(self, grammar: Grammar) -> None:
         expansions = expansions_of(grammar)
         self.checker = TemplateChecker(grammar, expansions.expander, expansions)
-        self.problems: Kept[Hashable, tuple[Problem, ...]] = Kept(5_000)
+        self.problems: BoundedCache[Hashable, tuple[Problem, ...]] = BoundedCache(5_000)
 
 
-_CHECKS: Kept[int, _Checks] = Kept(12)
+_CHECKS: BoundedCache[int, _Checks] = BoundedCache(12)
 
 
 def expansions_of(grammar: Grammar) -> GrammarExpansions:
@@ -59,15 +59,11 @@ def generate_at_once(categories: Sequence[TaskCategory]) -> Generated:
     Raises:
         LanguageError: the templates make more than ``MOST_AT_ONCE`` commands, or as ``generate``.
     """
-    return _GENERATED.get(_content(categories), lambda: _generate(categories))
-
-
-def _content(categories: Sequence[TaskCategory]) -> Hashable:
-    """Return what decides what is generated."""
-    return tuple(
-        (each.name, each.grammar.productions, tuple(map(_texts, each.templates)))
-        for each in categories
+    content = tuple(
+        (category.name, category.grammar.productions, tuple(map(_texts, category.templates)))
+        for category in categories
     )
+    return _GENERATED.get(content, lambda: _generate(categories))
 
 
 def _texts(template: SemanticTemplate) -> tuple[str, str]:

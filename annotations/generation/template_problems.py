@@ -12,7 +12,7 @@ from annotations.language.grammar import CHECK_STEPS, Budget
 from annotations.language.templates import Generated, TemplateChecker, read_sides, shared_problems
 from annotations.models.description import TemplateStatus
 from annotations.rows.from_rows import AnnotatedCategory, grammar_of, predicates_of
-from annotations.rows.template_problems import StoredRemark, as_stored
+from annotations.rows.stored_problems import StoredRemark, as_stored
 
 BATCH = 500
 MOST_STEPS = 5 * CHECK_STEPS  # for all templates that are not ready: a second of processor time

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from annotations import models
 from annotations.language.errors import LanguageError, Problem
 from annotations.language.grammar import Budget, Grammar, passages
-from annotations.language.templates import Kept, TaskCategory
+from annotations.language.templates import BoundedCache
 from annotations.rows.from_rows import task_categories
 
 # Derivations of one task category that a page looks at: about a fifth of a second of processor time.
@@ -17,7 +17,7 @@ MOST_LOOKED_AT = 20_000
 MOST_STEPS = 5_000_000
 # Grammar → its commands with their nonterminals, as ``passages`` gives them. The grammar is kept with them, so that its
 # identity stands for its content.
-_PASSAGES: Kept[int, tuple[Grammar, Mapping[str, frozenset[str]]]] = Kept(
+_PASSAGES: BoundedCache[int, tuple[Grammar, Mapping[str, frozenset[str]]]] = BoundedCache(
     3 * MOST_LOOKED_AT, lambda kept: len(kept[1])
 )
 
@@ -32,7 +32,7 @@ class UncoveredCommand:
 
 
 @dataclass(frozen=True, slots=True)
-class Share:
+class NonterminalCoverage:
     """How many of the commands that go through a nonterminal have a form."""
 
     nonterminal: str
@@ -53,7 +53,7 @@ class UncoveredReport:
     """
 
     commands: tuple[UncoveredCommand, ...]
-    shares: tuple[Share, ...]
+    shares: tuple[NonterminalCoverage, ...]
     cut: tuple[str, ...] = ()
     problems: tuple[Problem, ...] = field(default=())
 
@@ -76,15 +76,11 @@ def uncovered_of(world: models.World, task_category: str = "") -> UncoveredRepor
         return UncoveredReport((), (), problems=(error.problem,))
     covered = frozenset(world.commands.values_list("anonymized_text", flat=True))
     chosen = [each for each in categories if task_category in ("", each.name)]
-    return _report(chosen, covered)
-
-
-def _report(categories: Sequence[TaskCategory], covered: frozenset[str]) -> UncoveredReport:
     commands: list[UncoveredCommand] = []
-    all_of, uncovered_of = Counter[str](), Counter[str]()
+    all_of, without_form = Counter[str](), Counter[str]()
     cut: list[str] = []
     problems: list[Problem] = []
-    for category in categories:
+    for category in chosen:
         try:
             through = _passages(category.grammar)
             is_cut = category.grammar.size() > MOST_LOOKED_AT
@@ -92,11 +88,17 @@ def _report(categories: Sequence[TaskCategory], covered: frozenset[str]) -> Unco
             problems.append(error.problem)
             continue
         cut.extend([category.name] * is_cut)
-        missing = list(_missing(category.name, through, covered))
+        missing = [
+            UncoveredCommand(command, category.name, nonterminals)
+            for command, nonterminals in through.items()
+            if command not in covered
+        ]
         commands += missing
         all_of.update(name for names in through.values() for name in names)
-        uncovered_of.update(name for each in missing for name in each.nonterminals)
-    shares = [Share(name, all_of[name], count) for name, count in uncovered_of.items()]
+        without_form.update(name for each in missing for name in each.nonterminals)
+    shares = [
+        NonterminalCoverage(name, all_of[name], count) for name, count in without_form.items()
+    ]
     shares.sort(key=lambda share: (share.covered_percent, -share.uncovered, share.nonterminal))
     return UncoveredReport(tuple(commands), tuple(shares), tuple(cut), tuple(problems))
 
@@ -106,11 +108,3 @@ def _passages(grammar: Grammar) -> Mapping[str, frozenset[str]]:
         return grammar, passages(grammar, Budget(MOST_STEPS), MOST_LOOKED_AT)
 
     return _PASSAGES.get(id(grammar), make)[1]
-
-
-def _missing(
-    task_category: str, through: Mapping[str, frozenset[str]], covered: frozenset[str]
-) -> Iterator[UncoveredCommand]:
-    for command, nonterminals in through.items():
-        if command not in covered:
-            yield UncoveredCommand(command, task_category, nonterminals)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from annotations import models
 from annotations.generation.generated_world import GeneratedWorld, counters_of
 from annotations.generation.kept_expansions import generate_at_once
+from annotations.jobs.requesting import request_job
 from annotations.language.errors import LanguageError
 from annotations.rows.from_rows import annotated_categories
 from annotations.rows.synchronise import Changes
@@ -18,7 +19,7 @@ NOTHING = Changes()
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class UpdateOutcome:
     """Whether the commands are those of the templates now, what it took, and how many got another form.
 
     ``trouble`` is a sentence about why they are not.
@@ -30,7 +31,7 @@ class Outcome:
     trouble: str = ""
 
 
-def bring_up_to_date(world: models.World) -> Outcome:
+def bring_up_to_date(world: models.World) -> UpdateOutcome:
     """Write the commands, forms, conflicts and coverage that ``generate_pairs`` would give.
 
     To be called inside the transaction that changed a template or the grammar, which has marked the
@@ -39,12 +40,25 @@ def bring_up_to_date(world: models.World) -> Outcome:
     """
     locked = models.World.objects.select_for_update().get(pk=world.pk)
     if not locked.commands_are_stale:
-        return Outcome(True)
+        return UpdateOutcome(True)
     try:
         categories = annotated_categories(locked)
         generated = generate_at_once([category.value for category in categories])
     except LanguageError as error:
-        return Outcome(False, trouble=str(error))
+        return UpdateOutcome(False, trouble=str(error))
     with GeneratedWorld(locked, categories, generated) as rows:
         changes = rows.write(counters_of(locked))
-        return Outcome(True, changes, rows.commands.new_forms)
+        return UpdateOutcome(True, changes, rows.commands.new_forms)
+
+
+def start_update(world: models.World, by: models.User) -> UpdateOutcome:
+    """Bring commands up to date with a change, in the caller's transaction, or ask a worker to.
+
+    The world was marked as changed before. A job that waits to generate it already is enough.
+    """
+    outcome = bring_up_to_date(world)
+    if not outcome.is_up_to_date:
+        waiting = models.Job.objects.queued().filter(kind=models.JobKind.GENERATE, world=world)
+        if not waiting.exists():
+            request_job(models.JobKind.GENERATE, world.name, by)
+    return outcome

@@ -1,7 +1,1 @@
-"""Verb: take files in. All or nothing; a second import of the same files changes nothing."""
-
-from annotations.importing.generators import import_generator
-from annotations.importing.pairs import PairsReport, import_pairs
-from annotations.importing.report import ImportReport
-
-__all__ = ["ImportReport", "PairsReport", "import_generator", "import_pairs"]
+"""Verb: import files, all or nothing. A second import of the same files changes nothing."""

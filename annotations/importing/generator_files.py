@@ -1,4 +1,4 @@
-"""Reads the files of a command generator into one value. Nothing is stored here."""
+"""Read the files of a command generator into one value. Nothing is stored here."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from annotations.importing.predicates_file import PREDICATES_FILE, read_predicates
+from annotations.language.decoding import read_text
 from annotations.language.errors import LanguageError, Position, Problem, warning_at
 from annotations.language.forms import read_form
 from annotations.language.grammar import TRIPLE_FILES, is_grammar_name
@@ -20,8 +21,8 @@ from annotations.language.templates import (
     read_generator_files,
     set_problems,
 )
-from annotations.models.description import Subject
-from annotations.rows.problems import first_problems
+from annotations.models.description import ProblemSubject
+from annotations.rows.stored_problems import first_problems
 
 # Above this many pairs signatures are inferred from the templates as they are, unexpanded.
 INFERENCE_LIMIT = 100_000
@@ -37,7 +38,7 @@ class Generator:
     texts: GeneratorFolder
     ontology: Ontology
     predicates: Mapping[str, Predicate]
-    problems: Mapping[Subject, tuple[Problem, ...]]
+    problems: Mapping[ProblemSubject, tuple[Problem, ...]]
 
     @property
     def all_problems(self) -> tuple[Problem, ...]:
@@ -45,16 +46,19 @@ class Generator:
 
 
 def read_generator(
-    files: Mapping[str, bytes], edited: Mapping[str, Predicate] | None = None
+    files: Mapping[str, bytes],
+    edited: Mapping[str, Predicate] | None = None,
+    known_problems: Iterable[Problem] = (),
 ) -> Generator:
-    """Read files given as name → bytes. Nothing is raised: what is wrong is among the problems.
+    """Read files given as name → bytes. Raises nothing: errors are among the problems.
 
     Args:
         edited: predicates that people have changed; they hold whatever the files say.
+        known_problems: the problems that were found before the files were read.
     """
     ontology, ontology_problems = read_ontology(files)
     texts = read_generator_files(files)
-    problems = [*texts.problems, *_warn_of_unread(files)]
+    problems = [*known_problems, *texts.problems, *_warn_of_unread(files)]
     declared, further = _read_declared(files)
     problems += further
     predicates = dict(declared or {})
@@ -62,16 +66,27 @@ def read_generator(
         inferred, further = _examine(texts.categories(), declared, edited or {})
         predicates = predicates or inferred
         problems += further
-    return Generator(texts, ontology, predicates, _by_subject(problems, ontology_problems))
+    distinct = set(problems)
+    of_templates = {each for each in distinct if is_template_name(each.position.source)}
+    by_subject = {
+        ProblemSubject.ONTOLOGY: first_problems(set(ontology_problems)),
+        ProblemSubject.GRAMMAR: first_problems(distinct - of_templates),
+        ProblemSubject.TEMPLATES: first_problems(of_templates),
+    }
+    return Generator(texts, ontology, predicates, by_subject)
 
 
 def _read_declared(files: Mapping[str, bytes]) -> tuple[dict[str, Predicate] | None, list[Problem]]:
-    if PREDICATES_FILE not in files:
+    name = next((name for name in files if name.lower() == PREDICATES_FILE), None)
+    if name is None:
         return None, []
+    problems: list[Problem] = []
     try:
-        return read_predicates(files[PREDICATES_FILE]), []
+        predicates = read_predicates(files[name], name, problems)
+        problems += read_text(files[name], name)[1]
     except LanguageError as error:
         return None, [error.problem]
+    return predicates, problems
 
 
 def _examine(
@@ -99,19 +114,7 @@ def _warn_of_unread(files: Iterable[str]) -> Iterator[Problem]:
     """Yield a warning for each file that is not a generator's; a README needs none."""
     known = {*ONTOLOGY_FILES, *TRIPLE_FILES, PREDICATES_FILE}
     for name in files:
-        is_read = name in known or is_grammar_name(name) or is_template_name(name)
+        is_read = name.lower() in known or is_grammar_name(name) or is_template_name(name)
         if not is_read and not name.lower().startswith("readme"):
             hint = f"known are *.txt, {', '.join(ONTOLOGY_FILES)} and {PREDICATES_FILE}"
             yield warning_at(Position(name), "not a generator file; ignored", hint)
-
-
-def _by_subject(
-    texts: Iterable[Problem], ontology: Iterable[Problem]
-) -> dict[Subject, tuple[Problem, ...]]:
-    distinct = set(texts)
-    of_templates = {each for each in distinct if is_template_name(each.position.source)}
-    return {
-        Subject.ONTOLOGY: first_problems(set(ontology)),
-        Subject.GRAMMAR: first_problems(distinct - of_templates),
-        Subject.TEMPLATES: first_problems(of_templates),
-    }

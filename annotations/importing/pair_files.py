@@ -1,16 +1,23 @@
-"""Reads a folder of published pairs (FORMATS §5, §6). Nothing is stored here."""
+"""Read a folder of published pairs (docs/reference/formats.md, Pairs and Triples). Nothing is stored here."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from enum import StrEnum
 from pathlib import Path
 
+from annotations.importing.gathered_files import GatheredFiles, convert
 from annotations.language.corpus import (
     CORPUS_FOLDERS,
-    PART_FILES,
+    PARTS,
     GroundedTriple,
+    RecordFile,
     WrittenPair,
+    foreign_part,
+    is_crowd_file,
+    read_crowd_results,
+    read_foreign_pairs,
     read_pairs,
     read_triples,
 )
@@ -18,7 +25,17 @@ from annotations.language.decoding import MAX_FILE_BYTES, read_folder
 from annotations.language.errors import LanguageError, Position, Problem, error_at, warning_at
 from annotations.language.grammar import TRIPLE_FILES
 
-PARTS = {file: part for part, file in PART_FILES.items()}
+_TEXTS = "*.[tT][xX][tT]"
+_TABLES = ("[!.]*.[cC][sS][vV]", "[!.]*.[tT][sS][vV]")
+_TRIPLES = f"[pP][aA][rR][aA]{_TEXTS}"
+_OF_OTHERS = "paraphrased", "command"  # people ask, and no two parts share a question
+
+
+class Notation(StrEnum):
+    """How the forms of pairs are written: as this project writes them, or as other λ-corpora do."""
+
+    OURS = ""
+    LAMBDA = "lambda"
 
 
 @dataclass(frozen=True)
@@ -34,29 +51,52 @@ class PairFolder:
         return tuple(dict.fromkeys(criterion for criterion, _, _ in self.pairs))
 
 
-def read_pair_folder(folder: Path, most_bytes: int = MAX_FILE_BYTES) -> PairFolder:
-    """Read ``gen para gen_logical para_logical`` and the grounded triples, those that are there.
+def read_pair_folder(
+    folder: Path,
+    most_bytes: int = MAX_FILE_BYTES,
+    encoding: str = "",
+    notation: str = Notation.OURS,
+) -> PairFolder:
+    """Read ``gen para gen_logical para_logical``, the grounded triples and tables of results, those that are there.
 
-    A file with more than ``most_bytes`` is a problem. Nothing is raised; a folder with none of them is a problem too.
+    The case of letters plays no part in names of files and folders. A file with more than ``most_bytes`` is
+    a problem. Nothing is raised; a folder with none of them is a problem too.
+
+    With ``Notation.LAMBDA`` it reads ``train``, ``dev`` and ``test`` of another corpus directly in ``folder``.
     """
     pairs: dict[tuple[str, str, str], tuple[WrittenPair, ...]] = {}
+    paths: dict[tuple[str, str, str], str] = {}
     triples: list[GroundedTriple] = []
     problems: list[Problem] = []
-    for path, data in _contents(folder, most_bytes, problems):
-        directory, _, name = path.rpartition("/")
-        if not directory:
-            records = read_triples(data, path)
+    is_foreign = notation == Notation.LAMBDA
+    contents = _foreign_contents if is_foreign else _contents
+    gathered = convert(GatheredFiles(dict(contents(folder, most_bytes, problems))), encoding)
+    problems += gathered.problems
+    for path, data in gathered.files.items():
+        directory, _, name = path.lower().rpartition("/")
+        part = foreign_part(name) if is_foreign else PARTS.get(name, "")
+        read: Callable[[bytes, str], RecordFile[WrittenPair]]
+        read = read_foreign_pairs if is_foreign else read_pairs
+        if not (directory or is_foreign):
+            records = (
+                read_crowd_results(data, path) if is_crowd_file(name) else read_triples(data, path)
+            )
             triples += records.records
-        elif name in PARTS:
-            records = read_pairs(data, path)
-            source, criterion = CORPUS_FOLDERS[directory]
-            pairs[criterion, source, PARTS[name]] = records.records
+            problems += records.problems
+        elif part:
+            source, criterion = _OF_OTHERS if is_foreign else CORPUS_FOLDERS[directory]
+            key = criterion, source, part
+            if key in paths:
+                sentence = f"{paths[key]} holds the {part} part already"
+                problems.append(error_at(Position(path), sentence, "keep one of the two files"))
+            paths[key] = path
+            written = read(data, path)
+            pairs[key] = written.records
+            problems += written.problems
         else:
             hint = f"known are {', '.join(PARTS)}"
             problems.append(warning_at(Position(path), "not a pair file; ignored", hint))
-            continue
-        problems += records.problems
-    if not (pairs or triples or problems):
+    if not (pairs or triples or any(problem.is_error for problem in problems)):
         names = ", ".join([*CORPUS_FOLDERS, *sorted(TRIPLE_FILES)])
         problems.append(
             error_at(Position(folder.name), "there are no pairs here", f"known are {names}")
@@ -64,18 +104,32 @@ def read_pair_folder(folder: Path, most_bytes: int = MAX_FILE_BYTES) -> PairFold
     return PairFolder(pairs, tuple(triples), tuple(sorted(problems)))
 
 
+def _foreign_contents(
+    folder: Path, most_bytes: int, problems: list[Problem]
+) -> Iterator[tuple[str, bytes]]:
+    """Yield name → bytes of every file directly in the folder."""
+    try:
+        yield from read_folder(folder, "[!.]*", most_bytes).items()
+    except LanguageError as error:
+        problems.append(error.problem)
+
+
 def _contents(
     folder: Path, most_bytes: int, problems: list[Problem]
 ) -> Iterator[tuple[str, bytes]]:
     """Yield path inside the folder → bytes, for every file that may be one of a corpus."""
     try:
-        for name, data in read_folder(folder, "paraphras*.txt", most_bytes).items():
-            if name in TRIPLE_FILES:
+        for name, data in read_folder(folder, _TRIPLES, most_bytes).items():
+            if name.lower() in TRIPLE_FILES:
                 yield name, data
-        for directory in CORPUS_FOLDERS:
-            if (folder / directory).is_dir():
-                files = read_folder(folder / directory, "*.txt", most_bytes)
-                for name, data in files.items():
-                    yield f"{directory}/{name}", data
+        for pattern in _TABLES:
+            yield from read_folder(folder, pattern, most_bytes).items()
+        folders = sorted(path.name for path in folder.iterdir() if path.is_dir())
+        for known in CORPUS_FOLDERS:
+            for directory in folders:
+                if directory.lower() == known:
+                    files = read_folder(folder / directory, _TEXTS, most_bytes)
+                    for name, data in files.items():
+                        yield f"{directory}/{name}", data
     except LanguageError as error:
         problems.append(error.problem)

@@ -1,17 +1,18 @@
 """``predicates.json``: declared predicates beside a generator, read and written.
 
-A list of ``{"name", "kind", "signatures", "gloss"}``: the kind is ``action`` or ``description``, a
-signature a list of argument kinds, the gloss a pattern (``annotations.language.predicates.gloss_patterns``).
+docs/reference/formats.md, Predicates, describes it. A gloss is a pattern of
+``annotations.language.predicates.gloss_patterns``.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Iterator
 from typing import Any
 
-from annotations.language.decoding import decode
-from annotations.language.errors import LanguageError, Position
+from annotations.language.decoding import read_text
+from annotations.language.errors import LanguageError, Position, Problem
 from annotations.language.limits import (
     MAX_GLOSS,
     MAX_PREDICATE,
@@ -20,18 +21,25 @@ from annotations.language.limits import (
     require_writable,
 )
 from annotations.language.predicates import ArgumentKind, Predicate, PredicateKind, Signature
+from annotations.language.text import normalise_line
 
 PREDICATES_FILE = "predicates.json"
+_BETWEEN_ROWS = re.compile(r"[\s,]*+")
 _EXAMPLE = '[{"name": "go", "kind": "action", "signatures": [["room"]], "gloss": "go to {1}"}]'
 
 
-def read_predicates(data: bytes, source: str = PREDICATES_FILE) -> dict[str, Predicate]:
+def read_predicates(
+    data: bytes, source: str = PREDICATES_FILE, problems: list[Problem] | None = None
+) -> dict[str, Predicate]:
     """Return the predicates that a file declares, by name.
+
+    Args:
+        problems: where the errors of single rows go; the first one is raised without it.
 
     Raises:
         LanguageError: with the position, where the file is no such list or a value is unknown.
     """
-    text = decode(data, source)
+    text, _ = read_text(data, source)
     try:
         rows = json.loads(text)
     except RecursionError:
@@ -44,12 +52,17 @@ def read_predicates(data: bytes, source: str = PREDICATES_FILE) -> dict[str, Pre
     if not isinstance(rows, list):
         raise LanguageError("this is not a list of predicates", Position(source), _EXAMPLE)
     predicates: dict[str, Predicate] = {}
-    for row in rows:
-        place = _place(text, row, source)
-        predicate = _predicate(row, place)
-        if predicate.name in predicates:
-            raise LanguageError(f"{predicate.name} is declared twice", place, "merge the two")
-        predicates[predicate.name] = predicate
+    for row, place in _rows_with_places(text, source):
+        try:
+            predicate = _predicate(row, place)
+            if predicate.name in predicates:
+                raise LanguageError(f"{predicate.name} is declared twice", place, "merge the two")
+        except LanguageError as error:
+            if problems is None:
+                raise
+            problems.append(error.problem)
+        else:
+            predicates[predicate.name] = predicate
     return predicates
 
 
@@ -71,7 +84,8 @@ def _row(predicate: Predicate) -> dict[str, Any]:
 def _predicate(row: Any, place: Position) -> Predicate:
     if not (isinstance(row, dict) and isinstance(row.get("name"), str) and row["name"]):
         raise LanguageError("this row has no name", place, _EXAMPLE)
-    gloss = str(row.get("gloss", ""))
+    row = {**row, "name": normalise_line(row["name"])}  # JSON may write a character as an escape
+    gloss = normalise_line(str(row.get("gloss", "")))
     require_name(row["name"], "predicate", MAX_PREDICATE, place)
     require_writable(row["name"], place)
     require_length(gloss, "gloss", MAX_GLOSS, place)
@@ -91,8 +105,17 @@ def _predicate(row: Any, place: Position) -> Predicate:
     return Predicate(row["name"], kind, read, gloss)
 
 
-def _place(text: str, row: Any, source: str) -> Position:
-    """Return the line on which the row's name is first written, as JSON keeps no positions."""
-    name = row.get("name") if isinstance(row, dict) else None
-    start = text.find(f'"{name}"') if isinstance(name, str) else -1
-    return Position(source, text.count("\n", 0, start) + 1) if start >= 0 else Position(source)
+def _rows_with_places(text: str, source: str) -> Iterator[tuple[Any, Position]]:
+    """Yield the rows of a list in JSON, each with the line of its name, as JSON keeps no positions."""
+    decoder, end = json.JSONDecoder(), text.index("[") + 1
+    line, counted = 1, 0
+    while gap := _BETWEEN_ROWS.match(text, end):  # always: it may be empty
+        begin = gap.end()
+        if text[begin] == "]":
+            return
+        row, end = decoder.raw_decode(text, begin)
+        name = row.get("name") if isinstance(row, dict) else None
+        place = max(begin, text.find(f'"{name}"', begin, end)) if isinstance(name, str) else begin
+        line += text.count("\n", counted, place)
+        counted = place
+        yield row, Position(source, line)

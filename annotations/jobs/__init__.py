@@ -5,10 +5,11 @@ A request asks for a job with its files (``request_job``), or is quick enough to
 transaction that only the holder of the job can commit.
 """
 
-from annotations.jobs.requesting import answer_job, cancel_job, request_job
+from annotations.jobs.requesting import answer_job, cancel_job, request_job, request_job_once
 
 __all__ = [
     "answer_job",
     "cancel_job",
     "request_job",
+    "request_job_once",
 ]

@@ -1,4 +1,4 @@
-"""The uploads of a job, kept under ``var/jobs/ID/`` until it has ended."""
+"""The uploads of a job, kept under ``var/jobs/ID/`` until it has ended, and the file that it made."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from secrets import token_hex
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 from django.conf import settings
 from django.core.files.base import File
@@ -24,6 +24,15 @@ def jobs_folder() -> Path:
     return settings.VAR_DIR / "jobs"
 
 
+def results_folder() -> Path:
+    return settings.VAR_DIR / "results"
+
+
+def result_of(job: Job) -> Path:
+    """Return where the file stands that ``job`` has made, if it makes one."""
+    return results_folder() / f"{job.pk}.jsonl"
+
+
 def keep_uploads(uploads: Sequence[Any]) -> Path:
     """Copy uploads, in pieces, into a new folder that belongs to no job yet."""
     folder = jobs_folder() / f"incoming-{token_hex(8)}"
@@ -35,8 +44,19 @@ def keep_uploads(uploads: Sequence[Any]) -> Path:
     return folder
 
 
+if TYPE_CHECKING:
+
+    class KeptUpload(File[bytes]):
+        """An upload, which has a name and a size."""
+
+        name: str
+        size: int
+else:
+    KeptUpload = File
+
+
 @contextmanager
-def kept_uploads(job: Job) -> Iterator[list[File]]:
+def kept_uploads(job: Job) -> Iterator[list[KeptUpload]]:
     """Open the uploads of ``job``, under the names that they came with."""
     names = job.arguments.get("files", [])
     with ExitStack() as stack:
@@ -44,7 +64,7 @@ def kept_uploads(job: Job) -> Iterator[list[File]]:
             stack.enter_context((folder_of(job) / str(number)).open("rb"))
             for number in range(len(names))
         )
-        yield [File(file, name) for file, name in zip(opened, names, strict=True)]
+        yield [KeptUpload(file, name) for file, name in zip(opened, names, strict=True)]
 
 
 def forget_files(job: Job) -> None:

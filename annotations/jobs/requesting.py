@@ -11,8 +11,9 @@ from django.utils import timezone
 
 from annotations import background
 from annotations.jobs.files import folder_of, forget_files, keep_uploads
+from annotations.language.errors import Refusal
 from annotations.models import Job, JobKind, User, World
-from annotations.models.background import Queue, Status
+from annotations.models.background import JobQuerySet, Queue, Status
 
 
 def request_job(
@@ -32,6 +33,25 @@ def request_job(
         _take_folder(job, folder)
         background.wake(job)
     return job
+
+
+def request_job_once(
+    waiting: JobQuerySet,
+    kind: str,
+    world: World,
+    by: User | None,
+    arguments: Mapping[str, Any] | None = None,
+    queue: str = Queue.QUICK,
+) -> tuple[Job, bool]:
+    """Return the first job of ``waiting`` and False, or queue one for ``world`` and return it and True.
+
+    Whoever asks at the same moment waits, and finds the job of whoever was first.
+    """
+    with transaction.atomic():
+        World.objects.select_for_update().get(pk=world.pk)
+        if (job := waiting.all().first()) is not None:
+            return job, False
+        return request_job(kind, world.name, by, arguments, queue=queue), True
 
 
 def keep_question(
@@ -54,6 +74,21 @@ def keep_question(
     return job
 
 
+def keep_report(
+    kind: str,
+    world_name: str,
+    by: User | None,
+    arguments: Mapping[str, Any],
+    report: Mapping[str, Any],
+) -> Job:
+    """Keep what came of work that was quick enough to be done at once, as a job that has ended."""
+    job = _new_job(kind, world_name, by, arguments, ())
+    job.status, job.progress, job.report = Status.SUCCEEDED, 1.0, dict(report)
+    job.started_at = job.finished_at = timezone.now()
+    job.save()
+    return job
+
+
 def answer_job(job: Job, by: User) -> Job:
     """Queue the import that ``job`` asked about, now allowed to remove what it said.
 
@@ -62,10 +97,10 @@ def answer_job(job: Job, by: User) -> Job:
     with transaction.atomic():
         asked = Job.objects.select_for_update().get(pk=job.pk)
         if not asked.is_waiting_for_answer:
-            raise ValueError("This import has been answered already.")
+            raise Refusal("This import has been answered already.", "already_answered")
         _settle_question(asked)
         if not folder_of(asked).is_dir():
-            raise ValueError("The files are no longer here. Choose them again.")
+            raise Refusal("The files are no longer here. Choose them again.", "files_gone")
         answer = _new_job(asked.kind, asked.world_name, by, asked.arguments, ())
         answer.arguments = {**asked.arguments, "may_remove": True}
         answer.save()
@@ -77,7 +112,10 @@ def answer_job(job: Job, by: User) -> Job:
 def cancel_job(job: Job) -> None:
     """Stop a job, or drop an import that asked. Raises ValueError, a sentence, where it has ended."""
     if job.kind == JobKind.DELETE_WORLD:
-        raise ValueError("A deletion cannot be stopped: a part of the world may be gone already.")
+        raise Refusal(
+            "A deletion cannot be stopped: a part of the world may be gone already.",
+            "deletion_goes_on",
+        )
     with transaction.atomic():
         asked = Job.objects.select_for_update().get(pk=job.pk)
         if asked.is_waiting_for_answer:
@@ -91,7 +129,7 @@ def cancel_job(job: Job) -> None:
 
 
 def _settle_question(job: Job) -> None:
-    job.report = {**job.report, "is_waiting": False, "is_dropped": True}
+    job.report = {**(job.report or {}), "is_waiting": False, "is_dropped": True}
     job.save(update_fields=["report"])
 
 

@@ -1,26 +1,45 @@
-"""Verb: collect utterances that have no form yet."""
+"""Verb: collect utterances, each text once."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from django.db import transaction
+from django.db.models import Count, Max, Sum
+from django.utils import timezone
 
-from annotations.labelling.proposals import request_proposals
-from annotations.labelling.spans import anonymized_by, anonymizer_of
+from annotations.labelling.entity_spans import anonymized_by, anonymizer_of
+from annotations.labelling.proposal_requests import request_proposals
 from annotations.language.errors import LanguageError, Position, Problem, error_at
 from annotations.language.limits import require_writable
-from annotations.models import Origin, User, Utterance, World
+from annotations.language.text import normalise_line
+from annotations.models import (
+    Entity,
+    Label,
+    Origin,
+    Upload,
+    User,
+    Utterance,
+    UtteranceStatus,
+    Verdict,
+    World,
+)
 from annotations.models.corpus import MOST_CHARACTERS
+from annotations.rows.staging import Staging
 from annotations.rows.synchronise import BATCH, batches
 
 MOST_AT_ONCE = 5_000  # utterances of one paste or upload
+COLUMNS = tuple(
+    field.column
+    for field in Utterance._meta.concrete_fields
+    if field.column and not field.primary_key
+)
 
 
 @dataclass(frozen=True, slots=True)
-class Collected:
+class CollectedTexts:
     """What became of the texts. With an error among the problems nothing was stored.
 
     ``duplicates`` are the texts that the world has already, or that came twice, in their order.
@@ -39,34 +58,32 @@ class Collected:
 
 
 def collect(
-    world: World, texts: Iterable[str], origin: str = Origin.PASTED, by: User | None = None
-) -> Collected:
+    world: World,
+    texts: Iterable[str],
+    origin: str = Origin.PASTED,
+    by: User | None = None,
+    upload: Upload | None = None,
+    forms: Mapping[str, str] | None = None,
+) -> CollectedTexts:
     """Store each text as an utterance of ``world``, with its entities found.
 
-    Whitespace is normalised; empty texts are left out. Texts that the world has already are reported,
+    Each is normalised to one line; empty texts are left out. Texts that the world has already are reported,
     never stored twice.
+
+    Args:
+        upload: the row for what was sent, which may be unsaved; stored and counted where a text is new.
+            One that was stored before adds nothing more.
+        forms: text → canonical form, which becomes an answer of ``by`` that counts; with an upload only.
     """
     wanted, problems = _read(texts)
     if problems:
-        return Collected(problems=problems)
-    with transaction.atomic():
-        World.objects.select_for_update().get(pk=world.pk)
-        known = _find_known(world, wanted)
-        new = [text for text in dict.fromkeys(wanted) if text not in known]
-        anonymizer = anonymizer_of(world)
-        rows = [
-            Utterance(
-                world=world,
-                text=text,
-                origin=origin,
-                created_by=by,
-                **anonymized_by(anonymizer, text),
-            )
-            for text in new
-        ]
-        Utterance.objects.bulk_create(rows, batch_size=BATCH)
+        return CollectedTexts(problems=problems)
+    stored = None
+    while stored is None:
+        stored = _store(world, wanted, origin, by, upload, forms or {})
+    added, known = stored
     request_proposals(world, by)
-    return Collected(len(rows), tuple(_repetitions(wanted, known)))
+    return CollectedTexts(added, tuple(_repetitions(wanted, known)))
 
 
 def _read(texts: Iterable[str]) -> tuple[list[str], tuple[Problem, ...]]:
@@ -79,20 +96,99 @@ def _read(texts: Iterable[str]) -> tuple[list[str], tuple[Problem, ...]]:
             hint = f"{MOST_AT_ONCE:,} is the limit; add the rest afterwards"
             problems.append(error_at(place, "there are too many utterances", hint))
             break
-        said = " ".join(text.split())
-        try:
-            require_writable(said, place)
-        except LanguageError as error:
-            problems.append(error.problem)
-        if len(said) > MOST_CHARACTERS:
-            message = f"the utterance has {len(said):,} characters"
-            problems.append(error_at(place, message, f"{MOST_CHARACTERS} is the limit"))
+        said, problem = read_text(text, place)
+        if problem:
+            problems.append(problem)
         if said:
             wanted.append(said)
     return wanted, tuple(problems)
 
 
-def _find_known(world: World, texts: list[str]) -> set[str]:
+def read_text(text: str, place: Position) -> tuple[str, Problem | None]:
+    """Return a text as an utterance has it, and why it cannot be one, if so. An empty one has no problem."""
+    said = normalise_line(text)
+    try:
+        require_writable(said, place)
+    except LanguageError as error:
+        return said, error.problem
+    if len(said) > MOST_CHARACTERS:
+        message = f"the utterance has {len(said):,} characters"
+        return said, error_at(place, message, f"{MOST_CHARACTERS} is the limit")
+    return said, None
+
+
+def _store(
+    world: World,
+    wanted: list[str],
+    origin: str,
+    by: User | None,
+    upload: Upload | None,
+    forms: Mapping[str, str],
+) -> tuple[int, set[str]] | None:
+    """Find the entities, then write in one short transaction. Returns how many rows are new and which
+    texts were there; None where somebody has changed entities or added one of the texts meanwhile."""
+    entities = _stamp_of_entities(world)
+    anonymizer = anonymizer_of(world)
+    known = find_known(world, wanted)
+    new = [text for text in dict.fromkeys(wanted) if text not in known]
+    if not new:
+        return 0, known
+    if upload is not None and upload.pk is None:
+        upload.save()  # rows refer to it; it waits until they are stored
+    rows = [
+        Utterance(
+            world=world,
+            text=text,
+            origin=origin,
+            created_by=by,
+            upload=upload,
+            logical_form=forms.get(text, ""),
+            status=UtteranceStatus.LABELLED if text in forms else UtteranceStatus.UNLABELLED,
+            **anonymized_by(anonymizer, text),
+        )
+        for text in new
+    ]
+    with Staging(Utterance, COLUMNS) as staging:
+        staging.add_new(rows)
+        with transaction.atomic():
+            locked = World.objects.select_for_update().get(pk=world.pk)
+            if upload is not None and Upload.objects.stored().filter(pk=upload.pk).exists():
+                return 0, known  # its form was sent twice, and the other one was first
+            if _stamp_of_entities(locked) != entities or find_known(locked, new):
+                return None
+            added = staging.insert()
+            if upload is not None:
+                _conclude(upload, added, by)
+            return added, known
+
+
+def _conclude(upload: Upload, added: int, by: User | None) -> None:
+    """Say that an upload is stored, and make answers of ``by`` of the forms that came with it."""
+    upload.added, upload.stored_at, upload.content = added, timezone.now(), b""
+    upload.save()
+    labels = [
+        Label(
+            utterance_id=key,
+            annotator=by,
+            verdict=Verdict.FORM,
+            form=form,
+            reason="Uploaded with the utterance.",
+            created_at=upload.stored_at,
+            accepted_at=upload.stored_at,
+        )
+        for key, form in upload.utterances.labelled().values_list("pk", "logical_form")
+    ]
+    Label.objects.bulk_create(labels, batch_size=BATCH)
+
+
+def _stamp_of_entities(world: World) -> dict[str, Any]:
+    """Return what changes whenever the entities do."""
+    rows = Entity.objects.filter(ontology__world=world)
+    return rows.aggregate(Count("pk"), Max("pk"), Sum("version"))
+
+
+def find_known(world: World, texts: list[str]) -> set[str]:
+    """Return those of ``texts``, which are normalised, that ``world`` has as utterances."""
     known: set[str] = set()
     for some in batches(texts):
         rows = Utterance.objects.filter(world=world, text__in=some)

@@ -1,4 +1,4 @@
-"""Reads and checks a form that somebody gives an utterance."""
+"""Read and check a form that somebody gives an utterance."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from annotations.checking import shown_problem
+from annotations.checking.assistance import shown_problem
+from annotations.language.assistance import Sides, format_form, with_repairs
 from annotations.language.errors import LanguageError, Offsets, Position, Problem, warning_at
 from annotations.language.forms import (
     CLASS_TOKEN,
@@ -23,7 +24,6 @@ from annotations.language.limits import MAX_FORM
 from annotations.language.predicates import gloss
 from annotations.language.symbols import Nonterminal, Wildcard
 from annotations.language.templates import read_sides, template_checker
-from annotations.language.writing import Sides, format_form, with_repairs
 from annotations.models import World
 from annotations.rows.from_rows import predicates_of
 

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from bisect import bisect_right
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from http import HTTPStatus
+from typing import Any
 
 EXCERPT_WIDTH = 78  # characters of a line that are shown around a problem
 
@@ -73,7 +76,7 @@ class Offsets:
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Edit:
+class TextEdit:
     """Characters ``start`` up to ``end`` (from 0) of the text called ``source`` become ``text``."""
 
     source: str
@@ -87,7 +90,7 @@ class Repair:
     """One way to remove a problem: what it does, in words, and the edits that do it."""
 
     label: str
-    edits: tuple[Edit, ...]
+    edits: tuple[TextEdit, ...]
 
     def apply(self, source: str, text: str) -> str:
         """Return what the text called ``source`` becomes."""
@@ -122,10 +125,42 @@ class Problem:
         return self.severity is Severity.ERROR
 
 
+class Refusal(ValueError):
+    """What a person asked for cannot be done. Pages, routes and commands say why, in its own words.
+
+    ``message`` is a sentence for people. ``code`` names the reason for programs and tests, and stays
+    when the sentence changes. ``status`` is the HTTP status that says it. ``problems`` are the things
+    that are wrong, as the API lists them, each with its field or its place. A subclass is for callers
+    who treat it apart from others.
+    """
+
+    code = "refused"
+    status: int = HTTPStatus.BAD_REQUEST
+    wait: int | None = None  # seconds until it is worth asking again (Retry-After)
+    position: Position | None = None
+
+    def __init__(
+        self,
+        message: str,
+        code: str = "",
+        status: int | None = None,
+        problems: Iterable[Mapping[str, Any]] = (),
+    ) -> None:
+        super().__init__(message)
+        self.message = message
+        self.code = code or self.code
+        self.status = self.status if status is None else status
+        self.problems = tuple(problems)
+
+    def __str__(self) -> str:
+        return self.message
+
+
 @dataclass
-class LanguageError(ValueError):
+class LanguageError(Refusal):
     """A text cannot be read. The error has a position, a sentence and a hint."""
 
+    code = "unreadable"
     message: str
     position: Position = field(default_factory=Position)
     hint: str = ""

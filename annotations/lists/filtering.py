@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from typing import Any
 
 import django_filters
 from django import forms
-from django.db.models import Q, QuerySet, TextField
-from django.db.models.functions import Cast
-from django.db.models.lookups import IContains
+from django.db.models import Q, QuerySet
 
 from annotations.lists.paging import LARGEST_INTEGER
+from annotations.models import Command, Predicate
+from annotations.people.access import WorldRequest
+
+Choices = list[tuple[str, str]]
 
 
 class ChoicesLater:
-    """Choices that are looked up where a form is shown or has a value to check, not before."""
+    """Choices that are looked up only when a form is shown or has a value to check."""
 
     def __init__(self, choices: Callable[[Any], Any], request: Any):
         self.choices = choices
@@ -70,25 +71,6 @@ class Search(django_filters.CharFilter):
         return condition
 
 
-class EntitySearch(Search):
-    """A text somewhere in the text or an alias of an entity."""
-
-    # Between aliases in the column, which holds a JSON list.
-    BETWEEN = frozenset("[],")
-
-    def __init__(self) -> None:
-        super().__init__("text")
-
-    def condition(self, value: str) -> Q:
-        condition = super().condition(value)
-        if not self.BETWEEN.isdisjoint(value):
-            return condition
-        column = Cast("aliases", TextField())
-        for written in {value, json.dumps(value)[1:-1]}:  # PostgreSQL's JSON, and SQLite's
-            condition |= Q(IContains(column, written))
-        return condition
-
-
 class Key(django_filters.NumberFilter):
     """Rows that refer to another one, by its key."""
 
@@ -110,3 +92,16 @@ class Mentions(django_filters.ChoiceFilter):
 
     def filter(self, rows: QuerySet[Any], value: str) -> QuerySet[Any]:
         return rows.filter(**{f"{self.field_name}__contains": f"( {value} "}) if value else rows
+
+
+def predicate_choices(request: WorldRequest) -> Choices:
+    """Return the predicates of the world that the page is about."""
+    names = Predicate.objects.filter(world=request.world).values_list("name", flat=True)
+    return [(name, name) for name in names]
+
+
+def task_category_choices(request: WorldRequest) -> Choices:
+    """Return the task categories that the world's commands are counted in."""
+    rows = Command.objects.filter(world=request.world).order_by("task_category")
+    names = rows.values_list("task_category", flat=True).distinct()
+    return [(name, name) for name in names if name]

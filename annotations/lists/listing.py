@@ -15,6 +15,7 @@ from django.utils.cache import patch_vary_headers
 from django_filters import FilterSet
 
 from annotations.lists.paging import PAGE_SIZE, Page, page_of
+from annotations.people.access import PageRequest
 
 PLACE = ("after", "before", "page", "finding")
 
@@ -59,7 +60,7 @@ class FilteredList:
 
     @property
     def first_fields(self) -> list[Any]:
-        """The fields of the filters that one sees at once."""
+        """The fields of the filters that are always shown."""
         return [field for field in self.form if field.name not in self.further]
 
     @property
@@ -145,7 +146,8 @@ class Listing(FilteredList):
     @cached_property
     def matching(self) -> QuerySet[Any]:
         """All rows that pass the filters."""
-        return self.filterset.qs
+        rows: QuerySet[Any] = self.filterset.qs
+        return rows
 
     @cached_property
     def total(self) -> int:
@@ -224,7 +226,9 @@ class NumberedPages(FilteredList):
 
     @property
     def rows(self) -> Sequence[Any]:
-        return self.page.object_list
+        rows = self.page.object_list
+        assert isinstance(rows, Sequence)  # a slice of what was computed
+        return rows
 
     @property
     def summary(self) -> str:
@@ -243,7 +247,7 @@ class NumberedPages(FilteredList):
         return self.url(page=str(self.page.previous_page_number())) if has_previous else ""
 
 
-def render_list(request: HttpRequest, template: str, context: dict[str, Any]) -> HttpResponse:
+def render_list(request: PageRequest, template: str, context: dict[str, Any]) -> HttpResponse:
     """Render a page with a list; htmx, which replaces the list alone, gets it without the frame.
 
     The template extends the one that ``base`` names.

@@ -16,6 +16,11 @@ LARGEST_INTEGER = 2**63 - 1  # of a column and of a query's parameter
 LONE_SURROGATE = re.compile(r"[\ud800-\udfff]")
 
 
+def number_in(text: str) -> int:
+    """Read a key or a version from a URL or a form. Return 0, which no row has, for anything else."""
+    return int(text) if text.isascii() and text.isdigit() and len(text) < 19 else 0
+
+
 @dataclass(frozen=True, slots=True)
 class Page:
     """Rows in order, and the cursors of the previous and next page (empty where there is none)."""
@@ -96,7 +101,7 @@ def to_python(model: type[Model], path: str, value: Any) -> Any:
 def field_of(model: type[Model], path: str) -> Any:
     """Return the field at the end of a path such as ``example__position``."""
     first, _, rest = path.partition("__")
-    field = model._meta.get_field(first)
+    field: Any = model._meta.get_field(first)
     return field_of(field.related_model, rest) if rest else field
 
 

@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 from django.db import DatabaseError
 
-from annotations.language.decoding import decode
+from annotations.background.failures import FREE_SPACE, database_sentence, is_disk_full
+from annotations.language.corpus import Criterion
+from annotations.language.decoding import ENCODINGS, decode, why_outside
 from annotations.language.errors import LanguageError, Problem
+from annotations.language.text import normalise_line
 from annotations.models import Split, World
-from annotations.models.splits import Criterion
 from annotations.people.audit_log import record_command
-from annotations.rows.problems import from_json
+from annotations.rows.stored_problems import from_json
 
+NAMES = ("world", "name")  # options that are texts of rows, normalised as everywhere
 MOST_EXCERPTS = 20  # errors that are shown with their line
 
 
-class Refused(Exception):
+class RefusedReport(Exception):
     """Work that was refused, with the report that is printed all the same."""
 
     def __init__(self, report: Mapping[str, Any], sentences: list[str]):
@@ -28,7 +31,9 @@ class Refused(Exception):
         self.report = report
 
     @classmethod
-    def because(cls, errors: Sequence[Problem], report: Mapping[str, Any], folder: Path) -> Refused:
+    def because(
+        cls, errors: Sequence[Problem], report: Mapping[str, Any], folder: Path
+    ) -> RefusedReport:
         """Return an import of ``folder`` that was refused for its errors, each shown with its line."""
         count = f"{len(errors)} error{'s' if len(errors) > 1 else ''}"
         shown = [_show(problem, folder) for problem in errors[:MOST_EXCERPTS]]
@@ -40,7 +45,7 @@ class ReportingCommand(BaseCommand):
     """A command that answers with one report.
 
     A subclass gives ``add_options`` and ``report(**options)``, which returns a JSON-ready mapping or
-    raises ``Refused``, ``LanguageError`` or ``ValueError``. With ``--json`` the report is the only
+    raises ``RefusedReport``, ``LanguageError`` or ``ValueError``. With ``--json`` the report is the only
     thing on standard output. Errors go to standard error as sentences, and the exit status is 1.
 
     What a command with ``audited`` has done goes into the audit log under these words, for the world that
@@ -65,9 +70,8 @@ class ReportingCommand(BaseCommand):
     def add_options(self, parser: CommandParser) -> None:
         """Declares the arguments of this command."""
 
-    def report(self, **options: Any) -> Mapping[str, Any]:
-        """Do the work and say what came of it."""
-        raise NotImplementedError
+    # A subclass names the options that it takes.
+    report: Callable[..., Mapping[str, Any]]
 
     def audit_subject(self, report: Mapping[str, Any], options: Mapping[str, Any]) -> str:
         """Return what the work was about, never a secret."""
@@ -80,19 +84,22 @@ class ReportingCommand(BaseCommand):
         return "\n".join([*figures, *(f"  {from_json(problem)}" for problem in problems)])
 
     def handle(self, *args: Any, **options: Any) -> None:
+        for name in NAMES:
+            if isinstance(options.get(name), str):
+                options[name] = normalise_line(options[name])
         try:
             report = self.report(**options)
-        except Refused as error:
+        except RefusedReport as error:
             self._print(error.report, options["json"])
             raise CommandError(str(error)) from None
         except DatabaseError as error:
-            raise CommandError(
-                f"The database answered: {error}. Has “manage.py migrate” been run?"
-            ) from error
+            raise CommandError(database_sentence(error)) from error
         except LanguageError as error:
             raise CommandError(_sentence(error)) from error
         except (ValueError, OSError) as error:
-            raise CommandError(str(error)) from error
+            full = is_disk_full(error)
+            said = f"The disk is full ({error}). {FREE_SPACE}, then run this again."
+            raise CommandError(said if full else str(error)) from error
         if self.audited:
             world = World.objects.filter(name=options.get("world") or "").first()
             record_command(self.audited, self.audit_subject(report, options), world)
@@ -114,7 +121,9 @@ def _show(problem: Problem, folder: Path) -> str:
     """Return the problem, and below it the line of its file with a caret at its column."""
     try:
         path = folder / problem.position.source
-        excerpt = problem.position.excerpt(decode(path.read_bytes()))
+        if why_outside(path, folder):
+            return str(problem)
+        excerpt = problem.position.excerpt(decode(path.read_bytes(), path.name))
     except (OSError, LanguageError, ValueError):
         return str(problem)  # of no file, or of one that cannot be read
     lines = "".join(f"\n    {line}" for line in excerpt.splitlines() if excerpt.strip(" ^\n"))
@@ -128,11 +137,22 @@ def _in_words(value: Any) -> str:
 
 
 def add_brings_back(parser: CommandParser) -> None:
-    """Declare what imports have in common."""
+    """Declare the option of imports that restores what people have deleted."""
     parser.add_argument(
         "--bring-back",
         action="store_true",
         help="restore what people have deleted in the world; left out without it",
+    )
+
+
+def add_encoding(parser: CommandParser) -> None:
+    """Declare what files are read as that are not UTF-8."""
+    parser.add_argument(
+        "--encoding",
+        choices=ENCODINGS,
+        metavar="ENCODING",
+        default="",
+        help=f"of files that are not UTF-8; refused without it, with what encodings would read: {', '.join(ENCODINGS)}",
     )
 
 

@@ -1,5 +1,5 @@
-"""What is stored, one noun a module, in rooms. Models are imported from here; choices, limits and query sets
-from the front door of their room.
+"""What is stored, one module a room. Models are imported from here; choices, limits and query sets from the
+module of their room.
 """
 
 from annotations.models.background import Job, JobKind
@@ -11,6 +11,7 @@ from annotations.models.corpus import (
     Origin,
     Paraphrase,
     Proposal,
+    Upload,
     Utterance,
     UtteranceStatus,
     Verdict,
@@ -18,6 +19,7 @@ from annotations.models.corpus import (
 from annotations.models.description import (
     Entity,
     Grammar,
+    Guidelines,
     Ontology,
     Predicate,
     Production,
@@ -58,6 +60,7 @@ __all__ = [
     "Example",
     "FindingStatus",
     "Grammar",
+    "Guidelines",
     "Invitation",
     "Job",
     "JobKind",
@@ -77,6 +80,7 @@ __all__ = [
     "Split",
     "StoredProblem",
     "TaskCategory",
+    "Upload",
     "User",
     "Utterance",
     "UtteranceStatus",

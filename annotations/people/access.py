@@ -1,4 +1,4 @@
-"""Decides who may open which page: every view names the duty that it needs, here and nowhere else.
+"""Who may open which page: every view names the duty that it needs, and this is the only check.
 
 ``@world_view(Duty.VIEW)`` stands above every view of a world. The view receives the world itself
 instead of its name. People outside the world get a 404, as if it did not exist; members without the
@@ -14,10 +14,26 @@ from typing import Any
 from django.core.exceptions import PermissionDenied
 from django.http import Http404, HttpRequest, HttpResponse
 from django.views.decorators.http import require_http_methods
+from django_htmx.middleware import HtmxDetails
 
-from annotations.models import Duty, World
+from annotations.models import Duty, User, World
 
 View = Callable[..., HttpResponse]
+
+
+class PageRequest(HttpRequest):
+    """For signatures: the request of somebody who is logged in, as middleware hands it on."""
+
+    user: User
+    htmx: HtmxDetails
+
+
+class WorldRequest(PageRequest):
+    """For signatures: a request into a world, as ``world_view`` hands it on."""
+
+    world: World
+    duties: frozenset[Duty]
+
 
 READ = ("GET", "HEAD")
 READ_AND_WRITE = ("GET", "HEAD", "POST")
@@ -41,12 +57,12 @@ def world_view(
 
     def decorate(view: View) -> View:
         @wraps(view)
-        def guarded(request: HttpRequest, world: str, **kwargs: Any) -> HttpResponse:
+        def guarded(request: WorldRequest, world: str, **kwargs: Any) -> HttpResponse:
             request.world, request.duties = world_of(request, world)
             demand(request, write_duty if write_duty and request.method == "POST" else duty)
             return view(request, request.world, **kwargs)
 
-        guarded.duty = duty
+        guarded.duties = {"GET": duty, "POST": write_duty or duty}  # type: ignore[attr-defined]  # of a function
         return require_http_methods(methods)(guarded)
 
     return decorate
@@ -83,7 +99,7 @@ def demand_site_admin(request: HttpRequest) -> None:
         raise PermissionDenied("Only administrators of this installation may do this.")
 
 
-def demand(request: HttpRequest, duty: Duty) -> None:
+def demand(request: WorldRequest, duty: Duty) -> None:
     """Raise PermissionDenied with a sentence for people without ``duty`` in the world."""
     if not request.duties:
         raise Http404("No such world.")

@@ -1,4 +1,4 @@
-"""Writes the audit log: one entry for each request that has changed something.
+"""Write the audit log: one entry for each request that has changed something.
 
 Middleware of the site calls ``record`` in one place, so that no page or route can be forgotten. A view
 may say with ``note`` what its address does not. Commands that change something call ``record_command``.
@@ -9,9 +9,11 @@ from __future__ import annotations
 import logging
 import re
 from datetime import datetime
+from typing import Any
 
 from django.db import DatabaseError, transaction
 from django.http import HttpRequest, HttpResponse
+from django.urls import ResolverMatch
 
 from annotations.models import ApiToken, AuditEntry, Scope, World
 
@@ -69,6 +71,11 @@ WHAT = {
     "template_duplicate": "copy a template",
     "template_repair": "repair a template",
     "utterances_new": "add utterances",
+    "upload": "store an upload",
+    "upload_undo": "undo an upload",
+    "upload_redo": "store an undone upload again",
+    "utterances_delete": "delete utterances",
+    "utterances_restore": "restore utterances",
     "paraphrase_label": "label a paraphrase",
     "split_new": "freeze a split",
     "split_renew": "freeze a split anew",
@@ -105,6 +112,7 @@ WHAT = {
     "audit_decide": "decide about a label",
     "audit_take_back": "take a decision back",
     "queue_settings": "set shares",
+    "guidelines": "write guidelines",
     "queue_act": "work on an item",
     "queue_ask": "ask for a look",
     "queue_assign": "assign an item",
@@ -114,22 +122,28 @@ WHAT = {
 
 def note(request: HttpRequest, sentence: str) -> None:
     """Say in the audit log what the request was about, of a page or of the API; never a secret."""
-    getattr(request, "_request", request).audit_note = sentence
+    plain: Any = getattr(request, "_request", request)  # the one below that of a route
+    plain.audit_note = sentence
 
 
 def record(request: HttpRequest, response: HttpResponse) -> AuditEntry | None:
     """Write down what ``request`` has done; None for one that has changed nothing."""
-    if not _has_done_something(request, response):
+    match = request.resolver_match
+    if match is None or not _has_done_something(request, match, response):
         return None
-    token, world = getattr(request, "auth", None), _world_of(request)
+    assert request.user.is_authenticated
+    token, world = getattr(request, "auth", None), getattr(request, "world", None)
+    name = world.name if world else match.kwargs.get("world")
+    # None where the request has just deleted it.
+    world = World.objects.filter(name=name).first() if name else None
     return AuditEntry.objects.create(
         world=world,
         world_name=world.name if world else "",
         who=request.user,
         who_name=request.user.get_username(),
         through=token.name if isinstance(token, ApiToken) else "",
-        what=_what(request)[:80],
-        subject=_subject(request)[:MOST_SUBJECT_CHARACTERS],
+        what=_what(request, match)[:80],
+        subject=_subject(request, match)[:MOST_SUBJECT_CHARACTERS],
     )
 
 
@@ -165,46 +179,38 @@ def prune(before: datetime, world: World | None = None) -> int:
     return count
 
 
-def _has_done_something(request: HttpRequest, response: HttpResponse) -> bool:
-    match = request.resolver_match
-    if request.method in SAFE_METHODS or response.status_code >= 400 or match is None:
+def _has_done_something(request: HttpRequest, match: ResolverMatch, response: HttpResponse) -> bool:
+    if request.method in SAFE_METHODS or response.status_code >= 400:
         return False
     if not request.user.is_authenticated or UNRECORDED.search(match.url_name or ""):
         return False
-    if _is_api(request):
+    if _is_api(match):
         scopes = getattr(getattr(match.func, "cls", None), "scopes", {})
         return scopes.get(request.method) != Scope.READ
     # A page that answers a form with itself has refused it, unless it says otherwise.
-    return response.status_code != 200 or bool(request.htmx) or hasattr(request, "audit_note")
+    is_htmx = bool(getattr(request, "htmx", False))
+    return response.status_code != 200 or is_htmx or hasattr(request, "audit_note")
 
 
-def _is_api(request: HttpRequest) -> bool:
-    return "api" in request.resolver_match.namespaces
+def _is_api(match: ResolverMatch) -> bool:
+    return "api" in match.namespaces
 
 
-def _what(request: HttpRequest) -> str:
-    match = request.resolver_match
+def _what(request: HttpRequest, match: ResolverMatch) -> str:
     words = re.sub(r"[_-]+", " ", match.url_name or "")
-    if _is_api(request):
-        return f"{VERBS[request.method]} {words}"
+    if _is_api(match):
+        return f"{VERBS[request.method or '']} {words}"
     if "admin" in match.namespaces:
         return f"site administration: {words}"
-    return WHAT.get(match.url_name, words)
+    return WHAT.get(match.url_name or "", words)
 
 
-def _subject(request: HttpRequest) -> str:
+def _subject(request: HttpRequest, match: ResolverMatch) -> str:
     """Return what a view has noted, else the kind and key of the row that the address names."""
     if sentence := getattr(request, "audit_note", ""):
         return str(sentence)
-    keys = request.resolver_match.kwargs
+    keys = match.kwargs
     names = (
         str(keys[name]) for name in ("kind", "split", "subject", "pk", "object_id") if name in keys
     )
     return " ".join(names)
-
-
-def _world_of(request: HttpRequest) -> World | None:
-    """Return the world of the request, unless the request has just deleted it."""
-    world = getattr(request, "world", None)
-    name = world.name if world else request.resolver_match.kwargs.get("world")
-    return World.objects.filter(name=name).first() if name else None

@@ -2,25 +2,33 @@
 
 from __future__ import annotations
 
-from django.db import IntegrityError, transaction
-from django.db.models import F
+from http import HTTPStatus
 
-from annotations.models import Invitation, User
+from django.db import IntegrityError, transaction
+
+from annotations.language.errors import Refusal
+from annotations.models import Invitation, User, World
 from annotations.people.members import add_roles
 
 MOST_PLACES = 200
 MOST_DAYS = 60
 
 
-class InvitationOver(ValueError):
+class InvitationOver(Refusal):
     """Somebody else took the last place, or the invitation has expired or was withdrawn."""
+
+    code = "invitation_over"
+    status = HTTPStatus.NOT_FOUND
 
     def __init__(self) -> None:
         super().__init__("This invitation is over. Ask whoever sent it to you for another one.")
 
 
-class NameTaken(ValueError):
+class NameTaken(Refusal):
     """An account of this name was made at the same moment."""
+
+    code = "name_taken"
+    status = HTTPStatus.CONFLICT
 
     def __init__(self) -> None:
         super().__init__("A user with that username already exists.")
@@ -32,6 +40,14 @@ def has_joined(invitation: Invitation, user: User) -> bool:
     return set(invitation.roles) <= set(held)
 
 
+def world_joined_by(key: str, user: User) -> World | None:
+    """Return the world that ``user`` has joined, where ``key`` is of an invitation to it, open or over."""
+    invitation = Invitation.objects.ever_made_with(key)
+    if not user.is_authenticated or invitation is None or not has_joined(invitation, user):
+        return None
+    return invitation.world
+
+
 @transaction.atomic
 def join(invitation: Invitation, user: User) -> None:
     """Give ``user`` the roles of the invitation, which takes one of its places.
@@ -41,14 +57,14 @@ def join(invitation: Invitation, user: User) -> None:
     Raises:
         InvitationOver: there is no place left, or it is no longer open.
     """
+    rows = Invitation.objects.select_for_update(no_key=True).filter(pk=invitation.pk)
+    held = rows.first()  # by one person at a time, who takes one place however often they ask
     if has_joined(invitation, user):
         return
-    # One conditional update, so that two people cannot take the last place.
-    rows = Invitation.objects.filter(pk=invitation.pk, joined__lt=F("places"))
-    if not Invitation.objects.open().filter(pk=invitation.pk).exists() or not rows.update(
-        joined=F("joined") + 1
-    ):
+    if held is None or not Invitation.objects.open().filter(pk=held.pk).exists():
         raise InvitationOver
+    held.joined += 1
+    held.save(update_fields=["joined"])
     add_roles(invitation.world, user, invitation.roles)
 
 

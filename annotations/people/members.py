@@ -4,15 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass
+from http import HTTPStatus
 
 from django.db import transaction
 
-from annotations.models import Membership, User, World
+from annotations.language.errors import Refusal
+from annotations.models import Assignment, Membership, User, World
 from annotations.models.worlds import Role
 
 
-class NoAdminLeft(ValueError):
+class NoAdminLeft(Refusal):
     """The change would leave the world without an admin."""
+
+    code = "no_admin_left"
+    status = HTTPStatus.CONFLICT
 
     def __init__(self, world: World) -> None:
         super().__init__(
@@ -60,7 +65,8 @@ def find_account(name: str) -> User | None:
 def set_roles(world: World, user: User, roles: Collection[str], by: User) -> None:
     """Make ``roles`` the roles of ``user`` in ``world``; none removes them from it.
 
-    Whoever is no longer an admin has no invitations open any more.
+    Whoever is no longer an admin has no invitations open any more, and what they held in the work queue
+    and may not do any more is free for others.
 
     Raises:
         NoAdminLeft: the last admin would lose that role. Administrators of the site, who see every
@@ -73,9 +79,13 @@ def set_roles(world: World, user: User, roles: Collection[str], by: User) -> Non
         raise NoAdminLeft(world)
     if Role.ADMIN not in roles and not user.is_superuser:
         world.invitations.filter(created_by=user).delete()
+    Assignment.objects.orphaned().filter(person=user, item__world=world).release()
 
 
-def add_roles(world: World, user: User, roles: Collection[str]) -> None:
-    """Give ``user`` these roles in ``world`` beside those that they have."""
-    for role in roles:
-        Membership.objects.get_or_create(world=world, user=user, role=Role(role))
+def add_roles(world: World, user: User, roles: Collection[str]) -> int:
+    """Give ``user`` these roles in ``world`` beside those that they have. Return how many are new."""
+    made = (
+        Membership.objects.get_or_create(world=world, user=user, role=Role(role))[1]
+        for role in roles
+    )
+    return sum(made)

@@ -27,11 +27,15 @@ MOST_ROWS = 20  # of each table
 
 @dataclass(frozen=True, slots=True)
 class DoubleLabel:
-    """What two people said of one utterance: the form, or the verdict where it is none."""
+    """What two people said of one utterance: the form, or the verdict where it is none.
+
+    ``is_settled`` unless somebody is still asked which of the two is right, and must not see them here.
+    """
 
     title: str
     answers: tuple[str, ...]
     task_category: str
+    is_settled: bool = True
 
     @property
     def heads(self) -> frozenset[str]:
@@ -39,7 +43,7 @@ class DoubleLabel:
 
 
 @dataclass(frozen=True, slots=True)
-class Slice:
+class AgreementSlice:
     """Agreement on a part of the items, such as those of one task category."""
 
     name: str
@@ -60,30 +64,30 @@ def double_labels(world: World) -> list[DoubleLabel]:
     """Return the newest items that two people have labelled, at most ``MOST_ITEMS``."""
     done = Count("assignments", Q(assignments__label__isnull=False))
     items = WorkItem.objects.filter(world=world, people__gt=1, closed_at__isnull=False)
-    keys = list(items.annotate(done=done).filter(done__gt=1).order_by("-pk")[:MOST_ITEMS])
+    is_settled = Q(followed_by=None) | ~Q(followed_by__closed_at=None)
+    annotated = items.annotate(done=done, is_settled=Q(is_settled))  # type: ignore[no-redef]  # declared for readers
+    counted = annotated.filter(done__gt=1)
+    keys = list(counted.order_by("-pk")[:MOST_ITEMS])
     answers: dict[int, list[str]] = defaultdict(list)
     rows = Assignment.objects.done().filter(item__in=keys, label__isnull=False)
-    for item, verdict, form in rows.order_by("pk").values_list(
+    for key, verdict, form in rows.order_by("pk").values_list(
         "item", "label__verdict", "label__form"
     ):
-        answers[item].append(form if verdict == Verdict.FORM else verdict)
+        answers[key].append(form if verdict == Verdict.FORM else verdict)
     categories = categories_of(world, {form for given in answers.values() for form in given})
-    return [
-        DoubleLabel(item.title, tuple(answers[item.pk]), _category(answers[item.pk], categories))
-        for item in keys
-    ]
+    labels = []
+    for item in keys:
+        given = tuple(answers[item.pk])
+        known = (categories[answer] for answer in given if categories.get(answer))
+        category = next(known, "without a category")
+        labels.append(DoubleLabel(item.title, given, category, item.is_settled))
+    return labels
 
 
 def categories_of(world: World, forms: set[str]) -> dict[str, str]:
     """Return the task category of each form that a command has."""
     rows = world.logical_forms.filter(text__in=list(forms)[:MOST_ITEMS])
     return dict(rows.values_list("text", "task_category"))
-
-
-def _category(answers: Sequence[str], categories: dict[str, str]) -> str:
-    return next(
-        filter(None, (categories.get(answer, "") for answer in answers)), "without a category"
-    )
 
 
 def head_of(answer: str) -> str:
@@ -97,15 +101,17 @@ class AgreementReport:
 
     ``is_capped`` where there are more items than the newest ``MOST_ITEMS``; ``has_distances`` where α
     counts a small difference of two forms less than a large one (it compares all pairs of forms, so
-    that with very many of them it only tells equal from different).
+    that with very many of them it only tells equal from different). ``unsettled`` items count in
+    ``overall`` alone: whoever settles them must not see here what was answered.
     """
 
     overall: Agreement
-    by_category: list[Slice]
-    by_head: list[Slice]
+    by_category: list[AgreementSlice]
+    by_head: list[AgreementSlice]
     disagreements: list[Disagreement]
     is_capped: bool
     has_distances: bool
+    unsettled: int
 
 
 def report_agreement(world: World) -> AgreementReport:
@@ -114,13 +120,15 @@ def report_agreement(world: World) -> AgreementReport:
     answers = {answer for label in labels for answer in label.answers}
     has_distances = len(answers) <= MOST_FORMS
     distances = form_distances(FormDistances()) if has_distances else None
+    settled = [label for label in labels if label.is_settled]
     return AgreementReport(
         measure([label.answers for label in labels], distances),
-        _slices(((label.task_category, label) for label in labels), distances),
-        _slices(((head, label) for label in labels for head in label.heads), distances),
-        disagreements(labels),
+        _slices(((label.task_category, label) for label in settled), distances),
+        _slices(((head, label) for label in settled for head in label.heads), distances),
+        disagreements(settled),
         len(labels) == MOST_ITEMS,
         has_distances,
+        len(labels) - len(settled),
     )
 
 
@@ -139,13 +147,17 @@ def _as_form(answer: str) -> Form:
     return Constant(answer) if answer in Verdict.values else read_form(answer)
 
 
-def _slices(named: Iterable[tuple[str, DoubleLabel]], distances: Distances | None) -> list[Slice]:
+def _slices(
+    named: Iterable[tuple[str, DoubleLabel]], distances: Distances | None
+) -> list[AgreementSlice]:
     """Return the agreement on the items of each name, the largest first."""
     groups: dict[str, list[tuple[str, ...]]] = defaultdict(list)
     for name, label in named:
         groups[name].append(label.answers)
     largest = sorted(groups.items(), key=lambda group: (-len(group[1]), group[0]))
-    return [Slice(name, measure(answers, distances)) for name, answers in largest[:MOST_ROWS]]
+    return [
+        AgreementSlice(name, measure(answers, distances)) for name, answers in largest[:MOST_ROWS]
+    ]
 
 
 def disagreements(labels: Sequence[DoubleLabel]) -> list[Disagreement]:
@@ -158,5 +170,6 @@ def disagreements(labels: Sequence[DoubleLabel]) -> list[Disagreement]:
             counts[pair] += 1
             examples.setdefault(pair, label.title)
     return [
-        Disagreement(*pair, count, examples[pair]) for pair, count in counts.most_common(MOST_ROWS)
+        Disagreement(first, second, count, examples[first, second])
+        for (first, second), count in counts.most_common(MOST_ROWS)
     ]

@@ -1,4 +1,4 @@
-"""Verbs: end one person's part of an item, and decide what two independent labels amount to."""
+"""Verbs: end one person's assignment, and decide what two independent labels amount to."""
 
 from __future__ import annotations
 
@@ -8,16 +8,24 @@ from django.db import transaction
 from django.db.models import F, Q
 from django.utils import timezone
 
+from annotations.labelling.label_answers import NoLongerYours
 from annotations.language.forms import equivalent, read_form
 from annotations.models import Assignment, Label, WorkItem
 from annotations.models.corpus import Verdict
-from annotations.models.queueing import FREE_AGAIN, LEASE, OCCUPYING, PRIORITIES, Outcome, WorkKind
-from annotations.queueing.giving import NoLongerYours
+from annotations.models.queueing import (
+    FREE_AGAIN,
+    LEASE,
+    LONGEST_REASON,
+    OCCUPYING,
+    PRIORITIES,
+    Outcome,
+    WorkKind,
+)
 
 
 @dataclass(frozen=True, slots=True)
-class Decision:
-    """What a finished part of ``item`` means: ``accept`` is the label that counts from now on.
+class ItemDecision:
+    """What a finished assignment to ``item`` means: ``accept`` is the label that counts from now on.
 
     It is None while a second person is to answer, and where two labels differ: then ``follow_up`` is
     the item in which a third person compares them.
@@ -28,8 +36,8 @@ class Decision:
     follow_up: WorkItem | None = None
 
 
-def finish(assignment: Assignment, label: Label | None = None) -> Decision:
-    """End a person's part of an item with the ``label`` they gave, if it is about an utterance.
+def finish(assignment: Assignment, label: Label | None = None) -> ItemDecision:
+    """End an assignment with the ``label`` they gave, if it is about an utterance.
 
     A lease that has expired does no harm while nobody else has taken the place.
 
@@ -39,25 +47,26 @@ def finish(assignment: Assignment, label: Label | None = None) -> Decision:
         item, stored = _lock(assignment)
         if stored.outcome in FREE_AGAIN and item.is_open and item.places > 0:
             item.places -= 1  # they came back before anybody else
+        elif stored.outcome == Outcome.DONE:
+            raise NoLongerYours("You have done this already. Take your answer back to change it.")
         elif stored.outcome != Outcome.HELD:
             raise NoLongerYours("Somebody else is doing this now. Your answer was not counted.")
         stored.outcome, stored.label = Outcome.DONE, label
         stored.done_at, stored.leased_until = timezone.now(), None
         stored.save(update_fields=["outcome", "label", "done_at", "leased_until"])
-        done = [stored] if item.people == 1 else _parts_done(item)
+        done = [stored]
+        if item.people > 1:
+            rows = item.assignments.done().select_related("label")
+            done = list(rows.order_by("done_at", "id"))
         is_complete = len(done) >= item.people
         item.closed_at = timezone.now() if is_complete else None
         item.save(update_fields=["places", "closed_at"])
-        labels = [part.label for part in done if part.label is not None]
-        return _decide(item, labels) if is_complete else Decision(item)
-
-
-def _parts_done(item: WorkItem) -> list[Assignment]:
-    return list(item.assignments.done().select_related("label").order_by("done_at", "id"))
+        labels = [each.label for each in done if each.label is not None]
+        return _decide(item, labels) if is_complete else ItemDecision(item)
 
 
 def skip(assignment: Assignment) -> None:
-    """End a person's part without an answer: others may have it, and they do not get it again."""
+    """End an assignment without an answer: others may have it, and they do not get it again."""
     _free(assignment, Outcome.SKIPPED)
 
 
@@ -67,7 +76,7 @@ def give_back(assignment: Assignment) -> None:
 
 
 def take_back(assignment: Assignment) -> None:
-    """Reopen a finished part, whose label its person takes back; they hold the item again.
+    """Reopen a finished assignment, whose label its person takes back; they hold the item again.
 
     Raises NoLongerYours, a sentence, where others have built on the answer already.
     """
@@ -115,17 +124,17 @@ def _free(assignment: Assignment, outcome: Outcome) -> None:
             stored.save(update_fields=["outcome", "leased_until"])
 
 
-def _decide(item: WorkItem, labels: list[Label]) -> Decision:
+def _decide(item: WorkItem, labels: list[Label]) -> ItemDecision:
     if not labels:
-        return Decision(item)
+        return ItemDecision(item)
     if not all(agree(labels[0], other) for other in labels[1:]):
-        return Decision(
-            item, follow_up=_follow(item, WorkKind.ADJUDICATION, _say_difference(labels))
-        )
+        names = " and ".join(str(each.annotator or "somebody") for each in labels)
+        reason = f"{names} gave different answers. Choose one, or write another."
+        return ItemDecision(item, follow_up=_follow(item, WorkKind.ADJUDICATION, reason))
     if labels[0].verdict != Verdict.DISPUTE or item.kind == WorkKind.DISPUTED:
-        return Decision(item, labels[-1])
+        return ItemDecision(item, labels[-1])
     reason = f"Disputed by {labels[0].annotator}: {labels[0].reason}"
-    return Decision(item, labels[-1], _follow(item, WorkKind.DISPUTED, reason))
+    return ItemDecision(item, labels[-1], _follow(item, WorkKind.DISPUTED, reason))
 
 
 def agree(first: Label, second: Label) -> bool:
@@ -137,11 +146,6 @@ def agree(first: Label, second: Label) -> bool:
     return equivalent(read_form(first.form), read_form(second.form))
 
 
-def _say_difference(labels: list[Label]) -> str:
-    names = " and ".join(str(each.annotator or "somebody") for each in labels)
-    return f"{names} gave different answers. Choose one, or write another."
-
-
 def _follow(item: WorkItem, kind: WorkKind, reason: str) -> WorkItem:
     """Add the item that follows from ``item``; an open one of that kind about the subject is used."""
     follow_up, _ = WorkItem.objects.get_or_create(
@@ -151,7 +155,7 @@ def _follow(item: WorkItem, kind: WorkKind, reason: str) -> WorkItem:
         defaults={
             "world": item.world,
             "title": item.title,
-            "reason": reason[:300],
+            "reason": reason[:LONGEST_REASON],
             "priority": PRIORITIES[kind],
             "follows": item,
         },

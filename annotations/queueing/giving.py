@@ -1,4 +1,4 @@
-"""Verbs: give an item to somebody, so that nobody else gets the same place in it.
+"""Verbs: give an item to one person, so that nobody else gets the same place in it.
 
 The row of the item is locked and changed in one short transaction; whoever comes at the same time
 passes over it (PostgreSQL) or waits for the transaction to end (SQLite).
@@ -8,30 +8,32 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import datetime, timedelta
+from http import HTTPStatus
 
 from django.db import connection, transaction
 from django.db.models import F
 from django.utils import timezone
 
+from annotations.language.errors import Refusal
 from annotations.models import Assignment, Duty, User, WorkItem, World
 from annotations.models.queueing import (
+    DONE_ELSEWHERE,
     LEASE,
     AssignmentQuerySet,
     Outcome,
     WorkItemQuerySet,
     WorkKind,
 )
-from annotations.queueing.sources import refill
+from annotations.queueing.enqueuing import refill
 
+# A lease as young as this is not extended, so that looking at an item again waits for no writer.
+FRESH = timedelta(minutes=5)
 MOST_EXPIRED = 100  # leases that one request takes back
-
-# What is done on pages of its own, by reviewers too. Everything else about an utterance is to label it.
-DONE_ELSEWHERE = (WorkKind.ADJUDICATION, WorkKind.AUDIT)
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class ItemFilter:
     """Which items somebody asks for: ``labels_only`` are the utterances to label, and those with the keys
     ``without`` are left out."""
 
@@ -51,27 +53,26 @@ class Wanted:
         return rows.filter(item__in=self.of_items(WorkItem.objects.all()))
 
 
-ANYTHING = Wanted()
+ANYTHING = ItemFilter()
 
 
-class NoLongerYours(ValueError):
-    """The item is not the person's any more; a sentence says what happened to it."""
-
-
-class NotForThem(ValueError):
+class NotForThem(Refusal):
     """An item cannot be given to a person; a sentence says why."""
 
+    code = "not_for_them"
+    status = HTTPStatus.CONFLICT
 
-def held_item(person: User, world: World, wanted: Wanted = ANYTHING) -> Assignment | None:
+
+def held_item(person: User, world: World, wanted: ItemFilter = ANYTHING) -> Assignment | None:
     """Return the most urgent item that ``person`` holds in ``world``, or None."""
-    rows = wanted.of_assignments(_assignments_of(person, world)).exclude(
-        leased_until__lt=timezone.now()
-    )
+    rows = wanted.of_assignments(
+        Assignment.objects.held().filter(person=person, item__world=world)
+    ).exclude(leased_until__lt=timezone.now())
     rows = rows.select_related("item__utterance", "item__world")
     return rows.order_by("-item__priority", "id").first()
 
 
-def next_item(person: User, world: World, wanted: Wanted = ANYTHING) -> Assignment | None:
+def next_item(person: User, world: World, wanted: ItemFilter = ANYTHING) -> Assignment | None:
     """Give ``person`` the item they hold, with a fresh lease, or the most urgent one that is free.
 
     Leases that have expired return before. An empty queue is filled from the rows that call for work.
@@ -86,23 +87,46 @@ def next_item(person: User, world: World, wanted: Wanted = ANYTHING) -> Assignme
     return assignment
 
 
-def take(person: User, item: WorkItem) -> Assignment:
-    """Give ``person`` this very item. Raises NotForThem where it is taken, done or not for them."""
-    return _give(item, person, timezone.now() + LEASE, by=None)
+def take(person: User, item: WorkItem, after_skip: bool = False) -> Assignment:
+    """Give ``person`` this very item; what they hold already stays theirs.
+
+    With ``after_skip`` they may have it although they have skipped it.
+
+    Raises NotForThem where others have taken it, it is done or not for them.
+    """
+    with transaction.atomic():
+        stored = WorkItem.objects.select_for_update().get(pk=item.pk)
+        held = stored.assignments.held().filter(person=person).first()
+        if held is None:
+            return _give(stored, person, timezone.now() + LEASE, None, after_skip)
+        if held.leased_until is not None:
+            held.leased_until = timezone.now() + LEASE
+            held.save(update_fields=["leased_until"])
+        return held
 
 
 def assign(item: WorkItem, person: User, by: User) -> Assignment:
     """Give ``item`` to ``person`` without end, as an admin decides. Raises NotForThem."""
-    return _give(item, person, None, by=by)
+    with transaction.atomic():
+        return _give(WorkItem.objects.select_for_update().get(pk=item.pk), person, None, by)
+
+
+def assign_first(rows: WorkItemQuerySet, person: User, count: int, by: User) -> int:
+    """Give ``person`` the ``count`` most urgent of the items that they may do. Return how many it were."""
+    given = 0
+    for item in rows.takeable_by(person).order_by("-priority", "id")[:count]:
+        try:
+            assign(item, person, by=by)
+            given += 1
+        except NotForThem:
+            continue  # taken meanwhile, or not for this person
+    return given
 
 
 def withdraw(assignment: Assignment) -> None:
     """Take a held item from its person, for others to do; does nothing where they no longer hold it."""
     with transaction.atomic():
-        item = WorkItem.objects.select_for_update().get(pk=assignment.item_id)
-        held = Assignment.objects.held().filter(pk=assignment.pk)
-        if held.update(outcome=Outcome.RETURNED, leased_until=None):
-            WorkItem.objects.filter(pk=item.pk).update(places=F("places") + 1)
+        Assignment.objects.filter(pk=assignment.pk).release()
 
 
 def return_expired(world: World) -> None:
@@ -126,30 +150,23 @@ def kinds_for(person: User, world: World) -> list[str]:
     return list(DONE_ELSEWHERE) if Duty.REVIEW in duties else []
 
 
-def _assignments_of(person: User, world: World) -> AssignmentQuerySet:
-    return Assignment.objects.held().filter(person=person, item__world=world)
-
-
-def _hold_on(person: User, world: World, wanted: Wanted) -> Assignment | None:
+def _hold_on(person: User, world: World, wanted: ItemFilter) -> Assignment | None:
     """Return what the person holds, its lease extended."""
     while held := held_item(person, world, wanted):
         if held.item.is_outdated:
-            _close_held(held)
+            with transaction.atomic():
+                close_item(WorkItem.objects.select_for_update().get(pk=held.item_id))
             continue
-        if held.leased_until is None:
+        now = timezone.now()
+        if held.leased_until is None or held.leased_until > now + LEASE - FRESH:
             return held
-        held.leased_until = timezone.now() + LEASE
+        held.leased_until = now + LEASE
         if Assignment.objects.held().filter(pk=held.pk).update(leased_until=held.leased_until):
             return held
     return None
 
 
-def _close_held(held: Assignment) -> None:
-    with transaction.atomic():
-        close_item(WorkItem.objects.select_for_update().get(pk=held.item_id))
-
-
-def _take_free(person: User, world: World, wanted: Wanted) -> Assignment | None:
+def _take_free(person: User, world: World, wanted: ItemFilter) -> Assignment | None:
     kinds = kinds_for(person, world)
     rows = wanted.of_items(WorkItem.objects.filter(world=world, kind__in=kinds))
     with transaction.atomic():
@@ -178,23 +195,27 @@ def _lock_free(rows: WorkItemQuerySet) -> WorkItemQuerySet:
     return rows.select_for_update(skip_locked=True, of=("self",)) if can_skip else rows
 
 
-def _give(item: WorkItem, person: User, until: datetime | None, by: User | None) -> Assignment:
-    with transaction.atomic():
-        stored = WorkItem.objects.select_for_update().get(pk=item.pk)
-        _require_for(stored, person)
-        return _hand_over(stored, person, until, by)
-
-
-def _require_for(item: WorkItem, person: User) -> None:
+def _give(
+    item: WorkItem,
+    person: User,
+    until: datetime | None,
+    by: User | None,
+    after_skip: bool = False,
+) -> Assignment:
+    """Give a place of an item that is locked. Raises NotForThem."""
     if not item.is_open:
         raise NotForThem("This is done already.")
     if item.kind not in kinds_for(person, item.world):
         raise NotForThem(f"{person} has no role in this world that does this.")
+    item.assignments.expired().exclude(person=person).release()
     rows = WorkItem.objects.filter(pk=item.pk)
     if not rows.free().exists():
         raise NotForThem("Somebody is doing this now. Withdraw it from them first.")
-    if not (rows.takeable_by(person) | rows.returned_by(person)).exists():
+    for_them = rows.takeable_by(person) | rows.returned_by(person)
+    if not (rows.not_answered_by(person) if after_skip else for_them).exists():
         raise NotForThem(f"{person} has answered this already, so somebody else has to do it.")
+    item.refresh_from_db(fields=["places"])
+    return _hand_over(item, person, until, by)
 
 
 def _hand_over(item: WorkItem, person: User, until: datetime | None, by: User | None) -> Assignment:
@@ -207,11 +228,11 @@ def _hand_over(item: WorkItem, person: User, until: datetime | None, by: User | 
         "assigned_by": by,
         "taken_at": timezone.now(),
     }
-    part = Assignment(item=item, person=person, **values)
+    assignment = Assignment(item=item, person=person, **values)
     Assignment.objects.bulk_create(  # one statement, whether or not they have had it before
-        [part],
+        [assignment],
         update_conflicts=True,
         unique_fields=["item", "person"],
         update_fields=list(values),
     )
-    return part
+    return assignment

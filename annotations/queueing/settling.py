@@ -1,17 +1,21 @@
-"""Verbs for what is decided on a page of its own: end the item about it, and open it again."""
+"""Verbs for what is decided elsewhere: end the item about it, and open it again."""
 
 from __future__ import annotations
 
-from django.db import transaction
+from collections.abc import Sequence
+from datetime import datetime
 
-from annotations.models import User, WorkItem, WorkKind
-from annotations.models.queueing import WorkItemQuerySet
-from annotations.queueing.enqueuing import Subject, field_of
+from django.db import transaction
+from django.db.models import Count, Q
+
+from annotations.models import Assignment, User, WorkItem, WorkKind
+from annotations.models.queueing import OCCUPYING, Outcome, WorkItemQuerySet
+from annotations.queueing.enqueuing import ItemSubject, field_of
 from annotations.queueing.finishing import finish, take_back
 from annotations.queueing.giving import NotForThem, close_item, take
 
 
-def settle(subject: Subject, kind: WorkKind, by: User) -> None:
+def settle(subject: ItemSubject, kind: WorkKind, by: User) -> None:
     """End the open item of ``kind`` about ``subject``, whoever has it, as done by ``by``."""
     with transaction.atomic():
         item = _items(subject, kind).open().select_for_update().first()
@@ -24,7 +28,7 @@ def settle(subject: Subject, kind: WorkKind, by: User) -> None:
             close_item(item)
 
 
-def unsettle(subject: Subject, kind: WorkKind, by: User) -> None:
+def unsettle(subject: ItemSubject, kind: WorkKind, by: User) -> None:
     """Open the item again that ``settle`` has ended; ``by`` holds it where they had done it.
 
     Raises NoLongerYours, a sentence, where others have gone on from it.
@@ -41,5 +45,22 @@ def unsettle(subject: Subject, kind: WorkKind, by: User) -> None:
             item.save(update_fields=["closed_at", "places"])
 
 
-def _items(subject: Subject, kind: WorkKind) -> WorkItemQuerySet:
+def _items(subject: ItemSubject, kind: WorkKind) -> WorkItemQuerySet:
     return WorkItem.objects.filter(kind=kind, **{field_of(subject): subject})
+
+
+def close_items_about(utterances: Sequence[int], at: datetime) -> None:
+    """Close the open items about the utterances with these keys, whoever has them."""
+    items = WorkItem.objects.open().filter(utterance__in=utterances)
+    held = Assignment.objects.held().filter(item__in=items)
+    held.update(outcome=Outcome.EXPIRED, leased_until=None)
+    items.update(closed_at=at, places=0)
+
+
+def reopen_items_about(utterances: Sequence[int], closed_at: datetime) -> None:
+    """Open the items again that ``close_items_about`` closed at that time; answers that were given stay."""
+    items = WorkItem.objects.filter(utterance__in=utterances, closed_at=closed_at)
+    occupied = Count("assignments", Q(assignments__outcome__in=OCCUPYING))
+    for item in items.annotate(occupied=occupied):  # type: ignore[no-redef]  # declared for readers
+        item.closed_at, item.places = None, max(item.people - item.occupied, 0)
+        item.save(update_fields=["closed_at", "places"])

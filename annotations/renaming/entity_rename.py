@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from django.db.models import Model, Q, QuerySet
+from django.db.models import Model, Q
 
 from annotations.language.corpus import distance
 from annotations.language.errors import LanguageError
 from annotations.language.grounding import Anonymizer
-from annotations.language.renaming import (
+from annotations.language.names import (
     EntityName,
     rename_in_attributes,
     rename_in_conditions,
@@ -23,7 +23,7 @@ from annotations.models import Entity, Paraphrase, Production, SemanticTemplate,
 from annotations.rows.from_rows import ontology_of
 
 MOST_PARAPHRASES = 20_000  # that a request renames an entity in
-Changes = list[tuple[Model, dict[str, Any]]]
+RenamedRows = list[tuple[Model, dict[str, Any]]]
 
 
 class EntityRename:
@@ -55,15 +55,53 @@ class EntityRename:
         if new == self.name.text:
             raise LanguageError("this is its name already", hint="write another one")
 
-    def changes(self, new: str) -> Iterator[tuple[str, Changes]]:
+    def changes(self, new: str) -> Iterator[tuple[str, RenamedRows]]:
         yield "entity", [*self._of_itself(new), *(() if self.is_alias else self._of_others(new))]
         if not self.is_alias:
-            yield "production", self._of_productions(new)
-            yield "template", self._of_templates(new)
-            yield "utterance", self._of_utterances(new)
-        yield "paraphrase", self._of_paraphrases(new)
+            productions = Production.objects.filter(grammar__world=self.world)
+            yield (
+                "production",
+                differing(
+                    (row, {"expansion": rename_in_conditions(row.expansion, self.name, new)})
+                    for row in productions.filter(expansion__icontains=self.name.text)
+                ),
+            )
+            templates = SemanticTemplate.objects.filter(grammar__world=self.world)
+            yield (
+                "template",
+                differing(
+                    (row, self._template(row, new))
+                    for row in templates.filter(
+                        Q(pattern__icontains=self.name.text) | Q(form__icontains=self.name.text)
+                    )
+                ),
+            )
+            # What people said stays as it is; its spans say which entity it names.
+            utterances = Utterance.objects.filter(world=self.world, text__icontains=self.name.text)
+            yield (
+                "utterance",
+                differing((row, {"spans": self._spans(row, new)}) for row in utterances),
+            )
+        text = self.name.text
+        paraphrases = Paraphrase.objects.filter(world=self.world).filter(
+            Q(prompt__icontains=text)
+            | Q(utterance__icontains=text)
+            | Q(grounded_form__icontains=text)
+        )
+        if paraphrases.count() > MOST_PARAPHRASES:
+            raise LanguageError(
+                f"more than {MOST_PARAPHRASES:,} paraphrases name it",
+                hint="download the world, rename there and import it",
+            )
+        anonymizer = Anonymizer(ontology_of(self.world))
+        yield (
+            "paraphrase",
+            differing(
+                (row, self._paraphrase(row, new, anonymizer)) for row in paraphrases.iterator()
+            ),
+        )
 
-    def _of_itself(self, new: str) -> Changes:
+    def _of_itself(self, new: str) -> RenamedRows:
         if self.is_alias:
             aliases = [new if alias == self.name.text else alias for alias in self.row.aliases]
             return [(self.row, {"aliases": list(dict.fromkeys(aliases))})]
@@ -72,7 +110,7 @@ class EntityRename:
             for row in self.rows
         ]
 
-    def _of_others(self, new: str) -> Changes:
+    def _of_others(self, new: str) -> RenamedRows:
         mine = {row.pk for row in self.rows}
         rows = self.row.ontology.entities.exclude(pk__in=mine)
         return differing(
@@ -80,38 +118,14 @@ class EntityRename:
             for row in rows
         )
 
-    def _of_productions(self, new: str) -> Changes:
-        rows = Production.objects.filter(grammar__world=self.world)
-        return differing(
-            (row, {"expansion": rename_in_conditions(row.expansion, self.name, new)})
-            for row in rows.filter(expansion__icontains=self.name.text)
-        )
-
-    def _of_templates(self, new: str) -> Changes:
-        rows = SemanticTemplate.objects.filter(grammar__world=self.world)
-        return differing(
-            (row, self._template(row, new))
-            for row in rows.filter(
-                Q(pattern__icontains=self.name.text) | Q(form__icontains=self.name.text)
-            )
-        )
-
     def _template(self, row: SemanticTemplate, new: str) -> dict[str, Any]:
         pattern = rename_in_conditions(row.pattern, self.name, new)
         form = row.form
-        if self._is_only_one():
+        # Where an entity of another class has the same text, a text in a form may mean that one.
+        rows = self.row.ontology.entities.filter(text=self.row.text)
+        if not rows.exclude(entity_class=self.row.entity_class).exists():
             pattern, form = rename_in_template(pattern, form, self.name.text, new)
         return {"pattern": pattern, "form": form}
-
-    def _is_only_one(self) -> bool:
-        """Return whether no entity of another class has the same text, so that a text in a form means this one."""
-        rows = self.row.ontology.entities.filter(text=self.row.text)
-        return not rows.exclude(entity_class=self.row.entity_class).exists()
-
-    def _of_utterances(self, new: str) -> Changes:
-        """Return the utterances whose form names the entity; what people said stays as it is."""
-        rows = Utterance.objects.filter(world=self.world, text__icontains=self.name.text)
-        return differing((row, {"spans": self._spans(row, new)}) for row in rows)
 
     def _spans(self, row: Utterance, new: str) -> list[list[Any]]:
         mine = [self.name.entity_class, self.name.text]
@@ -119,24 +133,6 @@ class EntityRename:
             [start, end, *([mine[0], new] if entity == mine else entity)]
             for start, end, *entity in row.spans
         ]
-
-    def _of_paraphrases(self, new: str) -> Changes:
-        rows = self._naming(Paraphrase.objects.filter(world=self.world))
-        if rows.count() > MOST_PARAPHRASES:
-            raise LanguageError(
-                f"more than {MOST_PARAPHRASES:,} paraphrases name it",
-                hint="download the world, rename there and import it",
-            )
-        anonymizer = Anonymizer(ontology_of(self.world))
-        return differing((row, self._paraphrase(row, new, anonymizer)) for row in rows.iterator())
-
-    def _naming(self, rows: QuerySet[Paraphrase]) -> QuerySet[Paraphrase]:
-        text = self.name.text
-        return rows.filter(
-            Q(prompt__icontains=text)
-            | Q(utterance__icontains=text)
-            | Q(grounded_form__icontains=text)
-        )
 
     def _paraphrase(self, row: Paraphrase, new: str, anonymizer: Anonymizer) -> dict[str, Any]:
         prompt, utterance = (
@@ -153,7 +149,7 @@ class EntityRename:
         return {**values, "grounded_form": form}
 
 
-def differing(changes: Iterable[tuple[Model, dict[str, Any]]]) -> Changes:
+def differing(changes: Iterable[tuple[Model, dict[str, Any]]]) -> RenamedRows:
     """Leave out what stays as it is."""
     return [
         (row, values)

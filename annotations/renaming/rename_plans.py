@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Protocol
+from collections.abc import Callable, Iterator
+from typing import Any, Protocol
 
 from django.db.models import Q
 
 from annotations.language.errors import LanguageError
 from annotations.language.grammar import ROOT
-from annotations.language.renaming import (
+from annotations.language.names import (
     rename_nonterminal_in_form,
     rename_nonterminal_in_pattern,
     rename_predicate,
@@ -29,17 +29,17 @@ from annotations.models import (
     SemanticTemplate,
     Utterance,
 )
-from annotations.renaming.entity_rename import Changes, EntityRename, differing
+from annotations.renaming.entity_rename import EntityRename, RenamedRows, differing
 from annotations.rows.composition import split_entry
 
 
-class Plan(Protocol):
+class RenamePlan(Protocol):
     """What to do so that a row that was called ``old`` has another name."""
 
     def require_free(self, new: str) -> None:
         """Raise LanguageError where ``new`` is taken or means something else."""
 
-    def changes(self, new: str) -> Iterator[tuple[str, Changes]]:
+    def changes(self, new: str) -> Iterator[tuple[str, RenamedRows]]:
         """Yield each kind of row with the rows that change and their new values."""
 
 
@@ -68,12 +68,12 @@ class NonterminalRename:
         ):
             raise LanguageError(f"there is a ${new} already", hint="choose another name")
 
-    def changes(self, new: str) -> Iterator[tuple[str, Changes]]:
+    def changes(self, new: str) -> Iterator[tuple[str, RenamedRows]]:
         yield "production", self._productions(new)
         yield "template", self._templates(new)
         yield "task category", self._task_categories(new)
 
-    def _productions(self, new: str) -> Changes:
+    def _productions(self, new: str) -> RenamedRows:
         old = self.old
         naming = Q(nonterminal=old) | Q(expansion__contains=f"${old}")
         return differing(
@@ -87,7 +87,7 @@ class NonterminalRename:
             for line in self.grammar.productions.filter(naming)
         )
 
-    def _templates(self, new: str) -> Changes:
+    def _templates(self, new: str) -> RenamedRows:
         token = f"${self.old}"
         naming = Q(pattern__contains=token) | Q(form__contains=token)
         return differing(
@@ -101,7 +101,7 @@ class NonterminalRename:
             for row in self.grammar.templates.filter(naming)
         )
 
-    def _task_categories(self, new: str) -> Changes:
+    def _task_categories(self, new: str) -> RenamedRows:
         return differing(
             (
                 row,
@@ -129,7 +129,7 @@ class PredicateRename:
         if is_used or self.row.world.predicates.filter(name=new).exists():
             raise LanguageError(f"there is a predicate {new} already", hint="choose another name")
 
-    def changes(self, new: str) -> Iterator[tuple[str, Changes]]:
+    def changes(self, new: str) -> Iterator[tuple[str, RenamedRows]]:
         yield "predicate", [(self.row, {"name": new})]
         world, old = self.row.world, self.old
         for noun, rows, names in (
@@ -170,7 +170,7 @@ def _rename_alias(entry: str, old: str, new: str) -> str:
     return f"{source} as ${new}" if alias == old else entry
 
 
-PLANS: dict[type[Editable], type[Plan]] = {
+PLANS: dict[type[Editable], Callable[[Any, str], RenamePlan]] = {
     Production: NonterminalRename,
     Predicate: PredicateRename,
     Entity: EntityRename,

@@ -1,7 +1,7 @@
-"""What people have made of rows that a file brings again: they deleted them, or changed what they are known by.
+"""What people decided about rows that a file brings again: they deleted them, or changed what identifies them.
 
-A file does not undo this unless it is asked to: what is deleted stays away, and a row that was moved or
-renamed is the same row.
+An import does not undo this unless it is asked to: what is deleted stays away, and a row that was moved
+or renamed is the same row.
 """
 
 from __future__ import annotations
@@ -12,21 +12,22 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from annotations.models import Editable, World
+from annotations.models.editing import Placed
 from annotations.rows.history import DELETED, OF_IMPORT, history_of, keys_changed_by_people
-from annotations.rows.synchronise import Plan, batches
+from annotations.rows.synchronise import RowPlan, batches
 
 Row = TypeVar("Row", bound=Editable)
 
 
 @dataclass(frozen=True, slots=True)
-class Decision:
+class RowDecision:
     """``last`` is the newest entry in the history of a row that people have deleted or changed."""
 
     last: Any
 
     @property
     def is_deletion(self) -> bool:
-        return self.last.history_type == DELETED
+        return bool(self.last.history_type == DELETED)
 
     def say(self) -> str:
         """Return who did what and when, as a part of a sentence."""
@@ -36,11 +37,11 @@ class Decision:
         return f"kept as {who} has it since {day}: {self.last.instance}"
 
 
-class Decisions:
+class RowDecisions:
     """The decisions about the rows of one model, by each key that the row had in its history."""
 
     def __init__(self, model: type[Row], world: World, key: Callable[[Row], Hashable]) -> None:
-        self._by_key: dict[Hashable, deque[Decision]] = defaultdict(deque)
+        self._by_key: dict[Hashable, deque[RowDecision]] = defaultdict(deque)
         touched = keys_changed_by_people(model, world)
         entries: dict[int, list[Any]] = defaultdict(list)
         for some in batches(sorted(touched)):
@@ -48,34 +49,31 @@ class Decisions:
             for entry in rows.order_by("history_id"):
                 entries[entry.id].append(entry)
         for versions in entries.values():
-            self._note(versions, key)
+            decision = RowDecision(versions[-1])
+            if decision.is_deletion and decision.last.history_change_reason == OF_IMPORT:
+                continue
+            known_as = {key(version.instance) for version in versions}
+            if not decision.is_deletion:
+                known_as.discard(key(decision.last.instance))
+            for name in known_as:
+                self._by_key[name].append(decision)
 
-    def _note(self, versions: list[Any], key: Callable[[Row], Hashable]) -> None:
-        decision = Decision(versions[-1])
-        if decision.is_deletion and decision.last.history_change_reason == OF_IMPORT:
-            return
-        known_as = {key(each.instance) for each in versions}
-        if not decision.is_deletion:
-            known_as.discard(key(decision.last.instance))
-        for each in known_as:
-            self._by_key[each].append(decision)
-
-    def take(self, key: Hashable) -> Decision | None:
+    def take(self, key: Hashable) -> RowDecision | None:
         """Return a decision about a row that is or was known as ``key``, each of them once."""
         decisions = self._by_key.get(key)
         return decisions.popleft() if decisions else None
 
 
 def respect(
-    plan: Plan[Row], world: World, key: Callable[[Row], Hashable], brings_back: bool
-) -> Plan[Row]:
-    """Take out of the new rows of ``plan`` what people have deleted, moved or renamed.
+    plan: RowPlan[Row], world: World, key: Callable[[Row], Hashable], brings_back: bool
+) -> RowPlan[Row]:
+    """Remove from the new rows of ``plan`` what people have deleted, moved or renamed.
 
     ``brings_back`` lets a file restore what was deleted. Returns the plan.
     """
     if not plan.new:
         return plan
-    decisions = Decisions(plan.model, world, key)
+    decisions = RowDecisions(plan.model, world, key)
     unmatched = {row.pk: row for row in (*plan.removed, *plan.kept)}
     new, plan.new = plan.new, []
     for target in new:
@@ -94,10 +92,11 @@ def respect(
     return plan
 
 
-def _put_in_place(plan: Plan[Row], row: Row, target: Row) -> None:
+def _put_in_place(plan: RowPlan[Row], row: Row, target: Row) -> None:
     """Let ``row`` stay, as people have it, where the file has ``target``."""
     plan.removed = [each for each in plan.removed if each.pk != row.pk]
     plan.moved = [each for each in plan.moved if each.pk != row.pk]
+    assert isinstance(row, Placed) and isinstance(target, Placed)
     if row.position != target.position:
         row.position = target.position
         plan.moved.append(row)

@@ -1,9 +1,9 @@
-"""Turns rows back into the values of the language core. The one place for it."""
+"""Turn rows back into values of the language core. Nothing else does."""
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from django.db.models import QuerySet
@@ -13,13 +13,18 @@ from annotations.language.errors import Position
 from annotations.language.grammar import Grammar, Production, apply_alias, read_production
 from annotations.language.ontology import Entity, Ontology
 from annotations.language.predicates import ArgumentKind, Predicate, PredicateKind, Signature
-from annotations.language.templates import Kept, SemanticTemplate, TaskCategory, make_template
+from annotations.language.templates import (
+    BoundedCache,
+    SemanticTemplate,
+    TaskCategory,
+    make_template,
+)
 from annotations.models.description import TemplateStatus
 from annotations.rows.composition import split_entry
 
 # Texts read before, in this process: an editor asks for the same grammar with every key.
-_GRAMMARS: Kept[tuple[object, ...], Grammar] = Kept(12)
-_TEMPLATES: Kept[tuple[str, str, Position], SemanticTemplate] = Kept(20_000)
+_GRAMMARS: BoundedCache[tuple[object, ...], Grammar] = BoundedCache(12)
+_TEMPLATES: BoundedCache[tuple[str, str, Position], SemanticTemplate] = BoundedCache(20_000)
 
 
 # File → its productions in order: file, line, nonterminal, expansion.
@@ -59,7 +64,15 @@ def annotated_categories(
     if rows is None:
         rows = ready_templates(world)
     values = {row: template_of(row) for row in rows}
-    return tuple(_annotate(category, productions, values) for category in categories)
+    annotated = []
+    for category in categories:
+        # The rows of the sources, source by source, each in its own order.
+        sources = category.template_sources
+        chosen = tuple(row for source in sources for row in values if row.source == source)
+        templates = tuple(values[row] for row in chosen)
+        value = TaskCategory(category.name, _grammar(category, productions), templates)
+        annotated.append(AnnotatedCategory(value, chosen))
+    return tuple(annotated)
 
 
 def ready_templates(world: models.World) -> QuerySet[models.SemanticTemplate]:
@@ -116,10 +129,6 @@ def predicate_of(row: models.Predicate) -> Predicate:
     return Predicate(row.name, PredicateKind(row.kind), tuple(signatures), row.gloss)
 
 
-def _production(source: str, line: int, nonterminal: str, expansion: str) -> Production:
-    return read_production(f"${nonterminal} = {expansion}", Position(source, max(line, 1)))
-
-
 def _by_source(rows: QuerySet[models.Production]) -> dict[str, list[Line]]:
     """Return file → its productions as they are stored: file, line, nonterminal, expansion."""
     by_source: dict[str, list[Line]] = defaultdict(list)
@@ -140,25 +149,9 @@ def _grammar(category: models.TaskCategory, stored: Lines) -> Grammar:
 def _read_grammar(parts: Iterable[tuple[list[Line], str]]) -> Grammar:
     productions: list[Production] = []
     for lines, alias in parts:
-        productions += apply_alias([_production(*line) for line in lines], alias)
+        read = [
+            read_production(f"${nonterminal} = {expansion}", Position(source, max(line, 1)))
+            for source, line, nonterminal, expansion in lines
+        ]
+        productions += apply_alias(read, alias)
     return Grammar(tuple(productions))
-
-
-def _annotate(
-    category: models.TaskCategory,
-    productions: Lines,
-    templates: Mapping[models.SemanticTemplate, SemanticTemplate],
-) -> AnnotatedCategory:
-    chosen = tuple(_in_sets(category.template_sources, templates))
-    values = tuple(templates[row] for row in chosen)
-    return AnnotatedCategory(
-        TaskCategory(category.name, _grammar(category, productions), values), chosen
-    )
-
-
-def _in_sets(
-    sources: list[str], rows: Iterable[models.SemanticTemplate]
-) -> Iterator[models.SemanticTemplate]:
-    """Yield the rows of the sources, source by source, each in its own order."""
-    for source in sources:
-        yield from (row for row in rows if row.source == source)

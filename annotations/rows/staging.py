@@ -1,7 +1,7 @@
-"""Many rows written at once: they are collected in a temporary table first, which holds nobody up.
+"""Write many rows at once: collect them in a temporary table first, so that nobody waits.
 
 A temporary table belongs to one connection. Filling it takes no lock on the database (SQLite has one
-writer), so that the transaction which moves the rows to their table is as short as it can be.
+writer), and the transaction that moves the rows to their table is short.
 """
 
 from __future__ import annotations
@@ -64,7 +64,8 @@ class Staging:
 
     def add_new(self, rows: Iterable[models.Model], progress: Progress = UNWATCHED) -> None:
         """Collect unsaved instances of the model."""
-        fields = [self.model._meta.get_field(name) for name in self._field_names()]
+        by_column = {field.column: field for field in self.model._meta.concrete_fields}
+        fields = [by_column[column] for column in self.columns]
         self.add(
             ((None, *(_for_database(field, row) for field in fields)) for row in rows),
             progress,
@@ -82,7 +83,8 @@ class Staging:
                 f"INSERT INTO {self._target} ({names}) SELECT {values} FROM {self._table} s "
                 "WHERE s.staged_id IS NULL ORDER BY s.staged_number"
             )
-            return cursor.rowcount
+            n_rows: int = cursor.rowcount
+            return n_rows
 
     def update(self, **expressions: str) -> int:
         """Write the rows that have an id over those that are there. Return how many."""
@@ -94,18 +96,15 @@ class Staging:
                 f"UPDATE {self._target} SET {changes} FROM {self._table} s "
                 f"WHERE s.staged_id = {self._target}.id"
             )
-            return cursor.rowcount
-
-    def _field_names(self) -> list[str]:
-        by_column = {field.column: field.name for field in self.model._meta.concrete_fields}
-        return [by_column[column] for column in self.columns]
+            n_rows: int = cursor.rowcount
+            return n_rows
 
 
 def _quote(name: str) -> str:
     return connection.ops.quote_name(name)
 
 
-def _for_database(field: models.Field, row: models.Model) -> Any:
+def _for_database(field: models.Field[Any, Any], row: models.Model) -> Any:
     is_derived = getattr(field, "is_derived", False)
     value = field.pre_save(row, add=True) if is_derived else getattr(row, field.attname)
     return field.get_db_prep_save(value, connection)

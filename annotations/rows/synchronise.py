@@ -1,4 +1,4 @@
-"""Makes stored rows equal to wanted ones and leaves every row alone that is right already."""
+"""Make stored rows equal to wanted ones, and leave every row that is right already as it is."""
 
 from __future__ import annotations
 
@@ -6,11 +6,13 @@ from collections import defaultdict, deque
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field
 from itertools import islice
+from operator import attrgetter
 from typing import Any, Generic, TypeVar
 
 from django.db.models import F, Model, QuerySet
 
 from annotations.models import Editable, User
+from annotations.models.editing import Placed
 from annotations.rows.history import (
     ADDED,
     CHANGED,
@@ -53,7 +55,7 @@ class Changes:
 
 
 @dataclass
-class Plan(Generic[Row]):
+class RowPlan(Generic[Row]):
     """What it takes to make stored rows equal to wanted ones. Nothing is written before ``apply``.
 
     ``kept`` stay though nobody wants them. ``restored`` are rows with the keys of deleted ones, and
@@ -88,22 +90,35 @@ class Plan(Generic[Row]):
         """Change and remove rows, and leave the new ones to the caller."""
         fields = list(self.fields)
         if issubclass(self.model, Editable):
-            self._keep_history(by)
+            self._keep_history(self.model, by)
             fields.append("version")
-        _remove(self.model, self.removed)
+        for batch in batches(self.removed):
+            self.model._default_manager.filter(pk__in=[row.pk for row in batch]).delete()
         if self.changed or self.moved:
-            _rewrite(self.model, self.changed + self.moved, fields)
+            rows = self.changed + self.moved
+            if "position" in fields:
+                # Out of the way first, so that no position is ever taken twice in between.
+                for batch in batches(rows):
+                    chosen = self.model._default_manager.filter(pk__in=[row.pk for row in batch])
+                    chosen.update(position=F("position") + 1_000_000_000)
+            names = [name.removesuffix("_id") for name in fields]
+            self.model._default_manager.bulk_update(rows, names, batch_size=BATCH)
         if self.restored:
             self.model._default_manager.bulk_create(self.restored, batch_size=BATCH)
-            keep(self.restored, ADDED, by, RESTORED)
+            keep(_editable(self.restored), ADDED, by, RESTORED)
 
-    def _keep_history(self, by: User | None) -> None:
+    def _keep_history(self, model: type[Editable], by: User | None) -> None:
         """Keep versions of the rows that changed; one that only moves is no new version."""
-        keep_first(self.model, [row.pk for row in self.changed + self.removed])
-        for row in self.changed:
+        keep_first(model, [row.pk for row in self.changed + self.removed])
+        changed = _editable(self.changed)
+        for row in changed:
             row.version += 1
-        keep(self.changed, CHANGED, by, OF_IMPORT)
-        keep(self.removed, DELETED, by, OF_IMPORT)
+        keep(changed, CHANGED, by, OF_IMPORT)
+        keep(_editable(self.removed), DELETED, by, OF_IMPORT)
+
+
+def _editable(rows: Iterable[Model]) -> list[Editable]:
+    return [row for row in rows if isinstance(row, Editable)]
 
 
 def synchronise(
@@ -127,7 +142,7 @@ def plan(
     key: Callable[[Row], Hashable],
     fields: Sequence[str],
     is_kept: Callable[[Row], bool] = lambda row: False,
-) -> Plan[Row]:
+) -> RowPlan[Row]:
     """Return what it takes to make ``stored`` equal to ``wanted``.
 
     Args:
@@ -141,19 +156,21 @@ def plan(
     waiting: dict[Hashable, deque[Row]] = defaultdict(deque)
     for row in stored:
         waiting[key(row)].append(row)
-    changed, moved, new = [], [], []
+    changed: list[Row] = []
+    moved: list[Row] = []
+    new: list[Row] = []
     for target in wanted:
-        row = waiting[key(target)].popleft() if waiting[key(target)] else None
-        if row is None:
+        match = waiting[key(target)].popleft() if waiting[key(target)] else None
+        if match is None:
             new.append(target)
-        elif differing := _take_over(row, target, fields):
-            (moved if differing <= PLACE_FIELDS else changed).append(row)
+        elif differing := _take_over(match, target, fields):
+            (moved if differing <= PLACE_FIELDS else changed).append(match)
     left = [row for rows in waiting.values() for row in rows]
     kept = [row for row in left if is_kept(row)]
     if "position" in fields:
         moved += _move_behind(kept, len(wanted))
     removed = [row for row in left if not is_kept(row)]
-    return Plan(stored.model, fields, new, changed, moved, removed, kept)
+    return RowPlan(stored.model, fields, new, changed, moved, removed, kept)
 
 
 def _take_over(row: Row, target: Row, fields: Sequence[str]) -> set[str]:
@@ -165,31 +182,13 @@ def _take_over(row: Row, target: Row, fields: Sequence[str]) -> set[str]:
 
 
 def _move_behind(kept: list[Row], first: int) -> list[Row]:
-    moved = []
-    for position, row in enumerate(sorted(kept, key=lambda each: each.position), start=first):
+    moved: list[Row] = []
+    for position, row in enumerate(sorted(kept, key=attrgetter("position")), start=first):
+        assert isinstance(row, Placed)
         if row.position != position:
             row.position = position
             moved.append(row)
     return moved
-
-
-def _remove(model: type[Row], rows: list[Row]) -> None:
-    for batch in batches(rows):
-        model._default_manager.filter(pk__in=[row.pk for row in batch]).delete()
-
-
-def _rewrite(model: type[Row], rows: list[Row], fields: Sequence[str]) -> None:
-    if "position" in fields:
-        _clear_positions(model, rows)
-    names = [name.removesuffix("_id") for name in fields]
-    model._default_manager.bulk_update(rows, names, batch_size=BATCH)
-
-
-def _clear_positions(model: type[Row], rows: list[Row]) -> None:
-    """Move the rows out of the way, so that no position is ever taken twice in between."""
-    for batch in batches(rows):
-        chosen = model._default_manager.filter(pk__in=[row.pk for row in batch])
-        chosen.update(position=F("position") + 1_000_000_000)
 
 
 def batches(rows: Iterable[Any], size: int = BATCH) -> Iterator[list[Any]]:

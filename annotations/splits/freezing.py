@@ -31,6 +31,7 @@ def freeze_split(
     seed: int = 0,
     proportions: Sequence[float] = DEFAULT_PROPORTIONS,
     by: User | None = None,
+    must_be_new: bool = False,
 ) -> Split:
     """Freeze the commands, accepted paraphrases and labelled utterances of ``world`` as the split ``name``.
 
@@ -39,6 +40,7 @@ def freeze_split(
             ``logical_form``, over generated and paraphrased examples together.
         seed: the same world, criterion, proportions and seed give the same split.
         proportions: shares of train, validation and test that sum to 1.
+        must_be_new: refuse a name that is taken, whatever the split of that name holds.
 
     Returns:
         The split; the one that is there already where it holds just the same.
@@ -53,7 +55,10 @@ def freeze_split(
         transaction.atomic(),
     ):
         World.objects.select_for_update().get(pk=world.pk)
-        return prepared.store(world, by)[0]
+        frozen, is_new = prepared.store(world, by)
+    if must_be_new and not is_new:
+        raise LanguageError(f"there is a split {name} already", hint="choose another name")
+    return frozen
 
 
 def plan_split(
@@ -103,7 +108,12 @@ def assign_parts(examples: Sequence[Example], parts: Iterable[Part]) -> None:
     """Give unsaved examples their parts, and their positions in these."""
     for example, part in zip(examples, parts, strict=True):
         example.part = str(part)
-    _number(examples)
+    # As in pair files: by the number of characters of the utterance.
+    following: dict[tuple[str, str], int] = {}
+    for example in sorted(examples, key=lambda each: len(each.utterance)):
+        place = (example.source, example.part)
+        example.position = following.get(place, 0)
+        following[place] = example.position + 1
 
 
 class PreparedSplit:
@@ -128,7 +138,11 @@ class PreparedSplit:
         follows: Split | None = None,
     ) -> None:
         """Raises LanguageError where no split can have the name."""
-        _require_split_name(name)
+        try:
+            Split(name=name).clean_fields(exclude={"world", "criterion", "content_hash"})
+        except ValidationError as error:
+            sentences = " ".join(error.messages)
+            raise LanguageError(f"“{name}” cannot be the name of a split: {sentences}") from error
         self.name = name
         self.criterion = criterion
         self.seed = seed
@@ -156,7 +170,12 @@ class PreparedSplit:
         """
         existing = world.splits.filter(name=self.name).first()
         if existing is not None:
-            self._require_same(existing)
+            is_same = existing.criterion == self.criterion
+            if not is_same or _texts(existing.examples.all()) != _texts(self.examples):
+                raise LanguageError(
+                    f"there is a split {self.name} already, and it holds something else",
+                    hint="a frozen split never changes: choose another name",
+                )
             return existing, False
         created = Split.objects.create(
             world=world,
@@ -171,27 +190,11 @@ class PreparedSplit:
         self._staging.insert(split_id=str(int(created.pk)))
         return created, True
 
-    def _require_same(self, existing: Split) -> None:
-        is_same = existing.criterion == self.criterion
-        if not is_same or _texts(existing.examples.all()) != _texts(self.examples):
-            raise LanguageError(
-                f"there is a split {self.name} already, and it holds something else",
-                hint="a frozen split never changes: choose another name",
-            )
-
 
 def content_hash_of(split: Split) -> str:
     """Return the hash of the examples that ``split`` has now; equal to its ``content_hash`` as long as nobody
     changes them."""
     return content_hash(map(_freeze, split.examples.all().iterator(chunk_size=BATCH)))
-
-
-def _require_split_name(name: str) -> None:
-    try:
-        Split(name=name).clean_fields(exclude={"world", "criterion", "content_hash"})
-    except ValidationError as error:
-        sentences = " ".join(error.messages)
-        raise LanguageError(f"“{name}” cannot be the name of a split: {sentences}") from error
 
 
 def candidates(world: World, only_edited: bool = False) -> Iterator[Example]:
@@ -231,27 +234,18 @@ def candidates(world: World, only_edited: bool = False) -> Iterator[Example]:
             )
 
 
-def _number(examples: Sequence[Example]) -> None:
-    """Return positions in the order of pair files: by the number of characters of the utterance."""
-    following: dict[tuple[str, str], int] = {}
-    for example in sorted(examples, key=lambda each: len(each.utterance)):
-        place = (example.source, example.part)
-        example.position = following.get(place, 0)
-        following[place] = example.position + 1
-
-
-def _texts(examples: Sequence[Example]) -> list[tuple[object, ...]]:
+def _texts(examples: Iterable[Example]) -> list[tuple[object, ...]]:
     """Return what a pair file holds of each example, and where."""
     return [
         (
-            each.source,
-            each.part,
-            each.position,
-            each.utterance,
-            each.logical_form,
-            each.written_form,
+            example.source,
+            example.part,
+            example.position,
+            example.utterance,
+            example.logical_form,
+            example.written_form,
         )
-        for each in examples
+        for example in examples
     ]
 
 

@@ -1,4 +1,4 @@
-"""Verb: freeze a split anew from the corpus of today; what that changes can be seen before.
+"""Verb: freeze a split anew from the corpus of today, and show before what that changes.
 
 Examples keep their parts wherever the criterion allows it, so that runs on both splits can be compared.
 Pairs of an imported split stay as they were published unless people have decided otherwise here.
@@ -7,7 +7,7 @@ Pairs of an imported split stay as they were published unless people have decide
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import count
 
@@ -37,7 +37,7 @@ Said = tuple[str, str]
 
 
 @dataclass(frozen=True, slots=True)
-class Relabelled:
+class RelabelledExample:
     """An utterance with its label in the split and that of today."""
 
     utterance: str
@@ -59,10 +59,10 @@ class PartChanges:
 
 @dataclass(frozen=True, slots=True)
 class SplitChanges:
-    """What a split frozen anew has other than before."""
+    """How a split that is frozen anew differs from the one before."""
 
     parts: tuple[PartChanges, ...]
-    relabelled: tuple[Relabelled, ...]
+    relabelled: tuple[RelabelledExample, ...]
 
     @property
     def is_none(self) -> bool:
@@ -76,9 +76,7 @@ def freeze_anew(old: Split, by: User | None = None) -> Split:
 
     Raises LanguageError where nothing has changed since, or ``old`` was frozen anew already.
     """
-    later = last_of(old)
-    if later != old:
-        raise LanguageError(f"{old} was frozen anew as {later}", hint="freeze that one anew")
+    _require_last(old)
     examples = plan_anew(old)
     if changes_between(old, examples).is_none:
         raise LanguageError(f"nothing has changed since {old} was frozen")
@@ -87,7 +85,14 @@ def freeze_anew(old: Split, by: User | None = None) -> Split:
     )
     with prepared, transaction.atomic():
         World.objects.select_for_update().get(pk=old.world_id)
+        _require_last(old)  # nobody has done the same meanwhile
         return prepared.store(old.world, by)[0]
+
+
+def _require_last(old: Split) -> None:
+    later = last_of(old)
+    if later != old:
+        raise LanguageError(f"{old} was frozen anew as {later}", hint="freeze that one anew")
 
 
 def changes_since(old: Split) -> SplitChanges:
@@ -109,7 +114,7 @@ def plan_anew(old: Split) -> list[Example]:
 
 
 def last_of(old: Split) -> Split:
-    """Return the split that ``old`` was last frozen anew as; itself where it never was."""
+    """Return the newest split that was frozen anew from ``old``; ``old`` itself if none was."""
     seen = {old.pk}
     newest = old
     while later := newest.followed_by.exclude(pk__in=seen).order_by("-pk").first():
@@ -119,7 +124,7 @@ def last_of(old: Split) -> Split:
 
 
 def is_from_import(old: Split) -> bool:
-    """Tell whether the pairs of ``old``, or of a split that it follows, were imported."""
+    """Return whether the pairs of ``old``, or of a split that it follows, were imported."""
     seen: set[int] = set()
     while old.follows is not None and old.pk not in seen:
         seen.add(old.pk)
@@ -128,7 +133,7 @@ def is_from_import(old: Split) -> bool:
 
 
 def proportions_of(old: Split) -> tuple[float, ...]:
-    """Return the shares that were asked for; those that its parts have, where nobody noted them."""
+    """Return the shares that were asked for. If nobody noted them, return those of its parts."""
     if old.proportions:
         return tuple(old.proportions)
     sizes = [old.examples.filter(part=part).count() for part in Part]
@@ -151,9 +156,11 @@ def name_after(old: Split) -> str:
 
 def changes_between(old: Split, examples: Iterable[Example]) -> SplitChanges:
     """Compare the examples of ``old`` with planned ones, utterance by utterance."""
-    before, now = _labels(_rows_of(old)), _labels(_rows(examples))
+    columns = ("source", "utterance", "logical_form", "part")
+    before = _labels(old.examples.order_by().values_list(*columns).iterator(chunk_size=BATCH))
+    now = _labels((each.source, each.utterance, each.logical_form, each.part) for each in examples)
     counts: dict[str, Counter[str]] = {part: Counter() for part in Part}
-    relabelled: list[Relabelled] = []
+    relabelled: list[RelabelledExample] = []
     for said in before.keys() | now.keys():
         was, is_now = before.get(said, ()), now.get(said, ())
         if was != is_now:
@@ -174,22 +181,12 @@ def _labels(rows: Iterable[tuple[str, str, str, str]]) -> dict[Said, Labels]:
     return {said: tuple(sorted(each)) for said, each in labels.items()}
 
 
-def _rows_of(old: Split) -> Iterator[tuple[str, str, str, str]]:
-    columns = ("source", "utterance", "logical_form", "part")
-    return old.examples.order_by().values_list(*columns).iterator(chunk_size=BATCH)
-
-
-def _rows(examples: Iterable[Example]) -> Iterator[tuple[str, str, str, str]]:
-    for each in examples:
-        yield each.source, each.utterance, each.logical_form, each.part
-
-
 def _count_changes(
     said: Said,
     was: list[tuple[str, str]],
     is_now: list[tuple[str, str]],
     counts: Mapping[str, Counter[str]],
-) -> list[Relabelled]:
+) -> list[RelabelledExample]:
     """Count what became of the examples with one utterance; return those with another label."""
     for example in list(was):
         if example in is_now:
@@ -204,7 +201,7 @@ def _count_changes(
     for (before, part), (now, part_now) in zip(was, is_now, strict=False):
         counts[part_now]["relabelled"] += 1
         counts[part_now]["moved"] += part != part_now
-        relabelled.append(Relabelled(said[1], part_now, before, now))
+        relabelled.append(RelabelledExample(said[1], part_now, before, now))
     for _, part in was[len(relabelled) :]:
         counts[part]["removed"] += 1
     for _, part in is_now[len(relabelled) :]:
@@ -228,7 +225,18 @@ def _examples_of_today(old: Split) -> list[Example]:
     frozen: dict[Said, list[Example]] = defaultdict(list)
     for row in old.examples.order_by("pk").iterator(chunk_size=BATCH):
         frozen[row.source, row.utterance].append(row)
-    withdrawn = _withdrawn(old.world)
+    # What people have deleted, do not accept, or have found to have no form stays out.
+    rejected = old.world.paraphrases.exclude(status=ParaphraseStatus.ACCEPTED)
+    deleted = history_of(Paraphrase).filter(world=old.world, history_type=DELETED)
+    without_form = old.world.utterances.filter(
+        status__in=(UtteranceStatus.UNKNOWN, UtteranceStatus.EXCLUDED)
+    )
+    texts = {
+        *rejected.values_list("utterance", flat=True),
+        *deleted.values_list("utterance", flat=True),
+        *without_form.values_list("text", flat=True),
+    }
+    withdrawn = {(Source.PARAPHRASED.value, text) for text in texts}
     examples: list[Example] = []
     for said, rows in frozen.items():
         now = by_said.pop(said, None)
@@ -245,21 +253,6 @@ def _examples_of_today(old: Split) -> list[Example]:
 def _copy(example: Example) -> Example:
     columns = (name for name in PreparedSplit.COLUMNS if name != "position")
     return Example(**{name: getattr(example, name) for name in columns})
-
-
-def _withdrawn(world: World) -> set[Said]:
-    """Return what people have deleted, do not accept, or have found to have no form."""
-    rejected = world.paraphrases.exclude(status=ParaphraseStatus.ACCEPTED)
-    deleted = history_of(Paraphrase).filter(world=world, history_type=DELETED)
-    without_form = world.utterances.filter(
-        status__in=(UtteranceStatus.UNKNOWN, UtteranceStatus.EXCLUDED)
-    )
-    texts = {
-        *rejected.values_list("utterance", flat=True),
-        *deleted.values_list("utterance", flat=True),
-        *without_form.values_list("text", flat=True),
-    }
-    return {(Source.PARAPHRASED.value, text) for text in texts}
 
 
 def _parts_to_keep(old: Split, items: Sequence[SplitItem], criterion: Criterion) -> dict[str, Part]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 from django.db.models import Count
 
@@ -12,6 +13,7 @@ from annotations.language.corpus import (
     MOST_COMPARISONS,
     Leak,
     NearDuplicates,
+    Part,
     SplitItem,
     comparisons,
     near_duplicates,
@@ -19,7 +21,9 @@ from annotations.language.corpus import (
 )
 from annotations.language.errors import LanguageError
 from annotations.models import Example, Split
-from annotations.models.splits import Part, Source
+from annotations.models.splits import Source
+
+KEPT_SPLITS = 64
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +59,9 @@ def counts_of(splits: Iterable[Split]) -> dict[int, list[PartCounts]]:
         split.pk: [
             PartCounts(
                 source,
-                *(sizes[split.pk].get((source, part), 0) for part in Part),
+                sizes[split.pk].get((source, Part.TRAIN), 0),
+                sizes[split.pk].get((source, Part.VALIDATION), 0),
+                sizes[split.pk].get((source, Part.TEST), 0),
                 forms[split.pk, source],
             )
             for source in Source
@@ -70,17 +76,31 @@ def counts_of_planned(examples: Sequence[Example]) -> list[PartCounts]:
     sizes = Counter((example.source, example.part) for example in examples)
     forms = Counter(source for source, _ in {(each.source, each.logical_form) for each in examples})
     return [
-        PartCounts(source, *(sizes[source, part] for part in Part), forms[source])
+        PartCounts(
+            source,
+            sizes[source, Part.TRAIN],
+            sizes[source, Part.VALIDATION],
+            sizes[source, Part.TEST],
+            forms[source],
+        )
         for source in Source
         if forms[source]
     ]
 
 
-def leakage_of(split: Split) -> list[Leak]:
-    """Return what validation and test share with training, both sources together. One query."""
-    parts = _items_by_part(split)
+def leakage_of(split: Split) -> Sequence[Leak]:
+    """Return what validation and test share with training, both sources together.
+
+    One query, and none for a split that was asked about lately: it never changes.
+    """
+    return _leakage_of(split.pk, split.content_hash)
+
+
+@lru_cache(maxsize=KEPT_SPLITS)
+def _leakage_of(key: int, content_hash: str) -> Sequence[Leak]:
+    parts = _items_by_part(Split(pk=key))
     train = parts.pop(Part.TRAIN, [])
-    return [leak for part, items in parts.items() for leak in shared(part, items, train)]
+    return tuple(leak for part, items in parts.items() for leak in shared(part, items, train))
 
 
 def near_duplicates_of(split: Split, limit: int | None = MOST_COMPARISONS) -> list[NearDuplicates]:

@@ -7,21 +7,20 @@ from dataclasses import dataclass
 from typing import Any
 
 from django import template
-from django.http import HttpRequest
 from django.utils.html import format_html, format_html_join
 from django.utils.safestring import SafeString
 
-from annotations.commenting import SUBJECTS, comments_on, people_of
-from annotations.commenting.comments import MENTION
-from annotations.forms import CommentForm
+from annotations.commenting import MENTION, SUBJECTS, comments_on, people_of
 from annotations.models import Comment
+from annotations.people.access import WorldRequest
+from annotations.web.editing.comment_forms import CommentForm
 
 register = template.Library()
 
 MOST_NAMES = 20  # members offered beside the field
 
 
-@register.inclusion_tag("annotations/_comments.html", takes_context=True)
+@register.inclusion_tag("annotations/editing/_comments.html", takes_context=True)
 def comments_section(context: Any, kind: str, row: Any, form: Any = None) -> dict[str, Any]:
     """Show the comments on ``row``, a subject of that ``kind``, and the field for one more."""
     world, request = context["world"], context["request"]
@@ -49,7 +48,7 @@ class ShownComment:
     may_delete: bool
 
 
-def _show(comments: list[Comment], request: HttpRequest) -> Iterator[ShownComment]:
+def _show(comments: list[Comment], request: WorldRequest) -> Iterator[ShownComment]:
     """Yield the comments that are there, and the deleted ones that the reader may restore."""
     for each in comments:
         if not each.is_deleted or each.may_be_restored_by(request.user, request.duties):

@@ -11,7 +11,7 @@ register = template.Library()
 
 @register.filter
 def of_rows(total: int, plural: str) -> str:
-    """Write ``1,211 commands`` or ``1 command``; ``plural`` is what the rows of a list are called."""
+    """Write ``1,211 commands`` or ``1 command``; ``plural`` is the noun of the list."""
     if total != 1:
         return f"{total:,} {plural}"
     return "1 " + re.sub(r"(ie)?s\b", lambda ending: "y" if ending[1] else "", plural, count=1)

@@ -15,12 +15,7 @@ from django.utils.html import format_html, format_html_join
 from django.utils.safestring import SafeString, mark_safe
 
 from annotations import figures
-from annotations.language.errors import Position
-from annotations.language.forms import Change, predicates
-from annotations.language.renaming import CLASS_OF_ATTRIBUTE
-from annotations.models import Predicate
-from annotations.models.editing import NEW
-from annotations.presentation import (
+from annotations.form_presentation import (
     Piece,
     answer_difference,
     answer_pieces,
@@ -33,6 +28,12 @@ from annotations.presentation import (
     tree_of,
     wildcard_class,
 )
+from annotations.language.errors import Position
+from annotations.language.forms import Change, predicates
+from annotations.language.names import CLASS_OF_ATTRIBUTE
+from annotations.markdown import rendered
+from annotations.models import Predicate, World
+from annotations.models.editing import NEW
 
 register = template.Library()
 for written in (
@@ -73,7 +74,8 @@ def filtered_list(context: Any, content: str, noun: str, notation: bool = False)
 def _render_inside(context: Any, name: str, values: dict[str, Any]) -> str:
     """Render a template with the context of the page and ``values``."""
     with context.push(**values):
-        return context.template.engine.get_template(name).render(context)
+        html: str = context.template.engine.get_template(name).render(context)
+        return html
 
 
 @register.simple_block_tag(end_name="end_empty_state")
@@ -87,11 +89,11 @@ def empty_state(content: str, url: str = "", action: str = "") -> str:
 def draft_attributes(context: Any, kind: str, row: Any = None, name: str = "") -> SafeString:
     """Return the attributes of a form whose text is kept as a draft while it is typed.
 
-    ``kind`` is a name in ``annotations.rows.kinds``; without a ``row`` the form makes a new one.
-    ``name``, a short slug, tells apart the forms that make new rows for different reasons.
+    ``kind`` is a name in ``annotations.rows.row_kinds``; without a ``row`` the form makes a new one.
+    ``name``, a short slug, tells apart the forms about one row, and those that make new rows for different reasons.
     """
-    new = f"{NEW}-{name}" if name else NEW
-    world, subject = context["world"], str(row.pk) if row else new
+    about = str(row.pk) if row else NEW
+    world, subject = context["world"], f"{about}-{name}" if name else about
     path = reverse("draft", kwargs={"world": world.name, "kind": kind, "subject": subject})
     return format_html(
         'data-draft="{}-{}-{}" data-draft-of="{}" data-draft-url="{}"',
@@ -114,8 +116,8 @@ def logical_form(
     ``tree`` the form as a tree.
     """
     form = shown(text)
-    if gloss and form.corpus:
-        form = replace(form, gloss=gloss_of(context["world"], form_of(text)))
+    if gloss and (tree_of_text := form_of(text)):
+        form = replace(form, gloss=gloss_of(context["world"], tree_of_text))
     return {"form": form, "tools": tools, "url": url, "tree": tree}
 
 
@@ -130,7 +132,8 @@ def gloss_of_form(context: Any, text: str) -> str:
 def predicates_in(context: Any, text: str) -> QuerySet[Predicate]:
     """Return the declared predicates that a form uses."""
     form = form_of(text)
-    return context["world"].predicates.filter(name__in=predicates(form) if form else ())
+    world: World = context["world"]
+    return world.predicates.filter(name__in=predicates(form) if form else ())
 
 
 @register.filter
@@ -246,7 +249,7 @@ MARKS = {Change.ADDED: "ins", Change.REMOVED: "del", Change.CHANGED: "mark"}
 
 @register.simple_tag
 def marked_text(pieces: list[tuple[str, str]]) -> SafeString:
-    """Show a text with what was added and removed marked (``annotations.presentation.compare``)."""
+    """Show a text with what was added and removed marked (``annotations.form_presentation.compare``)."""
     marked = format_html_join("", "{}", ((_mark_piece(*piece),) for piece in pieces))
     return format_html('<figure class="lf"><code>{}</code></figure>', marked)
 
@@ -277,3 +280,11 @@ def place(at: Any) -> str:
     """
     parts = [at[name] if isinstance(at, dict) else getattr(at, name) for name in PLACE]
     return str(Position(*parts))
+
+
+@register.inclusion_tag("annotations/description/_guidelines_panel.html", takes_context=True)
+def guidelines_panel(context: Any) -> dict[str, Any]:
+    """Show the guidelines of the world, folded, for pages on which people label."""
+    world = context["world"]
+    text = world.guidelines.values_list("text", flat=True).first() or ""
+    return {"world": world, "can": context["can"], "guidelines": rendered(text)}

@@ -1,4 +1,4 @@
-"""The rows of other applications that are part of what a world is. App configs register them."""
+"""Rows of other applications that belong to a world. App configs register them."""
 
 from __future__ import annotations
 

@@ -4,16 +4,37 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from graphlib import TopologicalSorter
+from typing import Any
 
 from django.db import models
 from django.utils import timezone
 
 from annotations.background.progress import UNWATCHED, Progress
-from annotations.models import World
+from annotations.jobs.requesting import request_job
+from annotations.jobs.watching import JobProgress
+from annotations.jobs.weight import MOST_ROWS
+from annotations.models import Job, JobKind, User, World
 from annotations.rows.synchronise import BATCH
 
 # Model → the paths by which its rows belong to a world.
 Paths = dict[type[models.Model], list[str]]
+
+
+def start_deletion(world: World, by: User) -> Job | int:
+    """Delete now and return the number of rows, or hide the world and return the job that deletes it."""
+    if is_heavy_deletion(world):
+        request_deletion(world)
+        return request_job(JobKind.DELETE_WORLD, world.name, by)
+    return delete_world(world)
+
+
+def is_heavy_deletion(world: World) -> bool:
+    return sum(count_below(world).values()) > MOST_ROWS
+
+
+def delete_world_of(job: Job, progress: JobProgress) -> dict[str, Any]:
+    world = World.objects.filter(name=job.world_name, deletion_requested_at__isnull=False).first()
+    return {"rows": delete_world(world, progress)} if world else {"rows": 0}
 
 
 def delete_world(world: World, progress: Progress = UNWATCHED) -> int:
@@ -30,7 +51,7 @@ def delete_world(world: World, progress: Progress = UNWATCHED) -> int:
             progress.check()
             progress.report(deleted / total, f"deleting {model._meta.verbose_name_plural}")
             deleted += len(keys)
-            model._default_manager.filter(pk__in=keys).delete()
+            model._base_manager.filter(pk__in=keys).delete()
     with progress.writing():
         world.delete()
         progress.conclude({"rows": deleted + 1})
@@ -43,10 +64,23 @@ def request_deletion(world: World) -> None:
 
 
 def count_below(world: World) -> dict[type[models.Model], int]:
-    """Return how many rows each model has below ``world``, in an order in which they can be deleted."""
+    """Return how many rows each model has below ``world``, in an order in which they can be deleted.
+
+    Deleted utterances count: their rows are there. One query for all of them.
+    """
     paths = _paths_to_world()
-    counts = {model: _count(model, world, paths[model]) for model in _deletion_order(paths)}
-    return {model: count for model, count in counts.items() if count}
+    order = _deletion_order(paths)
+    first, *others = (
+        _rows_below(model, world, paths[model])
+        .order_by()
+        .annotate(model_number=models.Value(number))
+        .values("model_number")
+        .annotate(rows_below=models.Count("pk"))
+        .values_list("model_number", "rows_below")
+        for number, model in enumerate(order)
+    )
+    counts = dict(first.union(*others, all=True))
+    return {model: counts[number] for number, model in enumerate(order) if number in counts}
 
 
 def _paths_to_world() -> Paths:
@@ -66,7 +100,7 @@ def _paths_to_world() -> Paths:
 def _relations_to(model: type[models.Model]) -> list[models.ForeignObjectRel]:
     """Return what refers to rows of the model, its history included, whose relations have no name."""
     fields = model._meta.get_fields(include_hidden=True)
-    return [each for each in fields if each.auto_created and not each.concrete]
+    return [each for each in fields if isinstance(each, models.ForeignObjectRel)]
 
 
 def _deletion_order(paths: Paths) -> list[type[models.Model]]:
@@ -78,11 +112,13 @@ def _deletion_order(paths: Paths) -> list[type[models.Model]]:
     return list(sorter.static_order())
 
 
-def _count(model: type[models.Model], world: World, paths: list[str]) -> int:
+def _rows_below(
+    model: type[models.Model], world: World, paths: list[str]
+) -> models.QuerySet[models.Model]:
     belongs = models.Q()
     for path in paths:
         belongs |= models.Q(**{path: world.pk})
-    return model._default_manager.filter(belongs).count()
+    return model._base_manager.filter(belongs)
 
 
 def _batches_of_keys(
@@ -90,6 +126,6 @@ def _batches_of_keys(
 ) -> Iterator[list[int]]:
     """Yield keys of rows that still exist; the caller deletes each batch before it asks for the next."""
     for path in paths:
-        rows = model._default_manager.filter(**{path: world.pk}).order_by()
+        rows = model._base_manager.filter(**{path: world.pk}).order_by()
         while keys := list(rows.values_list("pk", flat=True)[:BATCH]):
             yield keys

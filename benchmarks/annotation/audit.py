@@ -4,7 +4,7 @@
 
 Takes the paraphrases that are published with their commands (``paraphrasings.txt``) and the generated commands of
 2018. Somebody has to read the list to say how many of these labels are wrong. Last come the labels that say "male"
-where the command says "female", or the other way round (FORMATS §5).
+where the command says "female", or the other way round (docs/reference/formats.md, Pairs).
 """
 
 from __future__ import annotations
@@ -15,21 +15,22 @@ import time
 from collections import Counter
 from pathlib import Path
 
+from annotations.language.label_errors import Suspect
 from benchmarks.fresh_site import DATA, WORLD, Site
 
 GENDERS = {"male", "female"}
 
 
-def show(number: int, suspect) -> None:
+def show(number: int, suspect: Suspect) -> None:
     scores = ", ".join(f"{each.reason} {each.score:.2f}" for each in suspect.findings)
     print(f"\n{number}. {suspect.pair.utterance}   [{scores}]")
     print(f"   command:   {suspect.pair.source_command}")
     print(f"   label:     {suspect.pair.form}\n   suggested: {suspect.suggested_form}")
 
 
-def says_the_other_gender(suspect) -> bool:
+def says_the_other_gender(suspect: Suspect) -> bool:
     """Whether the command behind the pair contradicts the gender in the label."""
-    from annotations.language.auditing import check_words
+    from annotations.language.label_errors import check_words
 
     findings = check_words([suspect.pair])
     sentences = [each.sentence for each in findings if "command" in each.sentence]
@@ -48,7 +49,7 @@ def main() -> None:
         site.run("import_pairs", str(DATA / "walker2019"), "--world", WORLD, "--name", "walker2019")
         site.enter()
         from annotations.models import World
-        from parser_service.audit import audit_labels
+        from parser_service.label_audit.audit_job import audit_labels
 
         began = time.perf_counter()
         audit = audit_labels(World.objects.get(name=WORLD), folds=args.folds)

@@ -84,7 +84,7 @@ def template_lines(grammar: Any) -> Iterator[str]:
 
 
 def make_world(name: str, files: dict[str, bytes]) -> Any:
-    from annotations.importing import import_generator
+    from annotations.importing.generator_import import import_generator
     from annotations.models import World
 
     World.objects.create(name=name)
@@ -97,12 +97,12 @@ def make_world(name: str, files: dict[str, bytes]) -> Any:
 def forget() -> None:
     """What a process that has just started does not have."""
     from annotations.generation import kept_expansions
-    from annotations.language.templates import Kept
+    from annotations.language.templates import BoundedCache
     from annotations.rows import from_rows
 
-    kept_expansions._EXPANSIONS = Kept(12)
-    kept_expansions._GENERATED = Kept(120_000, lambda generated: len(generated.expansions))
-    from_rows._GRAMMARS, from_rows._TEMPLATES = Kept(12), Kept(20_000)
+    kept_expansions._EXPANSIONS = BoundedCache(12)
+    kept_expansions._GENERATED = BoundedCache(120_000, lambda generated: len(generated.expansions))
+    from_rows._GRAMMARS, from_rows._TEMPLATES = BoundedCache(12), BoundedCache(20_000)
 
 
 def measure(world: Any, user: Any, repeat: int, bound: float) -> None:
@@ -126,7 +126,7 @@ def measure_generation(world: Any) -> None:
 
 
 def measure_consequences(world: Any, chosen: list[Any], bound: float) -> None:
-    from annotations.generation.consequences import TemplateChange, consequences
+    from annotations.generation.world_consequences import TemplateChange, consequences
 
     def look(row: Any, number: int) -> None:
         after = copy.copy(row)
@@ -152,6 +152,7 @@ def measure_edits(world: Any, user: Any, chosen: list[Any]) -> None:
     ]
     report(f"{world}: save a changed form", changed)
     category = TaskCategory.objects.filter(grammar__world=world).last()
+    assert category is not None
     made: list[Any] = []
     added = [
         milliseconds(
@@ -176,9 +177,9 @@ def spread(rows: Any, count: int) -> list[Any]:
 
 def measure_productions(world: Any, user: Any, repeat: int, bound: float) -> None:
     """What a production would become and change, asked about with another word each time, and saved."""
-    from annotations.checking import (
+    from annotations.checking.deletion_check import check_deletion
+    from annotations.checking.production_check import (
         ProductionEdit,
-        check_deletion,
         check_production,
         consequences_of_production,
     )
@@ -208,7 +209,7 @@ def measure_productions(world: Any, user: Any, repeat: int, bound: float) -> Non
 def measure_renames(world: Any, user: Any, repeat: int, bound: float) -> None:
     """What another name changes, and changing it."""
     from annotations.models import Entity, Predicate, Production
-    from annotations.renaming import rename, touched_by
+    from annotations.renaming.world_rename import rename, touched_by
 
     productions = Production.objects.filter(grammar__world=world).exclude(nonterminal="Main")
     first = {row.nonterminal: row for row in reversed(productions)}
@@ -231,7 +232,7 @@ def measure_renames(world: Any, user: Any, repeat: int, bound: float) -> None:
 
 def current_version(row: Any) -> int:
     """Return the version of a row, which another rename may have changed."""
-    return type(row).objects.values_list("version", flat=True).get(pk=row.pk)
+    return int(type(row).objects.values_list("version", flat=True).get(pk=row.pk))
 
 
 def measure_large(commands: int) -> None:

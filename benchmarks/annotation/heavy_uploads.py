@@ -23,7 +23,7 @@ import time
 import urllib.request
 import uuid
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -48,13 +48,13 @@ class Visitor:
 
     def get(self, path: str) -> str:
         with self._opener.open(self._address + path, timeout=120) as answer:
-            return answer.read().decode()
+            return str(answer.read().decode())
 
     def post(
         self, path: str, fields: dict[str, str], files: dict[str, tuple[str, bytes]] | None = None
     ) -> str:
         """Send a form with the token of its page; return where the answer led to."""
-        token = re.search(r'name="csrfmiddlewaretoken" value="([^"]+)"', self.get(path))[1]
+        token = first(r'name="csrfmiddlewaretoken" value="([^"]+)"', self.get(path))
         boundary = uuid.uuid4().hex
         body = io.BytesIO()
         for name, value in {"csrfmiddlewaretoken": token, **fields}.items():
@@ -72,7 +72,14 @@ class Visitor:
         )
         with self._opener.open(request, timeout=600) as answer:
             answer.read()
-            return answer.url
+            return str(answer.url)
+
+
+def first(pattern: str, page: str) -> str:
+    """Return the group of the first match on a page, which has one."""
+    match = re.search(pattern, page)
+    assert match is not None, f"{pattern} is not on the page"
+    return match[1]
 
 
 def _part(boundary: str, disposition: str) -> bytes:
@@ -106,7 +113,7 @@ class Watch(threading.Thread):
             self._visitor.get(PAGES[number % len(PAGES)])
             return
         path = f"/w/{WORLD}/templates/new/"
-        category = re.search(r'<option value="(\d+)"', self._visitor.get(path))[1]
+        category = first(r'<option value="(\d+)"', self._visitor.get(path))
         text = f"a draft {number}"
         fields = {"task_category": category, "pattern": text, "form": text, "status": "draft"}
         self._visitor.post(path, fields)
@@ -179,7 +186,7 @@ def wait_for(visitor: Visitor, url: str) -> tuple[str, float]:
     began = time.monotonic()
     path = "/" + url.split("/", 3)[3] + "state/"
     while time.monotonic() - began < PATIENCE_SECONDS:
-        status = re.search(r"status--(\w+)", visitor.get(path))[1]
+        status = first(r"status--(\w+)", visitor.get(path))
         if status not in ("queued", "running"):
             return status, round(time.monotonic() - began, 1)
         time.sleep(1)
@@ -229,7 +236,7 @@ def measure(address: str) -> dict[str, object]:
     return {**figures, **results}
 
 
-def observe(address: str, act) -> dict[str, object]:
+def observe(address: str, act: Callable[[], object]) -> dict[str, object]:
     watches = {"pages": Watch(address, False), "saves": Watch(address, True)}
     for watch in watches.values():
         watch.start()

@@ -24,7 +24,7 @@ def paraphrases() -> Iterator[tuple[str, Said]]:
     from annotations.models import World
     from parser_service.benchmarking.corpus import read_corpus, source_commands
     from parser_service.parsers.words import words
-    from parser_service.runs.carrying_out.knowledge import anonymizer_of
+    from parser_service.runs.training.knowledge import anonymizer_of
 
     anonymize = anonymizer_of(World.objects.get(name=WORLD))
     sources = source_commands(DATA / "walker2019", anonymize)

@@ -41,7 +41,7 @@ def paste(page: Page, base: str, texts: list[str]) -> None:
 
 def words_of(page: Page) -> str:
     """Return the utterance on the page, without the words of its chips."""
-    return page.evaluate(
+    text: str = page.evaluate(
         """() => {
           const text = document.querySelector(".label-text").cloneNode(true);
           text.querySelectorAll(".chip").forEach((chip) => {
@@ -50,11 +50,12 @@ def words_of(page: Page) -> str:
           return text.textContent;
         }"""
     )
+    return text
 
 
 def answer(page: Page, form: str) -> int:
     """Answer with ``form`` by keys. Returns the number of the candidate, 0 where it was written or is UNKNOWN."""
-    values = page.locator("[data-item] button[name=form]").evaluate_all(
+    values: list[str] = page.locator("[data-item] button[name=form]").evaluate_all(
         "buttons => buttons.map((button) => button.value)"
     )
     if form == "UNKNOWN":
@@ -75,7 +76,9 @@ def sit(page: Page, base: str, forms: dict[str, str], pause: float) -> list[tupl
     page.goto(f"{base}/label/")
     page.wait_for_selector("[data-label-page][data-ready]")
     taken = []
-    while item := page.query_selector("[data-item]"):
+    while page.wait_for_selector("[data-asks], [data-label-done]") and (
+        item := page.query_selector("[data-item]")
+    ):
         key = item.get_attribute("data-item")
         text = words_of(page)
         if text not in forms:

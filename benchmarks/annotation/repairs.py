@@ -2,7 +2,7 @@
 
     python -m benchmarks.annotation.repairs FOLDER [--most 12] [--seed 0]
 
-FOLDER holds the files of a generator. Mistakes are those of tests/annotations/language/writing/mistakes.py.
+FOLDER holds the files of a generator. Mistakes are those of tests/annotations/language/assistance/mistakes.py.
 A mistake counts as taken back if the repaired template has the pattern and the canonical form of the
 original. ``first``: by the first repair of a problem; ``any``: by one of those offered.
 """
@@ -15,9 +15,10 @@ from collections import Counter
 from pathlib import Path
 from random import Random
 
+from annotations.language.assistance import Sides, Usage, usage_of, with_repairs
+from annotations.language.errors import Repair
 from annotations.language.templates import SemanticTemplate, TemplateChecker, read_sides
-from annotations.language.writing import Sides, Usage, usage_of, with_repairs
-from tests.annotations.language.writing.mistakes import mistakes, published_checkers, value_of
+from tests.annotations.language.assistance.mistakes import mistakes, published_checkers, value_of
 
 COUNTS = ("made", "noticed", "offered", "first", "any")
 
@@ -43,7 +44,7 @@ def try_mistake(
     fresh = [problem for problem in repaired if problem.message not in usual]
     offered = [problem.repairs for problem in fresh if problem.repairs]
 
-    def is_right(repair) -> bool:
+    def is_right(repair: Repair) -> bool:
         after = sides.after(repair)
         mended, _ = read_sides(after.pattern, after.form)
         return mended is not None and value_of(mended) == value_of(template)

@@ -23,7 +23,7 @@ from statistics import median
 from annotations.language.errors import Position
 from annotations.language.forms import canonical_text, equivalent, to_template
 from annotations.language.predicates import Predicate
-from annotations.language.suggesting import FormSuggester, PatternMaker, Suggestion
+from annotations.language.suggestions import FormSuggester, PatternMaker, Suggestion
 from annotations.language.symbols import Symbols, print_sequence
 from annotations.language.templates import (
     SemanticTemplate,
@@ -38,7 +38,7 @@ from benchmarks.fresh_site import DATA
 
 
 @dataclass(frozen=True)
-class Outcome:
+class SuggestionOutcome:
     """What was suggested for one template that was left out. ``rank`` is 0 where its form is not among it.
 
     ``is_typed`` says for each suggestion whether the checker has nothing to say about the form; ``seconds`` is
@@ -94,13 +94,15 @@ def lines(categories: Sequence[TaskCategory]) -> Iterator[tuple[TaskCategory, Se
                 yield category, template
 
 
-def judge(category: TaskCategory, template: SemanticTemplate, suggester: FormSuggester) -> Outcome:
+def judge(
+    category: TaskCategory, template: SemanticTemplate, suggester: FormSuggester
+) -> SuggestionOutcome:
     start = time.process_time()
     suggestions = suggester.suggest(template.pattern, category.grammar)
     seconds = time.process_time() - start
     texts = [canonical_text(each.form) for each in suggestions]
     gold = canonical_text(template.form)
-    return Outcome(
+    return SuggestionOutcome(
         template,
         suggestions,
         texts.index(gold) + 1 if gold in texts else 0,
@@ -152,7 +154,7 @@ def share(count: int, total: int) -> str:
     return f"{count} of {total} ({100 * count / max(total, 1):.1f} %)"
 
 
-def show(outcome: Outcome) -> None:
+def show(outcome: SuggestionOutcome) -> None:
     print(f"{outcome.rank or '–'}  {outcome.template.pattern_text}")
     print(f"     written    {to_template(outcome.template.form)}")
     for suggestion in outcome.suggestions[:2]:

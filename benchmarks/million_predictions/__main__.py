@@ -21,17 +21,54 @@ from __future__ import annotations
 
 import argparse
 import os
+import resource
 import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
 
-from benchmarks.fresh_site import DATA, ROOT, Site
-from benchmarks.million_predictions.databases import create_database, drop_database
+import psycopg
+
+from benchmarks.fresh_site import DATA, ROOT, WORLD, Site
 from benchmarks.million_predictions.filling import fill
-from benchmarks.million_predictions.proposing import propose
 from benchmarks.million_predictions.requesting import measure
+
+
+def create_database(address: str) -> None:
+    """Create the database that an address names. Exits where there is one, which might hold something."""
+    server, _, name = address.rpartition("/")
+    with psycopg.connect(f"{server}/postgres", autocommit=True) as connection:
+        try:
+            connection.execute(f'CREATE DATABASE "{name}"')
+        except psycopg.errors.DuplicateDatabase:
+            sys.exit(f"There is a database {name} already; name another one.")
+
+
+def drop_database(address: str) -> None:
+    server, _, name = address.rpartition("/")
+    with psycopg.connect(f"{server}/postgres", autocommit=True) as connection:
+        connection.execute(f'DROP DATABASE "{name}" WITH (FORCE)')
+
+
+def propose() -> None:
+    """Propose for the run with the most errors, which is the first one."""
+    from annotations.background.progress import UNWATCHED
+    from annotations.models import World
+    from parser_service.analyses.attractor_findings import attractors_in
+    from parser_service.analyses.stored_findings import findings_of
+    from parser_service.reviews.category_proposals import propose_for_run
+
+    run = World.objects.get(name=WORLD).runs.order_by("pk")[0]
+    attractors = attractors_in(findings_of(run, "test"))
+    began, used = time.perf_counter(), time.process_time()
+    count = propose_for_run(run, attractors, UNWATCHED)
+    wall, processor = time.perf_counter() - began, time.process_time() - used
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    print(
+        f"proposing categories for {count:,} errors: {processor:.1f} s of processor time, "
+        f"{wall:.1f} s, peak memory {peak:.0f} MiB, load {os.getloadavg()[0]:.1f}"
+    )
 
 
 def main() -> None:
@@ -78,7 +115,13 @@ def prepare(site: Site, examples: int) -> None:
         sys.exit(f"needs the published files (GPSR_SHARED_DATA), and {DATA} does not hold them")
     site.import_world()
     site.run("createcachetable")
-    command = [sys.executable, "-m", __spec__.name, "--fill", f"--examples={examples}"]
+    command = [
+        sys.executable,
+        "-m",
+        "benchmarks.million_predictions",
+        "--fill",
+        f"--examples={examples}",
+    ]
     began = time.perf_counter()
     if subprocess.run(command, cwd=ROOT, env=site.environment, check=False).returncode:
         sys.exit("The database could not be filled.")

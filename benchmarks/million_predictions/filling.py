@@ -65,9 +65,9 @@ def fill(examples: int) -> None:
 def analyse(split: Any) -> None:
     """Let the analyses of a whole part be stored, as a worker does."""
     from annotations.background.progress import UNWATCHED
-    from parser_service.analysing.carrying_out import OF_PARTS
-    from parser_service.analysing.findings import keep_finding
-    from parser_service.analysing.target import Target
+    from parser_service.analyses.analysis_job import OF_PARTS
+    from parser_service.analyses.stored_findings import keep_finding
+    from parser_service.analyses.target import Target
 
     for run in split.runs.all():
         target = Target(run, "test")
@@ -105,7 +105,7 @@ def store_examples(split: Any, part: str, commands: list[Any], count: int) -> No
 def store_run(split: Any, number: int, keys: list[tuple[int, str]], forms: list[str]) -> None:
     """Store a run with its first answers and a proposed category for each wrong one."""
     from parser_service.models import Prediction, Review
-    from parser_service.reviewing.categories import ensure_categories
+    from parser_service.reviews.world_categories import ensure_categories
 
     dice, share = random.Random(number + 1), ACCURACIES[number]
     run = make_run(split, number)

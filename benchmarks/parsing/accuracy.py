@@ -1,6 +1,6 @@
 """The paper's accuracy table, from the cells of ``manage.py benchmark``.
 
-    .venv/bin/python -m benchmarks.parsing.accuracy cells.json [--markdown | --latex] [--part validation]
+    .venv/bin/python -m benchmarks.parsing.accuracy cells.json [--markdown | --latex | --csv] [--part validation]
 
 One table per protocol, with a row for each parser and a column for each setting and criterion. A figure is
 exact match in percent, the mean over seeds. By form there are three: on unseen forms, on known ones, and the
@@ -9,6 +9,8 @@ form, else source commands) and trainings are drawn with replacement. A figure i
 than every other one of its column, by a paired bootstrap with Holm's correction. New splits are rows of
 their own. The standard deviations between trainings stand in a second table. The paper's figure, always
 on the test parts, is in parentheses.
+
+``--csv`` prints a row for each cell instead, with its conditions and figures.
 """
 
 from __future__ import annotations
@@ -35,15 +37,16 @@ from benchmarks.parsing.accuracy_figures import (  # noqa: E402
     KNOWN,
     ROW,
     UNSEEN,
+    as_csv,
     counts_in_words,
     is_current,
     read_figures,
 )
-from parser_service.benchmarking.cells import CellFile  # noqa: E402
+from parser_service.benchmarking.benchmark_cells import CellFile  # noqa: E402
 from parser_service.parsers.conditions import SETTINGS, Protocol  # noqa: E402
 from parser_service.parsers.registry import PARSERS  # noqa: E402
 from parser_service.results.published import published_accuracy  # noqa: E402
-from parser_service.results.tables import MARK, MAY_KNOW_CORPORA, may_know_corpora  # noqa: E402
+from parser_service.results.table_parts import MARK, MAY_KNOW_CORPORA, may_know_corpora  # noqa: E402
 
 __all__ = ["main", "read_figures", "tables"]
 
@@ -56,7 +59,7 @@ Column = tuple[str, str, str]  # setting, criterion, figure
 
 
 @dataclass(frozen=True, slots=True)
-class Figure:
+class AccuracyFigure:
     """One figure of the table, in percent. ``reach`` is how far its 95 % interval goes to either side at most, None
     where that was not measured;
     ``spread`` the standard deviation between trainings, None for one."""
@@ -69,19 +72,19 @@ class Figure:
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class AccuracyTable:
     """One protocol. ``rows`` name, then a figure or None for each of ``columns``."""
 
     protocol: str
     columns: tuple[Column, ...]
-    rows: tuple[tuple[str, tuple[Figure | None, ...]], ...]
+    rows: tuple[tuple[str, tuple[AccuracyFigure | None, ...]], ...]
 
     @property
     def has_spread(self) -> bool:
         return any(each and each.spread is not None for _, row in self.rows for each in row)
 
 
-def tables(figures: pd.DataFrame) -> list[Table]:
+def tables(figures: pd.DataFrame) -> list[AccuracyTable]:
     """The tables in the order of the protocols, each with the columns that were measured in it."""
     return [
         _table(protocol, figures[figures["protocol"] == protocol])
@@ -90,7 +93,7 @@ def tables(figures: pd.DataFrame) -> list[Table]:
     ]
 
 
-def _table(protocol: str, figures: pd.DataFrame) -> Table:
+def _table(protocol: str, figures: pd.DataFrame) -> AccuracyTable:
     measured = set(zip(figures["setting"], figures["criterion"], strict=True))
     columns = tuple(
         (setting, by, figure)
@@ -107,7 +110,7 @@ def _table(protocol: str, figures: pd.DataFrame) -> Table:
             for column in columns
         ]
         rows.append((_row_name(key, order), tuple(row)))
-    return Table(protocol, columns, tuple(rows))
+    return AccuracyTable(protocol, columns, tuple(rows))
 
 
 def _row_name(row: tuple[str, str, str, bool], rows: Sequence[tuple[str, str, str, bool]]) -> str:
@@ -123,7 +126,7 @@ def _row_name(row: tuple[str, str, str, bool], rows: Sequence[tuple[str, str, st
     return name + (", new splits" if on_new else "")
 
 
-def _figure(parser: str, column: Column, row: pd.Series) -> Figure:
+def _figure(parser: str, column: Column, row: pd.Series) -> AccuracyFigure:
     setting, criterion, figure = column
     train, _, test = setting.rpartition("-")
     mean, low, high = (float(row[name]) for name in ("mean", "low", "high"))
@@ -131,17 +134,17 @@ def _figure(parser: str, column: Column, row: pd.Series) -> Figure:
     spread = None if pd.isna(row["std"]) else float(row["std"])
     is_papers = figure in (ACCURACY, UNSEEN) and not row["on_new"]
     published = published_accuracy(parser, (train, test), criterion) if is_papers else None
-    return Figure(mean, reach, spread, published, bool(row["is_best"]))
+    return AccuracyFigure(mean, reach, spread, published, bool(row["is_best"]))
 
 
-def _heads(table: Table) -> list[str]:
+def _heads(table: AccuracyTable) -> list[str]:
     return [
         f"{CRITERIA[by]}{'' if figure == ACCURACY else f', {figure}'}"
         for _, by, figure in table.columns
     ]
 
 
-def to_markdown(table: Table) -> str:
+def to_markdown(table: AccuracyTable) -> str:
     settings = (setting for setting, _, _ in table.columns)
     head = ["parser", *map(" ".join, zip(settings, _heads(table), strict=True))]
     rule = ["---", *["---:"] * len(table.columns)]
@@ -156,15 +159,15 @@ def _lines(rows: Sequence[Sequence[str]]) -> str:
     return "\n".join(f"| {' | '.join(row)} |" for row in rows)
 
 
-def _cells(table: Table, write: Callable[[Figure | None], str]) -> list[list[str]]:
+def _cells(table: AccuracyTable, write: Callable[[AccuracyFigure | None], str]) -> list[list[str]]:
     return [[f"`{name}`", *map(write, row)] for name, row in table.rows]
 
 
-def _spread_of(figure: Figure | None) -> str:
+def _spread_of(figure: AccuracyFigure | None) -> str:
     return "–" if figure is None or figure.spread is None else f"{figure.spread:.1f}"
 
 
-def to_latex(table: Table) -> str:
+def to_latex(table: AccuracyTable) -> str:
     """A booktabs tabular; a setting spans its criteria, as in the paper."""
     settings = list(dict.fromkeys(setting for setting, _, _ in table.columns))
     spans = [sum(setting == each for each, _, _ in table.columns) for setting in settings]
@@ -184,7 +187,7 @@ def to_latex(table: Table) -> str:
     )
 
 
-def _in_markdown(figure: Figure | None) -> str:
+def _in_markdown(figure: AccuracyFigure | None) -> str:
     if figure is None:
         return "–"
     mean = f"**{figure.mean:.1f}**" if figure.is_best else f"{figure.mean:.1f}"
@@ -192,7 +195,7 @@ def _in_markdown(figure: Figure | None) -> str:
     return mean + reach + ("" if figure.published is None else f" ({figure.published:.1f})")
 
 
-def _in_latex(figure: Figure | None) -> str:
+def _in_latex(figure: AccuracyFigure | None) -> str:
     if figure is None:
         return "--"
     mean = rf"\textbf{{{figure.mean:.1f}}}" if figure.is_best else f"{figure.mean:.1f}"
@@ -214,9 +217,9 @@ def note(figures: pd.DataFrame, part: str, left_out: int) -> str:
     """What the figures are, in sentences."""
     new = figures[figures["on_new"]]
     on_new = [
-        f"{counts_in_words(new[new['criterion'] == each], 'splits')} by {by}"
-        for each, by in CRITERIA.items()
-        if each in set(new["criterion"])
+        f"{counts_in_words(new[new['criterion'] == criterion], 'splits')} by {by}"
+        for criterion, by in CRITERIA.items()
+        if criterion in set(new["criterion"])
     ]
     seeds = counts_in_words(figures, "seeds")
     sentences = [
@@ -251,13 +254,19 @@ def main(arguments: Sequence[str] | None = None) -> None:
     style = parser.add_mutually_exclusive_group()
     style.add_argument("--markdown", dest="show", action="store_const", const=to_markdown)
     style.add_argument("--latex", dest="show", action="store_const", const=to_latex)
+    style.add_argument(
+        "--csv", action="store_true", help="a row for each cell, not for each parser"
+    )
     given = parser.parse_args(arguments)
-    show: Callable[[Table], str] = given.show or to_markdown
+    show: Callable[[AccuracyTable], str] = given.show or to_markdown
     try:
         if not given.cells.is_file():
             raise ValueError(f"{given.cells} is no file; manage.py benchmark --json writes it.")
         cells = CellFile(given.cells).cells
         names = given.parsers.split(",") if given.parsers else [cell["parser"] for cell in cells]
+        if given.csv:
+            print(as_csv([cell for cell in cells if cell["parser"] in names]), end="")
+            return
         figures = read_figures(cells, given.part, names)
     except ValueError as error:
         sys.exit(str(error))

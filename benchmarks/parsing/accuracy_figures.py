@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 from collections.abc import Iterator, Sequence
 from itertools import groupby
@@ -151,3 +153,34 @@ def counts_in_words(figures: pd.DataFrame, what: str) -> str:
     word = what.removesuffix("s") if counts == [1] else what
     numbers = " or ".join(map(str, counts))
     return f"{numbers} {'new ' if what == 'splits' else ''}{word}" if counts else ""
+
+
+def as_csv(cells: Sequence[dict[str, Any]]) -> str:
+    """Return a row for each cell with its conditions and figures, as CSV.
+
+    What the intervals are drawn from (the outcomes of each cluster), the risk-coverage curves and the key
+    are left out: they make a file of cells a hundred times as long.
+    """
+    rows = [_row_of(cell) for cell in cells]
+    lines = io.StringIO()
+    names = dict.fromkeys(name for row in rows for name in row)
+    writer = csv.DictWriter(lines, names, restval="", lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return lines.getvalue()
+
+
+def _row_of(cell: dict[str, Any]) -> dict[str, Any]:
+    row: dict[str, Any] = {}
+    for name, value in cell.items():
+        if name == "configuration":
+            row[name] = json.dumps(value)
+        elif name == "calibration":
+            for part, measures in value.items():
+                single = {key: each for key, each in measures.items() if not isinstance(each, list)}
+                row |= {f"{key}_{part}": each for key, each in single.items()}
+        elif name.startswith("interval") and value:
+            row |= dict(zip((f"{name}_low", f"{name}_high"), value, strict=True))
+        elif name not in ("outcomes", "key"):
+            row[name] = round(value, 6) if isinstance(value, float) else value
+    return row

@@ -30,8 +30,8 @@ def support_of_forms(protocol: str, splits: int) -> Iterator[dict[str, object]]:
     """
     from annotations.models import World
     from parser_service.benchmarking.corpus import new_split
-    from parser_service.parsers.candidates.generation import reach
-    from parser_service.runs.carrying_out.knowledge import knowledge_of
+    from parser_service.parsers.new_forms.generation import reach
+    from parser_service.runs.training.knowledge import knowledge_of
 
     knowledge = knowledge_of(World.objects.get(name=WORLD), protocol)
     for seed in range(splits):
@@ -41,9 +41,9 @@ def support_of_forms(protocol: str, splits: int) -> Iterator[dict[str, object]]:
         held = [pair for part in HELD_OUT for pair in corpus.pairs(part, ["paraphrased"])]
         meant = Counter(pair.form for pair in held)
         support = dict.fromkeys(meant, 0)
-        for each in reach(pairs, knowledge).candidates():
-            if each.form not in training:
-                support[each.form] = each.support
+        for candidate in reach(pairs, knowledge).candidates():
+            if candidate.form not in training:
+                support[candidate.form] = candidate.support
         for form, number in support.items():
             yield {"support": number, "pairs": meant[form]}
 
@@ -62,7 +62,7 @@ def main() -> None:
 
 def report(protocol: str, forms: pd.DataFrame, splits: int) -> None:
     from parser_service.neural.ranker.ranked_forms import MOST_SUPPORT
-    from parser_service.parsers.candidates.pool import SURE
+    from parser_service.parsers.new_forms.pool import SURE
 
     kept = forms[forms["support"] >= SURE]
     covered = 100 * kept["pairs"].sum() / forms["pairs"].sum()

@@ -15,6 +15,7 @@ import tempfile
 import time
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import torch
 from tokenizers import Tokenizer, models, pre_tokenizers, processors
@@ -28,7 +29,7 @@ from transformers import (
 
 from benchmarks.fresh_site import DATA
 from parser_service.benchmarking.corpus import read_corpus
-from parser_service.neural.t5.parser import T5
+from parser_service.neural.t5.t5_parser import T5
 from parser_service.parsers.hyperparameters.t5 import EncoderDecoderConfig
 from parser_service.parsers.interface import Observer, Pair
 
@@ -45,14 +46,14 @@ def make_model(size: str) -> PreTrainedModel:
         heads = {"encoder_attention_heads": 12, "decoder_attention_heads": 12}
         wide = {"encoder_ffn_dim": 3072, "decoder_ffn_dim": 3072}
         ends = {"pad_token_id": 0, "eos_token_id": 1, "bos_token_id": 3}
-        config = BartConfig(**shape, **heads, **wide, **ends, decoder_start_token_id=1)
-        return BartForConditionalGeneration(config)
-    shapes = {
+        sizes: Any = {**shape, **heads, **wide, **ends}
+        return BartForConditionalGeneration(BartConfig(**sizes, decoder_start_token_id=1))
+    shapes: dict[str, Any] = {
         "t5-small": {"d_model": 512, "d_ff": 2048, "num_layers": 6, "num_heads": 8},
         "t5-base": {"d_model": 768, "d_ff": 3072, "num_layers": 12, "num_heads": 12},
     }
-    config = T5Config(vocab_size=WORDS, decoder_start_token_id=0, **shapes[size])
-    return T5ForConditionalGeneration(config)
+    start: Any = {"decoder_start_token_id": 0}
+    return T5ForConditionalGeneration(T5Config(vocab_size=WORDS, **start, **shapes[size]))
 
 
 def write_checkpoint(folder: Path, size: str, pairs: list[Pair]) -> None:

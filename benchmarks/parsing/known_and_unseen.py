@@ -31,7 +31,9 @@ EVERY_FORM = sys.maxsize  # answers to an utterance
 SHARE = 0.1  # of the source commands
 
 
-def hold_out(pairs: Sequence[Pair], source_of: Callable[[Pair], str]) -> tuple[list, list]:
+def hold_out(
+    pairs: Sequence[Pair], source_of: Callable[[Pair], str]
+) -> tuple[list[Pair], list[Pair]]:
     """Return the training pairs without a share of the source commands, and the paraphrases of those. No form
     loses its last source command."""
     sources = defaultdict(set)
@@ -55,7 +57,7 @@ def train(protocol: str, setting: str, seed: int) -> tuple[Parser, dict[str, lis
     from parser_service.benchmarking.corpus import read_corpus, source_commands
     from parser_service.parsers.conditions import Setting
     from parser_service.parsers.registry import load_class, make_config
-    from parser_service.runs.carrying_out.knowledge import anonymizer_of, knowledge_of
+    from parser_service.runs.training.knowledge import anonymizer_of, knowledge_of
 
     world = World.objects.get(name=WORLD)
     corpus = read_corpus(DATA / "walker2019", "logical_form")

@@ -13,7 +13,7 @@ import tempfile
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from benchmarks.fresh_site import DATA, WORLD, Site
 
@@ -39,7 +39,7 @@ def main() -> None:
 def lengths(criterion: str) -> Iterator[str]:
     from annotations.models import World
     from parser_service.parsers.llm.config import FREE, LISTED
-    from parser_service.runs.carrying_out.knowledge import knowledge_of
+    from parser_service.runs.training.knowledge import knowledge_of
 
     for protocol in ("strict", "domain"):
         knowledge = knowledge_of(World.objects.get(name=WORLD), protocol)
@@ -60,18 +60,18 @@ def coverage(criterion: str) -> Iterator[str]:
 
     for number in FORMS:
         pairs, questions = ask_nobody(criterion, Knowledge(), forms=number)
-        listed = [asked.schema["properties"]["form"]["enum"] for asked in questions]
+        listed = [(asked.schema or {})["properties"]["form"]["enum"] for asked in questions]
         right = sum(pair.form in forms for pair, forms in zip(pairs, listed, strict=True))
         yield f"{number} forms: the right one is among them for {100 * right / len(pairs):.1f} %"
 
 
 def ask_nobody(
-    criterion: str, knowledge: Knowledge, **config: str | int
+    criterion: str, knowledge: Knowledge, **config: Any
 ) -> tuple[list[Pair], list[Question]]:
     """Return the validation paraphrases, and the question about each."""
     from parser_service.benchmarking.corpus import read_corpus
     from parser_service.parsers.llm.config import LanguageModelConfig
-    from parser_service.parsers.llm.parser import LanguageModel
+    from parser_service.parsers.llm.language_model import LanguageModel
 
     corpus = read_corpus(DATA / "walker2019", criterion)
     model = LanguageModel(LanguageModelConfig(model="any", **config), 0, knowledge)

@@ -30,7 +30,9 @@ class Trained:
     held_out: Mapping[str, Sequence[Pair]]
 
 
-def table_of(about: str, splits: str, answers: Callable[[Trained], Iterator[dict]]) -> pd.DataFrame:
+def table_of(
+    about: str, splits: str, answers: Callable[[Trained], Iterator[Mapping[str, object]]]
+) -> pd.DataFrame:
     """Return the rows that ``answers`` yields for the ranker on each split that the command line names.
 
     ``splits`` is the default. A training takes a few minutes.
@@ -52,10 +54,10 @@ def table_of(about: str, splits: str, answers: Callable[[Trained], Iterator[dict
 
 def _train(split: int, setting: str) -> Trained:
     from annotations.models import World
-    from parser_service.benchmarking.plan import load_corpus
+    from parser_service.benchmarking.missing_cells import load_corpus
     from parser_service.parsers.conditions import Setting
     from parser_service.parsers.registry import load_class, make_config
-    from parser_service.runs.carrying_out.knowledge import knowledge_of
+    from parser_service.runs.training.knowledge import knowledge_of
 
     world = World.objects.get(name=WORLD)
     corpus = load_corpus(DATA / "walker2019", CRITERION, split, world)

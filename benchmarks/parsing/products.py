@@ -22,7 +22,7 @@ import torch
 from torch import Tensor
 from torch.nn.functional import linear
 
-from parser_service.neural.sentence_encoder.linear import (
+from parser_service.neural.sentence_encoder.half_precision import (
     Linear,
     multiply,
     packed,
@@ -74,7 +74,7 @@ def measure(rows: int, width: int, out: int) -> None:
 
 def answers(folder: Path) -> None:
     """Print the median and the 95th percentile of answers, as they are served and from 32 bits, in turn."""
-    from parser_service.neural.ranker.parser import FormRanker
+    from parser_service.neural.ranker.form_ranker import FormRanker
     from parser_service.neural.sentence_encoder.bert import SelfAttention
 
     served, plain = FormRanker.load(folder), FormRanker.load(folder)

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 from benchmarks.fresh_site import DATA, Site
 
 if TYPE_CHECKING:  # the project can be imported only after a site was entered
-    from parser_service.neural.ranker.parser import FormRanker
+    from parser_service.neural.ranker.form_ranker import FormRanker
     from parser_service.parsers.interface import Pair
 
 FOLDER = Path(__file__).parent / "out_of_scope"
@@ -79,7 +79,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         Site(Path(folder) / "var").enter()
         from parser_service.benchmarking.corpus import read_corpus
-        from parser_service.neural.ranker.parser import FormRanker
+        from parser_service.neural.ranker.form_ranker import FormRanker
 
         corpus, sources = read_corpus(DATA / "walker2019", "command"), ("generated", "paraphrased")
         if saved:

@@ -61,8 +61,8 @@ def make_run(world: Any) -> Any:
     from django.utils import timezone
 
     from annotations.models import Split
+    from annotations.models.background import Status
     from parser_service.models import TrainingRun
-    from parser_service.models.runs import Status
 
     split = Split.objects.create(
         world=world, name="large", criterion="command", seed=0, content_hash="0" * 64
@@ -171,7 +171,7 @@ def insert(cursor: Any, table: str, same: dict[str, Any], rows: Iterator[dict[st
 def write(target: Path) -> None:
     """Write the report of the only run to ``target``: what the measured process does."""
     from parser_service.models import TrainingRun
-    from parser_service.reporting.run_report import part_of, run_report
+    from parser_service.reports.run_report import part_of, run_report
 
     run = TrainingRun.objects.select_related("split", "world", "created_by").get(
         split__name="large"

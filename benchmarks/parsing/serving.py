@@ -69,7 +69,7 @@ def make_site(folder: Path, parser: str) -> Site:
 def promote_run() -> Any:
     """Promote the run, where a rule has not, and return it."""
     from annotations.models import World
-    from parser_service.promotion import promote, promoted_run
+    from parser_service.promotions.promoting import promote, promoted_run
 
     world = World.objects.get(name=WORLD)
     if promoted_run(world) is None:
@@ -80,7 +80,7 @@ def promote_run() -> Any:
 @contextmanager
 def running_server(site: Site, client: Any, utterance: str) -> Iterator[float]:
     """Start the parse server; give the seconds until its first answer."""
-    from parser_service.serving.client import ParserAway, ParserRefused
+    from parser_service.serving.parser_client import ParserAway, ParserRefused
 
     began = time.perf_counter()
     process = subprocess.Popen(
@@ -118,7 +118,7 @@ def fastest(rounds: Sequence[np.ndarray]) -> np.ndarray:
 
 def measure(client: Any, parser: Any, utterances: Sequence[str], rounds: int) -> None:
     """Print a line for single parses and one for batches."""
-    from parser_service.runs.carrying_out.evaluating import BEAM_WIDTH
+    from parser_service.runs.training.evaluating import BEAM_WIDTH
     from parser_service.serving.shelf import LINES_TOGETHER
 
     def bare(texts: Sequence[str]) -> None:
@@ -187,8 +187,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         site = make_site(given.folder or Path(folder), given.parser)
         site.enter()
-        from parser_service.serving.client import client
         from parser_service.serving.loading import load_parser
+        from parser_service.serving.parser_client import client
 
         run = promote_run()
         spoken = run.split.examples.filter(part="validation", source="paraphrased")

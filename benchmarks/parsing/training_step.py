@@ -15,7 +15,7 @@ from torch.profiler import ProfilerActivity, profile
 
 from benchmarks.fresh_site import DATA
 from parser_service.benchmarking.corpus import read_corpus
-from parser_service.neural.ranker.parser import FormRanker
+from parser_service.neural.ranker.form_ranker import FormRanker
 from parser_service.parsers.hyperparameters.ranker import RankerConfig
 from parser_service.parsers.interface import EpochReport, Observer, Pair
 
@@ -23,7 +23,7 @@ PASSES = 6
 MOST_OPERATIONS = 12
 
 
-class Clock(Observer):
+class PassTimes(Observer):
     """Keeps the seconds of every pass."""
 
     def __init__(self) -> None:
@@ -35,7 +35,7 @@ class Clock(Observer):
 
 def train(pairs: list[Pair], steps: int, threads: int) -> list[float]:
     """The seconds of each pass."""
-    clock = Clock()
+    clock = PassTimes()
     FormRanker(RankerConfig(steps=steps, threads=threads, forms="closed")).fit(pairs, (), clock)
     return clock.seconds
 

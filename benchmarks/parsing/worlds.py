@@ -1,10 +1,11 @@
-"""The ranker in worlds of other sizes: seconds, peak memory, disk, and the milliseconds of an answer.
+"""The ranker, or the linear classifier, in worlds of other sizes: seconds, memory, disk, milliseconds of an answer.
 
-    GPSR_SHARED_DATA=… .venv/bin/python -m benchmarks.parsing.worlds [--worlds "one pair,10000 forms"]
+    GPSR_SHARED_DATA=… .venv/bin/python -m benchmarks.parsing.worlds [--worlds "one pair,10000 forms"] [--parser linear]
 
 Each world is made up and trained in a process of its own, under *strict*, on two cores. Half-way the training is
-cancelled, which is timed, and resumed from its last checkpoint; the seconds are those of both together. Disk is the
-most that checkpoints and the saved parser take. Answers are single ones on one thread. ``--steps`` trains less.
+cancelled, which is timed, and resumed from its last checkpoint; the seconds are those of both together. (``linear``
+has no checkpoint and begins anew.) Disk is the most that checkpoints and the saved parser take. Answers are single
+ones on one thread. ``--steps`` trains the ranker less.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ from shutil import rmtree
 for variable in ("OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(variable, "2")
 
-from parser_service.parsers.interface import Cancelled, Observer, Pair  # noqa: E402
+from parser_service.parsers.interface import Cancelled, Observer, Pair, Parser  # noqa: E402
 
 VERBS = """
 bring find take fetch carry move get push pull hold lift place show clean wash check open close
@@ -74,7 +75,7 @@ def made_up(forms: int, pairs: int, source: str) -> list[Pair]:
         Pair(
             " ".join(f"{opening} {verb} the {look} <object> {place}".split()),
             f'( {verb} ( lambda $1 e ( is_a $1 " <object> " ) ( {look} $1 ){where} ) )',
-            source,  # type: ignore[arg-type]
+            source,
         )
         for opening, (verb, look, (where, place)) in product(OPENINGS, chosen)
     )
@@ -121,18 +122,18 @@ def size_of(folder: Path) -> int:
     return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
 
 
-def measure(name: str, steps: int) -> dict[str, float]:
+def measure(name: str, kind: str, steps: int) -> dict[str, float]:
     """Train, cancel, resume, save and ask in this process."""
-    from parser_service.neural.ranker.parser import FormRanker
-    from parser_service.parsers.hyperparameters.ranker import RankerConfig
+    from parser_service.parsers.registry import load_class, make_config
 
     pairs = made_up(*WORLDS[name])
-    config = RankerConfig(threads=2, steps=steps)
+    make = load_class(kind)
+    config = make_config(kind, {"threads": 2, "steps": steps} if kind == "ranker" else {})
     with tempfile.TemporaryDirectory() as folder:
         keeper = Keeper(Path(folder))
         began = time.monotonic()
-        cancelling = cancel_half_way(FormRanker(config), pairs, keeper)
-        parser = FormRanker(config)
+        cancelling = cancel_half_way(make(config), pairs, keeper)
+        parser = make(config)
         parser.fit(pairs, (), keeper)
         seconds = time.monotonic() - began
         rmtree(Path(folder) / "new", ignore_errors=True)
@@ -148,7 +149,7 @@ def measure(name: str, steps: int) -> dict[str, float]:
     }
 
 
-def cancel_half_way(parser, pairs: list[Pair], keeper: Keeper) -> float:
+def cancel_half_way(parser: Parser, pairs: list[Pair], keeper: Keeper) -> float:
     """Train until half of the steps are over and a person cancels; return the seconds until it stops."""
     timer = threading.Timer(0.2, lambda: setattr(keeper, "cancelled_at", time.monotonic()))
 
@@ -167,11 +168,10 @@ def cancel_half_way(parser, pairs: list[Pair], keeper: Keeper) -> float:
     return 0.0  # it was over before
 
 
-def latency(parser, pairs: list[Pair]) -> float:
+def latency(parser: Parser, pairs: list[Pair]) -> float:
     """Return the 95th percentile of the milliseconds of single answers on one thread."""
-    import torch
-
-    torch.set_num_threads(1)
+    if torch := sys.modules.get("torch"):
+        torch.set_num_threads(1)
     milliseconds = []
     for pair in Random(1).choices(pairs, k=ASKED + 10):
         began = time.perf_counter()
@@ -180,13 +180,12 @@ def latency(parser, pairs: list[Pair]) -> float:
     return sorted(milliseconds[10:])[int(0.95 * ASKED)]
 
 
-def right(parser, pairs: list[Pair]) -> float:
+def right(parser: Parser, pairs: list[Pair]) -> float:
     """Return the share of training utterances that are answered right, in percent."""
     some = Random(2).choices(pairs, k=200)
     answers = parser.predict([pair.utterance for pair in some])
-    return sum(ranked[0].form == pair.form for ranked, pair in zip(answers, some, strict=True)) / (
-        len(some) / 100
-    )
+    correct = sum(ranked[0].form == pair.form for ranked, pair in zip(answers, some, strict=True))
+    return 100 * correct / len(some)
 
 
 def report(name: str, of: dict[str, float]) -> bool:
@@ -212,11 +211,12 @@ def report(name: str, of: dict[str, float]) -> bool:
 def main() -> None:
     arguments = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     arguments.add_argument("--worlds", default=",".join(WORLDS), metavar="A,B")
+    arguments.add_argument("--parser", choices=("ranker", "linear"), default="ranker")
     arguments.add_argument("--steps", type=int, default=400)
     arguments.add_argument("--one", help=argparse.SUPPRESS)
     given = arguments.parse_args()
     if given.one:
-        print(json.dumps(measure(given.one, given.steps)))
+        print(json.dumps(measure(given.one, given.parser, given.steps)))
         return
     print(
         "| world | seconds | memory | disk | answer, p95 | cancelled in | right on its pairs | bounds |"
@@ -225,7 +225,10 @@ def main() -> None:
     for name in given.worlds.split(","):
         command = [sys.executable, "-m", "benchmarks.parsing.worlds", "--one", name]
         child = subprocess.run(
-            [*command, "--steps", str(given.steps)], stdout=subprocess.PIPE, text=True, check=True
+            [*command, "--parser", given.parser, "--steps", str(given.steps)],
+            stdout=subprocess.PIPE,
+            text=True,
+            check=True,
         )
         held.append(report(name, json.loads(child.stdout)))
     if not all(held):

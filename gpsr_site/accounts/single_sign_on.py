@@ -12,12 +12,15 @@ from allauth.account.adapter import DefaultAccountAdapter
 from allauth.core.exceptions import ImmediateHttpResponse
 from allauth.socialaccount.adapter import DefaultSocialAccountAdapter
 from allauth.socialaccount.models import SocialLogin
+from django.db import transaction
 from django.http import HttpRequest, HttpResponse
 from django.shortcuts import render
 from django.urls import Resolver404, resolve, reverse
 
 from annotations.models import AuditEntry, Invitation, User
-from annotations.people.sessions import remember_device
+from annotations.people.accounts import remember_device
+from annotations.people.invitations import InvitationOver, join
+from annotations.people.members import role_names
 
 NO_ACCOUNT = (
     "Nobody here is connected to this sign-on. If you have an account, log in with its password and "
@@ -59,6 +62,27 @@ class SignOn(DefaultSocialAccountAdapter):
             raise ImmediateHttpResponse(refusal(request, NO_ACCOUNT))
         return True
 
+    def save_user(self, request: HttpRequest, sociallogin: SocialLogin, form: Any = None) -> User:
+        """Make the account, which takes a place of the invitation: there is no account without one."""
+        invitation = _invitation_of(sociallogin)
+        if invitation is None:
+            raise ImmediateHttpResponse(refusal(request, NO_ACCOUNT))
+        try:
+            with transaction.atomic():
+                user: User = super().save_user(request, sociallogin, form)
+                join(invitation, user)
+                AuditEntry.objects.create(
+                    world=invitation.world,
+                    world_name=invitation.world.name,
+                    who=user,
+                    who_name=user.get_username(),
+                    what="join",
+                    subject=f"as {role_names(invitation.roles)}, by single sign-on",
+                )
+        except InvitationOver as error:
+            raise ImmediateHttpResponse(refusal(request, str(error))) from error
+        return user
+
     def get_connect_redirect_url(self, request: HttpRequest, socialaccount: Any) -> str:
         return reverse("account")
 
@@ -80,4 +104,4 @@ def _invitation_of(sociallogin: SocialLogin) -> Invitation | None:
 
 def refusal(request: HttpRequest, sentence: str) -> HttpResponse:
     """Return the page that says why somebody does not come in."""
-    return render(request, "annotations/join.html", {"refusal": sentence}, status=403)
+    return render(request, "annotations/people/join.html", {"refusal": sentence}, status=403)

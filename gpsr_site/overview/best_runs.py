@@ -13,7 +13,7 @@ from annotations.language.corpus import KNOWN, Criterion
 from annotations.models import Split, World
 from annotations.models.background import Status
 from parser_service.models import Evaluation
-from parser_service.models.shown_scores import ShownScore, shown_scores
+from parser_service.models.evaluations import ShownScore, shown_scores
 from parser_service.parsers.conditions import Protocol, only_source
 from parser_service.parsers.registry import PARSERS
 
@@ -54,7 +54,11 @@ class BestRun:
     @property
     def wrong_url(self) -> str:
         """The page that shows exactly these examples, one by one."""
-        chosen = {"run": self.score.run_id, "part": self.score.part, "outcome": "wrong"}
+        chosen: dict[str, str | int] = {
+            "run": self.score.run_id,
+            "part": self.score.part,
+            "outcome": "wrong",
+        }
         if source := only_source(self.score.test_source):
             chosen["source"] = source
         address = reverse("review", kwargs={"world": self.world.name})
@@ -62,10 +66,7 @@ class BestRun:
 
     @property
     def run_url(self) -> str:
-        return self._address("run")
-
-    def _address(self, name: str) -> str:
-        return reverse(name, kwargs={"world": self.world.name, "pk": self.score.run_id})
+        return reverse("run", kwargs={"world": self.world.name, "pk": self.score.run_id})
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,18 @@ from typing import Any
 
 from django.core.exceptions import EmptyResultSet
 from django.db import connection
-from django.db.models import Case, Count, F, IntegerField, OuterRef, QuerySet, Subquery, Sum, When
+from django.db.models import (
+    Case,
+    Count,
+    Expression,
+    F,
+    IntegerField,
+    OuterRef,
+    QuerySet,
+    Subquery,
+    Sum,
+    When,
+)
 from django.db.models.functions import Coalesce
 
 from annotations.models import (
@@ -27,10 +38,10 @@ from annotations.models import (
     WorkItem,
     World,
 )
+from annotations.models.background import Status as RunStatus
 from annotations.models.corpus import ParaphraseStatus
-from annotations.models.description import Subject, TemplateStatus
+from annotations.models.description import ProblemSubject, TemplateStatus
 from parser_service.models import Promotion, TrainingRun
-from parser_service.models.runs import Status as RunStatus
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +85,11 @@ class Counts:
     promotions_proposed: int
 
     @property
+    def awaits_first_commands(self) -> bool:
+        """Whether the templates have made no commands yet, so that nobody knows what they leave out."""
+        return bool(self.stale and self.templates and not self.commands)
+
+    @property
     def templates_waiting(self) -> int:
         """Templates that make no commands yet."""
         return self.drafts + self.disputed
@@ -108,18 +124,23 @@ def _statement() -> tuple[str, tuple[Any, ...]]:
 
     Composed once: Django takes longer for that than the database for the answer.
     """
-    counted = {name: _count(rows, path) for name, (rows, path) in _rows_to_count().items()}
+    counted: dict[str, Expression] = {
+        name: _aggregate(rows, path, Count("pk")) for name, (rows, path) in _rows_to_count().items()
+    }
     counted["members"] = _aggregate(Membership.objects.all(), "world", Count("user", distinct=True))
-    counted["uncovered"] = _count_uncovered()
+    without_form = F("commands_in_grammar") - F("commands_with_form")
+    categories = TaskCategory.objects.filter(commands_in_grammar__isnull=False)
+    counted["uncovered"] = _aggregate(categories, "grammar__world", Sum(without_form))
     counted["stale"] = Case(When(generated_revision__lt=F("revision"), then=1), default=0)
     columns = {f"n_{field.name}": counted[field.name] for field in fields(Counts)}
     rows = World.objects.order_by().annotate(**columns).values("id", *columns)
-    return rows.query.sql_with_params()
+    statement: tuple[str, tuple[Any, ...]] = rows.query.sql_with_params()
+    return statement
 
 
-def _rows_to_count() -> dict[str, tuple[QuerySet, str]]:
+def _rows_to_count() -> dict[str, tuple[QuerySet[Any], str]]:
     """Return for each count the rows that it counts and their path to the world."""
-    templates = SemanticTemplate.objects
+    templates, problems, runs = SemanticTemplate.objects, StoredProblem.objects, TrainingRun.objects
     return {
         "entities": (Entity.objects.all(), "ontology__world"),
         "productions": (Production.objects.all(), "grammar__world"),
@@ -140,23 +161,9 @@ def _rows_to_count() -> dict[str, tuple[QuerySet, str]]:
         "work_items_free": (WorkItem.objects.free(), "world"),
         "audit_findings": (AuditFinding.objects.open(), "world"),
         "splits": (Split.objects.all(), "world"),
-        **_problem_rows(),
-        **_run_rows(),
-    }
-
-
-def _problem_rows() -> dict[str, tuple[QuerySet, str]]:
-    problems = StoredProblem.objects
-    return {
-        "ontology_problems": (problems.filter(subject=Subject.ONTOLOGY), "world"),
-        "grammar_problems": (problems.filter(subject=Subject.GRAMMAR), "world"),
-        "command_problems": (problems.filter(subject=Subject.COMMANDS), "world"),
-    }
-
-
-def _run_rows() -> dict[str, tuple[QuerySet, str]]:
-    runs = TrainingRun.objects
-    return {
+        "ontology_problems": (problems.filter(subject=ProblemSubject.ONTOLOGY), "world"),
+        "grammar_problems": (problems.filter(subject=ProblemSubject.GRAMMAR), "world"),
+        "command_problems": (problems.filter(subject=ProblemSubject.COMMANDS), "world"),
         "runs": (runs.all(), "world"),
         "runs_queued": (runs.queued(), "world"),
         "runs_running": (runs.running(), "world"),
@@ -167,17 +174,7 @@ def _run_rows() -> dict[str, tuple[QuerySet, str]]:
     }
 
 
-def _count(rows: QuerySet, path: str) -> Coalesce:
-    return _aggregate(rows, path, Count("pk"))
-
-
-def _count_uncovered() -> Coalesce:
-    without_form = F("commands_in_grammar") - F("commands_with_form")
-    counted = TaskCategory.objects.filter(commands_in_grammar__isnull=False)
-    return _aggregate(counted, "grammar__world", Sum(without_form))
-
-
-def _aggregate(rows: QuerySet, path: str, value: Count | Sum) -> Coalesce:
+def _aggregate(rows: QuerySet[Any], path: str, value: Count | Sum) -> Coalesce:
     """Return ``value`` over the rows of each world, 0 where it has none."""
     of_world = rows.order_by().filter(**{path: OuterRef("pk")}).values(path)
     amounts = of_world.annotate(amount=value).values("amount")

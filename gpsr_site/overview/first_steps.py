@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from annotations.models import Duty
 from gpsr_site.overview.counts import Counts
@@ -37,25 +37,7 @@ def first_steps(counts: Counts, duties: frozenset[Duty]) -> list[FirstStep]:
     """List the steps for somebody with ``duties``; nothing once a run has been evaluated."""
     if counts.evaluated:
         return []
-    steps = _steps(counts)
-    first_open = next((step for step in steps if not step.is_done), None)
-    return [
-        FirstStep(
-            step.sentence,
-            step.label,
-            step.name,
-            step.duty,
-            step.is_done,
-            step.is_action,
-            is_next=step is first_open,
-            is_allowed=step.duty in duties,
-        )
-        for step in steps
-    ]
-
-
-def _steps(counts: Counts) -> list[FirstStep]:
-    return [
+    steps = [
         FirstStep(
             "Import the files of a command generator: ontology, grammar and, if there are any, "
             "templates.",
@@ -90,4 +72,8 @@ def _steps(counts: Counts) -> list[FirstStep]:
             "Train a first parser.", "Start a run", "run_new", Duty.MANAGE, bool(counts.runs)
         ),
         FirstStep("Read its wrong answers.", "Watch the runs", "runs", Duty.VIEW, False),
+    ]
+    first_open = next((step for step in steps if not step.is_done), None)
+    return [
+        replace(step, is_next=step is first_open, is_allowed=step.duty in duties) for step in steps
     ]

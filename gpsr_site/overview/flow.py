@@ -1,4 +1,4 @@
-"""The stages from ontology to results (DESIGN §1), as the overview of a world shows them."""
+"""The stages from ontology to results (docs/design/architecture.md), as the overview of a world shows them."""
 
 from __future__ import annotations
 
@@ -26,29 +26,20 @@ def stages(counts: Counts) -> list[Stage]:
     ontology_note = _remarks(counts.ontology_problems)
     grammar_note = _remarks(counts.grammar_problems)
     forms = say_count(counts.forms, "form")
+    unready = f"{counts.templates_waiting} not ready" if counts.templates_waiting else ""
+    stale = "out of date" if counts.stale and counts.commands else ""
+    active = f"{counts.runs_active} queued or running" if counts.runs_active else ""
     return [
         Stage("Ontology", "ontology", counts.entities, "entities", "describe", ontology_note),
         Stage("Grammar", "grammar", counts.productions, "productions", "annotate", grammar_note),
-        Stage("Templates", "templates", counts.templates, "lines", "generate", _unready(counts)),
-        Stage("Commands", "commands", counts.commands, forms, "collect", _stale(counts)),
+        Stage("Templates", "templates", counts.templates, "lines", "generate", unready),
+        Stage("Commands", "commands", counts.commands, forms, "collect", stale),
         Stage("Paraphrases", "paraphrases", counts.paraphrases, "utterances", "freeze"),
         Stage("Splits", "splits", counts.splits, "frozen", "train"),
-        Stage("Runs", "runs", counts.runs, "started", "evaluate", _active(counts)),
+        Stage("Runs", "runs", counts.runs, "started", "evaluate", active),
         Stage("Results", "results", counts.evaluated, "evaluated"),
     ]
 
 
 def _remarks(count: int) -> str:
     return say_count(count, "remark") if count else ""
-
-
-def _unready(counts: Counts) -> str:
-    return f"{counts.templates_waiting} not ready" if counts.templates_waiting else ""
-
-
-def _stale(counts: Counts) -> str:
-    return "out of date" if counts.stale and counts.commands else ""
-
-
-def _active(counts: Counts) -> str:
-    return f"{counts.runs_active} queued or running" if counts.runs_active else ""

@@ -5,7 +5,7 @@ Each count is the number of rows on the page that its link opens: tests/gpsr_sit
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from django.urls import reverse
@@ -50,7 +50,7 @@ class WorkGroup:
 
 
 @dataclass(frozen=True, slots=True)
-class Waiting:
+class WaitingRows:
     """Rows that wait. ``field`` is the field of ``Counts``, ``page`` and ``query`` list exactly them.
 
     Said as ``3 draft templates``, with ``after`` behind it.
@@ -66,19 +66,21 @@ class Waiting:
 
 
 FOR_ADMINS = (
-    Waiting("runs_failed", "failed run", "Read why", "runs", "?status=failed&since=no", "bad"),
-    Waiting("runs_lost", "lost run", "Read why", "runs", "?status=lost&since=no", "bad"),
-    Waiting("promotions_proposed", "run", "Decide", "promotions", "", "", "proposed for promotion"),
-    Waiting("ontology_problems", "remark", "Read", "ontology", "", "warn", "on the ontology"),
-    Waiting("grammar_problems", "remark", "Read", "grammar", "", "warn", "on the grammar"),
-    Waiting("runs_running", "run", "Watch", "runs", "?status=running", "", "in progress"),
+    WaitingRows("runs_failed", "failed run", "Read why", "runs", "?status=failed&since=no", "bad"),
+    WaitingRows("runs_lost", "lost run", "Read why", "runs", "?status=lost&since=no", "bad"),
+    WaitingRows(
+        "promotions_proposed", "run", "Decide", "promotions", "", "", "proposed for promotion"
+    ),
+    WaitingRows("ontology_problems", "remark", "Read", "ontology", "", "warn", "on the ontology"),
+    WaitingRows("grammar_problems", "remark", "Read", "grammar", "", "warn", "on the grammar"),
+    WaitingRows("runs_running", "run", "Watch", "runs", "?status=running", "", "in progress"),
 )
 FOR_ANNOTATORS = (
-    Waiting(
+    WaitingRows(
         "work_items_free", "item", "Take the next", "queue", "?state=free", "", "in the work queue"
     ),
-    Waiting("uncovered", "command", "Annotate", "uncovered", "", "warn", "without a form"),
-    Waiting(
+    WaitingRows("uncovered", "command", "Annotate", "uncovered", "", "warn", "without a form"),
+    WaitingRows(
         "template_problems",
         "template",
         "Repair",
@@ -87,7 +89,7 @@ FOR_ANNOTATORS = (
         "warn",
         "with problems",
     ),
-    Waiting(
+    WaitingRows(
         "utterances_waiting",
         "utterance",
         "Label",
@@ -96,12 +98,12 @@ FOR_ANNOTATORS = (
         "",
         "without a form",
     ),
-    Waiting("command_problems", "remark", "Read", "commands", "", "warn", "on commands"),
-    Waiting("drafts", "draft template", "Finish", "templates", "?status=draft"),
-    Waiting("disputed", "disputed template", "Settle", "templates", "?status=disputed"),
+    WaitingRows("command_problems", "remark", "Read", "commands", "", "warn", "on commands"),
+    WaitingRows("drafts", "draft template", "Finish", "templates", "?status=draft"),
+    WaitingRows("disputed", "disputed template", "Settle", "templates", "?status=disputed"),
 )
 FOR_REVIEWERS = (
-    Waiting(
+    WaitingRows(
         "paraphrases_waiting",
         "paraphrase",
         "Read",
@@ -110,7 +112,7 @@ FOR_REVIEWERS = (
         "",
         "to judge",
     ),
-    Waiting("audit_findings", "label", "Decide", "audit", "?status=open", "", "in doubt"),
+    WaitingRows("audit_findings", "label", "Decide", "audit", "?status=open", "", "in doubt"),
 )
 
 
@@ -123,7 +125,7 @@ class WorkList:
     duties: frozenset[Duty]
     workers: Workers
     best: BestRuns | None = None
-    jobs: Sequence[Job] = ()
+    jobs: Iterable[Job] = ()
 
     @property
     def groups(self) -> list[WorkGroup]:
@@ -132,7 +134,8 @@ class WorkList:
         An item stands once, in the first group that has it.
         """
         order = [*self.own_roles, *(role for role in ROLES if role not in self.own_roles)]
-        groups, seen = [], set()
+        groups: list[WorkGroup] = []
+        seen: set[Task] = set()
         for role in order:
             items = tuple(item for item in self._items_of(role) if item not in seen)
             seen.update(items)
@@ -156,20 +159,32 @@ class WorkList:
             yield from self._stale()
             yield from self._queued_runs()
             yield from self._waiting(FOR_ADMINS)
-            yield from self._missing_people()
+            if self.counts.members == 1:
+                sentence = "Only one person belongs to this world"
+                yield Task(1, sentence, "Add people", self._address("people"))
         elif role == Role.ANNOTATOR:
             yield from self._waiting(FOR_ANNOTATORS)
             yield from self._stale()
         else:
-            yield from self._wrong_answers()
+            # For others these stand beside the best parsers.
+            is_reviewer = Role.REVIEWER in self.own_roles
+            best = self.best if is_reviewer else None
+            source = best.source if best else ""
+            for run in best.runs if best else ():
+                if run.wrong:
+                    answers = say_count(run.wrong, "wrong answer")
+                    sentence = f"{answers} of {run.title} on {source}"
+                    yield Task(run.wrong, sentence, "Read", run.wrong_url)
             yield from self._waiting(FOR_REVIEWERS)
 
-    def _waiting(self, declared: Iterable[Waiting]) -> Iterator[Task]:
-        for each in declared:
-            if count := getattr(self.counts, each.field):
-                sentence = f"{say_count(count, each.noun)} {each.after}".strip()
-                url = self._address(each.page) + each.query
-                yield Task(count, sentence, each.label, url, each.tone)
+    def _waiting(self, declared: Iterable[WaitingRows]) -> Iterator[Task]:
+        for waiting in declared:
+            if waiting.field == "uncovered" and self.counts.awaits_first_commands:
+                continue
+            if count := getattr(self.counts, waiting.field):
+                sentence = f"{say_count(count, waiting.noun)} {waiting.after}".strip()
+                url = self._address(waiting.page) + waiting.query
+                yield Task(count, sentence, waiting.label, url, waiting.tone)
 
     def _jobs_of(self, role: Role) -> Iterator[Task]:
         """Yield an item for each import or generation, which leads to its own page."""
@@ -186,34 +201,21 @@ class WorkList:
         """Yield one item: a single button brings all commands up to date."""
         if self.counts.stale and self.counts.commands and Duty.ANNOTATE in self.duties:
             sentence = "Commands are out of date: grammar or templates have changed"
-            yield Task(1, sentence, "Generate", self._address("generate"), "warn", is_action=True)
+            yield Task(
+                1, sentence, "Generate commands", self._address("generate"), "warn", is_action=True
+            )
 
     def _queued_runs(self) -> Iterator[Task]:
         waiting = self.counts.runs_queued
         if not waiting:
             return
         url = self._address("runs") + "?status=queued"
-        if self.workers.is_alive:
+        if not self.workers.is_work_left:
             yield Task(waiting, say_count(waiting, "queued run"), "Watch", url)
         else:
             verb = "waits" if waiting == 1 else "wait"
             sentence = f"{say_count(waiting, 'run')} {verb}. {self.workers.headline}"
             yield Task(waiting, sentence, "Watch", url, "bad")
-
-    def _missing_people(self) -> Iterator[Task]:
-        if self.counts.members == 1:
-            sentence = "Only one person belongs to this world"
-            yield Task(1, sentence, "Add people", self._address("people"))
-
-    def _wrong_answers(self) -> Iterator[Task]:
-        """Work of reviewers alone; for the others they stand beside the best parsers."""
-        is_reviewer = Role.REVIEWER in self.own_roles
-        for each in self.best.runs if self.best and is_reviewer else ():
-            if each.wrong:
-                sentence = (
-                    f"{say_count(each.wrong, 'wrong answer')} of {each.title} on {self.best.source}"
-                )
-                yield Task(each.wrong, sentence, "Read", each.wrong_url)
 
     def _address(self, page: str) -> str:
         return reverse(page, kwargs={"world": self.world.name})

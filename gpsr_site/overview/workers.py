@@ -39,8 +39,17 @@ class Workers:
         return not self.missing
 
     @property
+    def is_work_left(self) -> bool:
+        """Whether work waits, or would wait, for a worker that is not there, whatever others do meanwhile."""
+        return not self.served or any(self.waiting.get(queue) for queue in self.missing)
+
+    @property
     def _missing_worker(self) -> str:
-        return TAKEN_BY[self.missing[0]] if self.served else "worker"
+        """What to call the missing worker, first one that work waits for."""
+        if not self.served:
+            return "worker"
+        queue = max(self.missing, key=lambda queue: bool(self.waiting.get(queue)))
+        return TAKEN_BY[Queue(queue)]
 
     @property
     def _left_behind(self) -> int:
@@ -82,7 +91,7 @@ def workers_now() -> Workers:
             counts[status, queue] += count
             nouns.add(kind.model.noun)
     return Workers(
-        served={queue for worker in Worker.objects.alive() for queue in worker.queues},
+        served=set(Worker.objects.alive().by_queue()),
         running=sum(count for (status, _), count in counts.items() if status == Status.RUNNING),
         waiting={queue: n for (status, queue), n in counts.items() if status == Status.QUEUED},
         noun=nouns.pop() if len(nouns) == 1 else "job",

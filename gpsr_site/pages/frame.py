@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
+from urllib.parse import unquote
 
 from django.conf import settings
 from django.http import HttpRequest
@@ -13,143 +14,140 @@ from django.utils.functional import SimpleLazyObject
 
 from annotations.language.english import say_count
 from annotations.models import Duty, Notice, World
-from annotations.rows.kinds import KINDS
+from annotations.rows.row_kinds import KINDS
 from gpsr_site.overview.counts import Counts, counts_of
 from gpsr_site.overview.workers import workers_now
 
+CLOSED_NOTICE = "closed_notice"  # the cookie that names the notice which the reader has closed
 
-@dataclass(frozen=True, slots=True)
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Waiting:
+    """What the dot of an entry says, such as ``3 templates not ready``: a count, its noun, a reason.
+
+    ``count`` is a field of ``Counts``; 0 of it is no dot. Without a noun the reason stands alone.
+    """
+
+    count: str
+    noun: str = ""
+    reason: str
+
+    def sentence(self, counts: Counts) -> str:
+        """Say what waits; empty for nothing."""
+        number = getattr(counts, self.count)
+        if not number:
+            return ""
+        return f"{say_count(number, self.noun)} {self.reason}" if self.noun else self.reason
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Place:
-    """A page of the rail: ``count`` and ``waiting`` are fields of ``Counts``.
+    """An entry of the rail. It leads to ``page`` and is marked there and on all ``pages_below``: URL names.
 
-    Where ``waiting`` is not 0 the entry gets a dot, explained as ``3 templates not ready``: the count
-    with its ``noun``, then the ``reason``. ``below`` are the further URL names that belong to it.
+    ``count`` is a field of ``Counts`` that stands beside the label.
     """
 
     label: str
-    name: str
+    page: str
     count: str = ""
-    waiting: str = ""
-    noun: str = ""
-    reason: str = ""
-    below: tuple[str, ...] = ()
-
-    def dot(self, counts: Counts) -> str:
-        """Say what waits here; empty for nothing."""
-        waiting = getattr(counts, self.waiting) if self.waiting else 0
-        if not waiting:
-            return ""
-        return f"{say_count(waiting, self.noun)} {self.reason}" if self.noun else self.reason
+    waiting: Waiting | None = None
+    pages_below: tuple[str, ...] = ()
 
 
 # In the order of the flow.
 PLACES = (
     Place(
-        "Overview",
-        "world",
-        below=("import", "import_pairs", "jobs", "job", "people", "audit_log", "world_delete"),
+        label="Overview",
+        page="world",
+        pages_below=(
+            *("import", "import_pairs", "jobs", "job"),
+            *("people", "audit_log", "world_delete"),
+        ),
     ),
     Place(
-        "Ontology",
-        "ontology",
-        "entities",
-        "ontology_problems",
-        "remark",
-        "to read",
-        below=(
+        label="Ontology",
+        page="ontology",
+        count="entities",
+        waiting=Waiting(count="ontology_problems", noun="remark", reason="to read"),
+        pages_below=(
             *("entity", "entity_new", "entities_new", "offered_entities"),
             *("predicates", "predicate", "predicate_new", "robot"),
         ),
     ),
     Place(
-        "Grammar",
-        "grammar",
-        "productions",
-        "grammar_problems",
-        "remark",
-        "to read",
-        below=(
+        label="Grammar",
+        page="grammar",
+        count="productions",
+        waiting=Waiting(count="grammar_problems", noun="remark", reason="to read"),
+        pages_below=(
             *("production", "production_new"),
             *("uncovered", "unmatched", "conflicts", "outside_grammar"),
         ),
     ),
     Place(
-        "Templates",
-        "templates",
-        "templates",
-        "templates_waiting",
-        "template",
-        "not ready",
-        below=("template", "template_new"),
+        label="Templates",
+        page="templates",
+        count="templates",
+        waiting=Waiting(count="templates_waiting", noun="template", reason="not ready"),
+        pages_below=("template", "template_new"),
     ),
     Place(
-        "Commands",
-        "commands",
-        "commands",
-        "stale",
-        "",
-        "out of date",
-        below=("command", "logical_forms", "logical_form", "complexity"),
+        label="Commands",
+        page="commands",
+        count="commands",
+        waiting=Waiting(count="stale", reason="out of date"),
+        pages_below=("command", "logical_forms", "logical_form", "complexity"),
     ),
     Place(
-        "Paraphrases",
-        "paraphrases",
-        "paraphrases",
-        "paraphrases_waiting",
-        "paraphrase",
-        "to judge",
-        below=("paraphrase",),
+        label="Paraphrases",
+        page="paraphrases",
+        count="paraphrases",
+        waiting=Waiting(count="paraphrases_waiting", noun="paraphrase", reason="to judge"),
+        pages_below=("paraphrase",),
     ),
     Place(
-        "Utterances",
-        "utterances",
-        "utterances",
-        "utterances_waiting",
-        "utterance",
-        "without a form",
-        below=("utterance", "utterances_new", "label"),
+        label="Utterances",
+        page="utterances",
+        count="utterances",
+        waiting=Waiting(count="utterances_waiting", noun="utterance", reason="without a form"),
+        pages_below=("utterance", "utterances_new", "label", "uploads", "upload"),
     ),
     Place(
-        "Queue",
-        "queue",
-        "work_items",
-        "work_items_free",
-        "item",
-        "to do",
-        below=("queue_item", "queue_settings", "audit", "agreement", "progress"),
-    ),
-    Place("Splits", "splits", "splits", below=("split", "split_new", "example")),
-    Place(
-        "Runs",
-        "runs",
-        "runs",
-        "runs_active",
-        "run",
-        "queued or running",
-        below=("run", "run_new"),
-    ),
-    Place(
-        "Results",
-        "results",
-        "evaluated",
-        below=(
-            "predictions",
-            "learning_curves",
-            "defaults",
-            "sensitivity",
-            "probes",
-            "tryout",
+        label="Queue",
+        page="queue",
+        count="work_items",
+        waiting=Waiting(count="work_items_free", noun="item", reason="to do"),
+        pages_below=(
+            *("queue_item", "queue_settings", "guidelines"),
+            *("audit", "agreement", "progress"),
         ),
     ),
-    Place("Compare", "compare", below=("slices",)),
-    Place("Errors", "review", below=("error_categories", "error_category")),
     Place(
-        "Parse",
-        "playground",
-        waiting="promotions_proposed",
-        noun="run",
-        reason="proposed for promotion",
-        below=("promotions", "dialogues", "dialogue"),
+        label="Splits", page="splits", count="splits", pages_below=("split", "split_new", "example")
+    ),
+    Place(
+        label="Runs",
+        page="runs",
+        count="runs",
+        waiting=Waiting(count="runs_active", noun="run", reason="queued or running"),
+        pages_below=("run", "run_new"),
+    ),
+    Place(
+        label="Results",
+        page="results",
+        count="evaluated",
+        pages_below=(
+            *("predictions", "learning_curves", "defaults"),
+            *("sensitivity", "probes", "tryout"),
+        ),
+    ),
+    Place(label="Compare", page="compare", pages_below=("slices",)),
+    Place(label="Review", page="review", pages_below=("error_categories", "error_category")),
+    Place(
+        label="Parse",
+        page="playground",
+        waiting=Waiting(count="promotions_proposed", noun="run", reason="proposed for promotion"),
+        pages_below=("promotions", "dialogues", "dialogue"),
     ),
 )
 
@@ -173,15 +171,19 @@ class Entry:
 def frame(request: HttpRequest) -> dict[str, Any]:
     """Return the context of every page. What costs a query is looked up where a template reads it, once."""
     world: World | None = getattr(request, "world", None)
-    duties = getattr(request, "duties", frozenset())
+    duties: frozenset[Duty] = getattr(request, "duties", frozenset())
+    user = request.user
     return {
         "world": world,
         "sso": settings.SSO_NAME,
         "can": {duty.value: duty in duties for duty in Duty},
-        "worlds": World.objects.visible_to(request.user),
+        "worlds": World.objects.visible_to(user),
         "rail": SimpleLazyObject(lambda: list(_rail(request, world))) if world else [],
         "worker": SimpleLazyObject(workers_now),
-        "unread": SimpleLazyObject(lambda: Notice.objects.of(request.user).unread().count()),
+        "closed_notice": unquote(request.COOKIES.get(CLOSED_NOTICE, "")),
+        "unread": SimpleLazyObject(
+            lambda: Notice.objects.of(user).unread().count() if user.is_authenticated else 0
+        ),
     }
 
 
@@ -201,8 +203,8 @@ def _current(match: ResolverMatch | None) -> str:
 def _entry(place: Place, world: World, counts: Counts, current: str) -> Entry:
     return Entry(
         label=place.label,
-        url=reverse(place.name, kwargs={"world": world.name}),
+        url=reverse(place.page, kwargs={"world": world.name}),
         count=getattr(counts, place.count) if place.count else None,
-        dot=place.dot(counts),
-        is_current=current == place.name or current in place.below,
+        dot=place.waiting.sentence(counts) if place.waiting else "",
+        is_current=current in (place.page, *place.pages_below),
     )

@@ -12,18 +12,8 @@ from django.http import HttpRequest, HttpResponse
 from django.shortcuts import render
 from django.urls import reverse
 
+from annotations.form_presentation import shown
 from annotations.lists.filtering import PageFilters
-from annotations.lists.filters import (
-    CommandFilters,
-    EntityFilters,
-    LogicalFormFilters,
-    ParaphraseFilters,
-    PredicateFilters,
-    ProductionFilters,
-    SplitFilters,
-    TemplateFilters,
-    UtteranceFilters,
-)
 from annotations.models import (
     Command,
     Duty,
@@ -38,10 +28,22 @@ from annotations.models import (
     World,
 )
 from annotations.people.access import world_view
-from annotations.presentation import shown
-from parser_service.filters import RunFilters
+from annotations.web.corpus.corpus_filters import (
+    CommandFilters,
+    LogicalFormFilters,
+    ParaphraseFilters,
+    UtteranceFilters,
+)
+from annotations.web.description.description_filters import (
+    EntityFilters,
+    PredicateFilters,
+    ProductionFilters,
+    TemplateFilters,
+)
+from annotations.web.splits.split_filters import SplitFilters
 from parser_service.models import TrainingRun
-from parser_service.parsers.registry import PARSERS
+from parser_service.parsers.registry import title_of
+from parser_service.web.runs.run_filters import RunFilters
 
 MOST_SHOWN = 5  # rows of each kind
 MOST_COUNTED = 1_000  # beyond it the page says "over 1,000"
@@ -142,9 +144,7 @@ KINDS = (
         "runs",
         "run",
         lambda row: f"run {row.pk}",
-        lambda row: (
-            f"{PARSERS[row.parser].title if row.parser in PARSERS else row.parser}, {row.status}"
-        ),
+        lambda row: f"{title_of(row.parser)}, {row.status}",
     ),
 )
 
@@ -186,7 +186,7 @@ def search(request: HttpRequest, world: World) -> HttpResponse:
 def groups_of(request: HttpRequest, world: World, words: str) -> Iterator[Group]:
     """Yield the kinds that have matches, in the order of the flow."""
     for kind in KINDS:
-        rows = kind.model.objects.filter(**{kind.world_path: world})
+        rows = kind.model._default_manager.filter(**{kind.world_path: world})
         matches = kind.filters({"q": words}, queryset=rows, request=request).qs
         count = matches.order_by()[: MOST_COUNTED + 1].count()
         if count:

@@ -1,31 +1,30 @@
-"""How much a request may bring. Files come from people who may import, and from nobody else."""
+"""How much a request may bring. Files go to the views that take them, from people who may send them there."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 
 from django.conf import settings
 from django.http import HttpRequest, HttpResponse
 from rest_framework.exceptions import AuthenticationFailed
 
-from annotations.api.authentication import TokenAuthentication
-from annotations.models import Duty, User, World
+from annotations.models import User, World
+from annotations.people.access import WHO_MAY
+from annotations.people.allowances import Allowance, allowance_at
+from annotations.web.rest.authentication import TokenAuthentication
 from gpsr_site.web.refusals import refuse
 
 ANONYMOUS_BYTES = 64 * 1024
 ORDINARY_BYTES = 1024 * 1024
 # What multipart/form-data adds around the files.
 ENVELOPE_BYTES = 64 * 1024
-WORLD_ADDRESS = "/worlds/import/"  # administrators of the site send archives of worlds there
-UPLOAD_ADDRESS = re.compile(r"^/(?:(?:w|api/v1/worlds)/(?P<world>[-\w]+)|worlds)/import/")
 
 
 def largest_body(path: str, is_logged_in: bool) -> int:
     """Return how many bytes a request to ``path`` may bring; more is answered with 413."""
     if not is_logged_in:
         return ANONYMOUS_BYTES
-    if path == WORLD_ADDRESS or UPLOAD_ADDRESS.match(path):
+    if allowance_at(path).takes_files:
         return settings.UPLOAD_MAX_BYTES + ENVELOPE_BYTES
     return ORDINARY_BYTES
 
@@ -34,7 +33,7 @@ class LimitBodies:
     """Middleware: answer 413 from ``Content-Length``, before any of the body is parsed.
 
     It stands behind Django's authentication, whose own work reads no body either, so that it knows
-    whether the sender has logged in and may import into the world of the address.
+    whether the sender has logged in and may send files to the address.
     """
 
     def __init__(self, get_response: Callable[[HttpRequest], HttpResponse]) -> None:
@@ -49,11 +48,13 @@ class LimitBodies:
             return self._refuse(request, ANONYMOUS_BYTES, "Log in first.")
         if length <= ORDINARY_BYTES:
             return self.get_response(request)
-        if not _may_import(sender, request.path):
-            return self._refuse(
-                request, ORDINARY_BYTES, "Only admins of a world send files, on its import page."
-            )
-        largest = largest_body(request.path, is_logged_in=True)
+        allowance = allowance_at(request.path_info)
+        if not allowance.takes_files:
+            return self._refuse(request, ORDINARY_BYTES, "It takes no files.")
+        if not _may_send_files(sender, allowance):
+            who = WHO_MAY[allowance.duty] if allowance.duty else "administrators of this site"
+            return self._refuse(request, ORDINARY_BYTES, f"Only {who} send files here.")
+        largest = largest_body(request.path_info, is_logged_in=True)
         if length > largest:
             return self._refuse(request, largest, "Send the files in several parts.")
         return self.get_response(request)
@@ -81,13 +82,8 @@ def _sender(request: HttpRequest) -> User | None:
     return identity[0] if identity else None
 
 
-def _may_import(sender: User, path: str) -> bool:
-    if path == WORLD_ADDRESS:
+def _may_send_files(sender: User, allowance: Allowance) -> bool:
+    if allowance.world is None or allowance.duty is None:
         return sender.is_superuser
-    address = UPLOAD_ADDRESS.match(path)
-    if not address:
-        return False
-    if address["world"] is None:
-        return sender.is_superuser
-    world = World.objects.visible_to(sender).filter(name=address["world"]).first()
-    return world is not None and world.allows(sender, Duty.MANAGE)
+    world = World.objects.visible_to(sender).filter(name=allowance.world).first()
+    return world is not None and world.allows(sender, allowance.duty)

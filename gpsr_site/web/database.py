@@ -1,4 +1,4 @@
-"""Bounds on how long a page waits for PostgreSQL. Workers, whose statements may be long, have none."""
+"""Timeouts of PostgreSQL for pages. Workers have none, since their statements may be long."""
 
 from __future__ import annotations
 

@@ -1,28 +1,25 @@
-"""No request holds a thread for ever: after a while its work is interrupted and it is answered 503."""
+"""Interrupt a request that takes too long, and answer 503."""
 
 from __future__ import annotations
 
 import ctypes
 import logging
-import re
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from django.conf import settings
 from django.db import connections
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpRequest, HttpResponse, StreamingHttpResponse
 
+from annotations.people.allowances import allowance_at
+from annotations.web.rest.streaming import BrokenOff
 from gpsr_site.web.refusals import refuse
 
 logger = logging.getLogger(__name__)
 
-# What takes files or makes many rows may take longer, by this factor.
-LONG_ADDRESS = re.compile(
-    r"^/((w|api/v1/worlds)/[-\w]+/(import/|generate/|splits/new/|splits/$|download/)|worlds/import/)"
-)
-LONG_FACTOR = 10
+LONG_FACTOR = 10  # for views that may take long
 CHECK_SECONDS = 0.5
 # What cleans up after an interruption may hang as well, as a rollback does with the database.
 AGAIN_SECONDS = 5
@@ -40,7 +37,7 @@ class TakenBack(BaseException):
 
 
 @dataclass(slots=True)
-class Watched:
+class WatchedRequest:
     """A request at work: its thread, when it is interrupted next, and whether it ever was."""
 
     thread: int
@@ -57,12 +54,12 @@ class Watchdog:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._watched: dict[int, Watched] = {}
+        self._watched: dict[int, WatchedRequest] = {}
         self._is_running = False
 
-    def begin(self, seconds: float) -> Watched:
+    def begin(self, seconds: float) -> WatchedRequest:
         """Start the time of the request that this thread works on."""
-        watched = Watched(threading.get_ident(), time.monotonic() + seconds)
+        watched = WatchedRequest(threading.get_ident(), time.monotonic() + seconds)
         with self._lock:
             self._watched[id(watched)] = watched
             if not self._is_running:
@@ -70,10 +67,16 @@ class Watchdog:
                 threading.Thread(target=self._run, name="deadlines", daemon=True).start()
         return watched
 
-    def end(self, watched: Watched) -> None:
+    def end(self, watched: WatchedRequest) -> None:
         """Stop watching; an interruption that has not arrived yet is taken back."""
+        try:
+            self._forget(watched)
+        except TookTooLong:  # it has arrived here, perhaps before anything was forgotten
+            self._forget(watched)
+
+    def _forget(self, watched: WatchedRequest) -> None:
         with self._lock:
-            del self._watched[id(watched)]
+            self._watched.pop(id(watched), None)
             if watched.is_interrupted:
                 _take_back(watched.thread)
 
@@ -118,10 +121,11 @@ class Deadline:
 
     def __call__(self, request: HttpRequest) -> HttpResponse:
         seconds = settings.REQUEST_SECONDS
-        if LONG_ADDRESS.match(request.path):
+        if allowance_at(request.path_info).may_take_long:
             seconds *= LONG_FACTOR
+        began = time.monotonic()
         try:
-            return self._answer_within(request, seconds)
+            response = self._answer_within(request, seconds)
         except TookTooLong:
             connections.close_all()  # one of them may be in the middle of an answer
             logger.error("%s %s took over %s s, interrupted", request.method, request.path, seconds)
@@ -132,6 +136,10 @@ class Deadline:
                 f"The server stopped working on it after {seconds:g} seconds, and nothing of it was "
                 "saved. Ask for less at once, or try again later.",
             )
+        if isinstance(response, StreamingHttpResponse) and not hasattr(response, "file_to_stream"):
+            left = seconds - (time.monotonic() - began)
+            response.streaming_content = _bound(iter(response.streaming_content), left)
+        return response
 
     def _answer_within(self, request: HttpRequest, seconds: float) -> HttpResponse:
         watched = WATCHDOG.begin(seconds)
@@ -139,3 +147,26 @@ class Deadline:
             return self.get_response(request)
         finally:
             WATCHDOG.end(watched)
+
+
+def _bound(pieces: Iterator[bytes], seconds: float) -> Iterator[bytes]:
+    """Yield the pieces of an answer. Raises BrokenOff once making them has taken ``seconds``.
+
+    The time that a client takes to read them does not count; the web server bounds that.
+    """
+    left = seconds
+    while left > 0:
+        began = time.monotonic()
+        watched = WATCHDOG.begin(left)
+        try:
+            piece = next(pieces, None)
+        except TookTooLong:
+            connections.close_all()
+            break
+        finally:
+            WATCHDOG.end(watched)
+        if piece is None:
+            return
+        left -= time.monotonic() - began
+        yield piece
+    raise BrokenOff(f"making it took over {seconds:.0f} s")

@@ -16,8 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from parser_service.analysis.arrays import Floats, Ints
-from parser_service.analysis.proportions import wilson_interval
-from parser_service.analysis.resampling import SAMPLES, SEED
+from parser_service.analysis.intervals import SAMPLES, SEED, wilson_interval
 
 Interval: TypeAlias = tuple[float, float]
 Tally: TypeAlias = "Mapping[Hashable, tuple[float, float]]"
@@ -87,7 +86,7 @@ class _Numbers:
         return self._hash
 
 
-def figures_of(parts: Parts) -> Floats:
+def figures_of(parts: Sequence[Clustered]) -> Floats:
     """Return the figure of each training, a fraction of 1, [trainings]."""
     return _combine([part.accuracies for part in parts])
 
@@ -135,14 +134,11 @@ def compare(first: Parts, second: Parts, samples: int = SAMPLES) -> tuple[Interv
 def _compare(first: _Numbers, second: _Numbers, samples: int) -> tuple[Interval, float]:
     differences = _sample(first.parts, samples) - _sample(second.parts, samples, stream=1)
     low, high = np.percentile(differences, [2.5, 97.5])
-    differing = sum(map(_count_differing, first.parts, second.parts))
+    differing = 0  # the clusters in which the two parsers differ, over all trainings
+    for parts in zip(first.parts, second.parts, strict=True):
+        shares = [part.right.sum(0) / np.maximum(part.count.sum(0), 1) for part in parts]
+        differing += int((~np.isclose(*shares)).sum())
     return (float(low), float(high)), float(p_values(differences, differing))
-
-
-def _count_differing(first: Clustered, second: Clustered) -> int:
-    """Return in how many of the same clusters two parsers differ, over all trainings."""
-    shares = [each.right.sum(0) / np.maximum(each.count.sum(0), 1) for each in (first, second)]
-    return int((~np.isclose(*shares)).sum())
 
 
 def p_values(differences: Floats, differing: ArrayLike) -> Floats:
@@ -191,7 +187,7 @@ def _sample(parts: Sequence[Clustered], samples: int, stream: int = 0) -> Floats
     weighted = np.where(np.isnan(figures), 0.0, weights)
     total = weighted.sum(1)
     mean = (weighted * np.nan_to_num(figures)).sum(1) / np.maximum(total, 1e-9)
-    overall = float(_combine([part.accuracies for part in parts]).mean())
+    overall = float(figures_of(parts).mean())
     return np.where(total > 0, mean, overall)
 
 

@@ -18,12 +18,11 @@ from annotations.language.forms import (
     Difference,
     Form,
     diff_unordered,
-    head_predicate,
 )
 from annotations.language.predicates import ArgumentKind, argument_kind
+from parser_service.analysis.answer_forms import read_or_none
 from parser_service.analysis.arrays import Ints
-from parser_service.analysis.labels import Labels, distinct_pairs, encode
-from parser_service.analysis.reading import NO_FORM, read_or_none
+from parser_service.analysis.encoded_labels import EncodedLabels, distinct_pairs, encode
 
 NOTHING = "nothing"
 
@@ -63,38 +62,15 @@ class SlotConfusion:
         return self.gold != self.predicted
 
 
-def confuse_heads(gold: Sequence[str], predicted: Sequence[str]) -> HeadConfusion:
-    """Count head predicates of labels against those of answers.
-
-    Args:
-        gold: forms as text, [pairs].
-        predicted: the answers in the same order; what is not a form counts as ``NO_FORM``.
-
-    Raises:
-        ValueError: there are not as many answers as labels.
-    """
-    totals: Counter[tuple[str, str]] = Counter()
-    for left, right, count in _distinct(gold, predicted):
-        totals[_head(left), _head(right)] += count
-    return _head_confusion(totals)
-
-
-def confuse_labels(gold: Labels[str], predicted: Labels[str]) -> HeadConfusion:
-    """Return the same for head predicates that are known already, [pairs] each."""
-    first, second, counts = distinct_pairs(gold.codes, predicted.codes)
-    return _head_confusion(
-        Counter(
-            {
-                (gold.values[left], predicted.values[right]): count
-                for left, right, count in zip(
-                    first.tolist(), second.tolist(), counts.tolist(), strict=True
-                )
-            }
+def confuse_heads(gold: EncodedLabels[str], predicted: EncodedLabels[str]) -> HeadConfusion:
+    """Count head predicates of labels against those of answers, [pairs] each."""
+    first, second, pair_counts = distinct_pairs(gold.codes, predicted.codes)
+    totals = {
+        (gold.values[left], predicted.values[right]): count
+        for left, right, count in zip(
+            first.tolist(), second.tolist(), pair_counts.tolist(), strict=True
         )
-    )
-
-
-def _head_confusion(totals: Counter[tuple[str, str]]) -> HeadConfusion:
+    }
     labels: Counter[str] = Counter()
     answers: Counter[str] = Counter()
     for (said, answered), count in totals.items():
@@ -154,10 +130,6 @@ def _distinct(
     pairs = distinct_pairs(labels.codes, answers.codes)
     for first, second, count in zip(*(column.tolist() for column in pairs), strict=True):
         yield left[first], right[second], count
-
-
-def _head(form: Form | None) -> str:
-    return NO_FORM if form is None else head_predicate(form)
 
 
 def _by_frequency(counts: Counter[str]) -> list[str]:

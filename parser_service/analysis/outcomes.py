@@ -12,7 +12,7 @@ import numpy as np
 from annotations.language.corpus import harmonic_mean
 from parser_service.analysis.arrays import Ints
 from parser_service.analysis.clustered import Clustered, Interval, Parts, interval_of
-from parser_service.analysis.scores import Judgement
+from parser_service.analysis.scores import Judged
 
 # Of a part with more clusters, whole clusters are put together at random: groups of clusters are as
 # independent as clusters are, and 300 of them say nearly as much.
@@ -40,7 +40,7 @@ def encode_clusters(clusters: Sequence[str]) -> Ints:
     return np.array([places[names[each]] for each in clusters], dtype=np.int64)
 
 
-def outcomes_of(clusters: Sequence[str], judgements: Sequence[Judgement]) -> Outcomes:
+def outcomes_of(clusters: Sequence[str], judgements: Sequence[Judged]) -> Outcomes:
     """Count the answers to examples, whose clusters are given, by cluster. Shapes: [examples] each."""
     names = name_clusters(set(clusters))
     outcomes: Outcomes = {}

@@ -13,7 +13,7 @@ from math import exp
 import numpy as np
 from numpy.typing import ArrayLike
 
-from parser_service.analysis.arrays import Bools, Floats
+from parser_service.analysis.arrays import Bools
 
 BINS = 10
 NO_PROBABILITY = (
@@ -72,11 +72,10 @@ def calibration(probabilities: ArrayLike, correct: Bools, bins: int = BINS) -> C
     if not ((given >= 0) & (given <= 1)).all():
         raise ValueError("A score is no probability: it is not from 0 to 1.")
     place = np.clip(np.ceil(given * bins).astype(int) - 1, 0, bins - 1)  # [examples]
-    filled = [_bin(at, bins, given[place == at], right[place == at]) for at in np.unique(place)]
+    filled = []
+    for at in np.unique(place):
+        inside = place == at  # [examples]
+        means = float(given[inside].mean()), float(right[inside].mean())
+        filled.append(Bin(at / bins, (at + 1) / bins, int(inside.sum()), *means))
     error = sum(each.count * abs(each.accuracy - each.confidence) for each in filled) / len(given)
     return Calibration(error, float(((given - right) ** 2).mean()), tuple(filled))
-
-
-def _bin(at: int, bins: int, given: Floats, right: Floats) -> Bin:
-    means = float(given.mean()), float(right.mean())
-    return Bin(at / bins, (at + 1) / bins, len(given), *means)

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from parser_service.analysis.arrays import Bools, Floats, Ints
-from parser_service.analysis.proportions import wilson_interval
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +23,7 @@ class Refusal:
     Of the answers that are refused, ``lost`` were right and are wrong now, ``gained`` were wrong and are
     right now, since the label is UNKNOWN, and ``spared`` were wrong, so that the robot does
     nothing instead of something wrong. ``wrong`` of the ``answered`` are wrong. ``accuracy`` is that over
-    all utterances after the change. ``risk`` has Wilson's 95 % interval; both are None without an answer.
+    all utterances after the change. ``risk`` is None without an answer.
     """
 
     bound: float
@@ -43,10 +42,6 @@ class Refusal:
     @property
     def risk(self) -> float | None:
         return self.wrong / self.answered if self.answered else None
-
-    @property
-    def risk_interval(self) -> tuple[float, float] | None:
-        return wilson_interval(self.wrong, self.answered) if self.answered else None
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -125,7 +120,10 @@ def risk_coverage(
         ValueError: there is no example, or a score is not a number.
     """
     values = np.asarray(scores, dtype=float)
-    _require_numbers(values)
+    if not len(values):
+        raise ValueError("There is no answer to draw a curve of.")
+    if np.isnan(values).any():
+        raise ValueError("A score is not a number.")
     unknown = np.zeros(len(values), dtype=bool) if is_unknown is None else is_unknown
     order = np.argsort(-values, kind="stable")
     ranked, right, refusable = values[order], correct[order], unknown[order]
@@ -149,13 +147,6 @@ def risk_coverage(
         area=_area(~right, last),
         best_area=_area(np.sort(~right), np.arange(len(right))),
     )
-
-
-def _require_numbers(scores: Floats) -> None:
-    if not len(scores):
-        raise ValueError("There is no answer to draw a curve of.")
-    if np.isnan(scores).any():
-        raise ValueError("A score is not a number.")
 
 
 def _area(wrong: Bools, last: Ints) -> float:

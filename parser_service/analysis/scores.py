@@ -4,10 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from statistics import fmean, stdev
+from typing import Protocol
 
 from annotations.language.errors import LanguageError
 from annotations.language.forms import canonical_text, equivalent, read_form
-from parser_service.analysis.proportions import wilson_interval
+from parser_service.analysis.intervals import wilson_interval
+
+
+class Judged(Protocol):
+    """Whatever says how an answer was judged: a ``Judgement``, or a stored answer."""
+
+    @property
+    def is_exact_match(self) -> bool: ...
+
+    @property
+    def is_equivalent(self) -> bool: ...
+
+    @property
+    def is_well_formed(self) -> bool: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +61,7 @@ def judge(answer: str, annotated: str) -> Judgement:
     return Judgement(is_exact, is_exact or equivalent(form, gold), True)
 
 
-def score(judgements: Sequence[Judgement]) -> Score:
+def score(judgements: Sequence[Judged]) -> Score:
     """Return the share of right answers. Raises ValueError where there is nothing to count."""
     count = len(judgements)
     if not count:
@@ -60,3 +75,23 @@ def score(judgements: Sequence[Judgement]) -> Score:
         equivalent=sum(judgement.is_equivalent for judgement in judgements) / count,
         well_formed=sum(judgement.is_well_formed for judgement in judgements) / count,
     )
+
+
+@dataclass(frozen=True, slots=True)
+class OverSeeds:
+    """``mean`` and ``spread`` of ``n_seeds`` accuracies, fractions of 1.
+
+    ``spread`` is the sample standard deviation (divisor n - 1), None for a single seed.
+    """
+
+    mean: float
+    spread: float | None
+    n_seeds: int
+
+
+def over_seeds(accuracies: Sequence[float]) -> OverSeeds:
+    """Return mean and spread of one accuracy per seed. Raises ValueError where there is none."""
+    if not accuracies:
+        raise ValueError("There is no seed to take a mean over.")
+    spread = stdev(accuracies) if len(accuracies) > 1 else None
+    return OverSeeds(fmean(accuracies), spread, len(accuracies))

@@ -1,4 +1,4 @@
-"""A folder of published pairs (FORMATS §5, §6), as parts to train and test on without a database."""
+"""A folder of published pairs (docs/reference/formats.md, Pairs), as parts to train and test on without a database."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from annotations.language.corpus import (
     read_triples,
     split,
 )
-from annotations.language.errors import LanguageError
+from annotations.language.errors import LanguageError, Refusal
 from parser_service.parsers.interface import Pair
 
 Parts = Mapping[tuple[str, str], tuple[Pair, ...]]
@@ -85,11 +85,11 @@ class Corpus:
 def read_corpus(folder: Path, criterion: str, source_of: Mapping[str, str] | None = None) -> Corpus:
     """Read the published split of ``folder`` by ``command`` or ``logical_form``.
 
-    Raises LanguageError at the first fault of a file, ValueError where there is no such split.
+    Raises LanguageError at the first fault of a file, Refusal where there is no such split.
     """
     parts = {
         (part, source): tuple(
-            Pair(record.utterance, record.canonical_form, source)  # type: ignore[arg-type]
+            Pair(record.utterance, record.canonical_form, source)
             for record in _read_records(read_pairs, folder / name / file)
         )
         for name, (source, kind) in CORPUS_FOLDERS.items()
@@ -98,7 +98,9 @@ def read_corpus(folder: Path, criterion: str, source_of: Mapping[str, str] | Non
     }
     if not parts:
         names = ", ".join(name for name, (_, kind) in CORPUS_FOLDERS.items() if kind == criterion)
-        raise ValueError(f"{folder} has no split by {criterion}: it holds none of {names}.")
+        raise Refusal(
+            f"{folder} has no split by {criterion}: it holds none of {names}.", "no_such_split"
+        )
     return Corpus(criterion, parts, source_of or {})
 
 
@@ -117,7 +119,7 @@ def new_split(
         unresolved: paraphrases whose source command is no generated one. By source command they go to
             the training part, since nobody can tell what else they share.
 
-    Raises LanguageError and ValueError as ``read_corpus`` does.
+    Raises LanguageError and Refusal as ``read_corpus`` does.
     """
     by_source = criterion == Criterion.SOURCE_COMMAND
     published = read_corpus(folder, Criterion.COMMAND if by_source else criterion)
@@ -126,7 +128,13 @@ def new_split(
         pair
         for (part, _), pairs in published.parts.items()
         for pair in pairs
-        if part != "test" and not (by_source and _lacks_source(pair, source_of))
+        if part != "test"
+        and not (
+            by_source
+            and source_of is not None
+            and pair.source != "generated"
+            and pair.utterance not in source_of
+        )
     ]
     items = [_item(pair, known) for pair in pool]
     kept = {
@@ -141,12 +149,6 @@ def new_split(
     return Corpus(criterion, {key: tuple(pairs) for key, pairs in parts.items()}, known)
 
 
-def _lacks_source(pair: Pair, source_of: Mapping[str, str] | None) -> bool:
-    """Return whether the source command of a paraphrase is told for others and not for this one."""
-    is_paraphrase = pair.source != "generated"
-    return is_paraphrase and source_of is not None and pair.utterance not in source_of
-
-
 def _item(pair: Pair, source_of: Mapping[str, str]) -> SplitItem:
     """Return what decides the part of a pair; an empty source command means the utterance itself."""
     command = "" if pair.source == "generated" else source_of.get(pair.utterance, "")
@@ -157,11 +159,13 @@ def source_commands(folder: Path, text_behind: Callable[[str], str]) -> dict[str
     """Map each paraphrase of ``paraphrasings.txt`` to the command that it rewrites, which ``text_behind``
     returns for its prompt (``SourceFinder.text``).
 
-    Raises ValueError where the folder has no such file, LanguageError at its first fault.
+    Raises Refusal where the folder has no such file, LanguageError at its first fault.
     """
     path = folder / TRIPLES_FILE
     if not path.is_file():
-        raise ValueError(f"{folder} has no {TRIPLES_FILE}, so no source command is known.")
+        raise Refusal(
+            f"{folder} has no {TRIPLES_FILE}, so no source command is known.", "no_triples"
+        )
     records = _read_records(read_triples, path)
     return {record.paraphrase: text_behind(record.command) for record in records}
 

@@ -17,22 +17,24 @@ from typing import TYPE_CHECKING
 import django
 
 if TYPE_CHECKING:  # A new process imports this file before Django is ready for models.
-    from parser_service.benchmarking.cells import Cell, Group
+    from parser_service.benchmarking.benchmark_cells import Cell, TrialGroup
 
 
 @dataclass(slots=True)
 class Child:
-    """A process that measures ``group``; the first ``answered`` of its jobs have their cell or sentence."""
+    """A process that measures ``group``; the first ``answered`` of its trials have their cell or sentence."""
 
     process: SpawnProcess
-    group: Group
+    group: TrialGroup
     answered: int = 0
 
 
-def measure_in_parallel(groups: Iterable[Group], at_once: int) -> Generator[Cell | str, None, None]:
-    """Yield what ``Group.measure`` yields for all ``groups``, in the order in which it is ready.
+def measure_in_parallel(
+    groups: Iterable[TrialGroup], at_once: int
+) -> Generator[Cell | str, None, None]:
+    """Yield what ``TrialGroup.measure`` yields for all ``groups``, in the order in which it is ready.
 
-    Groups are taken one by one. Where a process ends too early, each of its jobs without an answer
+    Groups are taken one by one. Where a process ends too early, each of its trials without an answer
     gets a sentence. Closing the generator ends the processes.
     """
     waiting = iter(groups)
@@ -44,6 +46,7 @@ def measure_in_parallel(groups: Iterable[Group], at_once: int) -> Generator[Cell
             if not running:
                 return
             for answers in wait(list(running)):
+                assert isinstance(answers, Connection)
                 child = running[answers]
                 try:
                     answer = answers.recv()
@@ -60,7 +63,7 @@ def measure_in_parallel(groups: Iterable[Group], at_once: int) -> Generator[Cell
             child.process.join()
 
 
-def _start(group: Group, running: dict[Connection, Child]) -> None:
+def _start(group: TrialGroup, running: dict[Connection, Child]) -> None:
     context = get_context("spawn")
     answers, answering = context.Pipe(duplex=False)
     # Pickled here, and unpickled there once Django is ready: its classes import models.
@@ -86,9 +89,9 @@ def _measure(pickled: bytes, answering: Connection) -> None:
     """Measure a group in a new process. Settings come from the environment, as in the parent."""
     threading.Thread(target=_end_with_parent, daemon=True).start()
     django.setup()
-    group: Group = pickle.loads(pickled)
+    group: TrialGroup = pickle.loads(pickled)
     # Not every parser tests on as many threads as it trains on, and torch takes all cores by default.
-    if threads := dict(group.jobs[0].configuration).get("threads"):
+    if threads := dict(group.trials[0].configuration).get("threads"):
         os.environ["OMP_NUM_THREADS"] = str(threads)
     for answer in group.measure():
         answering.send(answer)
@@ -108,5 +111,5 @@ def _refuse_unanswered(child: Child) -> Iterator[str]:
         f"the process that measured {child.group} {how}. Measure again what is missing, with a "
         "smaller --jobs where memory ran short."
     )
-    for job in child.group.jobs[child.answered :]:
-        yield job.refuse(why)
+    for trial in child.group.trials[child.answered :]:
+        yield trial.refuse(why)

@@ -2,8 +2,9 @@ from parser_service.models.action_names import ActionNames
 from parser_service.models.analyses import Expectation, Probe, ProbeAnswer, RunAnalysis
 from parser_service.models.columns import AnswerColumns, ExampleColumns
 from parser_service.models.dialogues import Dialogue, OfferedEntity, OfferState
+from parser_service.models.evaluations import Evaluation
 from parser_service.models.folders import RunFolder
-from parser_service.models.predictions import Evaluation, Prediction
+from parser_service.models.predictions import Prediction
 from parser_service.models.promotions import Promotion, PromotionState
 from parser_service.models.reviews import ErrorCategory, Review, Slice
 from parser_service.models.runs import Checkpoint, EpochMetric, RunEvent, TrainingRun

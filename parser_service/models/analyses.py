@@ -1,4 +1,4 @@
-"""What a worker finds out about the answers of a run. ``parser_service.analysing`` alone writes these rows."""
+"""What a worker finds out about the answers of a run. ``parser_service.analyses`` alone writes these rows."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class RunAnalysis(models.Model):
 class Probe(models.Model):
     """A text that a run is asked beyond the examples of its split.
 
-    ``kind`` is one of ``analysis.probing`` or of ``analysis.edits``; an edit has ``old`` words of its ``base``
+    ``kind`` is one of ``analysis.probe_texts`` or of ``analysis.edits``; an edit has ``old`` words of its ``base``
     replaced by ``new`` ones. ``expected_form`` is canonical corpus text, empty for an open probe.
     """
 

@@ -1,6 +1,6 @@
 """Conversations about commands, and the entities that came up in them.
 
-``parser_service.conversing`` alone writes these rows.
+``parser_service.dialogues`` alone writes these rows.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The answers of a run's parser to the examples of a split, and how often they are right."""
+"""The answers of a run's parser to the examples of a split."""
 
 from __future__ import annotations
 
@@ -9,36 +9,6 @@ from annotations.models import Example
 from parser_service.models.runs import TrainingRun
 
 models.TextField.register_lookup(Length)
-
-
-class Evaluation(models.Model):
-    """Exact match of one run on one test source (``gen``, ``para`` or ``mixed``) of one part.
-
-    Fractions of 1; the interval at 95 % is that of a bootstrap of clusters, which ``outcomes`` counts
-    (``analysis.outcomes``). Of a split by form, ``known`` is a part too: pairs held out of the training
-    part, whose forms stay there.
-    """
-
-    run = models.ForeignKey(TrainingRun, on_delete=models.CASCADE, related_name="evaluations")
-    test_source = models.CharField(max_length=8)
-    part = models.CharField(max_length=12)
-    count = models.PositiveIntegerField()
-    correct = models.PositiveIntegerField()
-    accuracy = models.FloatField()
-    interval_low = models.FloatField()
-    interval_high = models.FloatField()
-    equivalent = models.FloatField()
-    well_formed = models.FloatField()
-    outcomes = models.JSONField(default=dict, blank=True)
-
-    class Meta:
-        ordering = ["run", "part", "test_source"]
-        constraints = [
-            models.UniqueConstraint(fields=["run", "test_source", "part"], name="evaluated_once")
-        ]
-
-    def __str__(self) -> str:
-        return f"{self.run}: {self.accuracy:.3f} on {self.test_source} {self.part}"
 
 
 OUTCOMES = {

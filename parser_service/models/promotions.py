@@ -1,4 +1,4 @@
-"""Which run answers in a world, and how it came to. ``parser_service.promotion`` alone writes these rows."""
+"""Which run answers in a world, and how it came to. ``parser_service.promotions`` alone writes these rows."""
 
 from __future__ import annotations
 
@@ -37,6 +37,10 @@ class PromotionQuerySet(models.QuerySet["Promotion"]):
     def proposed(self) -> PromotionQuerySet:
         """Return those that wait for an admin."""
         return self.filter(state=PromotionState.PROPOSED)
+
+    def overtake(self, by: User | None) -> None:
+        """Decide that another run takes their place; ``by`` is None where a rule decides."""
+        self.update(state=PromotionState.OVERTAKEN, decided_at=timezone.now(), decided_by=by)
 
 
 class Promotion(models.Model):

@@ -1,19 +1,22 @@
-"""What reviewers say about wrong answers. ``parser_service.reviewing`` alone writes these rows."""
+"""What reviewers say about wrong answers. ``parser_service.reviews`` alone writes these rows."""
 
 from __future__ import annotations
 
 from django.db import models
+from django.db.models.functions import Lower
 from django.utils import timezone
 
 from annotations.models import Example, User, World
 from parser_service.models.runs import TrainingRun
+
+LONGEST_SLICE_NAME = 80
 
 
 class Slice(models.Model):
     """A saved filter over predictions. ``query`` is the filter as a page's address has it."""
 
     world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="slices")
-    name = models.CharField(max_length=80)
+    name = models.CharField(max_length=LONGEST_SLICE_NAME)
     query = models.TextField(blank=True)
     created_by = models.ForeignKey(User, null=True, blank=True, on_delete=models.SET_NULL)
     created_at = models.DateTimeField(default=timezone.now)
@@ -42,7 +45,8 @@ class ErrorCategory(models.Model):
     class Meta:
         ordering = ["position", "id"]
         constraints = [
-            models.UniqueConstraint(fields=["world", "code"], name="error_category_code")
+            models.UniqueConstraint(fields=["world", "code"], name="error_category_code"),
+            models.UniqueConstraint("world", Lower("name"), name="error_category_name"),
         ]
 
     def __str__(self) -> str:

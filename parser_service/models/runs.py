@@ -12,8 +12,7 @@ from annotations.models import Split, World
 from annotations.models.background import BackgroundWork, Status, WorkQuerySet
 from annotations.models.background import queue_choices as queue_choices  # for the migrations
 from annotations.models.background import status_choices as status_choices
-from parser_service.models.shown_scores import ShownScore, shown_scores
-from parser_service.parsers.conditions import TEST_SOURCES, Protocol
+from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.interface import ScoreKind
 from parser_service.parsers.registry import PARSERS, config_fields
 
@@ -32,7 +31,7 @@ def score_kind_choices() -> list[tuple[str, str]]:
     return [(each.value, each.value.replace("_", "-")) for each in ScoreKind]
 
 
-class TrainingRunQuerySet(WorkQuerySet):
+class TrainingRunQuerySet(WorkQuerySet["TrainingRun"]):
     def scored_or_active(self) -> TrainingRunQuerySet:
         """Return the runs that an accuracy table shows or will show."""
         return self.exclude(status__in=[Status.FAILED, Status.CANCELLED, Status.LOST])
@@ -101,7 +100,7 @@ class TrainingRun(BackgroundWork):
     score_kind = models.CharField(max_length=20, choices=score_kind_choices, blank=True)
     answered_by = models.CharField(max_length=200, blank=True)
 
-    objects = TrainingRunQuerySet.as_manager()
+    objects = TrainingRunQuerySet.as_manager()  # type: ignore[misc]  # of the class, as that of the base is
 
     class Meta:
         ordering = ["-id"]
@@ -135,15 +134,6 @@ class TrainingRun(BackgroundWork):
     def note(self, message: str) -> None:
         """Add a line to the run's log."""
         RunEvent.objects.create(run=self, attempt=self.attempt, message=message)
-
-    @property
-    def scores_shown(self) -> dict[str, ShownScore]:
-        """Test source, in their usual order → the score on the test part, or on validation where there is no
-        test part."""
-        by_place = shown_scores(self.evaluations.all(), self.split.criterion)
-        test_part_last = sorted(by_place, key=lambda place: place[0] == "test")
-        scores = {place[1]: by_place[place] for place in test_part_last}
-        return {source: scores[source] for source in TEST_SOURCES if source in scores}
 
     def changed_hyperparameters(self) -> tuple[tuple[str, Any], ...]:
         """Return name and value of each hyperparameter that is not at the parser's default, in order."""

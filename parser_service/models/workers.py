@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from datetime import timedelta
 
 from django.db import models
@@ -15,6 +16,10 @@ ALIVE_FOR = timedelta(seconds=7.5)
 class WorkerQuerySet(models.QuerySet["Worker"]):
     def alive(self) -> WorkerQuerySet:
         return self.filter(last_seen__gt=timezone.now() - ALIVE_FOR)
+
+    def by_queue(self) -> Counter[str]:
+        """Count the workers that serve each queue. Whatever says that work waits for a worker asks here."""
+        return Counter(queue for worker in self for queue in worker.queues)
 
 
 class Worker(models.Model):

@@ -12,8 +12,9 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from annotations.language.errors import Refusal
+from parser_service.parsers.pretrained_files import CONFIG, TOKENIZERS, WEIGHTS, find_encoder
 from parser_service.parsers.storage import file_hash
-from parser_service.parsers.weights.encoder_places import CONFIG, TOKENIZERS, WEIGHTS, find_encoder
 
 if TYPE_CHECKING:
     from tokenizers import Tokenizer
@@ -41,7 +42,7 @@ class PretrainedWriter:
 
 
 def load_encoder(name: str, encoders: Path | None = None) -> Pretrained:
-    """Load the encoder ``name``, from where ``find_encoder`` finds it. Raises ValueError, a sentence."""
+    """Load the encoder ``name``, from where ``find_encoder`` finds it. Raises Refusal."""
     folder = find_encoder(name, encoders)
     # Importing it takes seconds, and a saved ranker answers without it.
     from transformers import AutoModel, AutoTokenizer, PreTrainedTokenizerFast
@@ -52,21 +53,27 @@ def load_encoder(name: str, encoders: Path | None = None) -> Pretrained:
         )
         model, report = _read_model(AutoModel, folder)
     if not isinstance(tokenizer, PreTrainedTokenizerFast):
-        raise ValueError(f"{folder} holds no tokenizer.json that can be read. Put that file there.")
+        raise Refusal(
+            f"{folder} holds no tokenizer.json that can be read. Put that file there.",
+            "pretrained_weights_unreadable",
+        )
     _refuse_gaps(folder, report["missing_keys"])
     return Pretrained(model, tokenizer, folder)
 
 
 def load_encoder_decoder(name: str, encoders: Path | None = None) -> PretrainedWriter:
     """Load the encoder–decoder ``name`` (T5, FLAN-T5, BART and their like) in single precision, from where
-    ``find_encoder`` finds it. Raises ValueError, a sentence."""
+    ``find_encoder`` finds it. Raises Refusal."""
     folder = find_encoder(name, encoders)
     import torch
     from tokenizers import Tokenizer
     from transformers import AutoModelForSeq2SeqLM
 
     if not (folder / TOKENIZERS[0]).is_file():
-        raise ValueError(f"{folder} holds no {TOKENIZERS[0]}. Put the one of the same model there.")
+        raise Refusal(
+            f"{folder} holds no {TOKENIZERS[0]}. Put the one of the same model there.",
+            "pretrained_weights_unreadable",
+        )
     with _read_or_refused(folder, "encoder–decoder"):
         tokenizer = Tokenizer.from_file(str(folder / TOKENIZERS[0]))
         model, report = _read_model(AutoModelForSeq2SeqLM, folder, dtype=torch.float32)
@@ -96,12 +103,14 @@ def _read_model(
 
 @contextmanager
 def _read_or_refused(folder: Path, what: str) -> Iterator[None]:
-    """Make a sentence, a ValueError, of whatever transformers and its parts raise inside the block."""
+    """Make a Refusal of whatever transformers and its parts raise inside the block."""
     try:
         yield
     except Exception as error:
         text = " ".join(str(error).split())[:200]
-        raise ValueError(f"{folder} holds no {what} that can be read: {text}") from error
+        raise Refusal(
+            f"{folder} holds no {what} that can be read: {text}", "pretrained_weights_unreadable"
+        ) from error
 
 
 def encoder_hash(folder: Path) -> str:
@@ -113,10 +122,11 @@ def encoder_hash(folder: Path) -> str:
 
 def _refuse_gaps(folder: Path, absent: Collection[str]) -> None:
     """Refuse a file without all weights: transformers would draw them at random without a word. Raises
-    ValueError, a sentence."""
+    Refusal."""
     used = sorted(name for name in absent if not name.startswith(UNUSED))
     if used:
-        raise ValueError(
+        raise Refusal(
             f"{folder / WEIGHTS} lacks {len(used)} weights of the network that its {CONFIG} "
-            f"describes, {used[0]} first. Put the two files of one model there."
+            f"describes, {used[0]} first. Put the two files of one model there.",
+            "pretrained_weights_unreadable",
         )

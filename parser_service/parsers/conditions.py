@@ -5,11 +5,13 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import NamedTuple
 
+from annotations.language.errors import Refusal
+
 GENERATED, PARAPHRASED = "generated", "paraphrased"
 
 
 class Protocol(StrEnum):
-    """What a parser may know beside its training pairs, from the least to the most (DESIGN §5)."""
+    """What a parser may know beside its training pairs, from the least to the most (docs/design/parsers.md)."""
 
     STRICT = "strict"
     DOMAIN = "domain"
@@ -55,11 +57,14 @@ class Setting(NamedTuple):
 
     @classmethod
     def read(cls, text: str) -> Setting:
-        """Return the setting that is written ``text``. Raises ValueError naming those there are."""
+        """Return the setting that is written ``text``. Raises Refusal naming those there are."""
         for setting in SETTINGS:
             if str(setting) == text:
                 return setting
-        raise ValueError(f"{text!r} is no setting; there are: {', '.join(map(str, SETTINGS))}.")
+        raise Refusal(
+            f"{text!r} is no setting; there are: {', '.join(map(str, SETTINGS))}.",
+            "unknown_setting",
+        )
 
 
 # The settings of an accuracy table, in the order of the paper.

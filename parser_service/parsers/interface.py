@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from parser_service.parsers.conditions import Protocol
 
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from annotations.language.templates import TaskCategory
 
 TRAINING = "training"  # the origin of a form that a training pair has
+UNKNOWN = "UNKNOWN"  # the answer where no form fits
+REFUSAL = "refusal"  # its origin where no form is probable enough
 
 Check = Callable[[], None]
 """Called between batches; raises ``Cancelled`` when the work has to stop."""
@@ -28,7 +30,7 @@ class Pair:
 
     utterance: str
     form: str
-    source: Literal["generated", "paraphrased"] = "generated"
+    source: str = "generated"  # or "paraphrased"
     task_category: str = ""
 
 
@@ -60,9 +62,15 @@ class Candidate:
     is_cut: bool = field(default=False, compare=False)
 
 
+def refuse(ranked: Sequence[Candidate], score: float) -> list[Candidate]:
+    """Return UNKNOWN with ``score``, then ``ranked`` without its own UNKNOWN."""
+    others = [each for each in ranked if each.form != UNKNOWN]
+    return [Candidate(UNKNOWN, score, REFUSAL), *others]
+
+
 @dataclass(frozen=True, slots=True)
 class Knowledge:
-    """What a parser may know besides its training pairs (DESIGN §5).
+    """What a parser may know besides its training pairs (docs/design/parsers.md, What a parser is).
 
     *strict* knows nothing, *domain* the declared predicates and the ontology, *grammar* the
     annotated grammar as well: the task categories with their rules and templates.
@@ -133,7 +141,7 @@ class Observer:
 
 
 def keep_going() -> None:
-    """Is the ``Check`` of work that nobody stops."""
+    """Never raise: the ``Check`` of work that is not cancelled."""
 
 
 class Parser(ABC):
@@ -152,7 +160,7 @@ class Parser(ABC):
     protocols: ClassVar[tuple[Protocol, ...]]
     score_kind: ClassVar[ScoreKind | None] = None
     asks_a_server: ClassVar[bool] = False  # and waits for its answers, for seconds each
-    Config: ClassVar[type]  # a frozen dataclass that validates itself, ValueError sentences
+    Config: ClassVar[type]  # a frozen dataclass that validates itself and raises Refusal
 
     def __init__(self, config: Any = None, seed: int = 0, knowledge: Knowledge | None = None):
         """``config`` is a ``Config`` (None: its defaults). Equal config, seed, knowledge and pairs
@@ -177,8 +185,8 @@ class Parser(ABC):
         """Learn from ``train``; ``validation`` serves only to choose among what was learned.
 
         Resumes from ``observe.last_checkpoint()`` where there is one, with the same result as a run
-        that was never stopped. Raises ``Cancelled`` from ``observe.check()``, and ValueError, a
-        sentence, where the pairs or the knowledge do not suffice.
+        that was never stopped. Raises ``Cancelled`` from ``observe.check()``, and Refusal
+        where the pairs or the knowledge do not suffice.
         """
 
     @abstractmethod
@@ -201,7 +209,7 @@ class Parser(ABC):
         this one stays unchanged.
 
         What calibrates must not be scored, so the validation part is scored in folds, each by the
-        parser calibrated on the others (``analysis.folds``). It is this parser where nothing is
+        parser calibrated on the others (``analysis.calibration_folds``). It is this parser where nothing is
         calibrated after training.
         """
         return self
@@ -222,7 +230,7 @@ class Parser(ABC):
     @classmethod
     @abstractmethod
     def load(cls, folder: Path, knowledge: Knowledge | None = None) -> Self:
-        """Load the parser that ``save`` wrote. Raises ValueError, a sentence, where a file is missing,
+        """Load the parser that ``save`` wrote. Raises Refusal where a file is missing,
         was altered or has other contents than its name says."""
 
     @abstractmethod

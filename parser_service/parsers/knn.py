@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from annotations.language.errors import Refusal
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.hyperparameters.fields import hyperparameter, validate
 from parser_service.parsers.interface import (
@@ -72,9 +73,12 @@ class NearestNeighbour(PairKeeper):
         validation: Sequence[Pair] = (),
         observe: Observer | None = None,
     ) -> None:
-        """Store ``train``. Raises ValueError where it is empty."""
+        """Store ``train``. Raises Refusal where it is empty."""
         if not train:
-            raise ValueError("There is no training pair, so there is no neighbour to answer with.")
+            raise Refusal(
+                "There is no training pair, so there is no neighbour to answer with.",
+                "no_training_pairs",
+            )
         (observe or Observer()).check()
         self.keep([(pair.utterance, pair.form) for pair in train])
 
@@ -93,7 +97,19 @@ class NearestNeighbour(PairKeeper):
         answers = []
         for utterance in utterances:
             check()
-            answers.append(self._nearest(utterance, beam_width))
+            overlap = self._overlap.with_all(utterance)  # [pairs]
+            best = np.zeros(len(self._forms))  # [forms]
+            np.maximum.at(best, self._form_of, overlap)
+            at_best = self._form_of[overlap == best[self._form_of]]
+            votes = np.bincount(at_best, minlength=len(self._forms))  # [forms]
+            candidates = []
+            for at in np.lexsort((np.arange(len(best)), -votes, -best))[:beam_width]:
+                form, similarity = self._forms[at], float(best[at])
+                if similarity >= self.config.least_overlap:
+                    origin = TRAINING if form in self._trained_forms else VALIDATION
+                    parts = {"similarity": similarity, "neighbours": int(votes[at])}
+                    candidates.append(Candidate(form, similarity, origin, parts))
+            answers.append(candidates)
         return answers
 
     def keep(self, pairs: list[tuple[str, str]], trained: int | None = None) -> None:
@@ -104,22 +120,3 @@ class NearestNeighbour(PairKeeper):
         number = {form: index for index, form in enumerate(self._forms)}
         self._overlap = WordOverlap(utterance for utterance, _ in pairs)
         self._form_of = np.array([number[form] for _, form in pairs])  # [pairs]
-
-    def _nearest(self, utterance: str, beam_width: int) -> list[Candidate]:
-        overlap = self._overlap.with_all(utterance)  # [pairs]
-        best = np.zeros(len(self._forms))  # [forms]
-        np.maximum.at(best, self._form_of, overlap)
-        at_best = self._form_of[overlap == best[self._form_of]]
-        votes = np.bincount(at_best, minlength=len(self._forms))  # [forms]
-        order = np.lexsort((np.arange(len(best)), -votes, -best))[:beam_width]
-        return [
-            self._candidate(self._forms[form], float(best[form]), int(votes[form]))
-            for form in order
-            if best[form] >= self.config.least_overlap
-        ]
-
-    def _candidate(self, form: str, similarity: float, neighbours: int) -> Candidate:
-        origin = TRAINING if form in self._trained_forms else VALIDATION
-        return Candidate(
-            form, similarity, origin, {"similarity": similarity, "neighbours": neighbours}
-        )

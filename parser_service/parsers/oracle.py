@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
 
+from annotations.language.errors import Refusal
 from annotations.language.grammar import Grammar, print_production, read_production
 from annotations.language.grounding import Anonymizer
 from annotations.language.ontology import Ontology, read_ontology, write_ontology
@@ -16,6 +17,7 @@ from annotations.language.templates import (
     print_template,
     read_template,
 )
+from annotations.language.text import normalise_line
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.hyperparameters.fields import validate
 from parser_service.parsers.interface import (
@@ -50,7 +52,8 @@ class GrammarOracle(Parser):
     """
 
     name = "grammar-oracle"
-    version = 2
+    version = 3
+    reads = (2,)
     protocols = (Protocol.GRAMMAR,)
     Config = OracleConfig
 
@@ -72,34 +75,30 @@ class GrammarOracle(Parser):
         validation: Sequence[Pair] = (),
         observe: Observer | None = None,
     ) -> None:
-        """Check that there is a template to parse with; nothing is learned. Raises ValueError."""
+        """Check that there is a template to parse with; nothing is learned. Raises Refusal."""
         if not any(category.templates for category in self._categories):
-            raise ValueError(
+            raise Refusal(
                 "The grammar oracle parses with templates over a grammar, and it was given none. "
-                "Import or write templates in this world and run it under the grammar protocol."
+                "Import or write templates in this world and run it under the grammar protocol.",
+                "no_templates",
             )
 
     def predict(
         self, utterances: Sequence[str], beam_width: int = 1, check: Check = keep_going
     ) -> list[list[Candidate]]:
         """Return the forms of all derivations, first the one that generation keeps; none outside the
-        grammar. The score is minus the rank, which counts from 0."""
+        grammar. All are equally good: each derives the very command."""
         answers = []
         for utterance in utterances:
             check()
             forms = self._forms(utterance) or self._forms(
                 self._anonymizer.anonymize(utterance).text
             )
-            answers.append(
-                [
-                    Candidate(form, -rank, GRAMMAR_FORM)
-                    for rank, form in enumerate(forms[:beam_width])
-                ]
-            )
+            answers.append([Candidate(form, 0.0, GRAMMAR_FORM) for form in forms[:beam_width]])
         return answers
 
     def _forms(self, text: str) -> list[str]:
-        derivations = self._chart.parse(" ".join(text.replace(",", " , ").split()))
+        derivations = self._chart.parse(normalise_line(text.replace(",", " , ")))
         return list(dict.fromkeys(derivation.form_text for derivation in derivations))
 
     def save(self, folder: Path) -> None:

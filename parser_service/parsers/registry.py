@@ -10,6 +10,7 @@ from enum import StrEnum
 from importlib import import_module
 from typing import Any
 
+from annotations.language.errors import Refusal
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.hyperparameters.fields import ConfigField, describe, read_config
 from parser_service.parsers.interface import Parser
@@ -26,7 +27,7 @@ class Needs(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class RegistryEntry:
     """One parser as pages, the worker and the command line see it.
 
     ``in_short`` says in one plain sentence what it does, ``description`` how.
@@ -55,21 +56,21 @@ class Entry:
     most_subwords: int = 0
 
 
-PARSERS: dict[str, Entry] = {
-    "grammar-oracle": Entry(
+PARSERS: dict[str, RegistryEntry] = {
+    "grammar-oracle": RegistryEntry(
         dotted="parser_service.parsers.oracle.GrammarOracle",
         config="parser_service.parsers.oracle.OracleConfig",
         title="Grammar oracle",
         description="Chart-parses with the annotated grammar and returns the template's form. "
         "Learns nothing; has no answer outside the grammar.",
-        version=2,
+        version=3,
         protocols=(Protocol.GRAMMAR,),
         in_short="Reads a command with the annotated grammar; knows no other way to say it.",
         needs=Needs.NOTHING,
         queue="quick",
         learns=False,
     ),
-    "knn": Entry(
+    "knn": RegistryEntry(
         dotted="parser_service.parsers.knn.NearestNeighbour",
         config="parser_service.parsers.knn.NearestNeighbourConfig",
         title="Nearest neighbour",
@@ -81,8 +82,20 @@ PARSERS: dict[str, Entry] = {
         needs=Needs.NOTHING,
         queue="quick",
     ),
-    "seq2seq": Entry(
-        dotted="parser_service.neural.seq2seq.parser.Seq2Seq",
+    "linear": RegistryEntry(
+        dotted="parser_service.parsers.linear.LinearClassifier",
+        config="parser_service.parsers.hyperparameters.linear.LinearConfig",
+        title="Linear classifier",
+        description="A logistic regression for each form of the training pairs, over the TF-IDF of words and "
+        "of parts of words. Never answers with a form it has not seen.",
+        version=1,
+        protocols=(Protocol.STRICT, Protocol.DOMAIN),
+        in_short="Learns which words speak for which form, in seconds; good on new wording of known forms.",
+        needs=Needs.NOTHING,
+        queue="quick",
+    ),
+    "seq2seq": RegistryEntry(
+        dotted="parser_service.neural.seq2seq.seq2seq_parser.Seq2Seq",
         config="parser_service.parsers.hyperparameters.seq2seq.Seq2SeqConfig",
         title="Sequence to sequence",
         description="Bidirectional LSTM encoder, bilinear attention, LSTM decoder, beam search; "
@@ -91,7 +104,7 @@ PARSERS: dict[str, Entry] = {
         protocols=(Protocol.STRICT,),
         in_short="A small neural network that writes the form word by word; the paper's baseline.",
     ),
-    "seq2seq-glove": Entry(
+    "seq2seq-glove": RegistryEntry(
         dotted="parser_service.neural.seq2seq.rows.Seq2SeqGlove",
         config="parser_service.parsers.hyperparameters.vectors.GloveConfig",
         title="Seq2seq + GloVe",
@@ -102,7 +115,7 @@ PARSERS: dict[str, Entry] = {
         in_short="The same network with GloVe word vectors.",
         needs=Needs.WEIGHTS,
     ),
-    "seq2seq-glove-elmo": Entry(
+    "seq2seq-glove-elmo": RegistryEntry(
         dotted="parser_service.neural.seq2seq.rows.Seq2SeqGloveElmo",
         config="parser_service.parsers.hyperparameters.vectors.GloveElmoConfig",
         title="Seq2seq + GloVe, ELMo",
@@ -113,7 +126,7 @@ PARSERS: dict[str, Entry] = {
         in_short="The same network with GloVe and ELMo; the first pass over the texts is slow on a CPU.",
         needs=Needs.WEIGHTS,
     ),
-    "seq2seq-glove-gpt": Entry(
+    "seq2seq-glove-gpt": RegistryEntry(
         dotted="parser_service.neural.seq2seq.rows.Seq2SeqGloveGpt",
         config="parser_service.parsers.hyperparameters.vectors.GloveGptConfig",
         title="Seq2seq + GloVe, GPT",
@@ -123,7 +136,7 @@ PARSERS: dict[str, Entry] = {
         in_short="The same network with GloVe and OpenAI's first GPT.",
         needs=Needs.WEIGHTS,
     ),
-    "seq2seq-glove-bert-base": Entry(
+    "seq2seq-glove-bert-base": RegistryEntry(
         dotted="parser_service.neural.seq2seq.rows.Seq2SeqGloveBertBase",
         config="parser_service.parsers.hyperparameters.vectors.GloveBertBaseConfig",
         title="Seq2seq + GloVe, BERT base",
@@ -133,7 +146,7 @@ PARSERS: dict[str, Entry] = {
         in_short="The same network with GloVe and BERT base.",
         needs=Needs.WEIGHTS,
     ),
-    "seq2seq-glove-bert-large": Entry(
+    "seq2seq-glove-bert-large": RegistryEntry(
         dotted="parser_service.neural.seq2seq.rows.Seq2SeqGloveBertLarge",
         config="parser_service.parsers.hyperparameters.vectors.GloveBertLargeConfig",
         title="Seq2seq + GloVe, BERT large",
@@ -143,7 +156,7 @@ PARSERS: dict[str, Entry] = {
         in_short="The same network with GloVe and BERT large; a GPU is recommended.",
         needs=Needs.WEIGHTS,
     ),
-    "seq2seq-minilm": Entry(
+    "seq2seq-minilm": RegistryEntry(
         dotted="parser_service.neural.seq2seq.rows.Seq2SeqMiniLm",
         config="parser_service.parsers.hyperparameters.vectors.MiniLmConfig",
         title="Seq2seq + MiniLM",
@@ -153,8 +166,8 @@ PARSERS: dict[str, Entry] = {
         protocols=(Protocol.STRICT,),
         in_short="The small network with a sentence encoder that comes with this installation.",
     ),
-    "ranker": Entry(
-        dotted="parser_service.neural.ranker.parser.FormRanker",
+    "ranker": RegistryEntry(
+        dotted="parser_service.neural.ranker.form_ranker.FormRanker",
         config="parser_service.parsers.hyperparameters.ranker.RankerConfig",
         title="Form ranker",
         description="A fine-tuned sentence encoder chooses among whole forms, by their examples and "
@@ -165,8 +178,8 @@ PARSERS: dict[str, Entry] = {
         loss_unit="nats an utterance",
         most_subwords=64,
     ),
-    "t5": Entry(
-        dotted="parser_service.neural.t5.parser.T5",
+    "t5": RegistryEntry(
+        dotted="parser_service.neural.t5.t5_parser.T5",
         config="parser_service.parsers.hyperparameters.t5.EncoderDecoderConfig",
         title="Encoder–decoder (T5, BART)",
         description="Fine-tunes a pretrained encoder–decoder to write forms; what it may write is "
@@ -176,8 +189,8 @@ PARSERS: dict[str, Entry] = {
         in_short="Fine-tunes a T5 or BART that you bring to write the form; a GPU is recommended.",
         needs=Needs.WEIGHTS,
     ),
-    "llm": Entry(
-        dotted="parser_service.parsers.llm.parser.LanguageModel",
+    "llm": RegistryEntry(
+        dotted="parser_service.parsers.llm.language_model.LanguageModel",
         config="parser_service.parsers.llm.config.LanguageModelConfig",
         title="Language model",
         description="Asks a language model over HTTP, with the nearest training pairs as examples. It "
@@ -191,11 +204,18 @@ PARSERS: dict[str, Entry] = {
 }
 
 
-def entry(name: str) -> Entry:
-    """Return the entry called ``name``. Raises ValueError with the names there are."""
+def entry(name: str) -> RegistryEntry:
+    """Return the entry called ``name``. Raises Refusal with the names there are."""
     if name not in PARSERS:
-        raise ValueError(f"No parser is called {name!r}; there are: {', '.join(PARSERS)}.")
+        raise Refusal(
+            f"No parser is called {name!r}; there are: {', '.join(PARSERS)}.", "unknown_parser"
+        )
     return PARSERS[name]
+
+
+def title_of(parser: str) -> str:
+    """Return what pages call a parser; its name where the registry no longer has it."""
+    return PARSERS[parser].title if parser in PARSERS else parser
 
 
 def needing(needs: Needs) -> list[str]:
@@ -222,7 +242,7 @@ def config_fields(name: str) -> tuple[ConfigField, ...]:
 
 
 def make_config(name: str, values: Mapping[str, Any] | None = None) -> Any:
-    """Make a validated config from JSON ``values``. Raises ValueError, a sentence."""
+    """Make a validated config from JSON ``values``. Raises Refusal."""
     return read_config(config_class(name), values or {})
 
 

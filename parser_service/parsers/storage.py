@@ -6,9 +6,11 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from hashlib import file_digest
+from http import HTTPStatus
 from pathlib import Path
 from typing import Any
 
+from annotations.language.errors import Refusal
 from parser_service.parsers.hyperparameters.fields import read_config
 from parser_service.parsers.interface import Parser
 
@@ -30,13 +32,21 @@ def write_json(path: Path, value: Any) -> None:
 
 
 def read_json(path: Path) -> Any:
-    """Read a JSON file. Raises ValueError where it is absent or holds something else."""
+    """Read a JSON file. Raises Refusal where it is absent or holds something else."""
     try:
         return json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
-        raise ValueError(f"{path} is missing: the parser in this folder is incomplete.") from None
-    except ValueError:  # not UTF-8, or not JSON
-        raise ValueError(f"{path} is not a JSON file; train the parser again.") from None
+        raise Refusal(
+            f"{path} is missing: the parser in this folder is incomplete.",
+            "saved_file_missing",
+            HTTPStatus.CONFLICT,
+        ) from None
+    except (ValueError, RecursionError):  # not UTF-8, not JSON, or nested without end
+        raise Refusal(
+            f"{path} is not a JSON file; train the parser again.",
+            "saved_parser_unreadable",
+            HTTPStatus.CONFLICT,
+        ) from None
 
 
 def seal(folder: Path, parser: Parser, files: Sequence[str]) -> None:
@@ -49,7 +59,7 @@ def seal(folder: Path, parser: Parser, files: Sequence[str]) -> None:
 def open_sealed(folder: Path, parser: type[Parser], files: Sequence[str]) -> Saved:
     """Read what ``seal`` wrote, after checking that ``files`` have the bytes that were saved.
 
-    Raises ValueError, a sentence, where the folder holds another parser, a version of this one that it
+    Raises Refusal where the folder holds another parser, a version of this one that it
     does not read, or a file that is missing or was altered.
     """
     about = read_json(folder / CONFIG)
@@ -57,14 +67,33 @@ def open_sealed(folder: Path, parser: type[Parser], files: Sequence[str]) -> Sav
         name, version = about["parser"], about["version"]
         hashes, config, seed = dict(about["sha256"]), dict(about["config"]), int(about["seed"])
     except (KeyError, TypeError, ValueError):
-        raise ValueError(f"{folder / CONFIG} does not describe a parser.") from None
+        raise Refusal(
+            f"{folder / CONFIG} does not describe a parser.",
+            "saved_parser_unreadable",
+            HTTPStatus.CONFLICT,
+        ) from None
     if name != parser.name or version not in (parser.version, *parser.reads):
-        raise ValueError(
+        raise Refusal(
             f"{folder} holds version {version} of {name}, not version {parser.version} of "
-            f"{parser.name}; train it again."
+            f"{parser.name}; train it again.",
+            "other_parser_version",
+            HTTPStatus.CONFLICT,
         )
     for file in files:
-        _verify(folder / file, hashes.get(file))
+        path = folder / file
+        if not path.is_file():
+            raise Refusal(
+                f"{path} is missing: the parser in this folder is incomplete.",
+                "saved_file_missing",
+                HTTPStatus.CONFLICT,
+            )
+        if file_hash(path) != hashes.get(file):
+            raise Refusal(
+                f"{path} is not the file that was saved: its SHA-256 differs from the one in "
+                f"{CONFIG}. Copy the folder again, or train the parser again.",
+                "saved_file_altered",
+                HTTPStatus.CONFLICT,
+            )
     return Saved(read_config(parser.Config, config), seed)
 
 
@@ -72,13 +101,3 @@ def file_hash(path: Path) -> str:
     """Return the SHA-256 of a file, in hexadecimal."""
     with path.open("rb") as stream:
         return file_digest(stream, "sha256").hexdigest()
-
-
-def _verify(path: Path, expected: str | None) -> None:
-    if not path.is_file():
-        raise ValueError(f"{path} is missing: the parser in this folder is incomplete.")
-    if file_hash(path) != expected:
-        raise ValueError(
-            f"{path} is not the file that was saved: its SHA-256 differs from the one in "
-            f"{CONFIG}. Copy the folder again, or train the parser again."
-        )

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from annotations.language.text import normalise
+
 _WORD = re.compile(r"<\w+>|\w+(?:['’]\w+)*")
 
 
@@ -14,4 +16,4 @@ def words(utterance: str) -> tuple[str, ...]:
     punctuation mean next to nothing in spoken commands: without them the nearest neighbour is right
     on 4 percentage points more of the published paraphrases.
     """
-    return tuple(_WORD.findall(utterance.lower()))
+    return tuple(_WORD.findall(normalise(utterance).lower()))

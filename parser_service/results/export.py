@@ -7,11 +7,13 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from annotations.models import World
-from parser_service.models.shown_scores import KNOWN_FORMS, UNSEEN
-from parser_service.results.cells import Cell
-from parser_service.results.choices import ResultsChoices
-from parser_service.results.figures import Figure
-from parser_service.results.tables import Column, Row, Table, may_know_corpora
+from parser_service.models.evaluations import KNOWN_FORMS, UNSEEN
+from parser_service.results.result_choices import ResultsChoices
+from parser_service.results.seed_figures import AccuracyFigure
+from parser_service.results.table_parts import (
+    AccuracyTable,
+    may_know_corpora,
+)
 
 # Of the newest run of a cell.
 SCORE_FIELDS = (
@@ -50,7 +52,7 @@ HEADER = (
 )
 
 
-def rows_of(tables: Iterable[Table]) -> Iterator[tuple[Any, ...]]:
+def rows_of(tables: Iterable[AccuracyTable]) -> Iterator[tuple[Any, ...]]:
     """Yield one row per figure of a scored cell; accuracies are fractions of 1.
 
     What the newest run scored comes first, then mean and spread of exact match (the sample standard
@@ -62,13 +64,24 @@ def rows_of(tables: Iterable[Table]) -> Iterator[tuple[Any, ...]]:
         for row, cells in table.filled:
             for column, cell in cells:
                 if cell and cell.score:
-                    about = (*_about(table, row, column), *_scores(cell))
+                    about = (
+                        row.parser,
+                        json.dumps(dict(row.changes)),
+                        table.protocol,
+                        *column.setting,
+                        column.split.name,
+                        column.split.criterion,
+                        *(getattr(cell.score, name) for name in SCORE_FIELDS),
+                        *(getattr(cell.over_seeds, name) for name in SEED_FIELDS),
+                    )
                     model = (cell.answered_by, may_know_corpora(row.parser))
                     for figure in cell.figures:
-                        yield (*about, *_shown(figure), *model, *_parts(figure))
+                        yield (*about, *_figure_and_model(figure, model))
 
 
-def as_json(world: World, choices: ResultsChoices, tables: Iterable[Table]) -> dict[str, Any]:
+def as_json(
+    world: World, choices: ResultsChoices, tables: Iterable[AccuracyTable]
+) -> dict[str, Any]:
     """Return the choices of the page and the rows of ``rows_of``, each with its names."""
     return {
         "world": world.name,
@@ -80,37 +93,18 @@ def as_json(world: World, choices: ResultsChoices, tables: Iterable[Table]) -> d
     }
 
 
-def _about(table: Table, row: Row, column: Column) -> tuple[Any, ...]:
-    configuration = json.dumps(dict(row.changes))
-    split = column.split
-    return (row.parser, configuration, table.protocol, *column.setting, split.name, split.criterion)
+def _figure_and_model(
+    figure: AccuracyFigure, model: tuple[str, bool]
+) -> Iterator[str | float | bool | None]:
+    """Yield the values of ``FIGURE_FIELDS``, ``MODEL_FIELDS`` and ``PART_FIELDS``.
 
-
-def _scores(cell: Cell) -> tuple[Any, ...]:
-    newest = tuple(getattr(cell.score, name) for name in SCORE_FIELDS)
-    return newest + tuple(getattr(cell.over_seeds, name) for name in SEED_FIELDS)
-
-
-def _shown(figure: Figure) -> tuple[Any, ...]:
-    return (
-        figure.measure,
-        figure.percent,
-        figure.reach,
-        figure.low,
-        figure.high,
-        figure.is_best,
-        figure.published,
-    )
-
-
-def _parts(figure: Figure) -> tuple[float | None, ...]:
-    return tuple(number for label in (UNSEEN, KNOWN_FORMS) for number in _part(figure, label))
-
-
-def _part(figure: Figure, label: str) -> tuple[float | None, ...]:
-    """Return the figure on unseen or on known forms and its interval; None each where there is none. On unseen
-    forms alone it is the figure itself."""
-    if figure.alone and label == UNSEEN:
-        return figure.percent, figure.low, figure.high
+    The parts are the figures on unseen and on known forms with their intervals; None each where there is none. On
+    unseen forms alone it is the figure itself.
+    """
+    yield from (figure.measure, figure.percent, figure.reach, figure.low, figure.high)
+    yield from (figure.is_best, figure.published, *model)
     parts = {part.label: (part.percent, part.low, part.high) for part in figure.parts}
-    return parts.get(label, (None, None, None))
+    if figure.alone:
+        parts[UNSEEN] = (figure.percent, figure.low, figure.high)
+    for label in (UNSEEN, KNOWN_FORMS):
+        yield from parts.get(label, (None, None, None))

@@ -5,10 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import accumulate, pairwise
 
-from parser_service.results.cells import Cell
-from parser_service.results.choices import ResultsChoices
-from parser_service.results.figures import Figure
-from parser_service.results.tables import MAY_KNOW_CORPORA, Column, Row, Table, may_know_corpora
+from parser_service.results.accuracy_cells import Cell
+from parser_service.results.result_choices import ResultsChoices
+from parser_service.results.seed_figures import AccuracyFigure
+from parser_service.results.table_parts import (
+    MAY_KNOW_CORPORA,
+    AccuracyTable,
+    TableColumn,
+    TableRow,
+    may_know_corpora,
+)
 
 ESCAPES = {
     "\\": r"\textbackslash{}",
@@ -35,12 +41,12 @@ def escape(text: str) -> str:
     return "".join(ESCAPES.get(sign, sign if sign.isprintable() else " ") for sign in str(text))
 
 
-def as_latex(choices: ResultsChoices, tables: Iterable[Table]) -> str:
+def as_latex(choices: ResultsChoices, tables: Iterable[AccuracyTable]) -> str:
     """Return one table per protocol, to be read by ``\\input``."""
     return "\n\n".join([PREAMBLE, *(_table(choices, table) for table in tables)]) + "\n"
 
 
-def _table(choices: ResultsChoices, table: Table) -> str:
+def _table(choices: ResultsChoices, table: AccuracyTable) -> str:
     width = len(table.columns) * len(table.measures)
     return "\n".join(
         [
@@ -51,7 +57,7 @@ def _table(choices: ResultsChoices, table: Table) -> str:
             r"\toprule",
             *_heads(table),
             r"\midrule",
-            *(_line(_row_name(row), _figures(cells, table)) for row, cells in table.filled),
+            *(_row(row, _figures(cells, table)) for row, cells in table.filled),
             r"\bottomrule",
             r"\end{tabular}",
             r"\end{table}",
@@ -59,7 +65,7 @@ def _table(choices: ResultsChoices, table: Table) -> str:
     )
 
 
-def _caption(choices: ResultsChoices, table: Table) -> str:
+def _caption(choices: ResultsChoices, table: AccuracyTable) -> str:
     measures = " and ".join(measure.in_words for measure in table.measures)
     sentences = [
         f"{measures[0].upper()}{measures[1:]} in percent on the {choices.part} part, "
@@ -67,7 +73,8 @@ def _caption(choices: ResultsChoices, table: Table) -> str:
         "±: how far the 95 % interval reaches, by a bootstrap of clusters and seeds.",
         "Bold: better than every other row, by a paired bootstrap with Holm's correction.",
     ]
-    if any(figure.parts for figure in _all_figures(table)):
+    cells = [cell for row in table.rows for cell in row.cells if cell]
+    if any(figure.parts for cell in cells for figure in cell.figures):
         sentences.append("By form: the harmonic mean of unseen and known forms.")
     if table.is_published and choices.published:
         sentences.append("In parentheses: Walker, Peng and Cakmak (2019).")
@@ -77,11 +84,7 @@ def _caption(choices: ResultsChoices, table: Table) -> str:
     return caption
 
 
-def _all_figures(table: Table) -> Iterator[Figure]:
-    return (figure for row in table.rows for cell in row.cells if cell for figure in cell.figures)
-
-
-def _heads(table: Table) -> Iterator[str]:
+def _heads(table: AccuracyTable) -> Iterator[str]:
     """Yield the lines of the head: settings, splits and, if there are several, measures."""
     each = len(table.measures)
     spans = [each * columns for _, _, columns in table.settings]
@@ -103,13 +106,15 @@ def _line(first: str, others: Iterable[str]) -> str:
     return rf"{' & '.join([first, *others])} \\"
 
 
-def _row_name(row: Row) -> str:
+def _row(row: TableRow, figures: Iterable[str]) -> str:
     changes = ", ".join(f"{name} {value}" for name, value in row.changes)
     name = escape(f"{row.title} ({changes})" if changes else row.title)
-    return f"{name}{SIGN if may_know_corpora(row.parser) else ''}"
+    return _line(f"{name}{SIGN if may_know_corpora(row.parser) else ''}", figures)
 
 
-def _figures(cells: Iterable[tuple[Column, Cell | None]], table: Table) -> Iterator[str]:
+def _figures(
+    cells: Iterable[tuple[TableColumn, Cell | None]], table: AccuracyTable
+) -> Iterator[str]:
     for _, cell in cells:
         if cell and cell.figures:
             yield from map(_figure, cell.figures)
@@ -117,7 +122,7 @@ def _figures(cells: Iterable[tuple[Column, Cell | None]], table: Table) -> Itera
             yield from [cell.status if cell else "--"] * len(table.measures)
 
 
-def _figure(figure: Figure) -> str:
+def _figure(figure: AccuracyFigure) -> str:
     percent = f"{figure.percent:.1f}"
     parts = [rf"\textbf{{{percent}}}" if figure.is_best else percent]
     parts.append(rf"{{\scriptsize $\pm$ {figure.reach:.1f}}}")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from statistics import fmean
 from typing import Any
@@ -15,10 +14,11 @@ from annotations.language.corpus import KNOWN
 from annotations.models import Split, World
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.parsers.conditions import SETTINGS, Setting
-from parser_service.results.accuracy import TableMaker, by_part, rank_of
-from parser_service.results.cells import Cell
+from parser_service.parsers.registry import title_of
+from parser_service.results.accuracy_cells import Cell
+from parser_service.results.accuracy_tables import TableMaker, by_part, rank_of
 from parser_service.results.measures import Measure
-from parser_service.results.tables import Changes, Column, marked, title_of
+from parser_service.results.table_parts import Changes, TableColumn, marked
 from parser_service.runs.requests.learning_curve import MOST_SEEDS, SHARES, points_of
 
 _SEEDS = (1, 3, MOST_SEEDS)  # what is offered
@@ -69,7 +69,7 @@ class LearningCurve:
 class LearningCurves:
     """All curves of one column under one protocol, by one measure, on one part."""
 
-    column: Column
+    column: TableColumn
     protocol: str
     part: str
     measure: Measure
@@ -100,7 +100,15 @@ class LearningCurves:
             "x": {"label": "training pairs"},
             "y": {"label": self.measure.in_words, "max": 100, "unit": "%"},
             "series": [
-                {"name": marked(curve.label, curve.parser), "points": list(_drawn(curve))}
+                {
+                    "name": marked(curve.label, curve.parser),
+                    "points": [
+                        [point.pairs, figure.percent, figure.low, figure.high]
+                        for point in curve.points
+                        if point.pairs is not None and point.cell
+                        for figure in point.cell.figures[:1]
+                    ],
+                }
                 for curve in self.curves
             ],
             "done": not self.is_active,
@@ -114,7 +122,7 @@ def learning_curves(
 
     A curve has runs of one version of its parser, the newest.
     """
-    column = Column(*setting, split, split.name)
+    column = TableColumn(*setting, split, split.name)
     runs = world.runs.filter(
         split=split, train_sources=setting.train_sources, protocol=protocol
     ).scored_or_active()
@@ -143,9 +151,9 @@ def curves_url(world: World, run: TrainingRun, test_source: str = "", part: str 
     """Return the address of the curves that ``run`` belongs to, by default as tested on what it is first
     tested on in the accuracy table."""
     setting = next(
-        each
-        for each in SETTINGS
-        if each.train_sources == run.train_sources and test_source in ("", each.test_source)
+        setting
+        for setting in SETTINGS
+        if setting.train_sources == run.train_sources and test_source in ("", setting.test_source)
     )
     chosen = {"split": run.split.name, "setting": str(setting), "protocol": run.protocol}
     if part:
@@ -159,24 +167,14 @@ def _curve(
     version = max(run.parser_version for run in runs)
     alike = [run for run in runs if run.parser_version == version]
     shares = sorted({*SHARES, *(run.train_share for run in alike)})
-    points = (
-        _point(maker, parser, share, [run for run in alike if run.train_share == share])
-        for share in shares
-    )
+    points = []
+    for share in shares:
+        on_share = [run for run in alike if run.train_share == share]
+        cell = maker.cell(parser, maker.columns[0], on_share)
+        counted = {score.run_id for score in cell.scores} if cell else set()
+        pairs = [run.train_pairs for run in on_share if run.pk in counted]
+        known = [count for count in pairs if count is not None]
+        points.append(CurvePoint(share, round(fmean(known)) if known else None, cell))
     first = min(alike, key=lambda run: (run.train_share < 1, run.seed))
     asked = frozenset((run.train_share, run.seed) for run in alike)
     return LearningCurve(parser, changes, tuple(points), first, asked)
-
-
-def _point(maker: TableMaker, parser: str, share: float, runs: list[TrainingRun]) -> CurvePoint:
-    cell = maker.cell(parser, maker.columns[0], runs)
-    counted = {score.run_id for score in cell.scores} if cell else set()
-    pairs = [run.train_pairs for run in runs if run.pk in counted and run.train_pairs is not None]
-    return CurvePoint(share, round(fmean(pairs)) if pairs else None, cell)
-
-
-def _drawn(curve: LearningCurve) -> Iterable[list[float]]:
-    for point in curve.points:
-        if point.pairs is not None and point.cell and point.cell.figures:
-            figure = point.cell.figures[0]
-            yield [point.pairs, figure.percent, figure.low, figure.high]

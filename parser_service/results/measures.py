@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from enum import StrEnum
 
+from parser_service.analysis.intervals import wilson_interval
 from parser_service.analysis.outcomes import Counted, interval_of_outcomes
-from parser_service.analysis.proportions import wilson_interval
 from parser_service.models import Evaluation
 
 
@@ -24,7 +24,7 @@ class Measure(StrEnum):
     @property
     def counted(self) -> Counted:
         """What outcomes call it."""
-        return self.value  # type: ignore[return-value]
+        return self.value
 
     @property
     def sign(self) -> str:

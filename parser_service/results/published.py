@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from django.db.models import Count
 
+from annotations.language.corpus import Criterion
 from annotations.models import Example, Split
-from annotations.models.splits import Criterion
 
 # Parser → for each setting the accuracy by command and by logical form.
 PUBLISHED: dict[str, dict[tuple[str, str], tuple[float, float]]] = {
@@ -60,7 +60,8 @@ PUBLISHED: dict[str, dict[tuple[str, str], tuple[float, float]]] = {
 }
 # Which of a pair of figures belongs to a criterion.
 INDEX = {Criterion.COMMAND: 0, Criterion.LOGICAL_FORM: 1}
-# Training and validation pairs of the published corpus (FORMATS §5): how a split is known to be it.
+# Training and validation pairs of the published corpus (docs/reference/formats.md, Pairs): how a
+# split is known to be it.
 SIZES = {
     Criterion.COMMAND: {
         ("generated", "train"): 847,

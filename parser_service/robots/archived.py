@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from annotations.world_archive import Table
+from annotations.world_archive.archive_tables import ArchiveTable
 from parser_service.models import ActionNames
-from parser_service.robots.action_names import is_name
+from parser_service.robots.action_naming import is_name
 
 
 def are_names(value: Any) -> bool:
@@ -26,6 +26,6 @@ def _is_named(action: str, value: Any) -> bool:
     return has_names and len(set(texts)) == len(texts) and (name == action or is_name(name))
 
 
-ACTION_NAMES = Table(
+ACTION_NAMES = ArchiveTable(
     "action_names", ActionNames, "world", people=("changed_by",), shapes={"names": are_names}
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from annotations.jobs import request_job
+from annotations.jobs import request_job_once
 from annotations.models import Job, JobKind, User
 from annotations.models.background import JobQuerySet
 from parser_service.models import TrainingRun
@@ -19,8 +19,6 @@ def request_analysis(run: TrainingRun, by: User | None = None, again: bool = Fal
     What an earlier job has found is kept, so that this one goes on where that stopped. With ``again`` it
     makes anew what depends on the world of today: the proposals of error categories.
     """
-    active = analysis_jobs(run).active().first()
-    if active is not None:
-        return active
     arguments = {"run": run.pk, "again": True} if again else {"run": run.pk}
-    return request_job(JobKind.ANALYSE, run.world.name, by, arguments, queue=run.queue)
+    active = analysis_jobs(run).active()
+    return request_job_once(active, JobKind.ANALYSE, run.world, by, arguments, run.queue)[0]

@@ -16,7 +16,7 @@ LEAST_PROGRESS = 0.05  # below it, the time that is left says nothing yet
 
 
 @dataclass(frozen=True, slots=True)
-class Waiting:
+class ExpectedWait:
     """The place of a queued run. Seconds are None where no earlier run tells them.
 
     ``ahead`` counts runs and jobs of its queue that began or wait for longer; ``starts_in`` is until a
@@ -30,24 +30,21 @@ class Waiting:
 
     @property
     def sentence(self) -> str:
-        parts = [self._place]
+        if not self.workers:
+            place = "No worker takes it now; it starts when one does."
+        elif not self.ahead:
+            place = "Next in line."
+        elif self.starts_in is None:
+            place = f"{self.ahead} ahead of it."
+        else:
+            place = f"{self.ahead} ahead of it; likely to start in {in_words(self.starts_in)}."
+        parts = [place]
         if self.takes is not None:
             parts.append(f"It takes {in_words(self.takes)}, by earlier runs of this parser.")
         return " ".join(parts)
 
-    @property
-    def _place(self) -> str:
-        if not self.workers:
-            return "No worker takes it now; it starts when one does."
-        if not self.ahead:
-            return "Next in line."
-        place = f"{self.ahead} ahead of it"
-        if self.starts_in is None:
-            return f"{place}."
-        return f"{place}; likely to start in {in_words(self.starts_in)}."
 
-
-def waiting_of(run: TrainingRun) -> Waiting:
+def waiting_of(run: TrainingRun) -> ExpectedWait:
     """Return the place of ``run``, which is queued, and the likely times."""
     before = Q(status="running") | Q(
         Q(queued_at__lt=run.queued_at) | Q(queued_at=run.queued_at, id__lt=run.pk), status="queued"
@@ -55,14 +52,17 @@ def waiting_of(run: TrainingRun) -> Waiting:
     ahead = {
         kind.model: list(kind.model.objects.active().filter(before, queue=run.queue))
         for kind in kinds()
+        if kind.model is not TrainingRun
     }
-    workers = sum(run.queue in worker.queues for worker in Worker.objects.alive())
-    left = [_seconds_left(each) for each in ahead.pop(TrainingRun)]
-    is_known = not any(ahead.values()) and None not in left
-    return Waiting(
+    runs = TrainingRun.objects.active().filter(before, queue=run.queue)
+    workers = Worker.objects.alive().by_queue()[run.queue]
+    left = [_seconds_left(each) for each in runs]
+    known = [seconds for seconds in left if seconds is not None]
+    is_known = not any(ahead.values()) and len(known) == len(left)
+    return ExpectedWait(
         ahead=len(left) + sum(map(len, ahead.values())),
         workers=workers,
-        starts_in=sum(left) / workers if is_known and workers else None,
+        starts_in=sum(known) / workers if is_known and workers else None,
         takes=usual_seconds(run),
     )
 
@@ -78,7 +78,11 @@ def usual_seconds(run: TrainingRun) -> float | None:
     )
     for ended in (of_parser.filter(config=run.config), of_parser):
         times = ended.order_by("-id").values_list("started_at", "finished_at")[:COUNTED]
-        seconds = [(finished - started).total_seconds() for started, finished in times if started]
+        seconds = [
+            (finished - started).total_seconds()
+            for started, finished in times
+            if started and finished
+        ]
         if seconds:
             return median(seconds)
     return None

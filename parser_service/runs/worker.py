@@ -10,7 +10,6 @@ import os
 import signal
 import socket
 import threading
-from collections.abc import Iterable
 from contextlib import suppress
 from datetime import timedelta
 from functools import partial
@@ -27,7 +26,7 @@ from annotations.background import TASK, message_queue
 from annotations.background.waking import WAKE_AFTER
 from annotations.models.background import BackgroundWork, Queue
 from parser_service.models import Worker
-from parser_service.runs.folders import remove_orphans
+from parser_service.runs.orphan_folders import remove_orphans
 
 logger = logging.getLogger(__name__)
 
@@ -75,7 +74,7 @@ def _leave_with(parent: int) -> None:
     os._exit(1)
 
 
-class Service(bootsteps.StartStopStep):
+class WorkerTimer(bootsteps.StartStopStep):
     """The timer of a worker's parent process, and its quick stop."""
 
     requires = ("celery.worker.components:Pool",)
@@ -147,7 +146,9 @@ class Service(bootsteps.StartStopStep):
         watchdog.daemon = True
         watchdog.start()
         try:
-            _kill(self._worker.pool.info["processes"])
+            for process in self._worker.pool.info["processes"]:
+                with suppress(ProcessLookupError):
+                    os.kill(process, signal.SIGKILL)
             for kind in background.kinds():
                 for work in background.hand_back(self._name, kind.model):
                     logger.info("The queue has %s again.", work)
@@ -156,9 +157,3 @@ class Service(bootsteps.StartStopStep):
             logger.warning("The worker's work goes on when its lease is over: %s", error)
         finally:
             os._exit(0)
-
-
-def _kill(processes: Iterable[int]) -> None:
-    for process in processes:
-        with suppress(ProcessLookupError):
-            os.kill(process, signal.SIGKILL)

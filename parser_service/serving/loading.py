@@ -3,30 +3,34 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from http import HTTPStatus
 
+from annotations.language.errors import Refusal
 from annotations.models.background import Status
 from parser_service.models import TrainingRun
 from parser_service.parsers.interface import Parser
 from parser_service.parsers.registry import load_class
-from parser_service.runs.carrying_out.knowledge import knowledge_of
 from parser_service.runs.checkpoints import model_folder
+from parser_service.runs.training.knowledge import knowledge_of
 
 LOADED_PARSERS = 2
 
 
 def load_parser(run: TrainingRun) -> Parser:
-    """Load the saved parser of a succeeded run; the last few stay loaded. Raises ValueError."""
+    """Load the saved parser of a succeeded run; the last few stay loaded. Raises Refusal."""
     _require_success(run)
-    return _load(run.pk)
+    return _load(run.pk, run.content_key)
 
 
 def load_anew(run: TrainingRun) -> Parser:
-    """Load the saved parser of a succeeded run with what its world says now. Raises ValueError."""
+    """Load the saved parser of a succeeded run with what its world says now. Raises Refusal."""
     _require_success(run)
     folder = model_folder(run.pk)
     if not folder.is_dir():
-        raise ValueError(
-            f"The parser of run {run.pk} is not in {folder}. Bring that folder back, or train again."
+        raise Refusal(
+            f"The parser of run {run.pk} is not in {folder}. Bring that folder back, or train again.",
+            "saved_parser_missing",
+            HTTPStatus.CONFLICT,
         )
     return load_class(run.parser).load(folder, knowledge_of(run.world, run.protocol))
 
@@ -37,10 +41,15 @@ def size_of(run: TrainingRun) -> int:
 
 
 @lru_cache(maxsize=LOADED_PARSERS)
-def _load(run_id: int) -> Parser:
+def _load(run_id: int, content_key: str) -> Parser:
+    # The number alone does not tell: a restored database gives it to another run.
     return load_anew(TrainingRun.objects.select_related("world").get(pk=run_id))
 
 
 def _require_success(run: TrainingRun) -> None:
     if run.status != Status.SUCCEEDED:
-        raise ValueError(f"Run {run.pk} is {run.status}, so there is no parser to ask.")
+        raise Refusal(
+            f"Run {run.pk} is {run.status}, so there is no parser to ask.",
+            "run_not_succeeded",
+            HTTPStatus.CONFLICT,
+        )

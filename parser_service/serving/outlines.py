@@ -25,7 +25,7 @@ from annotations.language.grounding import Deanonymized, FormSlots, SlotPath, fi
 from annotations.language.plans import Lookup, Named, Value, Words
 from annotations.language.predicates import can_stand_in, is_loose, texts_of_patterns
 from parser_service.parsers.interface import Candidate
-from parser_service.serving.answers import answer_with, as_json, form_of
+from parser_service.serving.parse_answers import answer_with, as_json, form_of
 from parser_service.serving.preparing import WorldLanguage
 
 REMEMBERED = 4096  # of each kind of thing that is made once
@@ -71,7 +71,7 @@ class StandIn:
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class AskedEntity:
     """An entity that a plan asks for: the number of its text, and the place of a predicate that it takes."""
 
     number: int
@@ -116,7 +116,7 @@ class Outlines:
         entity_class = value.entity_class if isinstance(value, Named) else ""
         return entity_class, as_json(value.as_json())
 
-    def _asked(self, form: str, paths: Paths) -> tuple[Asked, ...] | None:
+    def _asked(self, form: str, paths: Paths) -> tuple[AskedEntity, ...] | None:
         """Return what the plan of a form asks for, whatever entities fill it."""
         if len(paths) > MOST_STAND_INS or STAND_IN.search(form):
             return None
@@ -137,8 +137,8 @@ class Outlines:
         return Outline(text) if _is_sound(text, paths) else None
 
     def _make(
-        self, form: str, paths: Paths, classes: Mapping[Asked, str]
-    ) -> tuple[dict[str, Any], Mapping[Asked, str]]:
+        self, form: str, paths: Paths, classes: Mapping[AskedEntity, str]
+    ) -> tuple[dict[str, Any], Mapping[AskedEntity, str]]:
         """Return the answer with signs, and what its plan asks for with the names of these places."""
         lookup = _AwaitingLookup(self.language.lookup, classes)
         given = Deanonymized(_with_signs(form, paths), ())
@@ -149,15 +149,15 @@ class Outlines:
 class _AwaitingLookup(Lookup):
     """Gives a place for the entity of a sign. ``names`` are those of the places, in the order of asking."""
 
-    def __init__(self, lookup: Lookup, classes: Mapping[Asked, str]) -> None:
+    def __init__(self, lookup: Lookup, classes: Mapping[AskedEntity, str]) -> None:
         self._lookup = lookup
         self._classes = classes
-        self.names: dict[Asked, str] = {}
+        self.names: dict[AskedEntity, str] = {}
 
     def value(self, text: str, predicate: str, place: int) -> tuple[Value, bool]:
         if not STAND_IN.fullmatch(text):
             return self._lookup.value(text, predicate, place)
-        asked = Asked(read_stand_in(text)[0], predicate, place)
+        asked = AskedEntity(read_stand_in(text)[0], predicate, place)
         name = self.names.setdefault(asked, name_of_entity(len(self.names)))
         entity_class = self._classes.get(asked, "")
         awaited = _AwaitedNamed(entity_class, name) if entity_class else _AwaitedWords(name)

@@ -1,22 +1,34 @@
-"""What a parser is given for an utterance that somebody typed or said."""
+"""What a parser is given for an utterance that somebody typed or said, or for JSON lines with one in each."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
+from itertools import islice
 from typing import Self
 
+from annotations.language.errors import LanguageError, Refusal
+from annotations.language.forms import Form
+from annotations.language.grammar import Budget, TooManyCombinations
 from annotations.language.grounding import Anonymizer, Evidence
 from annotations.language.ontology import Ontology
 from annotations.language.plans import ActionName, Lookup
 from annotations.language.predicates import Predicate
+from annotations.language.symbols import Symbols
+from annotations.language.templates import TemplateExpander
+from annotations.language.text import has_half_character, normalise
 from annotations.models import World
 from annotations.models.corpus import MOST_CHARACTERS
-from annotations.rows.from_rows import ontology_of, predicates_of
-from parser_service.robots.action_names import names_of
-from parser_service.robots.evidence import evidence_of
+from annotations.rows.from_rows import ontology_of, predicates_of, task_categories
+from parser_service.robots.action_naming import names_of
 
 MOST_CANDIDATES = 20
+# What the grammar tells about which words of an utterance go where:
+MOST_OF_A_TEMPLATE = 40  # commands; more of one template say nothing new
+MOST_COMMANDS = 4_000
+STEPS = 200_000  # of the expansion of one template
+REMEMBERED_WORLDS = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +44,7 @@ class WorldLanguage:
 
     @classmethod
     def of(cls, world: World) -> Self:
+        """Read the language of ``world`` from the database."""
         ontology, predicates = ontology_of(world), predicates_of(world)
         return cls(
             ontology,
@@ -43,21 +56,68 @@ class WorldLanguage:
         )
 
 
+def numbered_lines(body: bytes) -> list[tuple[int, bytes]]:
+    """Return the lines that are not empty, numbered from 1."""
+    return [(number, line) for number, line in enumerate(body.splitlines(), 1) if line.strip()]
+
+
 def require_utterance(text: object) -> str:
-    """Return ``text`` where it is an utterance. Raises ValueError, a sentence, where it is none."""
-    if not isinstance(text, str) or not text.strip():
-        raise ValueError("There is no utterance: send a text.")
-    if "\0" in text:
-        raise ValueError("The utterance holds a character that cannot be written (NUL).")
-    if len(text) > MOST_CHARACTERS:
-        raise ValueError(
-            f"The utterance has {len(text):,} characters; at most {MOST_CHARACTERS} are parsed."
+    """Return the utterance that ``text`` is, normalised. Raises Refusal where it is none."""
+    if not isinstance(text, str):
+        raise Refusal("There is no utterance: send a text.", "no_utterance")
+    # A longer one is not even normalised; composing the letters of a shorter one may make it longer.
+    utterance = normalise(text) if len(text) <= MOST_CHARACTERS else text
+    if len(utterance) > MOST_CHARACTERS:
+        raise Refusal(
+            f"The utterance has {len(utterance):,} characters; at most {MOST_CHARACTERS} are parsed.",
+            "utterance_too_long",
         )
-    return text
+    if not utterance.strip():
+        raise Refusal("There is no utterance: send a text.", "no_utterance")
+    if "\0" in utterance:
+        raise Refusal(
+            "The utterance holds a character that cannot be written (NUL).", "utterance_unwritable"
+        )
+    if has_half_character(utterance):
+        raise Refusal(
+            "The utterance holds half a character, a lone surrogate such as \\ud83d.",
+            "utterance_unwritable",
+        )
+    return utterance
 
 
 def require_beam(beam: object) -> int:
-    """Return ``beam`` where it is a number of candidates. Raises ValueError, a sentence."""
+    """Return ``beam`` where it is a number of candidates. Raises Refusal."""
     if not isinstance(beam, int) or isinstance(beam, bool) or not 1 <= beam <= MOST_CANDIDATES:
-        raise ValueError(f"beam has to be a whole number from 1 to {MOST_CANDIDATES}.")
+        raise Refusal(
+            f"beam has to be a whole number from 1 to {MOST_CANDIDATES}.", "beam_out_of_range"
+        )
     return beam
+
+
+def evidence_of(world: World) -> Evidence:
+    """Return the evidence of the grammar of ``world``, kept until the grammar changes."""
+    return _evidence(world.pk, World.objects.values_list("revision", flat=True).get(pk=world.pk))
+
+
+@lru_cache(maxsize=REMEMBERED_WORLDS)
+def _evidence(world: int, revision: int) -> Evidence:
+    try:
+        pairs = list(islice(_derivations(World.objects.get(pk=world)), MOST_COMMANDS))
+    except LanguageError:  # a grammar that cannot be read says nothing; its page says why
+        pairs = []
+    return Evidence(pairs)
+
+
+def _derivations(world: World) -> Iterator[tuple[Symbols, Form]]:
+    """Yield some commands of each template with their forms. A template that cannot be expanded has none."""
+    for category in task_categories(world):
+        expander = TemplateExpander(category.grammar)
+        for template in category.templates:
+            try:
+                some = islice(
+                    expander.derivations(template, budget=Budget(STEPS)), MOST_OF_A_TEMPLATE
+                )
+                yield from [(each.symbols, each.form) for each in some]
+            except (LanguageError, TooManyCombinations):
+                continue

@@ -5,19 +5,24 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Sequence
+from http import HTTPStatus
 
+from annotations.language.errors import Refusal
 from parser_service.parsers.interface import Candidate, Check
 
 Predict = Callable[[Sequence[str], int, Check], list[list[Candidate]]]
 
-# Below the 30 s that pages and REST wait for the parse server (``client.PATIENCE``).
+# Below the 30 s that pages and REST wait for the parse server (``parser_client.PATIENCE``).
 PATIENCE = 20.0
 SEATS = 8  # requests that may wait for such parsers at once, of all threads of the parse server
 TOGETHER = 4  # lines of a longer request, so that each part of it is answered within the patience
 
 
-class Unanswered(Exception):
-    """The other server did not answer; a sentence says why."""
+class Unanswered(Refusal):
+    """The other server did not answer."""
+
+    code = "language_model_away"
+    status = HTTPStatus.SERVICE_UNAVAILABLE
 
 
 class RemoteAsker:
@@ -39,8 +44,10 @@ class RemoteAsker:
             )
         try:
             return self._predict(texts, beam, self._check_until(time.monotonic() + self._patience))
-        except ValueError as error:
-            raise Unanswered(str(error)) from error
+        except Unanswered:
+            raise
+        except Refusal as error:
+            raise Unanswered(error.message) from error
         finally:
             self._seats.release()
 

@@ -5,37 +5,42 @@ from __future__ import annotations
 import logging
 import threading
 import time
-from collections import OrderedDict
+from collections import OrderedDict, defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
+from http import HTTPStatus
 from typing import Any
 
+from django.db.models import Count, Max, Sum
+
+from annotations.language.errors import Refusal
 from annotations.language.grounding import Anonymized
-from parser_service.models import TrainingRun
+from annotations.models import Entity, Predicate, World
+from parser_service.models import ActionNames, Promotion, TrainingRun
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.interface import Candidate, Parser
+from parser_service.serving.answer_writing import AnswerWriter
 from parser_service.serving.batching import Batcher
 from parser_service.serving.loading import load_anew, size_of
 from parser_service.serving.metrics import Metrics
 from parser_service.serving.preparing import WorldLanguage
 from parser_service.serving.remote import SEATS, TOGETHER, RemoteAsker, Unanswered
-from parser_service.serving.watching import Wanted, read_wanted
-from parser_service.serving.writing import AnswerWriter
 
 logger = logging.getLogger(__name__)
 
 # What was heard, what the parser was given, and its answers.
-Asked = tuple[Anonymized, str, list[Candidate]]
+AskedUtterance = tuple[Anonymized, str, list[Candidate]]
 LINES_TOGETHER = 32  # of a request of many lines
 AGAIN_AFTER = 30.0  # seconds until a parser that could not be loaded is tried again
 
 
-class NotServed(Exception):
+class NotServed(Refusal):
     """A request that cannot be answered, with its HTTP status and a sentence."""
 
+    code = "not_served"
+
     def __init__(self, status: int, sentence: str) -> None:
-        super().__init__(sentence)
-        self.status = status
+        super().__init__(sentence, status=status)
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,29 +58,29 @@ class LoadedParser:
 
 
 @dataclass(frozen=True, slots=True)
-class Service:
+class ServedParser:
     """A parser, and a writer with the language of its world: all that answers a request, the same while it does."""
 
     world: str
     parser: LoadedParser
     writer: AnswerWriter
-    wanted: Wanted
+    wanted: WantedParser
 
     def parse(self, utterances: Sequence[str], beam: int) -> list[str]:
         """Return the answer to each utterance, as JSON. Raises as ``ask``."""
         return [self.write(each) for each in self.ask(utterances, beam)]
 
-    def ask(self, utterances: Sequence[str], beam: int) -> list[Asked]:
+    def ask(self, utterances: Sequence[str], beam: int) -> list[AskedUtterance]:
         """Return what the parser answers to each utterance, and what was heard. Raises NotServed where the
         parser asks a server that does not answer in time."""
         heard = [self.writer.language.anonymizer.anonymize(each) for each in utterances]
         try:
             answers = self.parser.batcher.ask(utterances, beam)
         except Unanswered as error:
-            raise NotServed(503, str(error)) from error
+            raise NotServed(503, error.message) from error
         return list(zip(heard, utterances, answers, strict=True))
 
-    def write(self, asked: Asked) -> str:
+    def write(self, asked: AskedUtterance) -> str:
         """Return an answer as JSON, with who gave it."""
         about = {
             "world": self.world,
@@ -84,6 +89,41 @@ class Service:
             "score_kind": self.parser.score_kind,
         }
         return self.writer.write(about, *asked)
+
+
+@dataclass(frozen=True, slots=True)
+class WantedParser:
+    """A world, the key of its promoted run (None: none), and what changes whenever its words do.
+
+    ``language`` stands for ontology and predicates, ``revision`` for the grammar, ``names`` for those
+    of actions.
+    """
+
+    world: int
+    run: int | None
+    language: tuple[object, ...]
+    revision: int
+    names: int = 0
+
+
+def read_wanted() -> dict[str, WantedParser]:
+    """Return world name → what is wanted there, in five queries.
+
+    Every edit and import of rows adds, deletes or raises a version, so that number, last key and sum of
+    the versions together change.
+    """
+    language: dict[int, list[object]] = defaultdict(list)
+    for model, path in ((Entity, "ontology__world"), (Predicate, "world")):
+        totals = model.objects.order_by().values_list(path)
+        for world, *of_world in totals.annotate(Count("pk"), Max("pk"), Sum("version")):
+            language[world] += [model.__name__, *of_world]
+    runs = dict(Promotion.objects.present().order_by().values_list("world", "run"))
+    names = dict(ActionNames.objects.values_list("world", "version"))
+    rows = World.objects.present().values_list("pk", "name", "revision")
+    return {
+        name: WantedParser(key, runs.get(key), tuple(language[key]), revision, names.get(key, 0))
+        for key, name, revision in rows
+    }
 
 
 class Shelf:
@@ -101,10 +141,10 @@ class Shelf:
         self._seats = threading.BoundedSemaphore(SEATS)
         self._loading = threading.Lock()
         self._changed = threading.Condition()
-        self._wanted: dict[str, Wanted] | None = None
-        self._promoted: dict[str, Service] = {}
-        self._others: OrderedDict[int, Service] = OrderedDict()
-        self._failures: dict[str, tuple[Wanted, float, str]] = {}
+        self._wanted: dict[str, WantedParser] | None = None
+        self._promoted: dict[str, ServedParser] = {}
+        self._others: OrderedDict[int, ServedParser] = OrderedDict()
+        self._failures: dict[str, tuple[WantedParser, float, str]] = {}
 
     @property
     def is_ready(self) -> bool:
@@ -141,7 +181,7 @@ class Shelf:
                 self._take(name, each)
         self.metrics.parsers.set(len(self._promoted) + len(self._others))
 
-    def find(self, world: str, run: int | None, patience: float) -> Service:
+    def find(self, world: str, run: int | None, patience: float) -> ServedParser:
         """Return what answers in ``world``: its promoted parser, or that of ``run``.
 
         Waits up to ``patience`` seconds for a parser that is being loaded. Raises NotServed.
@@ -156,7 +196,16 @@ class Shelf:
             service = self._wait_for(world, patience)
         return service
 
-    def _wanted_in(self, world: str, patience: float) -> Wanted:
+    def load(self, world: str, run: int | None) -> ServedParser:
+        """Return what answers in ``world``, loaded for the caller alone. Raises Refusal."""
+        wanted = read_wanted().get(world)
+        if wanted is None:
+            raise Refusal(f"There is no world {world}.", "no_such_world", HTTPStatus.NOT_FOUND)
+        if run is None and wanted.run is None:
+            raise Refusal(_nobody_answers(world, wanted), "no_promoted_run", HTTPStatus.CONFLICT)
+        return self._load(world, wanted, run or wanted.run, None)
+
+    def _wanted_in(self, world: str, patience: float) -> WantedParser:
         with self._changed:
             self._changed.wait_for(lambda: self._wanted is not None, patience)
         if self._wanted is None:
@@ -167,7 +216,7 @@ class Shelf:
             raise NotServed(404, f"There is no world {world}.")
         return self._wanted[world]
 
-    def _wait_for(self, world: str, patience: float) -> Service:
+    def _wait_for(self, world: str, patience: float) -> ServedParser:
         with self._changed:
             self._changed.wait_for(
                 lambda: world in self._promoted or not self._is_coming(world), patience
@@ -181,23 +230,29 @@ class Shelf:
         is_wanted = bool(self._wanted and world in self._wanted and self._wanted[world].run)
         return is_wanted and world not in self._promoted and world not in self._failures
 
-    def _is_due(self, name: str, wanted: Wanted) -> bool:
+    def _is_due(self, name: str, wanted: WantedParser) -> bool:
         service = self._promoted.get(name)
         if service is not None and service.wanted == wanted:
             return False
         failed = self._failures.get(name)
         return failed is None or failed[0] != wanted or time.monotonic() - failed[1] > AGAIN_AFTER
 
-    def _take(self, name: str, wanted: Wanted) -> None:
+    def _take(self, name: str, wanted: WantedParser) -> None:
         """Let the promoted run answer, or keep what answers and remember why."""
         try:
             service = self._load(name, wanted, wanted.run, self._promoted.get(name))
         except Exception as error:
-            logger.warning("%s keeps its parser: run %s: %s", name, wanted.run, error)
-            is_sentence = isinstance(error, ValueError)
-            said = str(error) if is_sentence else f"Run {wanted.run} could not be loaded: {error!r}"
+            logger.warning(
+                "%s keeps its parser: run %s: %s",
+                name,
+                wanted.run,
+                error,
+                exc_info=not isinstance(error, Refusal),
+            )
+            see_log = f"Run {wanted.run} could not be loaded. The log of the parse server says why."
+            problem = error.message if isinstance(error, Refusal) else see_log
             with self._changed:
-                self._failures[name] = wanted, time.monotonic(), said
+                self._failures[name] = wanted, time.monotonic(), problem
                 self._changed.notify_all()
             return
         with self._changed:
@@ -209,7 +264,7 @@ class Shelf:
             self.metrics.changes.labels(world=name).inc()
             logger.info("Run %s (%s) answers in %s.", wanted.run, service.parser.name, name)
 
-    def _other(self, world: str, wanted: Wanted, run: int) -> Service:
+    def _other(self, world: str, wanted: WantedParser, run: int) -> ServedParser:
         """Return a run that is not the promoted one, loading it where it is not there."""
         with self._loading:
             held = self._others.get(run)
@@ -218,14 +273,14 @@ class Shelf:
                     held = self._load(
                         world, wanted, run, held if held and held.world == world else None
                     )
-                except ValueError as error:
-                    raise NotServed(409, str(error)) from error
+                except Refusal as error:
+                    raise NotServed(409, error.message) from error
                 self._make_room(held)
             self._others[run] = held
             self._others.move_to_end(run)
             return held
 
-    def _make_room(self, service: Service) -> None:
+    def _make_room(self, service: ServedParser) -> None:
         """Forget the runs that were not asked for the longest time. Raises NotServed for one too large."""
         if service.parser.size > self._most_bytes:
             raise NotServed(
@@ -242,19 +297,24 @@ class Shelf:
             del self._others[key]
             used -= oldest.parser.size if key != service.parser.run else 0
 
-    def _load(self, name: str, wanted: Wanted, run: int | None, held: Service | None) -> Service:
+    def _load(
+        self, name: str, wanted: WantedParser, run: int | None, held: ServedParser | None
+    ) -> ServedParser:
         """Load a run of a world with its language; what ``held`` has already is taken from there.
 
-        Raises ValueError, a sentence, where there is no such run or no parser of it.
+        Raises Refusal where there is no such run or no parser of it.
         """
-        row = TrainingRun.objects.select_related("world").filter(world=wanted.world, pk=run).first()
+        of_world = TrainingRun.objects.select_related("world").filter(world=wanted.world)
+        row = None if run is None else of_world.filter(pk=run).first()
         if row is None:
-            raise ValueError(f"There is no run {run} in {name}.")
-        is_same_language = held is not None and _words(held.wanted) == _words(wanted)
-        writer = held.writer if is_same_language else AnswerWriter(WorldLanguage.of(row.world))
+            raise Refusal(f"There is no run {run} in {name}.", "no_such_run", HTTPStatus.CONFLICT)
+        if held is not None and _words(held.wanted) == _words(wanted):
+            writer = held.writer
+        else:
+            writer = AnswerWriter(WorldLanguage.of(row.world))
         knowledge = _knowledge(row, wanted)
         if held is not None and (held.parser.run, held.parser.knowledge) == (row.pk, knowledge):
-            return Service(name, held.parser, writer, wanted)
+            return ServedParser(name, held.parser, writer, wanted)
         parser = load_anew(row).hesitant()
         loaded = LoadedParser(
             run=row.pk,
@@ -265,7 +325,7 @@ class Shelf:
             batcher=self._make_batcher(parser),
             lines_together=TOGETHER if parser.asks_a_server else LINES_TOGETHER,
         )
-        return Service(name, loaded, writer, wanted)
+        return ServedParser(name, loaded, writer, wanted)
 
     def _make_batcher(self, parser: Parser) -> Batcher | RemoteAsker:
         if parser.asks_a_server:
@@ -273,12 +333,12 @@ class Shelf:
         return Batcher(parser.predict, self._turn, self.metrics.batches.observe)
 
 
-def _words(wanted: Wanted) -> tuple[object, ...]:
+def _words(wanted: WantedParser) -> tuple[object, ...]:
     """Return what changes when the language of the world has to be read anew."""
     return wanted.language, wanted.revision, wanted.names
 
 
-def _knowledge(run: TrainingRun, wanted: Wanted) -> tuple[object, ...]:
+def _knowledge(run: TrainingRun, wanted: WantedParser) -> tuple[object, ...]:
     """Return what changes when the run has to be loaded anew: what its protocol lets it know."""
     if run.protocol == Protocol.STRICT:
         return ()
@@ -286,7 +346,7 @@ def _knowledge(run: TrainingRun, wanted: Wanted) -> tuple[object, ...]:
     return wanted.language if is_domain else (*wanted.language, wanted.revision)
 
 
-def _nobody_answers(world: str, wanted: Wanted) -> str:
+def _nobody_answers(world: str, wanted: WantedParser) -> str:
     """Return why no parser answers in a world, and what there is to do."""
     sentence = f"No run of {world} has been promoted yet, so no parser answers there."
     if TrainingRun.objects.active().filter(world=wanted.world).exists():

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from parser_service.analysis.labels import Labels
+from parser_service.analysis.encoded_labels import EncodedLabels
 from parser_service.analysis.slicing import SliceAccuracies, accuracy_of_labels, accuracy_where
 from parser_service.models import Slice
 from parser_service.slices.addresses import Addresses
@@ -34,7 +34,7 @@ class Accuracy:
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class SliceRow:
     """A slice: ``count`` examples, and the accuracy of each run. ``count`` is None where it was not counted."""
 
     title: str
@@ -49,7 +49,7 @@ class Breakdown:
 
     name: str
     title: str
-    rows: tuple[Row, ...]
+    rows: tuple[SliceRow, ...]
     n_more: int = 0
     is_of_base: bool = False
 
@@ -80,7 +80,7 @@ def _by_group(compared: Compared, grouping: Grouping, addresses: Addresses) -> B
         chosen = grouping.parameters(label)
         url = "" if chosen is None else addresses.of_base(chosen)
         cells = _cells(accuracies, place, addresses, chosen)
-        rows.append(Row(titles.get(label, label), int(accuracies.counts[place]), url, cells))
+        rows.append(SliceRow(titles.get(label, label), int(accuracies.counts[place]), url, cells))
     return Breakdown(
         grouping.name,
         grouping.title,
@@ -90,7 +90,7 @@ def _by_group(compared: Compared, grouping: Grouping, addresses: Addresses) -> B
     )
 
 
-def _most_frequent(labels: Labels[str], is_ordered: bool) -> tuple[Labels[str], int]:
+def _most_frequent(labels: EncodedLabels[str], is_ordered: bool) -> tuple[EncodedLabels[str], int]:
     """Return the groups to show, in their order or the frequent ones first, and how many groups there are.
 
     An example of another group has a code of none.
@@ -102,10 +102,12 @@ def _most_frequent(labels: Labels[str], is_ordered: bool) -> tuple[Labels[str], 
     shown = there[:MOST_ROWS]
     codes = np.full(len(counts), len(shown))
     codes[shown] = np.arange(len(shown))
-    return Labels(tuple(labels.values[place] for place in shown), codes[labels.codes]), len(there)
+    return EncodedLabels(tuple(labels.values[place] for place in shown), codes[labels.codes]), len(
+        there
+    )
 
 
-def _slice_rows(compared: Compared, addresses: Addresses) -> Iterator[Row]:
+def _slice_rows(compared: Compared, addresses: Addresses) -> Iterator[SliceRow]:
     for saved in Slice.objects.filter(world=compared.world):
         conditions = filters_of(compared.world, saved.query, of_run=compared.base).conditions(
             but=["part"]
@@ -113,12 +115,12 @@ def _slice_rows(compared: Compared, addresses: Addresses) -> Iterator[Row]:
         chosen = {"slice": str(saved.pk)}
         is_quick = len(compared.examples.keys) <= MOST_ASKED
         if not is_quick and not are_in_columns(conditions, compared):
-            yield Row(saved.name, None, addresses.compare(chosen))
+            yield SliceRow(saved.name, None, addresses.compare(chosen))
             continue
         mask = compared.mask(conditions)
         accuracies = accuracy_where(compared.correct, mask, compared.clusters)
         cells = _cells(accuracies, 0, addresses, chosen)
-        yield Row(saved.name, int(accuracies.counts[0]), addresses.compare(chosen), cells)
+        yield SliceRow(saved.name, int(accuracies.counts[0]), addresses.compare(chosen), cells)
 
 
 def _cells(

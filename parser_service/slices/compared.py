@@ -11,17 +11,17 @@ import numpy as np
 
 from annotations.language.corpus import Criterion
 from annotations.models import World
+from parser_service.analysis.answer_forms import NO_FORM
 from parser_service.analysis.arrays import Bools, Ints
-from parser_service.analysis.comparing import Comparison, compare_runs, count_wins
-from parser_service.analysis.confusions import HeadConfusion, confuse_labels
-from parser_service.analysis.labels import Labels
-from parser_service.analysis.reading import NO_FORM
-from parser_service.analysis.resampling import SAMPLES
+from parser_service.analysis.comparing import RunComparison, compare_runs, count_wins
+from parser_service.analysis.confusions import HeadConfusion, confuse_heads
+from parser_service.analysis.encoded_labels import EncodedLabels
+from parser_service.analysis.intervals import SAMPLES
 from parser_service.analysis.slicing import SliceAccuracies, accuracy_where
 from parser_service.models import TrainingRun
-from parser_service.slices.columns import Examples, answers_of, examples_of
-from parser_service.slices.conditions import Condition, NoColumn
-from parser_service.slices.filters import PredictionFilters
+from parser_service.slices.filter_conditions import FilterCondition, NoColumn
+from parser_service.slices.prediction_filters import PredictionFilters
+from parser_service.slices.stored_columns import ExampleArrays, answers_of, examples_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +35,7 @@ class Compared:
     world: World
     runs: tuple[TrainingRun, ...]
     part: str
-    examples: Examples
+    examples: ExampleArrays
     answers: tuple[Mapping[str, Any], ...]
     chosen: Bools
 
@@ -73,10 +73,11 @@ class Compared:
     @cached_property
     def wins(self) -> list[list[int]]:
         """On how many examples one run (row) is right and another (column) is wrong."""
-        return count_wins(self.correct).tolist()
+        wins: list[list[int]] = count_wins(self.correct).tolist()
+        return wins
 
     @cached_property
-    def comparisons(self) -> tuple[Comparison, ...]:
+    def comparisons(self) -> tuple[RunComparison, ...]:
         """Every pair of runs; none without an example."""
         return compare_runs(self.correct, self.clusters) if self.count else ()
 
@@ -84,17 +85,17 @@ class Compared:
         """Return a column of the examples, or of a run's answers, for the chosen examples."""
         values = self.examples.columns.get(name)
         values = self.answers[run][name] if values is None else values
-        if isinstance(values, Labels):
-            return Labels(values.values, values.codes[self.chosen])
+        if isinstance(values, EncodedLabels):
+            return EncodedLabels(values.values, values.codes[self.chosen])
         return values[self.chosen]
 
     def confusion(self, run: int) -> HeadConfusion:
         """Count the head predicates of the labels against those of a run's answers."""
         gold = self.column("head_predicate")
-        named = Labels(tuple(value or NO_FORM for value in gold.values), gold.codes)
-        return confuse_labels(named, self.column("answer_head", run))
+        named = EncodedLabels(tuple(value or NO_FORM for value in gold.values), gold.codes)
+        return confuse_heads(named, self.column("answer_head", run))
 
-    def mask(self, conditions: Sequence[Condition]) -> Bools:
+    def mask(self, conditions: Sequence[FilterCondition]) -> Bools:
         """Return which chosen examples fulfil conditions, [chosen]."""
         mask = _mask(conditions, self.base, self.part, self.examples, self.answers[0])
         return mask[self.chosen]
@@ -112,7 +113,7 @@ def compare_on(
     return Compared(world, tuple(runs), part, examples, answers, chosen)
 
 
-def are_in_columns(conditions: Sequence[Condition], compared: Compared) -> bool:
+def are_in_columns(conditions: Sequence[FilterCondition], compared: Compared) -> bool:
     """Return whether columns alone tell which examples fulfil conditions, which takes no query."""
     columns = {**compared.examples.columns, **compared.answers[0]}
     try:
@@ -124,10 +125,10 @@ def are_in_columns(conditions: Sequence[Condition], compared: Compared) -> bool:
 
 
 def _mask(
-    conditions: Sequence[Condition],
+    conditions: Sequence[FilterCondition],
     run: TrainingRun,
     part: str,
-    examples: Examples,
+    examples: ExampleArrays,
     answers: Mapping[str, Any],
 ) -> Bools:
     columns = {**examples.columns, **answers}

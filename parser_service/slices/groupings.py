@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from parser_service.analysis.labels import Labels
+from parser_service.analysis.encoded_labels import EncodedLabels
 from parser_service.analysis.slicing import BIN_STARTS, bin_names
 from parser_service.models import Review
-from parser_service.slices.columns import UNKNOWN_COUNT
 from parser_service.slices.compared import Compared
-from parser_service.slices.kinds import NO_CATEGORY
+from parser_service.slices.filter_kinds import NO_CATEGORY
+from parser_service.slices.stored_columns import UNKNOWN_COUNT
 
 NO_TASK_CATEGORY = "no task category"
 SEEN, NEW, NOT_KNOWN = "in the training pairs", "not in the training pairs", "not known"
@@ -30,25 +30,21 @@ class Grouping:
 
     name: str
     title: str
-    labels: Callable[[Compared], Labels[str]]
+    labels: Callable[[Compared], EncodedLabels[str]]
     parameters: Callable[[str], Parameters | None]
     is_ordered: bool = False
     is_of_base: bool = False
     titles: Callable[[Compared], dict[str, str]] = lambda compared: {}
 
 
-def _by_category(compared: Compared) -> Labels[str]:
+def _by_category(compared: Compared) -> EncodedLabels[str]:
     labels = compared.column("task_category")
-    return Labels(tuple(value or NO_TASK_CATEGORY for value in labels.values), labels.codes)
+    return EncodedLabels(tuple(value or NO_TASK_CATEGORY for value in labels.values), labels.codes)
 
 
-def _by_head(compared: Compared) -> Labels[str]:
-    return compared.column("head_predicate")  # type: ignore[no-any-return]
-
-
-def _by_words(compared: Compared) -> Labels[str]:
+def _by_words(compared: Compared) -> EncodedLabels[str]:
     places = np.digitize(compared.column("word_count"), BIN_STARTS[1:])
-    return Labels(bin_names(), places.astype(np.int64))
+    return EncodedLabels(bin_names(), places.astype(np.int64))
 
 
 def _words_in(name: str) -> Parameters:
@@ -59,26 +55,22 @@ def _words_in(name: str) -> Parameters:
     return {name: value for name, value in bounds.items() if value}
 
 
-def _by_depth(compared: Compared) -> Labels[str]:
+def _by_depth(compared: Compared) -> EncodedLabels[str]:
     depths, codes = np.unique(compared.column("depth"), return_inverse=True)
-    return Labels(tuple(map(str, depths.tolist())), codes.astype(np.int64))
+    return EncodedLabels(tuple(map(str, depths.tolist())), codes.astype(np.int64))
 
 
-def _by_source(compared: Compared) -> Labels[str]:
-    return compared.column("source")  # type: ignore[no-any-return]
-
-
-def _by_training(compared: Compared) -> Labels[str]:
+def _by_training(compared: Compared) -> EncodedLabels[str]:
     counts = compared.column("label_in_training")
     codes = np.where(counts == UNKNOWN_COUNT, 2, np.where(counts > 0, 0, 1))
-    return Labels((SEEN, NEW, NOT_KNOWN), codes.astype(np.int64))
+    return EncodedLabels((SEEN, NEW, NOT_KNOWN), codes.astype(np.int64))
 
 
 def _training_is(name: str) -> Parameters | None:
     return {SEEN: {"label": "seen"}, NEW: {"label": "new"}}.get(name)
 
 
-def _by_error(compared: Compared) -> Labels[str]:
+def _by_error(compared: Compared) -> EncodedLabels[str]:
     """Group the answers of the first run by their error category; what people say counts more than what the
     machine proposes, and the newest word of people most."""
     categories = list(compared.world.error_categories.values_list("pk", "code"))
@@ -87,18 +79,22 @@ def _by_error(compared: Compared) -> Labels[str]:
     codes = np.full(len(keys), len(places))
     codes[compared.answers[0]["is_exact_match"]] = len(places) + 1
     reviews = Review.objects.filter(run=compared.base, category__in=places).order_by()
-    proposed, said = reviews.filter(is_proposed=True), reviews.filter(is_proposed=False)
-    for rows in (proposed, said.order_by("changed_at")):
+    proposed, by_people = reviews.filter(is_proposed=True), reviews.filter(is_proposed=False)
+    for rows in (proposed, by_people.order_by("changed_at")):
         pairs = rows.values_list("example_id", "category_id").iterator(chunk_size=AT_ONCE)
         table = np.array(list(pairs), dtype=np.int64).reshape(-1, 2)  # [reviews, 2]
         at = np.searchsorted(keys, table[:, 0])
         is_there = at < len(codes)
         is_there[is_there] = keys[at[is_there]] == table[is_there, 0]
-        found = np.array([places[category] for category in table[:, 1].tolist()], dtype=np.int64)
-        codes[at[is_there]] = found[
+        codes_of_reviews = np.array(
+            [places[category] for category in table[:, 1].tolist()], dtype=np.int64
+        )
+        codes[at[is_there]] = codes_of_reviews[
             is_there
         ]  # where an example is named twice, the last one counts
-    return Labels((*(code for _, code in categories), NO_CATEGORY, RIGHT), codes[compared.chosen])
+    return EncodedLabels(
+        (*(code for _, code in categories), NO_CATEGORY, RIGHT), codes[compared.chosen]
+    )
 
 
 def _error_is(code: str) -> Parameters:
@@ -110,6 +106,10 @@ def _error_names(compared: Compared) -> dict[str, str]:
     return {**names, NO_CATEGORY: "not categorised", RIGHT: "right"}
 
 
+def _column(name: str) -> Callable[[Compared], EncodedLabels[str]]:
+    return lambda compared: compared.column(name)
+
+
 def _exactly(parameter: str, none: str = "") -> Callable[[str], Parameters | None]:
     return lambda value: None if value == none else {parameter: value}
 
@@ -118,7 +118,7 @@ GROUPINGS = (
     Grouping(
         "category", "Task category", _by_category, _exactly("task_category", NO_TASK_CATEGORY)
     ),
-    Grouping("head", "Head predicate of the label", _by_head, _exactly("head")),
+    Grouping("head", "Head predicate of the label", _column("head_predicate"), _exactly("head")),
     Grouping("words", "Words of the utterance", _by_words, _words_in, is_ordered=True),
     Grouping(
         "depth",
@@ -127,7 +127,7 @@ GROUPINGS = (
         lambda value: {"min_depth": value, "max_depth": value},
         is_ordered=True,
     ),
-    Grouping("source", "Source", _by_source, _exactly("source")),
+    Grouping("source", "Source", _column("source"), _exactly("source")),
     Grouping(
         "training", "Form in training", _by_training, _training_is, is_ordered=True, is_of_base=True
     ),

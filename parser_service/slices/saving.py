@@ -7,9 +7,8 @@ from django.db import IntegrityError, transaction
 from annotations.language.errors import LanguageError
 from annotations.models import User, World
 from parser_service.models import Slice
+from parser_service.models.reviews import LONGEST_SLICE_NAME
 from parser_service.slices.selecting import slice_query
-
-LONGEST_NAME = Slice._meta.get_field("name").max_length
 
 
 def save_slice(world: World, name: str, query: str, by: User | None = None) -> Slice:
@@ -51,8 +50,8 @@ def require_name(name: str) -> str:
     name = " ".join(name.replace("\0", "").split())
     if not name:
         raise LanguageError("a slice needs a name", hint="write what its utterances have in common")
-    if len(name) > LONGEST_NAME:
-        raise LanguageError(f"the name is longer than {LONGEST_NAME} characters")
+    if len(name) > LONGEST_SLICE_NAME:
+        raise LanguageError(f"the name is longer than {LONGEST_SLICE_NAME} characters")
     return name
 
 

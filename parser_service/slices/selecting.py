@@ -10,7 +10,7 @@ from django.http import QueryDict
 
 from annotations.models import World
 from parser_service.models import Prediction, TrainingRun
-from parser_service.slices.filters import PredictionFilters
+from parser_service.slices.prediction_filters import PredictionFilters
 
 # What belongs to a page rather than to a slice: which part it is about, and what another run or analysis says.
 OF_A_PAGE = ("part", "slice", "slot", "versus", "versus_outcome")
@@ -32,10 +32,13 @@ def select(
         ValueError: there are predictions but no world.
     """
     if isinstance(rows, TrainingRun):
-        return filters_of(world or rows.world, query, rows.predictions.best(), rows).qs
+        of_run = filters_of(world or rows.world, query, rows.predictions.best(), rows)
+        chosen: QuerySet[Prediction] = of_run.qs
+        return chosen
     if world is None:
         raise ValueError("Predictions alone do not tell which world a query is about.")
-    return filters_of(world, query, rows).qs
+    chosen = filters_of(world, query, rows).qs
+    return chosen
 
 
 def filters_of(

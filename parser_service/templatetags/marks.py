@@ -9,7 +9,7 @@ from django import template
 from django.utils.html import format_html
 from django.utils.safestring import SafeString
 
-from parser_service.results.tables import MARK, MAY_KNOW_CORPORA, may_know_corpora
+from parser_service.results.table_parts import MARK, MAY_KNOW_CORPORA, may_know_corpora
 
 register = template.Library()
 NOTHING = SafeString()
@@ -17,22 +17,21 @@ NOTHING = SafeString()
 
 @register.simple_tag
 def mark(parser: str) -> SafeString:
-    """Return the sign of a parser, by its name; nothing where its figures mean what they say."""
+    """Return the sign of a parser, by its name; empty if its figures need no footnote."""
     if not may_know_corpora(parser):
         return NOTHING
     return format_html('<sup><abbr title="{}">{}</abbr></sup>', MAY_KNOW_CORPORA, MARK)
 
 
+def _parser_of(row: Any) -> str:
+    return str(getattr(row, "run", row).parser)
+
+
 @register.simple_tag
 def footnote(shown: str | Iterable[Any]) -> SafeString:
-    """Return what the sign says where something that is ``shown`` bears it: a parser, by its name, or rows, each
+    """Return the footnote if anything ``shown`` bears the sign: a parser, by its name, or rows, each
     of a run or a parser."""
-    parsers = [shown] if isinstance(shown, str) else [_parser_of(row) for row in shown]
+    parsers = [shown] if isinstance(shown, str) else map(_parser_of, shown)
     if not any(map(may_know_corpora, parsers)):
         return NOTHING
     return format_html('<p class="quiet small">{} {}</p>', MARK, MAY_KNOW_CORPORA)
-
-
-def _parser_of(row: Any) -> str:
-    parser: str = row.run.parser if hasattr(row, "run") else row.parser
-    return parser

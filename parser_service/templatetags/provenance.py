@@ -31,6 +31,7 @@ ORIGINS = {
 PARTS = {
     "similarity": "Share of common words",
     "neighbours": "Neighbours with this form",
+    "alone": "Probability beside no other form",
     "log_probability": "Log-probability of its tokens",
     "tokens": "Tokens written",
     "cut": "Tokens of the utterance not read",
@@ -49,8 +50,8 @@ SCORE_KINDS = {
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
-    """One part of the scores of several answers, None for an answer without it."""
+class ScorePart:
+    """One part of the scores of several answers; None for an answer without it."""
 
     name: str
     values: tuple[float | None, ...]
@@ -84,22 +85,22 @@ def score_kind_in_words(run: TrainingRun) -> str:
 
 @register.filter
 def cut_in_words(parser: str) -> str:
-    """Say how much of an utterance a parser reads, where its answer is to the beginning alone."""
+    """Say how much of the utterance the parser read, for an answer to its beginning alone."""
     most = PARSERS[parser].most_subwords if parser in PARSERS else 0
     read = f"It was read to the {most}th subword" if most else "Its beginning was read"
     return f"This utterance is longer than the parser reads. {read}; the rest had no part in the answer."
 
 
 @register.filter
-def parts_of_scores(predictions: Sequence[Prediction]) -> list[Part]:
-    """Return the parts that the scores of ``predictions`` have, in the order of the parser."""
+def parts_of_scores(predictions: Sequence[Prediction]) -> list[ScorePart]:
+    """Return the parts of the scores of ``predictions``, in the order of the parser."""
     names = dict.fromkeys(name for each in predictions for name in each.score_parts)
     ordered = [name for name in PARTS if name in names]
     ordered += [name for name in names if name not in PARTS]
     return [_part(name, [each.score_parts.get(name) for each in predictions]) for name in ordered]
 
 
-def _part(name: str, values: Sequence[float | None]) -> Part:
+def _part(name: str, values: Sequence[float | None]) -> ScorePart:
     is_count = all(isinstance(value, int) for value in values if value is not None)
     title = PARTS.get(name, name.replace("_", " ").capitalize())
-    return Part(title, tuple(values), is_count)
+    return ScorePart(title, tuple(values), is_count)

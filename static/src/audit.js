@@ -1,7 +1,7 @@
 // The label audit by keyboard: the row that has the focus is shown, and one key decides about it.
 import { enhanceBy } from "./modules.js";
+import { isPlain, READING, TYPING } from "./typing.js";
 
-const TYPING = "input, textarea, select, [contenteditable], .cm-editor";
 const ROW = "tr[data-finding]";
 
 const shown = () => document.getElementById("finding");
@@ -53,7 +53,15 @@ function leaveField(event) {
   focusRow();
 }
 
-const press = (key) => shown()?.querySelector(`[data-key="${key}"]`)?.click();
+let decidedAt = -Infinity;
+
+// Two presses in a row are one decision: nobody has read the next label yet.
+function press(key) {
+  const button = shown()?.querySelector(`[data-key="${key}"]`);
+  if (!button || performance.now() - decidedAt < READING) return;
+  decidedAt = performance.now();
+  button.click();
+}
 
 const actions = {
   a: () => press("a"),
@@ -66,7 +74,7 @@ const actions = {
 
 // A key that comes while the next label is on its way is not for that one: nobody has read it yet.
 function onKey(event) {
-  if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
+  if (!isPlain(event) || document.querySelector("dialog[open]")) return;
   if (!document.querySelector("[data-audit-page]")) return;
   if (event.target.closest(TYPING)) {
     if (event.key === "Enter" || event.key === "Escape") leaveField(event);

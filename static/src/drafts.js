@@ -9,7 +9,8 @@ import { readDraft, removeAllOf, removeArrived, removeDraft, writeDraft } from "
 
 const TYPED = "textarea[name], select[name], input:is([type=text], [type=number])[name]";
 // The version that was edited comes back too, so that nobody's later version is overwritten unseen.
-const KEPT = `${TYPED}, input[type=hidden]:is([name=version], [name=once])`;
+// (A form that says what its page shows now, with data-undrafted, is sent with the version of that page.)
+const KEPT = `${TYPED}, input[type=hidden]:is([name=version]:not([data-undrafted]), [name=once])`;
 const servers = new WeakMap(); // form → its DraftServer
 
 const fieldsOf = (form) => [...form.elements].filter((field) => field.matches(KEPT));
@@ -74,6 +75,7 @@ function showNote(form, sentence, actions) {
 
 function restore(form, draft) {
   const shown = valuesOf(form);
+  form.closest("details")?.setAttribute("open", "");
   fill(form, draft.fields);
   showNote(form, "Restored your unsaved draft.", {
     Discard: () => {
@@ -127,6 +129,9 @@ document.addEventListener("submit", (event) => {
   }
   if (form.dataset.logOutOf) removeAllOf(form.dataset.logOutOf);
 });
+
+// The form of a panel was sent behind the scenes, and has arrived.
+document.addEventListener("draft:arrived", (event) => discard(event.target));
 
 removeArrived();
 onContent((root) => root.querySelectorAll("form[data-draft]").forEach(enhance));

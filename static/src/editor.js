@@ -18,7 +18,8 @@ const nonce = () => document.querySelector('meta[name="csp-nonce"]')?.nonce ?? "
 // A pattern is one line: a line break in what is pasted becomes a space.
 const oneLine = EditorState.transactionFilter.of((transaction) => {
   if (transaction.newDoc.lines === 1) return transaction;
-  const text = transaction.newDoc.toString().replace(/\s*\n\s*/g, " ");
+  const lines = transaction.newDoc.toString().split("\n");
+  const text = lines.map((line) => line.trim()).filter(Boolean).join(" ");
   return {
     changes: { from: 0, to: transaction.startState.doc.length, insert: text },
     selection: { anchor: Math.min(transaction.newSelection.main.head, text.length) },

@@ -1,5 +1,6 @@
 // Keys: j and k move through the rows of a table, Enter opens, n and p turn the page, / searches, ? lists the keys.
 import { copyForm } from "./forms.js";
+import { isPlain } from "./typing.js";
 
 const TYPING = "input:not([type=checkbox], [type=radio]), textarea, select, [contenteditable], .cm-editor";
 
@@ -50,7 +51,7 @@ const actions = {
 export const isTyping = (event) => Boolean(event.target.closest(TYPING) || document.querySelector("dialog[open]"));
 
 function onKey(event) {
-  if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
+  if (event.defaultPrevented || !isPlain(event)) return;
   if (event.key === "Escape" && event.target.matches("input[type=search]")) event.target.blur();
   if (isTyping(event)) return;
   if (event.key === "Enter" && event.target === currentRow()) {

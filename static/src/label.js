@@ -2,15 +2,25 @@
 // shown at once. Answers are sent one after another and kept in this browser until the server has them.
 import { enhanceBy } from "./modules.js";
 import { onFormText } from "./notation.js";
+import { readDraft } from "./draft-storage.js";
 import { AnswerQueue } from "./label-queue.js";
+import { isPlain, READING, TYPING } from "./typing.js";
 
 // The page's other modules look at what came in, as they do after a swap of htmx.
 function fill(place, html) {
   place.innerHTML = html;
+  tellOthers(place);
+}
+
+function tellOthers(place) {
   place.dispatchEvent(new CustomEvent("htmx:load", { bubbles: true, detail: { elt: place } }));
 }
 
-const TYPING = "input, textarea, select, [contenteditable], .cm-editor";
+// Panels whose fields are kept as drafts, by the names of their templates.
+const hasDraft = (template) => {
+  const draft = readDraft(template.content.querySelector("form"));
+  return draft !== null && !draft.isSent;
+};
 
 export function enhance(page) {
   new LabelPage(page);
@@ -38,10 +48,21 @@ class LabelPage {
     return this.place.querySelector("[data-item]");
   }
 
-  // The utterance on the page is looked at from now on.
-  begin() {
+  // Whether the utterance on the page waits for an answer: the next one may still be on its way, or have come
+  // so soon after the last press that nobody has read it.
+  get isAsking() {
+    return this.item?.hasAttribute("data-asks") ?? false;
+  }
+
+  // The utterance on the page is looked at from now on, and answered once somebody can have read it.
+  begin(reading = 0) {
+    const { item } = this;
+    if (reading) setTimeout(() => item?.setAttribute("data-asks", ""), reading);
+    else item?.setAttribute("data-asks", "");
     this.since = performance.now();
     this.place.querySelectorAll(".label-choice code").forEach(onFormText);
+    const begun = [...this.place.querySelectorAll("template[data-label-panel]")].find(hasDraft);
+    if (begun) this.openPanel(begun.dataset.labelPanel);
   }
 
   fetchNext() {
@@ -67,12 +88,14 @@ class LabelPage {
       this.notice("The next utterance could not be fetched. Your answers are kept here; reload the page.");
       return;
     }
+    const before = this.item?.dataset.item;
     fill(this.place, text);
-    this.begin();
+    this.begin(this.item?.dataset.item === before ? 0 : READING);
   }
 
   async goOn() {
     const next = this.next;
+    this.item.removeAttribute("data-asks");
     this.clearNotices();
     await this.show(next);
     this.fetchNext();
@@ -82,7 +105,7 @@ class LabelPage {
     const form = event.target;
     if (form.matches("[data-label-answer]")) {
       event.preventDefault();
-      if (form.hasAttribute("data-check-url")) this.answerWritten(form);
+      if (form.closest("[data-label-panel-place]")) this.answerWritten(form);
       else this.answer(form.action, new FormData(form, event.submitter), form.closest("[data-item]"));
     } else if (form.matches("[data-label-mend]")) {
       event.preventDefault();
@@ -101,14 +124,25 @@ class LabelPage {
   async answerWritten(form) {
     if (this.isWriting) return;
     this.isWriting = true;
-    const reply = await this.post(form, { seconds: this.seconds });
+    const { item } = this;
+    const reply = await this.postWritten(form, { seconds: this.seconds });
     this.isWriting = false;
     if (!reply) return this.notice("The server does not answer. What you wrote is still here; send it again.");
     this.onReply(reply);
-    if (!reply.refusal) this.goOn();
+    // Meanwhile an answer may have been taken back, and its utterance is on the page.
+    if (!reply.refusal && this.item === item) this.goOn();
+  }
+
+  // The draft of a panel is kept until the server has taken what it holds.
+  async postWritten(form, values = {}) {
+    const reply = await this.post(form, values);
+    const hasArrived = reply && !reply.refusal;
+    form.dispatchEvent(new CustomEvent(hasArrived ? "draft:arrived" : "input", { bubbles: true }));
+    return reply;
   }
 
   answer(address, sent, item) {
+    if (!this.isAsking) return;
     sent.set("seconds", this.seconds);
     this.queue.add({ address, utterance: item.dataset.item, fields: [...sent] });
     this.goOn();
@@ -162,7 +196,7 @@ class LabelPage {
   }
 
   async mend(form) {
-    const reply = await this.post(form);
+    const reply = await this.postWritten(form);
     if (!reply) return this.notice("The server does not answer. Try again in a moment.");
     if (reply.refusal) return this.notice(reply.refusal);
     await this.show(this.fetchItem({ utterance: reply.utterance }));
@@ -197,6 +231,7 @@ class LabelPage {
     if (name === "mend" && this.item.querySelector(".label-text").textContent.includes(selected)) {
       field.value = selected;
     }
+    tellOthers(place);
     field.focus();
     if (name === "edit") this.openEditor(field);
   }
@@ -206,16 +241,17 @@ class LabelPage {
     field.parentElement.querySelector(".cm-content")?.focus();
   }
 
+  // What is typed there is a draft, which the panel shows when it is opened again.
   closePanel() {
     this.item?.querySelector("[data-label-panel-place]").replaceChildren();
   }
 
   onKey(event) {
-    if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
-    if (event.key === "Escape") return this.closePanel();
+    if (!isPlain(event) || document.querySelector("dialog[open]")) return;
+    if (event.key === "Escape") return event.defaultPrevented || this.closePanel();
     if (event.repeat || event.defaultPrevented || event.target.closest(TYPING)) return;
-    const opens = { e: "edit", d: "dispute", m: "mend" }[event.key];
-    const button = /^[1-9us]$/.test(event.key) && this.item?.querySelector(`[data-key="${event.key}"]`);
+    const opens = this.isAsking && { e: "edit", d: "dispute", m: "mend" }[event.key];
+    const button = this.isAsking && /^[1-9us]$/.test(event.key) && this.item.querySelector(`[data-key="${event.key}"]`);
     if (opens) this.openPanel(opens);
     else if (button) button.click();
     else if (event.key === "z") this.takeLastBack();

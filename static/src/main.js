@@ -2,7 +2,9 @@
 import "./requests.js";
 import "./keys.js";
 import "./sheet.js";
+import "./guidelines.js";
 import "./menus.js";
+import "./notices.js";
 import "./drafts.js";
 import "./merge.js";
 import "./mentions.js";

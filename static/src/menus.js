@@ -8,7 +8,7 @@ document.addEventListener("click", (event) => {
 });
 
 document.addEventListener("keydown", (event) => {
-  if (event.key !== "Escape") return;
+  if (event.key !== "Escape" || event.isComposing) return;
   openMenus().forEach((menu) => {
     menu.open = false;
     if (menu.contains(document.activeElement)) menu.querySelector("summary").focus();

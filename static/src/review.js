@@ -1,5 +1,6 @@
 // The review page by keyboard: one answer of the example has the focus, and one key says why it is wrong.
-const TYPING = "input, textarea, select, [contenteditable], .cm-editor";
+import { isPlain, TYPING } from "./typing.js";
+
 const FOLDS = { t: "tree", b: "beam" };
 
 let isListening = false;
@@ -144,7 +145,7 @@ function leaveField(event) {
 }
 
 function onKey(event) {
-  if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
+  if (!isPlain(event) || document.querySelector("dialog[open]")) return;
   if (!current()) return;
   if (event.target.closest(TYPING)) {
     if (event.key === "Enter" || event.key === "Escape") leaveField(event);

@@ -21,7 +21,7 @@ if (rail && button && veil) {
   button.addEventListener("click", () => show(!isOpen()));
   veil.addEventListener("click", () => show(false));
   document.addEventListener("keydown", (event) => {
-    if (event.key === "Escape" && isOpen()) show(false);
+    if (event.key === "Escape" && !event.isComposing && isOpen()) show(false);
   });
   matchMedia("(width >= 800px)").addEventListener("change", (event) => event.matches && show(false));
 }

@@ -1,11 +1,14 @@
 // Suggested texts for a field: choosing one writes it there. The digits choose while nobody types.
 import { isTyping } from "./keys.js";
+import { isPlain } from "./typing.js";
 
 function write(radio) {
   const field = document.getElementById(radio.closest("[data-suggestions]").dataset.suggestions);
   if (!field) return;
   field.value = radio.value;
   field.dispatchEvent(new CustomEvent("draft:restored")); // its editor shows the new text
+  const { status } = field.form.elements;
+  if (status?.value === "draft") status.value = "ready"; // somebody has read this form and takes it
   field.dispatchEvent(new Event("input", { bubbles: true })); // checker, preview and draft look again
 }
 
@@ -22,11 +25,12 @@ document.addEventListener("change", (event) => {
 });
 
 document.addEventListener("keydown", (event) => {
-  if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || isTyping(event)) return;
+  if (event.defaultPrevented || !isPlain(event) || isTyping(event)) return;
   if (!/^[1-9]$/.test(event.key)) return;
   const radio = document.querySelectorAll("[data-suggestions] input[type=radio]")[Number(event.key) - 1];
   if (!radio) return;
   event.preventDefault();
   radio.focus();
-  radio.click();
+  if (radio.checked) write(radio);
+  else radio.click();
 });

@@ -28,7 +28,7 @@ const PARTS = [
   /(?<lambda>λ|\blambda\b)/,
   /(?<unknown>\bUNKNOWN\b)/,
   /(?<bracket>[()[\]])/,
-  /(?<quoted>"[^"]*"|“[^”]*”)/,
+  /(?<quoted>"[^"]*"|“[^“”]*”)/,
   /(?<letter>\b[a-z]\d?\b(?!\s*\())/, // a variable of the reading notation
   /(?<name>[A-Za-z_][\w-]*)/,
 ];

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.importing import import_generator
+from annotations.importing.generator_import import import_generator
 from annotations.models import World
 from tests.replaying import made_once
 

@@ -11,7 +11,7 @@ from django.test import Client
 from playwright.sync_api import Browser, BrowserContext, Page, expect
 
 from annotations.models import User
-from parser_service.runs.requests import requesting
+from parser_service.runs.requests import run_requests
 from tests.browser.chromium import CHROMIUM, MISSING
 from tests.browser.faults import AXE
 from tests.browser.variants import Variant
@@ -96,4 +96,4 @@ def worker(sample, tmp_path) -> Iterator[RunningWorker]:
 @pytest.fixture
 def waiting_run(sample):
     """A run that nobody has begun."""
-    return requesting.request(sample.world, sample.split, "seq2seq", send=False)[0]
+    return run_requests.request(sample.world, sample.split, "seq2seq", send=False)[0]

@@ -47,6 +47,15 @@ HEADINGS = """() => {
   return titles.length === 1 ? [] : [`${titles.length} h1`];
 }"""
 LANGUAGE = """() => document.documentElement.lang === "en" ? [] : [document.documentElement.lang]"""
+# Sentences with a blank before a comma or at their end; commands and forms have commas as words of their own.
+STRAY_BLANKS = """() => {
+  const own = ":is(code, pre, kbd, textarea, .lf, .text, .row-link, .cm-editor, [data-said])";
+  const copy = document.body.cloneNode(true);
+  for (const each of copy.querySelectorAll(`script, style, ${own}`)) each.replaceWith("…");
+  return [...copy.querySelectorAll("p, li, dt, dd, td, th, label, h1, h2, h3, span")]
+    .map((each) => each.textContent.replace(/\\s+/g, " ").trim())
+    .filter((text) => /\\S [,;.](?: |$)/.test(text)).map((text) => text.slice(0, 160));
+}"""
 # Controls that Tab passes over, and those that look the same with the focus and without it: they,
 # what they stand in and what stands in that.
 PASSED_OVER = f"""() => ({ENABLED})()
@@ -87,6 +96,7 @@ OF_STRUCTURE = {
     "ids given twice": TWICE,
     "headings": HEADINGS,
     "language": LANGUAGE,
+    "stray blanks": STRAY_BLANKS,
     **OF_WIDTH,
 }
 OF_FOCUS = {"passed over by Tab": PASSED_OVER, "focus not to be seen": UNMARKED}

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import ast
 import json
+import os
+import re
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -12,9 +15,15 @@ import pytest
 from command_desk import SORRY_AWAY, CommandDesk
 from pytest_django.live_server_helper import LiveServer
 
-from annotations.models import ApiToken
+from annotations.models import ApiToken, Split
+from annotations.worlds.starter_world import STARTER_WORLD
 from gpsr_client import Away, Refused, Workbench, WorkbenchError
+from parser_service.web.serving import parsing_rest
 from tests.clients.conftest import CLIENT
+
+ROOT = CLIENT.parent.parent
+README = (CLIENT / "README.md").read_text("utf-8")
+GUIDE = (ROOT / "docs" / "guides" / "robots.md").read_text("utf-8")
 
 
 @pytest.fixture
@@ -51,6 +60,15 @@ def test_many_utterances_are_parsed_in_order(home):
         list(home.parse_many(["find the bowl", " "]))
 
 
+def test_a_batch_that_breaks_off_is_not_taken_for_whole(home, monkeypatch):
+    monkeypatch.setattr(parsing_rest, "SHARE_OF_TIME", 0)
+    answered = []
+    with pytest.raises(Away, match=r"broke off after \d+ of 200 utterances. The server stopped"):
+        for parse in home.parse_many(["find the red cup"] * 200):
+            answered.append(parse)
+    assert len(answered) < 200
+
+
 def test_a_dialogue_is_held_and_gone_on_with(home):
     talk = home.dialogue("bring me the flurb")
     assert (talk.phase, talk.asked.phrases) == ("asking", ("flurb",))
@@ -73,6 +91,15 @@ def test_examples_are_exported_whole(home, parse_server, world, tmp_path):
     assert refused.value.status == 404
     assert len(file.read_text().splitlines()) == len(rows)
     assert [each.name for each in tmp_path.iterdir()] == ["train.jsonl"]
+
+
+def test_a_split_is_exported_by_its_name(home, parse_server, world, tmp_path):
+    split = world.splits.get()
+    by_name = home.export(split.name, tmp_path / "one.jsonl")
+    assert by_name.read_text() == home.export(split.pk, tmp_path / "two.jsonl").read_text()
+    with pytest.raises(Refused, match="no split called") as refused:
+        home.export(f"{split.name}-2", tmp_path / "three.jsonl")
+    assert refused.value.status == 404
 
 
 def test_refusals_and_absence_are_sentences(home, live_server, settings):
@@ -138,3 +165,61 @@ def test_the_client_and_its_examples_are_typed_and_compile():
         check=False,
     )
     assert checked.returncode == 0, checked.stdout
+
+
+def test_the_examples_of_the_readme_run(
+    home, annotator, live_server, tmp_path, monkeypatch, capsys
+):
+    """Its world is the starter world, which this test stands a small one in for."""
+    (text,) = re.findall(r"^```python\n(.*?)^```", README, re.MULTILINE | re.DOTALL)
+    _, token = ApiToken.issue(annotator, "notebook", scope="annotate")
+    replaced = {
+        '"http://localhost:8000"': repr(live_server.url),
+        f'"{STARTER_WORLD}"': '"home"',
+        '"first"': f'"{Split.objects.get().name}"',
+    }
+    for said, stands_for in replaced.items():
+        assert said in text
+        text = text.replace(said, stands_for)
+    monkeypatch.chdir(tmp_path)
+    plans, answers = [], iter(["the bowl", "yes", "yes", "no", "no", "no", "no"])
+    names = {"token": token, "run": plans.append, "input": lambda _: next(answers)}
+    exec(compile(text, "README.md", "exec"), names)
+    assert "go to the kitchen" in capsys.readouterr().out
+    assert (tmp_path / "train.jsonl").exists()
+
+
+def test_the_example_of_the_guide_for_robots_runs(home, annotator, live_server, capsys):
+    (text,) = re.findall(r"^```python\n(.*?)^```", GUIDE, re.MULTILINE | re.DOTALL)
+    _, token = ApiToken.issue(annotator, "robot", scope="read")
+    for said, stands_for in (
+        ('"http://localhost:8000"', repr(live_server.url)),
+        (f'"{STARTER_WORLD}"', '"home"'),
+    ):
+        assert said in text
+        text = text.replace(said, stands_for)
+    exec(compile(text, "robots.md", "exec"), {"token": token})
+    assert "bring" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/guides/robots.md"])
+def test_the_request_that_a_page_shows_is_answered(home, annotator, live_server, page):
+    if not shutil.which("curl"):
+        pytest.skip("needs curl")
+    blocks = re.findall(
+        r"^```sh\n(curl.*?)^```", (ROOT / page).read_text("utf-8"), re.MULTILINE | re.DOTALL
+    )
+    (request,) = [
+        block.replace("http://localhost:8000", live_server.url).replace(STARTER_WORLD, "home")
+        for block in blocks
+    ]
+    _, token = ApiToken.issue(annotator, "robot", scope="read")
+    done = subprocess.run(
+        ["bash", "-c", request],
+        env={**os.environ, "TOKEN": token},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    answer = json.loads(done.stdout)
+    assert answer["utterance"] == "bring me the tumbler" and answer["candidates"]

@@ -1,6 +1,6 @@
 """The web process is killed while people save: everything it acknowledged is there.
 
-``TEST_KILLS`` says how often it is killed; ``docs/durability.md`` how often for a release.
+``TEST_KILLS`` says how often it is killed; ``docs/design/durability.md`` how often for a release.
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ from gpsr_site.overview.counts import counts_of, counts_of_all
 from gpsr_site.overview.workers import workers_now
 from gpsr_site.pages.frame import PLACES
 from parser_service.models import Worker
-from parser_service.runs.requests import requesting
+from parser_service.runs.requests import run_requests
 from tests.gpsr_site.routes.listing import ROUTES_OF_WORLDS
 
 
@@ -46,7 +46,7 @@ def test_a_worker_that_fell_silent_is_missed_within_ten_seconds(sample, annotato
 
 
 def test_the_banner_counts_the_runs_that_wait(sample, annotator, client):
-    requesting.request(sample.world, sample.split, "seq2seq", send=False)
+    run_requests.request(sample.world, sample.split, "seq2seq", send=False)
     client.force_login(annotator)
     answer = client.get("/banner/").content.decode()
     assert "1 run waits for one." in answer
@@ -119,8 +119,10 @@ def test_every_page_of_a_world_belongs_to_one_entry():
     parts |= {"dialogue_keep", "offered_entity_decide", "plan_schema"}
     parts |= {"learning_curves_table", "learning_curves_data", "learning_curve_start"}
     parts |= {"playground_ask", "playground_wrong", "parser_state"}
+    parts |= {"guidelines_preview", "utterances_delete", "utterances_restore"}
+    parts |= {"upload_undo", "upload_redo"}
     parts |= {"promotion_promote", "promotion_roll_back", "promotion_decline"}
-    names = [name for place in PLACES for name in (place.name, *place.below)]
+    names = [name for place in PLACES for name in (place.page, *place.pages_below)]
     assert len(names) == len(set(names))
     assert set(names) - {"job"} == ROUTES_OF_WORLDS - parts
 

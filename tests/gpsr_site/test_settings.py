@@ -37,3 +37,51 @@ def test_the_start_stops_with_a_sentence(tmp_path, variable, value, sentence):
     )
     assert done.returncode == 1
     assert done.stderr.startswith(sentence) and "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("database", "asked", "processes"),
+    [
+        ("", "", 1),
+        ("postgres://nobody@127.0.0.1:1/none", "", min(len(os.sched_getaffinity(0)), 4)),
+        ("postgres://nobody@127.0.0.1:1/none", "7", 7),
+        ("", "2", 2),
+    ],
+)
+def test_as_many_web_processes_as_the_database_has_use_for(tmp_path, database, asked, processes):
+    environment = {
+        **os.environ,
+        "GPSR_VAR_DIR": str(tmp_path),
+        "DJANGO_SETTINGS_MODULE": "gpsr_site.settings",
+    }
+    for name, value in (("DATABASE_URL", database), ("WEB_PROCESSES", asked)):
+        environment.pop(name, None)
+        environment |= {name: value} if value else {}
+    assert say_processes(environment) == processes
+
+
+def test_a_system_that_tells_no_processors_of_a_process_can_start(tmp_path):
+    environment = {
+        **os.environ,
+        "GPSR_VAR_DIR": str(tmp_path),
+        "DJANGO_SETTINGS_MODULE": "gpsr_site.settings",
+        "DATABASE_URL": "postgres://nobody@127.0.0.1:1/none",
+    }
+    environment.pop("WEB_PROCESSES", None)
+    as_on_macos = "import os; del os.sched_getaffinity; "
+    assert say_processes(environment, as_on_macos) == min(os.cpu_count() or 1, 4)
+
+
+def say_processes(environment: dict[str, str], before: str = "") -> int:
+    said = subprocess.run(
+        [
+            *(sys.executable, "-c"),
+            f"{before}from django.conf import settings; print(settings.WEB_PROCESSES)",
+        ],
+        cwd=ROOT,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return int(said.stdout)

@@ -38,10 +38,10 @@ def test_it_calls_a_command_as_somebody_who_is_not_root():
     assert arguments("USER") == ["gpsr"]
 
 
-def test_its_variables_are_those_of_the_readme():
+def test_its_variables_are_documented():
     names = {name for each in arguments("ENV") for name in re.findall(r"([A-Z_]+)=", each)}
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert all(f"| `{name}` |" in readme for name in names - OF_OTHERS)
+    documented = (ROOT / "docs" / "reference" / "variables.md").read_text(encoding="utf-8")
+    assert all(f"| `{name}` |" in documented for name in names - OF_OTHERS)
 
 
 def test_packages_of_python_are_all_copied():

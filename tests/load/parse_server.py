@@ -71,7 +71,7 @@ def forms_of(candidates: list[dict[str, Any]]) -> list[str]:
 
 def expected_answers(runs: list[Any], utterances: list[str]) -> dict[tuple[int, str], list[str]]:
     """Return what each run answers to each utterance by itself."""
-    from parser_service.serving.answers import parse
+    from parser_service.serving.parse_answers import parse
 
     return {
         (run.pk, text): forms_of(parse(run, text, BEAM).as_json()["candidates"])
@@ -106,7 +106,7 @@ def keep_asking(
     client: Any, runs: list[Any], given: argparse.Namespace, texts: list[str]
 ) -> Outcome:
     """Ask at a steady rate; promote the second and the third run meanwhile."""
-    from parser_service.promotion import promote
+    from parser_service.promotions.promoting import promote
 
     outcome, expected = Outcome(), expected_answers(runs, texts)
     print(
@@ -136,7 +136,7 @@ def keep_asking(
 
 def kill(supervisor: Any, client: Any, text: str) -> tuple[float, float]:
     """Kill the server; return the longest time that the client took to say so, and until an answer."""
-    from parser_service.serving.client import ParserAway, ParserRefused
+    from parser_service.serving.parser_client import ParserAway, ParserRefused
 
     os.kill(supervisor.children["parse server"].pid, signal.SIGKILL)
     killed, longest = time.perf_counter(), 0.0
@@ -164,8 +164,8 @@ def measure(given: argparse.Namespace) -> bool:
     """Return whether all holds."""
     from annotations.models import World
     from gpsr_site.processes import PARSE_SERVER, Supervisor
-    from parser_service.promotion import promote, promoted_run
-    from parser_service.serving.client import client
+    from parser_service.promotions.promoting import promote, promoted_run
+    from parser_service.serving.parser_client import client
 
     world = World.objects.get(name=WORLD)
     runs = list(world.runs.order_by("pk").select_related("world"))

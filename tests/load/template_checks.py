@@ -105,7 +105,7 @@ def fill(people: int) -> tuple[list[str], int, list[tuple[str, str]]]:
     from django.test import Client
 
     from annotations.generation.generating import generate_pairs
-    from annotations.importing import import_generator
+    from annotations.importing.generator_import import import_generator
     from annotations.models import Membership, SemanticTemplate, TaskCategory, User, World
 
     import_generator("gpsr2018", DATA / "generator-2018")
@@ -133,7 +133,7 @@ def main() -> None:
         os.environ.pop("DATABASE_URL", None)
         subprocess.run([sys.executable, "manage.py", "migrate", "-v0"], cwd=ROOT, check=True)
         sessions, category, templates = fill(options.annotators)
-        with server() as port:
+        with server() as (_, port):
             deadline = time.monotonic() + options.seconds
             setting = Setting(port, category, templates, deadline, options.panel)
             annotators = [Annotator(*each, setting) for each in enumerate(sessions)]

@@ -110,19 +110,22 @@ async def work(
     return given
 
 
-def fill(people: int, items: int) -> list[str]:
-    """Make the world, its people and its items. Returns a token for each person."""
+def fill(people: int, items: int, is_new: bool = True) -> list[str]:
+    """Make the world (anew, unless another is to be filled), its people and its items. Returns a token for
+    each person."""
     import django
 
     django.setup()
     from annotations.models import ApiToken, Membership, User, Utterance, World
-    from annotations.queueing import WantedItem, enqueue
+    from annotations.queueing.enqueuing import WantedItem, enqueue
 
-    world = World.objects.create(name="load")
+    if is_new:
+        World.objects.filter(name="load").delete()
+    world, _ = World.objects.get_or_create(name="load")
     keys = []
     for number in range(people):
-        user = User.objects.create_user(f"person{number}")
-        Membership.objects.create(world=world, user=user, role="annotator")
+        user, _ = User.objects.get_or_create(username=f"person{number}")
+        Membership.objects.get_or_create(world=world, user=user, role="annotator")
         keys.append(ApiToken.issue(user, "load")[1])
     Utterance.objects.bulk_create(
         Utterance(world=world, text=f"bring me thing {number}", anonymized_text="bring me thing")
@@ -143,7 +146,7 @@ def server():
     try:
         wait_for(port, process)
         time.sleep(SETTLE_SECONDS)
-        yield port
+        yield process, port
     finally:
         process.terminate()
         process.wait(30)
@@ -193,7 +196,7 @@ def main() -> None:
         keys = fill(arguments.people, arguments.people + int(arguments.rate * arguments.seconds))
         times: dict[str, list[float]] = defaultdict(list)
         before = children_seconds()
-        with server() as port:
+        with server() as (_, port):
             callers = [Caller(port, key, times) for key in keys]
             given = asyncio.run(work(callers, arguments.rate, arguments.seconds, arguments.arrive))
     first, later = times["next"][: arguments.people], times["next"][arguments.people :]

@@ -14,8 +14,8 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any
 
-from parser_service.parsers.llm import places
-from parser_service.parsers.llm.places import Patience, Server
+from parser_service.parsers.llm import server_address
+from parser_service.parsers.llm.server_address import ModelServer, Patience
 
 MODEL = "tiny"
 REPORTED = "tiny-2026-07"
@@ -134,14 +134,14 @@ def tiny_server() -> Iterator[TinyServer]:
 
 
 @contextmanager
-def installed(server: Server) -> Iterator[None]:
+def installed(server: ModelServer) -> Iterator[None]:
     """Let ``server`` be the one of this installation."""
-    before = places.server()
-    places.use_server(server)
+    before = server_address.server()
+    server_address.use_server(server)
     try:
         yield
     finally:
-        places.use_server(before)
+        server_address.use_server(before)
 
 
 @contextmanager
@@ -149,7 +149,7 @@ def installed_tiny_server(folder: Path) -> Iterator[TinyServer]:
     """Let a server that is made here be the one of this installation; answers are kept in ``folder``."""
     with (
         tiny_server() as server,
-        installed(Server(server.url, KEY, patience=QUICK, answers=folder / "llm")),
+        installed(ModelServer(server.url, KEY, patience=QUICK, answers=folder / "llm")),
     ):
         yield server
 

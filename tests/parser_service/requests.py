@@ -10,11 +10,11 @@ from django.db import connections
 
 from parser_service.models import TrainingRun
 from parser_service.runs import lifecycle
-from parser_service.runs.requests import requesting
+from parser_service.runs.requests import run_requests
 
 
 def ask(split, **changes) -> TrainingRun:
-    return requesting.request(split.world, split, changes.pop("parser", "knn"), **changes)[0]
+    return run_requests.request(split.world, split, changes.pop("parser", "knn"), **changes)[0]
 
 
 def claim(name: str = "cpu-1@here", queue: str = "quick") -> TrainingRun:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from annotations.models import Entity, Ontology, Split, World
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.models.runs import Status
-from parser_service.runs.carrying_out.examples import training_pairs
-from parser_service.runs.carrying_out.training import make_parser
 from parser_service.runs.checkpoints import model_folder, write_folder
-from parser_service.runs.requests import requesting
+from parser_service.runs.requests import run_requests
+from parser_service.runs.training.split_pairs import training_pairs
+from parser_service.runs.training.train_run import make_parser
 from tests.parser_service.made_up import make_split
 
 THINGS = [("object", "red cup"), ("object", "bowl"), ("room", "kitchen"), ("location", "desk")]
@@ -27,7 +27,7 @@ def trained_run(
 ) -> TrainingRun:
     """Train a parser, a nearest neighbour unless it is named; ``spoken`` is its accuracy on paraphrases,
     None where it was not asked."""
-    run, _ = requesting.request(split.world, split, parser, seed=seed, send=False, **asked)
+    run, _ = run_requests.request(split.world, split, parser, seed=seed, send=False, **asked)
     pairs = training_pairs(split, run.train_sources, run.train_share, run.seed)
     made = make_parser(run)
     made.fit(pairs)

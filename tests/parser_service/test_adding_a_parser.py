@@ -1,4 +1,4 @@
-"""A parser of one's own is a module, a registry line and a test: this is all of it (docs/parsers.md)."""
+"""A parser of one's own is a module, a registry line and a test: this is all of it (docs/design/parsers.md)."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from parser_service.parsers import registry
 from parser_service.parsers.interface import Candidate, Parser
 from parser_service.parsers.storage import open_sealed, read_json, seal, write_json
 from tests.parser_service.made_up import make_split
-from tests.parser_service.runs.carrying_out.test_training import trained
+from tests.parser_service.runs.training.test_train_run import trained
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class MostFrequent(Parser):
 
 @pytest.fixture
 def registered(monkeypatch):
-    entry = registry.Entry(
+    entry = registry.RegistryEntry(
         dotted=f"{__name__}.MostFrequent",
         config=f"{__name__}.MostFrequentConfig",
         title="Most frequent",

@@ -1,4 +1,4 @@
-"""How far a paraphrase is from the command that it rewrites (FORMATS §6, §7)."""
+"""How far a paraphrase is from the command that it rewrites (docs/reference/formats.md, Triples)."""
 
 from __future__ import annotations
 

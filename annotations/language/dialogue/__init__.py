@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
-from annotations.language.dialogue.answers import Reaction, reaction_of
-from annotations.language.dialogue.machine import ATTEMPTS, PATIENCE, Dialogue, progress
-from annotations.language.dialogue.states import Offer, Phase, State
+from annotations.language.dialogue.machine import (
+    ATTEMPTS,
+    PATIENCE,
+    DialogueManager,
+    DialogueState,
+    Offer,
+    Phase,
+    progress,
+)
+from annotations.language.dialogue.reactions import Reaction, reaction_of
 
 __all__ = [
     "ATTEMPTS",
     "PATIENCE",
-    "Dialogue",
+    "DialogueManager",
+    "DialogueState",
     "Offer",
     "Phase",
     "Reaction",
-    "State",
     "progress",
     "reaction_of",
 ]

@@ -9,16 +9,17 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
+from enum import StrEnum
+from typing import Any
 
-from annotations.language.dialogue.answers import (
+from annotations.language.dialogue.reactions import (
     Reaction,
     known_values,
     reaction_of,
     unknown_words,
 )
-from annotations.language.dialogue.states import Offer, Phase, State
-from annotations.language.forms import Form, Unknown
+from annotations.language.forms import UNKNOWN, Form, Unknown, read_form, to_corpus
 from annotations.language.grounding import (
     Anonymized,
     Anonymizer,
@@ -34,12 +35,104 @@ from annotations.language.predicates import Predicate, gloss
 
 PATIENCE = 3  # answers that do not fit before the dialogue gives up
 ATTEMPTS = 3  # utterances that lead nowhere before the dialogue gives up
-_ORDER = (Phase.CHECKING, Phase.ASKING, Phase.LEARNING, Phase.CONFIRMING, Phase.REPHRASING)
 _GIVE_UP = "I give up. Please start again."
+_TUPLES_OF_SLOTS = ("path", "candidates", "phrases")  # lists in JSON
+
+
+class Phase(StrEnum):
+    """What the dialogue waits for, or how it ended.
+
+    CHECKING: a yes to a form that the parser is not sure of. ASKING: a value for ``DialogueState.asked``.
+    LEARNING: a yes to an entity that nobody knows. CONFIRMING: a yes to the whole form.
+    REPHRASING: another utterance. DONE and CANCELLED are ends.
+    """
+
+    CHECKING = "checking"
+    ASKING = "asking"
+    LEARNING = "learning"
+    CONFIRMING = "confirming"
+    REPHRASING = "rephrasing"
+    DONE = "done"
+    CANCELLED = "cancelled"
+
+
+_ORDER = (Phase.CHECKING, Phase.ASKING, Phase.LEARNING, Phase.CONFIRMING, Phase.REPHRASING)
+
+
+@dataclass(frozen=True, slots=True)
+class Offer:
+    """An entity that somebody named and the ontology does not have, or another word (``alias``) for one that it has."""
+
+    entity_class: str
+    text: str
+    alias: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class DialogueState:
+    """Where a dialogue is. ``prompt`` is what to say next.
+
+    ``parsed`` is the form of the parser, with class tokens; ``form`` has the values so far. ``misses``
+    counts answers that do not fit, ``attempts`` utterances that led nowhere. ``word`` is what the answer named
+    while LEARNING.
+    """
+
+    phase: Phase
+    parsed: Form = UNKNOWN
+    form: Form = UNKNOWN
+    slots: tuple[Slot, ...] = ()
+    prompt: str = ""
+    misses: int = 0
+    attempts: int = 0
+    word: str = ""
+    offers: tuple[Offer, ...] = ()
+
+    @property
+    def asked(self) -> Slot | None:
+        """The slot that the dialogue asks for; None unless ASKING or LEARNING."""
+        still_open = (slot for slot in self.slots if slot.value is None)
+        is_asking = self.phase in (Phase.ASKING, Phase.LEARNING)
+        return next(still_open, None) if is_asking else None
+
+    @property
+    def is_over(self) -> bool:
+        return self.phase in (Phase.DONE, Phase.CANCELLED)
+
+    def as_json(self) -> dict[str, Any]:
+        """Return a value of plain types that ``from_json`` can read."""
+        return {
+            "phase": str(self.phase),
+            "parsed": to_corpus(self.parsed),
+            "form": to_corpus(self.form),
+            "slots": [asdict(slot) for slot in self.slots],
+            "prompt": self.prompt,
+            "misses": self.misses,
+            "attempts": self.attempts,
+            "word": self.word,
+            "offers": [asdict(offer) for offer in self.offers],
+        }
+
+    @classmethod
+    def from_json(cls, value: Mapping[str, Any]) -> DialogueState:
+        """Return the state that ``value`` was made from."""
+        return cls(
+            Phase(value["phase"]),
+            read_form(value["parsed"]),
+            read_form(value["form"]),
+            tuple(
+                Slot(**{**each, **{name: tuple(each[name]) for name in _TUPLES_OF_SLOTS}})
+                for each in value["slots"]
+            ),
+            value["prompt"],
+            value["misses"],
+            value["attempts"],
+            value["word"],
+            tuple(Offer(**offer) for offer in value["offers"]),
+        )
 
 
 @dataclass(frozen=True)
-class Dialogue:
+class DialogueManager:
     """What a dialogue knows: the entities, how to say predicates, and which words go where."""
 
     ontology: Ontology
@@ -51,8 +144,12 @@ class Dialogue:
         object.__setattr__(self, "anonymizer", Anonymizer(self.ontology))
 
     def begin(
-        self, form: Form, heard: Anonymized, is_sure: bool = True, before: State | None = None
-    ) -> State:
+        self,
+        form: Form,
+        heard: Anonymized,
+        is_sure: bool = True,
+        before: DialogueState | None = None,
+    ) -> DialogueState:
         """Return the first state for an utterance and the form that a parser gave for it.
 
         Args:
@@ -63,19 +160,19 @@ class Dialogue:
         """
         attempts, offers = (before.attempts, before.offers) if before else (0, ())
         if isinstance(form, Unknown):
-            asked = State(Phase.REPHRASING, attempts=attempts, offers=offers)
+            asked = DialogueState(Phase.REPHRASING, attempts=attempts, offers=offers)
             return _rephrase(asked, "I do not understand that.")
         given = deanonymize(form, heard, self.ontology, self.evidence)
-        state = State(
+        state = DialogueState(
             Phase.CHECKING, form, given.form, given.slots, attempts=attempts, offers=offers
         )
         return state_with_prompt(self, state) if not is_sure else self._ask(state)
 
-    def reply(self, state: State, answer: str) -> State:
+    def reply(self, state: DialogueState, answer: str) -> DialogueState:
         """Return the state after an answer; a dialogue that is over stays as it is.
 
-        While REPHRASING, only an answer that stops or says nothing is for here; any other one is an utterance to
-        be parsed and given to ``begin``.
+        While REPHRASING, give it only answers that stop or say nothing. Parse any other answer as an utterance
+        and give it to ``begin``.
         """
         if state.is_over:
             return state
@@ -90,7 +187,7 @@ class Dialogue:
             return self._miss(state, "")
         return self._answer(state, answer, reaction)
 
-    def _decide(self, state: State, reaction: Reaction) -> State:
+    def _decide(self, state: DialogueState, reaction: Reaction) -> DialogueState:
         """Take a yes or a no to the whole form."""
         if reaction is Reaction.NO:
             return _rephrase(state, "Then I got it wrong.")
@@ -100,13 +197,16 @@ class Dialogue:
             return self._ask(state)
         return replace(state, phase=Phase.DONE, prompt="I will do it.")
 
-    def _answer(self, state: State, answer: str, reaction: Reaction) -> State:
+    def _answer(self, state: DialogueState, answer: str, reaction: Reaction) -> DialogueState:
         """Take the value of the slot that was asked for."""
         slot = state.asked
         assert slot is not None
         values = known_values(answer, slot, self.anonymizer)
         if len(values) == 1:
-            return self._fill(state, slot, values[0], _alias(slot, values[0]))
+            # The word of the utterance is another one for the entity that it turned out to be.
+            is_alias = not slot.is_named and slot.entity_class and len(slot.phrases) == 1
+            alias = Offer(slot.entity_class, values[0], slot.phrases[0]) if is_alias else None
+            return self._fill(state, slot, values[0], alias)
         if len(values) > 1:
             return self._miss(state, f"Please name one {noun_for(slot)}. ")
         if reaction in (Reaction.YES, Reaction.EITHER) and slot.likely is not None:
@@ -116,13 +216,11 @@ class Dialogue:
         is_no_word = reaction in (Reaction.YES, Reaction.NO) and len(word.split()) == 1
         if not word or is_no_word or reaction is Reaction.EITHER:
             return self._miss(state, "")
-        return self._take_word(state, slot, word, is_new=bool(is_new))
-
-    def _take_word(self, state: State, slot: Slot, word: str, is_new: bool) -> State:
-        """Take words that name no entity: as they are for an UNKNOWN, else as something to learn."""
         if not slot.entity_class:
             return self._fill(state, slot, word)
-        learnt = _learnt(state, slot, word)
+        offers = (each for each in state.offers if each.entity_class == slot.entity_class)
+        words = ((each.alias or each.text, each.text) for each in offers)
+        learnt = next((text for said, text in words if said.casefold() == word.casefold()), None)
         if learnt is not None:
             return self._fill(state, slot, learnt)
         if self.anonymizer.anonymize(word).spans:
@@ -132,7 +230,7 @@ class Dialogue:
             return self._fill(state, slot, word, Offer(slot.entity_class, word))
         return state_with_prompt(self, replace(state, phase=Phase.LEARNING, word=word))
 
-    def _learn(self, state: State, reaction: Reaction) -> State:
+    def _learn(self, state: DialogueState, reaction: Reaction) -> DialogueState:
         slot = state.asked
         assert slot is not None
         if reaction in (Reaction.YES, Reaction.NEW):
@@ -141,39 +239,67 @@ class Dialogue:
             return self._miss(replace(state, phase=Phase.ASKING, word=""), "")
         return self._miss(state, "Please say yes or no. ")
 
-    def _fill(self, state: State, slot: Slot, value: str, offer: Offer | None = None) -> State:
+    def _fill(
+        self, state: DialogueState, slot: Slot, value: str, offer: Offer | None = None
+    ) -> DialogueState:
         """Fill a slot; an ambiguous slot that is left with one of the named values takes it.
 
         The unknown words that this settles are no choice for any other slot.
         """
-        settled = _settled_phrases(slot, value)
-        slots = tuple(_without(settled, _after(other, slot, value)) for other in state.slots)
+        if slot.is_choice or len(slot.phrases) == 1:
+            settled = frozenset(slot.phrases)
+        else:
+            settled = frozenset(
+                phrase for phrase in slot.phrases if phrase.casefold() == value.casefold()
+            )
+        slots: list[Slot] = []
+        for other in state.slots:
+            left = _after(other, slot, value)
+            if left.value is None and not left.is_choice:
+                phrases = tuple(each for each in left.phrases if each not in settled)
+                left = replace(left, phrases=phrases)
+            slots.append(left)
         offers = state.offers
         if offer is not None and offer not in offers:
             offers = (*offers, offer)
-        given = fill_all(state.form, slots)
+        given = fill_all(state.form, tuple(slots))
         filled = replace(state, form=given.form, slots=given.slots, offers=offers)
         return self._ask(replace(filled, word="", misses=0))
 
-    def _ask(self, state: State) -> State:
+    def _ask(self, state: DialogueState) -> DialogueState:
         """Ask for the next open slot, or for confirmation if none is left."""
         is_full = all(slot.value is not None for slot in state.slots)
         phase = Phase.CONFIRMING if is_full else Phase.ASKING
         return state_with_prompt(self, replace(state, phase=phase))
 
-    def _miss(self, state: State, sorry: str) -> State:
+    def _miss(self, state: DialogueState, sorry: str) -> DialogueState:
         missed = replace(state, misses=state.misses + 1)
         if missed.misses >= PATIENCE:
             return replace(missed, phase=Phase.CANCELLED, prompt=_GIVE_UP)
         return state_with_prompt(self, missed, sorry)
 
 
-def state_with_prompt(dialogue: Dialogue, state: State, sorry: str = "") -> State:
+def state_with_prompt(
+    dialogue: DialogueManager, state: DialogueState, sorry: str = ""
+) -> DialogueState:
     """Return the state with what to say in it."""
-    return replace(state, prompt=f"{sorry}{_prompt(dialogue, state)}")
+    slot = state.asked
+    if state.phase is Phase.REPHRASING:
+        prompt = "Please say it another way."
+    elif slot is None:
+        said = gloss(state.form, dialogue.predicates)
+        words = re.sub(r"\bme\b", "you", said)
+        prompt = f"Did you mean: {said}?" if state.phase is Phase.CHECKING else f"Shall I {words}?"
+    elif state.phase is Phase.LEARNING:
+        prompt = f"I do not know any {noun_for(slot)} called “{state.word}”. Shall I learn it?"
+    else:
+        prompt = question_for(slot, state.form, dialogue.predicates)
+        if slot.phrases and slot.entity_class and not slot.is_named:
+            prompt = f"{prompt} Name one that I know, or say “new”."
+    return replace(state, prompt=sorry + prompt)
 
 
-def progress(state: State) -> tuple[int, int, int, int]:
+def progress(state: DialogueState) -> tuple[int, int, int, int]:
     """Return how far a dialogue is from its end; every reply makes it smaller, or ends the dialogue.
 
     Attempts left, open slots, patience left, and the place of the phase.
@@ -183,35 +309,12 @@ def progress(state: State) -> tuple[int, int, int, int]:
     return ATTEMPTS - state.attempts, open_slots, PATIENCE - state.misses, phase
 
 
-def _prompt(dialogue: Dialogue, state: State) -> str:
-    if state.phase is Phase.REPHRASING:
-        return "Please say it another way."
-    slot = state.asked
-    if slot is None:
-        words = re.sub(r"\bme\b", "you", gloss(state.form, dialogue.predicates))
-        check = f"Did you mean: {gloss(state.form, dialogue.predicates)}?"
-        return check if state.phase is Phase.CHECKING else f"Shall I {words}?"
-    if state.phase is Phase.LEARNING:
-        return f"I do not know any {noun_for(slot)} called “{state.word}”. Shall I learn it?"
-    question = question_for(slot, state.form, dialogue.predicates)
-    if slot.phrases and slot.entity_class and not slot.is_named:
-        return f"{question} Name one that I know, or say “new”."
-    return question
-
-
-def _rephrase(state: State, why: str) -> State:
+def _rephrase(state: DialogueState, why: str) -> DialogueState:
     """Ask for another utterance, as often as there are attempts."""
     tried = replace(state, attempts=state.attempts + 1, slots=(), misses=0)
     if tried.attempts >= ATTEMPTS:
         return replace(tried, phase=Phase.CANCELLED, prompt=_GIVE_UP)
     return replace(tried, phase=Phase.REPHRASING, prompt=f"{why} Please say it another way.")
-
-
-def _alias(slot: Slot, value: str) -> Offer | None:
-    """Return the word of the utterance as another word for the entity that it turned out to be."""
-    if slot.is_named or not slot.entity_class or len(slot.phrases) != 1:
-        return None
-    return Offer(slot.entity_class, value, slot.phrases[0])
 
 
 def _after(other: Slot, slot: Slot, value: str) -> Slot:
@@ -232,29 +335,3 @@ def _after(other: Slot, slot: Slot, value: str) -> Slot:
     if len(left) == 1:
         return replace(other, candidates=left, value=left[0], likely=None)
     return replace(other, candidates=left, likely=other.likely if other.likely in left else None)
-
-
-def _learnt(state: State, slot: Slot, word: str) -> str | None:
-    """Return the entity that a word stands for since an earlier answer; None if there is none."""
-    for offer in state.offers:
-        said = offer.alias or offer.text
-        if offer.entity_class == slot.entity_class and said.casefold() == word.casefold():
-            return offer.text
-    return None
-
-
-def _settled_phrases(slot: Slot, value: str) -> frozenset[str]:
-    """Return the unknown words that are accounted for once ``slot`` has its value.
-
-    They are the value itself, the only word that the question was about, and all that "or" joins.
-    """
-    if slot.is_choice or len(slot.phrases) == 1:
-        return frozenset(slot.phrases)
-    return frozenset(phrase for phrase in slot.phrases if phrase.casefold() == value.casefold())
-
-
-def _without(settled: frozenset[str], slot: Slot) -> Slot:
-    """Return a slot that is still open without the unknown words that others settle."""
-    if slot.value is not None or slot.is_choice:
-        return slot
-    return replace(slot, phrases=tuple(each for each in slot.phrases if each not in settled))

@@ -1,9 +1,8 @@
-"""All that is English: word lists (``data/*.toml``), plurals. A team can replace the lists (``reading``)."""
+"""Everything that is English: word lists (``data/*.toml``), plurals. A team can replace the lists (``word_lists``)."""
 
 from __future__ import annotations
 
 from annotations.language.english.inflection import plural, say_count, spellings
-from annotations.language.english.reading import EnglishError
 from annotations.language.english.stand_ins import (
     MOST_STAND_INS,
     STAND_IN,
@@ -46,6 +45,7 @@ from annotations.language.english.word_lists import (
     THING_WORDS,
     VAGUE_WORDS,
     YES_WORDS,
+    EnglishError,
     sample_commands,
     unrelated_sentences,
 )

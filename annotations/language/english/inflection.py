@@ -19,7 +19,15 @@ def plural(noun: str) -> str:
     """
     head, of, rest = noun.partition(" of ")
     before, space, last = head.rpartition(" ")
-    return before + space + _plural_of_word(last) + of + rest
+    if STAND_IN.fullmatch(last):
+        plural_of_last = stand_in(read_stand_in(last)[0], is_plural=True)
+    elif last in PLURALS:
+        plural_of_last = PLURALS[last]
+    elif last.lower().endswith("s") and not last.lower().endswith(_SINGULAR_ENDS):
+        plural_of_last = last
+    else:
+        plural_of_last = f"{last[:-1]}ies" if _ends_in_consonant_y(last) else _add_s(last)
+    return before + space + plural_of_last + of + rest
 
 
 def say_count(count: int, noun: str) -> str:
@@ -36,19 +44,6 @@ def spellings(noun: str) -> Iterator[str]:
     for spelling in (*_plurals(last), *_singulars(last)):
         if spelling and spelling != last:
             yield f"{head}{space}{spelling}"
-
-
-def _plural_of_word(word: str) -> str:
-    if STAND_IN.fullmatch(word):
-        return stand_in(read_stand_in(word)[0], is_plural=True)
-    return PLURALS.get(word) or _regular_plural(word)
-
-
-def _regular_plural(word: str) -> str:
-    lower = word.lower()
-    if lower.endswith("s") and not lower.endswith(_SINGULAR_ENDS):
-        return word
-    return f"{word[:-1]}ies" if _ends_in_consonant_y(word) else _add_s(word)
 
 
 def _ends_in_consonant_y(word: str) -> bool:

@@ -9,10 +9,10 @@ from annotations.language.forms.canonical import (
     flatten_conjunctions,
 )
 from annotations.language.forms.conjunct_order import ConjunctOrder, conjunctions, head_of, order_of
-from annotations.language.forms.difference import Change, Difference, diff
-from annotations.language.forms.logic import read_form
-from annotations.language.forms.printing import to_corpus, to_reading, to_template
-from annotations.language.forms.spans import Span, read_spans
+from annotations.language.forms.difference import Change, Difference, diff, diff_unordered
+from annotations.language.forms.foreign_forms import read_foreign_form
+from annotations.language.forms.logic import TermSpan, read_form, read_spans
+from annotations.language.forms.notations import to_corpus, to_reading, to_template
 from annotations.language.forms.terms import (
     CLASS_TOKEN,
     CONJUNCTION,
@@ -32,7 +32,6 @@ from annotations.language.forms.terms import (
     walk,
 )
 from annotations.language.forms.tree_distance import FormDistances
-from annotations.language.forms.unordered_difference import diff_unordered
 
 __all__ = [
     "CLASS_TOKEN",
@@ -46,7 +45,7 @@ __all__ = [
     "Form",
     "FormDistances",
     "Lambda",
-    "Span",
+    "TermSpan",
     "Unknown",
     "Variable",
     "canonical_text",
@@ -63,6 +62,7 @@ __all__ = [
     "head_predicate",
     "order_of",
     "predicates",
+    "read_foreign_form",
     "read_form",
     "read_spans",
     "size",

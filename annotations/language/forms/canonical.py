@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from annotations.language.forms.printing import to_corpus
+from annotations.language.forms.notations import to_corpus
 from annotations.language.forms.terms import (
     CONJUNCTION,
     Application,

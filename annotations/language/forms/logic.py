@@ -12,15 +12,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from functools import lru_cache
 from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from lark import Lark, Token, Transformer, UnexpectedInput, v_args
+from lark import Lark, Token, Transformer, Tree, UnexpectedCharacters, UnexpectedInput, v_args
 
 from annotations.language.errors import LanguageError, Offsets, Position
-from annotations.language.forms.errors import explain
 from annotations.language.forms.terms import (
     UNKNOWN,
     Application,
@@ -46,6 +46,14 @@ _SHIELDED = r'"[^"]*"|\{[^{}]*\}'  # parentheses in here do not count
 _NESTING = re.compile(
     rf"{_SHIELDED}|(?P<call>(?<=[\w-])\()|(?P<open>\()|(?P<close>\))|(?P<reach>λ|lambda(?![\w-]))"
 )
+_SHOWN = 40
+_BRACKETS = {
+    '"': ("quotation mark", '"'),
+    "{": ("brace", "}"),
+    "<": ("angle bracket", ">"),
+    "⟨": ("angle bracket", "⟩"),
+}
+_EXAMPLE = 'write a form like (find (λ$1:e (is_a $1 "cereal")))'
 
 
 def read_form(text: str, position: Position | None = None) -> Form:
@@ -204,3 +212,86 @@ def _occurrences(form: Form, bound: frozenset[int] = frozenset()) -> Iterator[bo
 
 def _start(token: Token) -> Position:
     return Position("", token.line or 1, token.column or 1)
+
+
+@dataclass(frozen=True, slots=True)
+class TermSpan:
+    """A subterm: the characters ``start`` to ``end`` that write it, and its parts in order.
+
+    ``kind`` is the rule of ``logic.lark`` that reads it (abstraction, application, variable, …);
+    ``name`` is the predicate of an application or the variable, and begins at ``name_start``.
+    """
+
+    kind: str
+    start: int
+    end: int
+    name: str
+    name_start: int
+    children: tuple[TermSpan, ...] = ()
+
+    @property
+    def name_end(self) -> int:
+        return self.name_start + len(self.name)
+
+    def walk(self) -> Iterator[TermSpan]:
+        """Yield this span and those inside it in the order in which ``walk`` yields the terms."""
+        yield self
+        for child in self.children:
+            yield from child.walk()
+
+
+@lru_cache(maxsize=1 << 10)
+def read_spans(text: str) -> TermSpan:
+    """Return the spans of a form in any notation; variables need not be bound.
+
+    Raises:
+        LanguageError: the text is not a form.
+    """
+    start = start_rule(text)
+    try:
+        return _span(_tree_reader().parse(text, start=start))
+    except UnexpectedInput as error:
+        raise explain(error, text) from None
+
+
+@lru_cache(maxsize=1)
+def _tree_reader() -> Lark:
+    grammar = Path(__file__).with_name("logic.lark").read_text(encoding="utf-8")
+    return Lark(grammar, parser="lalr", start=["expression", "reading"], propagate_positions=True)
+
+
+def _span(tree: Tree[Token]) -> TermSpan:
+    first = tree.children[0]
+    name = first.children[0] if isinstance(first, Tree) and first.data == "head" else first
+    assert isinstance(name, Token)
+    children = tuple(
+        _span(each) for each in tree.children if isinstance(each, Tree) and each.data != "head"
+    )
+    meta = tree.meta
+    return TermSpan(
+        str(tree.data), meta.start_pos, meta.end_pos, str(name), name.start_pos or 0, children
+    )
+
+
+def explain(error: UnexpectedInput, text: str) -> LanguageError:
+    """Return lark's error as a sentence with the place and what to do."""
+    if not text.strip():
+        return LanguageError("there is no form here", Position(), "write one, or UNKNOWN")
+    offset = error.pos_in_stream or 0
+    place = Offsets(text).position(offset)
+    if isinstance(error, UnexpectedCharacters):
+        character = text[offset]
+        name, closing = _BRACKETS.get(character, ("", ""))
+        if name and closing not in text[offset + 1 :]:
+            return LanguageError(f"the {name} {character} is not closed", place, "close it")
+        return LanguageError(f"{character} is not allowed here", place, _EXAMPLE)
+    token: Token = error.token  # type: ignore[attr-defined]
+    if token.type == "$END":
+        end = Offsets(text).position(len(text.rstrip()))
+        return LanguageError("the form ends too early", end, "close every parenthesis")
+    shown = token if len(token) <= _SHOWN else f"{token[:_SHOWN]}…"
+    if not error.expected:  # type: ignore[attr-defined]
+        return LanguageError(f"{shown} follows the end of the form", place, "remove it")
+    is_class = token.type == "CLASS_TOKEN"
+    hint = f'put it in quotation marks: "{shown}"' if is_class else _EXAMPLE
+    return LanguageError(f"{shown} is not allowed here", place, hint)

@@ -76,15 +76,22 @@ class FormDistances:
             self._number(child, place if has_order else 0, inner)
             for place, child in enumerate(children(form))
         )
-        label = (position, _label(form, binders))
-        return self._store(label, tuple(below))
-
-    def _store(self, label: Hashable, below: tuple[int, ...]) -> int:
-        number = self._numbers.setdefault((label, below), len(self._nodes))
+        kind: Hashable = form
+        if isinstance(form, Lambda):
+            kind = ("λ", form.type)
+        elif isinstance(form, Application):
+            kind = ("predicate", form.predicate)
+        elif isinstance(form, Variable) and form.index in binders:
+            kind = ("bound", binders.index(form.index))
+        key = ((position, kind), tuple(below))
+        number = self._numbers.setdefault(key, len(self._nodes))
         if number == len(self._nodes):
-            size = 1 + sum(self._nodes[child].size for child in below)
-            inside = (self._nodes[child].labels for child in below)
-            self._nodes.append(_Node(label, below, size, frozenset((label,)).union(*inside)))
+            label, inner_numbers = key
+            size = 1 + sum(self._nodes[child].size for child in inner_numbers)
+            inside = (self._nodes[child].labels for child in inner_numbers)
+            self._nodes.append(
+                _Node(label, inner_numbers, size, frozenset((label,)).union(*inside))
+            )
         return number
 
     def _shared_tree(self, left: int, right: int) -> int:
@@ -132,13 +139,3 @@ class FormDistances:
 
         rows, columns = linear_sum_assignment(shared, maximize=True)
         return sum(shared[row][column] for row, column in zip(rows, columns, strict=True))
-
-
-def _label(form: Form, binders: tuple[int, ...]) -> Hashable:
-    if isinstance(form, Lambda):
-        return ("λ", form.type)
-    if isinstance(form, Application):
-        return ("predicate", form.predicate)
-    if isinstance(form, Variable) and form.index in binders:
-        return ("bound", binders.index(form.index))
-    return form

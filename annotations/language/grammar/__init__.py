@@ -11,6 +11,7 @@ from annotations.language.grammar.folder import (
     GrammarFolder,
     apply_alias,
     is_grammar_name,
+    is_prose,
     read_grammar_files,
 )
 from annotations.language.grammar.grammar import ROOT, Grammar
@@ -46,6 +47,7 @@ __all__ = [
     "apply_alias",
     "intact",
     "is_grammar_name",
+    "is_prose",
     "passages",
     "print_production",
     "read_grammar_files",

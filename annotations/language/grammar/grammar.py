@@ -7,16 +7,16 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from annotations.language.errors import LanguageError, Problem
-from annotations.language.grammar.ambiguity import repetitions
 from annotations.language.grammar.budget import Budget
 from annotations.language.grammar.expander import Expander, anonymized, readable
-from annotations.language.grammar.graph import Traversal, length, lengths, reachable, traverse
-from annotations.language.grammar.problems import (
+from annotations.language.grammar.grammar_problems import (
     cycle_text,
     find_problems,
     find_too_large,
     place_of,
+    repetitions,
 )
+from annotations.language.grammar.graph import Traversal, length, lengths, reachable, traverse
 from annotations.language.grammar.productions import Production
 from annotations.language.symbols import Choice, Nonterminal, Symbols, Text, Wildcard, walk
 
@@ -35,7 +35,10 @@ class Grammar:
         by_name: dict[str, dict[Symbols, None]] = {}
         for production in self.productions:
             alternatives = by_name.setdefault(production.nonterminal, {})
-            alternatives.update(dict.fromkeys(_top_level(production.expansion)))
+            expansion = production.expansion
+            only = expansion[0] if len(expansion) == 1 else None
+            top_level = only.alternatives if isinstance(only, Choice) else (expansion,)
+            alternatives.update(dict.fromkeys(top_level))
         return {name: tuple(alternatives) for name, alternatives in by_name.items()}
 
     @cached_property
@@ -169,9 +172,3 @@ class Grammar:
             if command and command not in seen:
                 seen.add(command)
                 yield command
-
-
-def _top_level(expansion: Symbols) -> tuple[Symbols, ...]:
-    if len(expansion) == 1 and isinstance(expansion[0], Choice):
-        return expansion[0].alternatives
-    return (expansion,)

@@ -85,7 +85,7 @@ def heights(rules: Mapping[str, tuple[Symbols, ...]], order: Iterable[str]) -> d
 def _height(sequence: Symbols, known: Mapping[str, int]) -> int:
     """Return how deep nonterminals and choices nest in a sequence.
 
-    The recursion is as deep as choices nest, which ``brackets`` limits.
+    The recursion is as deep as choices nest, which ``limits.MAX_NESTING`` bounds.
     """
     highest = 0
     for symbol in sequence:

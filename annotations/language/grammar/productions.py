@@ -1,16 +1,103 @@
-"""Read and print the productions of a GPSRCmdGen grammar file (FORMATS §1)."""
+"""Read and print the productions of a GPSRCmdGen grammar file (docs/reference/formats.md, Grammars)."""
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
 
-from annotations.language.errors import LanguageError, Position, Problem, error_at
-from annotations.language.grammar.comments import Import, find_heading, find_imports, split_comments
+from annotations.language.errors import (
+    LanguageError,
+    Offsets,
+    Position,
+    Problem,
+    error_at,
+    warning_at,
+)
 from annotations.language.limits import MAX_NONTERMINAL, require_name
-from annotations.language.symbols import SymbolReader, Symbols, print_sequence
+from annotations.language.symbols import (
+    SymbolReader,
+    Symbols,
+    lone_closing_parentheses,
+    print_sequence,
+)
 
+# In this order: an escaped character, a block, an unclosed block, a comment to the end of the line.
+_COMMENT = re.compile(
+    r"\\.|(?P<block>/\*.*?\*/)|(?P<open>/\*.*)|(?P<line>(?:[#;%]|//)[^\n]*)", re.DOTALL
+)
+_LINE_SIGN = re.compile(r"[#;%]|//")
+_PATH = r"""(?:"(?P<double>[^"]+)"|'(?P<single>[^']+)'|(?P<bare>\S+))"""
+_IMPORT = re.compile(rf"(?:import|load)\s+{_PATH}(?:\s+as\s+\$(?P<alias>\w+))?\s*", re.IGNORECASE)
+_HEADING = re.compile(r"grammar\s+(?P<key>name|tier)\s++(?P<value>\S.*)", re.IGNORECASE)
 _PRODUCTION = re.compile(r"\s*\$(?P<head>[^\W\d]\w*)\s*=(?P<expansion>.*)")
+
+
+@dataclass(frozen=True, slots=True)
+class GrammarComment:
+    """The text of one comment, without its sign."""
+
+    text: str
+    position: Position
+
+
+@dataclass(frozen=True, slots=True)
+class Import:
+    """``; import path`` or ``; import path as $alias``."""
+
+    path: str
+    alias: str
+    position: Position
+
+
+def split_comments(
+    text: str, source: str, problems: list[Problem]
+) -> tuple[str, tuple[GrammarComment, ...]]:
+    """Take the comments out of a grammar file. A ``/*`` that is never closed is added to ``problems``.
+
+    Returns:
+        The text with spaces where comments stood, so that lines and columns keep their numbers,
+        and the comments in order.
+    """
+    comments: list[GrammarComment] = []
+    offsets = Offsets(text, source)
+
+    def blank(match: re.Match[str]) -> str:
+        if match["block"] is None and match["open"] is None and match["line"] is None:
+            return match.group()
+        place = offsets.position(match.start())
+        if match["open"]:
+            sentence = "the comment opened here is never closed"
+            problems.append(error_at(place, sentence, "close it with */"))
+        else:
+            words = match["block"][2:-2] if match["block"] else _LINE_SIGN.sub("", match["line"], 1)
+            comments.append(GrammarComment(words.strip(), place))
+        return re.sub(r"[^\n]", " ", match.group())
+
+    return _COMMENT.sub(blank, text), tuple(comments)
+
+
+def find_imports(comments: tuple[GrammarComment, ...]) -> tuple[Import, ...]:
+    """Return the import and load directives among the comments, in order."""
+    matches = ((comment, _IMPORT.fullmatch(comment.text)) for comment in comments)
+    return tuple(
+        Import(
+            match["double"] or match["single"] or match["bare"],
+            match["alias"] or "",
+            comment.position,
+        )
+        for comment, match in matches
+        if match is not None
+    )
+
+
+def find_heading(comments: tuple[GrammarComment, ...], key: str) -> str:
+    """Return the last value of ``grammar name …`` or ``grammar tier …``, or an empty string."""
+    value = ""
+    for comment in comments:
+        match = _HEADING.fullmatch(comment.text)
+        if match is not None and match["key"].lower() == key:
+            value = match["value"]
+    return value
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +116,11 @@ class Production:
 
 @dataclass(frozen=True, slots=True)
 class GrammarFile:
-    """The content of one file. ``imports`` are not followed; ``problems`` are those of this file alone."""
+    """The content of one file. ``imports`` are not followed; ``problems`` are those of this file alone.
+
+    A file ``is_prose`` if no line is or looks like a production, and it imports nothing. ``heads`` are the
+    nonterminals of the lines that are or look like productions, if most lines do.
+    """
 
     source: str
     name: str
@@ -37,36 +128,81 @@ class GrammarFile:
     imports: tuple[Import, ...]
     productions: tuple[Production, ...]
     problems: tuple[Problem, ...]
+    is_prose: bool = False
+    heads: frozenset[str] = frozenset()
 
     def defines(self, nonterminal: str) -> bool:
         return any(production.nonterminal == nonterminal for production in self.productions)
 
+    def means(self, nonterminal: str) -> bool:
+        """Whether the file defines the nonterminal, or would if its lines had no faults."""
+        return self.defines(nonterminal) or nonterminal in self.heads
+
 
 def read_productions(text: str, source: str = "") -> GrammarFile:
-    """Read a grammar file. Errors are not raised but listed in ``problems``.
+    """Read a grammar file. Errors are not raised but listed in ``problems``, each at its place.
+
+    What GPSRCmdGen accepts silently is accepted with a warning: a production without an expansion is left
+    out, and so is a closing parenthesis at the end of a production that nothing opens.
 
     Args:
         text: the file's text (``decoding.decode`` takes care of its encoding).
         source: the file's name, for positions.
     """
-    try:
-        body, comments = split_comments(text.removeprefix("\ufeff"), source)
-    except LanguageError as error:
-        return GrammarFile(source, "", "", (), (), (error.problem,))
-    productions: list[Production] = []
     problems: list[Problem] = []
-    for number, line in enumerate(body.split("\n"), start=1):
-        if not line.strip():
-            continue
+    body, comments = split_comments(text.removeprefix("\ufeff"), source, problems)
+    productions: list[Production] = []
+    places = [
+        (line, Position(source, number))
+        for number, line in enumerate(body.split("\n"), start=1)
+        if line.strip()
+    ]
+    imports = find_imports(comments)
+    if not imports and not any(_PRODUCTION.match(line) for line, _ in places):
+        start = places[0][1] if places else Position(source)
+        warning = warning_at(
+            start,
+            "this is not a grammar file: it has neither a production nor an import",
+            "a production is a line $Name = expansion",
+        )
+        return GrammarFile(source, "", "", (), (), (warning,), is_prose=True)
+    for line, place in places:
         try:
-            productions.append(read_production(line, Position(source, number)))
+            if (production := _read_line(line, place, problems)) is not None:
+                productions.append(production)
         except LanguageError as error:
             problems.append(error.problem)
-    imports = find_imports(comments)
-    if not productions and not imports:
-        problems = [_not_a_grammar(problems, source)]
     name, tier = find_heading(comments, "name"), find_heading(comments, "tier")
-    return GrammarFile(source, name, tier, imports, tuple(productions), tuple(problems))
+    heads = [match["head"] for line, _ in places if (match := _PRODUCTION.match(line))]
+    return GrammarFile(
+        *(source, name, tier, imports, tuple(productions), tuple(sorted(problems))),
+        heads=frozenset(heads if 2 * len(heads) > len(places) else ()),
+    )
+
+
+def _read_line(line: str, place: Position, problems: list[Problem]) -> Production | None:
+    """Return the production of a line of a file; None where GPSRCmdGen leaves the line out."""
+    match = _PRODUCTION.fullmatch(line)
+    if match is not None and not match["expansion"].replace("|", " ").strip():
+        problems.append(
+            warning_at(
+                place.shifted(match.start("expansion")),
+                f"${match['head']} has no expansion here; the line is left out",
+                "write {void} for no words, or remove the line",
+            )
+        )
+        return None
+    start = match.start("expansion") if match else len(line)
+    if lone := lone_closing_parentheses(line[start:]):
+        problems.append(
+            warning_at(
+                place.shifted(start + lone[0]),
+                "no parenthesis opens what this ) at the end closes; it is left out",
+                "remove it, or write \\) for the character itself",
+            )
+        )
+        line = line[: start + lone[0]]
+    return read_production(line, place)
 
 
 def read_production(line: str, position: Position | None = None) -> Production:
@@ -98,15 +234,3 @@ def read_production(line: str, position: Position | None = None) -> Production:
 def print_production(production: Production) -> str:
     """Return the line that reads back as an equal production."""
     return f"${production.nonterminal} = {print_sequence(production.expansion)}"
-
-
-def _not_a_grammar(problems: list[Problem], source: str) -> Problem:
-    """Return one problem for a file that is not a grammar, instead of one for each line."""
-    if problems and "neither a production" not in problems[0].message:
-        return problems[0]
-    place = problems[0].position if problems else Position(source)
-    return error_at(
-        place,
-        "this is not a grammar file: it has neither a production nor an import",
-        "a production is a line $Name = expansion",
-    )

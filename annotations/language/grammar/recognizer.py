@@ -25,7 +25,7 @@ MOST_FIRST_WORDS = 1_000
 
 
 @dataclass(frozen=True, slots=True)
-class Rule:
+class ChartRule:
     """A nonterminal, a choice or a template's pattern, ready for matching.
 
     ``by_word`` maps a word to the alternatives that can begin with it. ``always`` are tried at
@@ -50,7 +50,7 @@ class RuleBook:
     def __init__(self, expander: Expander[str]) -> None:
         self._expander = expander
         self._numbers: dict[Nonterminal | Choice, int] = {}
-        self.rules: list[Rule] = []
+        self.rules: list[ChartRule] = []
 
     def number(self, symbol: Nonterminal | Choice) -> int:
         """Return the number of a symbol's rule. A new rule is made together with all rules below it."""
@@ -85,7 +85,9 @@ class RuleBook:
         has_many = len(first) > MOST_FIRST_WORDS or any(words is None for words, _ in firsts)
         is_nullable = any(can_be_empty for _, can_be_empty in firsts)
         known = None if has_many else frozenset(first)
-        self.rules.append(Rule(name, table, tuple(always), known, is_nullable, frozenset(names)))
+        self.rules.append(
+            ChartRule(name, table, tuple(always), known, is_nullable, frozenset(names))
+        )
         return len(self.rules) - 1
 
     def _first(self, alternative: Alternative) -> tuple[set[str] | None, bool]:

@@ -10,11 +10,10 @@ from annotations.language.grounding.deanonymizer import (
     deanonymize,
     fill_all,
     filled,
+    ground_like,
     resolve_slots,
 )
-from annotations.language.grounding.evidence import Evidence
 from annotations.language.grounding.grounding import ground
-from annotations.language.grounding.heard import Heard
 from annotations.language.grounding.questions import (
     choices_of,
     noun_for,
@@ -22,8 +21,9 @@ from annotations.language.grounding.questions import (
     question_for,
     say_with_blank,
 )
-from annotations.language.grounding.regrounding import ground_like
+from annotations.language.grounding.role_evidence import Evidence
 from annotations.language.grounding.roles import SlotPath
+from annotations.language.grounding.utterance_mentions import UtteranceMentions
 
 __all__ = [
     "QUESTION_WORD",
@@ -32,10 +32,10 @@ __all__ = [
     "Deanonymized",
     "Evidence",
     "FormSlots",
-    "Heard",
     "Slot",
     "SlotPath",
     "Span",
+    "UtteranceMentions",
     "choices_of",
     "deanonymize",
     "fill_all",

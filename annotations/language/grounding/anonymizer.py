@@ -96,7 +96,10 @@ class Anonymizer:
         numbers: defaultdict[str, dict[str, int]] = defaultdict(dict)
         end = 0
         for start, stop, (best, *rest) in self._find_matches(text):
-            token = self._token(best, numbers[best.entity_class])
+            token = f"<{best.entity_class}>"
+            if self._numbered:
+                of_class = numbers[best.entity_class]
+                token = f"<{best.entity_class}{of_class.setdefault(best.value, len(of_class))}>"
             others = tuple(each.entity for each in rest)
             spans.append(
                 Span(start, stop, token, best.entity_class, best.entity, best.value, others)
@@ -119,12 +122,6 @@ class Anonymizer:
                     place = last
                     break
             place += 1
-
-    def _token(self, reading: _Reading, numbers: dict[str, int]) -> str:
-        if not self._numbered:
-            return f"<{reading.entity_class}>"
-        number = numbers.setdefault(reading.value, len(numbers))
-        return f"<{reading.entity_class}{number}>"
 
 
 def _readings(entity: Entity) -> Iterator[tuple[str, _Reading]]:

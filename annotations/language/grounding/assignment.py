@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import permutations, zip_longest
 
-from annotations.language.grounding.evidence import Evidence
-from annotations.language.grounding.roles import Context, Role
+from annotations.language.grounding.role_evidence import Evidence
+from annotations.language.grounding.roles import Context, SlotRole
 from annotations.language.ontology import Entity
 
 # Log odds by which the best assignment of a slot has to win to be certain: 20 to 1.
@@ -34,7 +34,7 @@ class Mention:
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class SlotChoice:
     """The most likely mention for a slot; None if the utterance has none for it. ``margin`` is in log odds."""
 
     mention: Mention | None
@@ -51,10 +51,10 @@ _Values = tuple[str | None, ...]
 def assign(
     form: str,
     entity_class: str,
-    roles: Sequence[Role],
+    roles: Sequence[SlotRole],
     mentions: Sequence[Mention],
     evidence: Evidence,
-) -> tuple[Choice, ...]:
+) -> tuple[SlotChoice, ...]:
     """Return the most likely mention for each slot of a class, and how clearly it wins.
 
     Args:
@@ -65,17 +65,19 @@ def assign(
 
     The best assignment is the one with the highest sum of scores. The margin of a slot is the distance
     to the best assignment that gives it another value. With more assignments than can be compared,
-    mentions and slots go together in order, and nothing is certain. Neither is it where the utterance
-    names more than the form has slots for, and the grammar has no such command.
+    mentions and slots go together in order, and nothing is certain. Nothing is certain either if the
+    utterance names more values than the form has slots, and the grammar has no such command.
     """
     if not mentions:
-        return tuple(Choice(None, math.inf) for _ in roles)
+        return tuple(SlotChoice(None, math.inf) for _ in roles)
     fewer, more = sorted((len(roles), len(mentions)))
     if more > MOST_TOGETHER or math.perm(more, fewer) > _MOST_ASSIGNMENTS:
-        return tuple(Choice(each, 0.0) for each, _ in zip_longest(mentions[: len(roles)], roles))
+        return tuple(
+            SlotChoice(each, 0.0) for each, _ in zip_longest(mentions[: len(roles)], roles)
+        )
     first = {each.value: each for each in reversed(mentions)}
     if len(roles) <= 1 and len(first) == 1:
-        return tuple(Choice(each, math.inf) for each, _ in zip(mentions, roles, strict=False))
+        return tuple(SlotChoice(each, math.inf) for each, _ in zip(mentions, roles, strict=False))
     orders = evidence.orders(form, entity_class, len(first))
     scores = _scores(roles, mentions, evidence, orders)
     best = max(scores, key=scores.__getitem__)
@@ -84,12 +86,12 @@ def assign(
     for place, value in enumerate(best):
         rivals = (score for values, score in scores.items() if values[place] != value)
         margin = 0.0 if is_too_much else scores[best] - max(rivals, default=-math.inf)
-        choices.append(Choice(None if value is None else first[value], margin))
+        choices.append(SlotChoice(None if value is None else first[value], margin))
     return tuple(choices)
 
 
 def _scores(
-    roles: Sequence[Role],
+    roles: Sequence[SlotRole],
     mentions: Sequence[Mention],
     evidence: Evidence,
     orders: Mapping[tuple[int, ...], int],
@@ -122,7 +124,12 @@ def _assignments(
     first = {each.value: place for place, each in reversed([*enumerate(mentions)])}
     turns = sorted(first.values())
     if orders:
-        patterns = {each for order in orders for each in _permuted(order, len(turns))}
+        patterns: set[tuple[int, ...]] = set()
+        for order in orders:  # and those with the same slots sharing a value
+            ranks = sorted(set(order))
+            for chosen in permutations(range(len(turns)), len(ranks)):
+                value_of = dict(zip(ranks, chosen, strict=True))
+                patterns.add(tuple(value_of[rank] for rank in order))
         total = sum(orders.values()) + len(patterns) / 2
         for pattern in patterns:
             share = (orders.get(pattern, 0) + 0.5) / total
@@ -131,14 +138,6 @@ def _assignments(
     for places in _injections(slots, len(mentions)):
         used = [place for place in places if place is not None]
         yield places, _IN_ORDER if used == sorted(used) else 0.0
-
-
-def _permuted(order: Sequence[int], count: int) -> Iterator[tuple[int, ...]]:
-    """Yield the orders with the same slots sharing a value, over all choices of ``count`` values."""
-    ranks = sorted(set(order))
-    for chosen in permutations(range(count), len(ranks)):
-        value_of = dict(zip(ranks, chosen, strict=True))
-        yield tuple(value_of[rank] for rank in order)
 
 
 def _injections(slots: int, mentions: int) -> Iterable[tuple[int | None, ...]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -16,13 +17,13 @@ from annotations.language.forms import (
     children,
 )
 from annotations.language.grounding.anonymizer import Anonymized, Span
-from annotations.language.grounding.assignment import Choice, Mention, assign
-from annotations.language.grounding.evidence import Evidence, default_evidence
-from annotations.language.grounding.heard import Heard
-from annotations.language.grounding.roles import Role, SlotPath, role_of
+from annotations.language.grounding.assignment import Mention, SlotChoice, assign
+from annotations.language.grounding.role_evidence import Evidence, default_evidence
+from annotations.language.grounding.roles import SlotPath, SlotRole, role_of
+from annotations.language.grounding.utterance_mentions import UtteranceMentions
 from annotations.language.ontology import Ontology
 
-_NUMBER = re.compile(r"\d+(?=>?$)")
+_NUMBER = re.compile(r"(?<!\d)\d+(?=>?$)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +52,11 @@ class Slot:
         """Whether the utterance names entities that may fit here."""
         return self.value is None and self.is_named
 
+    @property
+    def filler(self) -> str | None:
+        """What is put in: the certain value, else the likely one; None where there is neither."""
+        return self.value if self.value is not None else self.likely
+
 
 @dataclass(frozen=True, slots=True)
 class Deanonymized:
@@ -72,21 +78,20 @@ def deanonymize(
 
     A numbered token takes the value of its number. Where the utterance names one value of a class,
     and not fewer times than the form has slots of it, it fills them. Several values get the most
-    likely assignment by ``evidence`` (of English alone if there is none); a slot of which the evidence leaves it
-    open which value it gets stays open and has a likely value. So does one for which the utterance
-    names several by "or", unless the grammar has this form with an "or".
+    likely assignment by ``evidence`` (of English alone if there is none). A slot stays open, with a likely
+    value, if the evidence does not decide which value it gets, or if the utterance joins several by "or"
+    and the grammar does not have this form with an "or".
     """
     known = evidence or default_evidence()
-    heard = Heard(anonymized, ontology)
+    heard = UtteranceMentions(anonymized, ontology)
     return fill_all(form, resolve_slots(FormSlots.of(form), heard, ontology, known))
 
 
 def fill_all(form: Form, slots: tuple[Slot, ...]) -> Deanonymized:
     """Return the form with the certain and the likely values of the slots."""
     for slot in slots:
-        value = slot.value if slot.value is not None else slot.likely
-        if value is not None:
-            form = filled(form, slot.path, value)
+        if slot.filler is not None:
+            form = filled(form, slot.path, slot.filler)
     return Deanonymized(form, slots)
 
 
@@ -120,7 +125,7 @@ class _OfClass:
 
     numbered: tuple[Slot, ...]
     plain: tuple[Slot, ...]
-    roles: tuple[Role, ...]
+    roles: tuple[SlotRole, ...]
     other_classes: frozenset[str]
 
 
@@ -150,19 +155,9 @@ class FormSlots:
 
 
 def resolve_slots(
-    form: FormSlots, heard: Heard, ontology: Ontology, evidence: Evidence
+    form: FormSlots, heard: UtteranceMentions, ontology: Ontology, evidence: Evidence
 ) -> tuple[Slot, ...]:
     """Return the slots of a form with what an utterance says of them (see ``deanonymize``)."""
-    values = _resolve(form, heard, evidence)
-    resolved = (values.get(slot.path, slot) for slot in form.slots)
-    return tuple(_offer(slot, ontology, heard.phrases) for slot in resolved)
-
-
-def _resolve(form: FormSlots, heard: Heard, evidence: Evidence) -> dict[SlotPath, Slot]:
-    """Return the slots with the values of the mentions that fit them.
-
-    One value for several slots is not certain where an unknown word may be one of them.
-    """
     values: dict[SlotPath, Slot] = {}
     for entity_class, mine in form.by_class.items():
         is_said = evidence.has_with_or(form.text, entity_class)
@@ -175,13 +170,25 @@ def _resolve(form: FormSlots, heard: Heard, evidence: Evidence) -> dict[SlotPath
                 value for each in mentions for value in each.alternatives or (each.value,)
             )
         )
+        # One value for several slots is not certain where an unknown word may be one of them.
         is_doubtful = len(mine.plain) > len(named) == 1 and bool(heard.phrases.get(entity_class))
         for slot, choice in zip(mine.plain, assigned, strict=True):
             values[slot.path] = _with_choice(slot, choice, named, is_doubtful)
-    return values
+    resolved: list[Slot] = []
+    for slot in form.slots:
+        slot = values.get(slot.path, slot)
+        if slot.value is None and not slot.is_named:
+            # Nobody named it: it may be any entity of its class, or words that nothing explains.
+            known = ontology.texts_of(slot.entity_class)
+            words = heard.phrases.get(slot.entity_class, heard.phrases[""])
+            slot = Slot(
+                slot.path, slot.token, slot.entity_class, known, likely=slot.likely, phrases=words
+            )
+        resolved.append(slot)
+    return tuple(resolved)
 
 
-def _with_choice(slot: Slot, choice: Choice, named: tuple[str, ...], is_doubtful: bool) -> Slot:
+def _with_choice(slot: Slot, choice: SlotChoice, named: tuple[str, ...], is_doubtful: bool) -> Slot:
     mention = choice.mention
     if mention is not None and mention.alternatives:
         return _with_alternatives(slot, mention)
@@ -220,10 +227,32 @@ def _by_number(slot: Slot, spans: Sequence[Span], mentions: Sequence[Mention]) -
     return replace(slot, candidates=named, is_named=bool(named), value=value)
 
 
-def _offer(slot: Slot, ontology: Ontology, phrases: Mapping[str, tuple[str, ...]]) -> Slot:
-    """Give an open slot that nobody named the unknown words of the utterance, and the entities of its class."""
-    if slot.value is not None or slot.is_named:
-        return slot
-    known = ontology.texts_of(slot.entity_class)
-    words = phrases.get(slot.entity_class, phrases[""])
-    return Slot(slot.path, slot.token, slot.entity_class, known, likely=slot.likely, phrases=words)
+def ground_like(form: Form, label: Form, grounded: Form) -> Form:
+    """Return ``form`` with the entities that ``grounded`` has where ``label`` has class tokens.
+
+    The entities of a class are certain where ``label`` names only one, or where both forms have as many
+    tokens of the class: then they keep their order. The other tokens stay as they are.
+    """
+    known: dict[str, list[str]] = defaultdict(list)
+    for slot in slots_of(label):
+        if text := _text_at(grounded, slot):
+            known[slot.entity_class].append(text)
+    slots = [slot for slot in slots_of(form) if slot.entity_class]
+    for entity_class, entities in known.items():
+        places = [slot.path for slot in slots if slot.entity_class == entity_class]
+        if len(set(entities)) == 1:
+            entities = entities[:1] * len(places)
+        if len(places) == len(entities):
+            for path, entity in zip(places, entities, strict=True):
+                form = filled(form, path, entity)
+    return form
+
+
+def _text_at(form: Form, slot: Slot) -> str:
+    """Return the text of the constant in the place of ``slot``; empty where there is none."""
+    for place in slot.path:
+        parts = children(form)
+        if place >= len(parts):
+            return ""
+        form = parts[place]
+    return str(form.value) if isinstance(form, Constant) and slot.entity_class else ""

@@ -2,19 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import operator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from random import Random
 
 from annotations.language.errors import LanguageError
-from annotations.language.grounding.satisfaction import holds, wildcards_in
 from annotations.language.ontology import Entity, Ontology
-from annotations.language.symbols import Wildcard, print_wildcard
+from annotations.language.symbols import (
+    Combination,
+    Comparison,
+    Condition,
+    Negation,
+    Wildcard,
+    print_wildcard,
+)
 
 Identity = tuple[str, int | None]
 Drawn = Mapping[Identity, Entity]
 
 _ATTEMPTS = 100
+Value = str | float | bool | None
+_ORDERS: dict[str, Callable[[float, float], bool]] = {
+    ">": operator.gt,
+    ">=": operator.ge,
+    "<": operator.lt,
+    "<=": operator.le,
+}
 
 
 def draw(
@@ -33,7 +47,11 @@ def draw(
     for wildcard in wildcards:
         if wildcard.entity_class:
             slots.setdefault(wildcard.identity, []).append(wildcard)
-    later = {key: each for key, each in slots.items() if any(map(_refers, each))}
+    later = {
+        key: slot
+        for key, slot in slots.items()
+        if any(True for each in slot for _ in wildcards_in(each.where))
+    }
     first = {key: each for key, each in slots.items() if key not in later}
     order = _in_order_of_reference(later)
     for attempts_left in range(_ATTEMPTS if later else 1, 0, -1):
@@ -69,7 +87,11 @@ def _match(
         random.shuffle(candidates[key])
     for key in order:
         if not _augment(key, candidates, drawn, taken, set()):
-            raise _too_few(slots[key][0], len(candidates[key]))
+            raise LanguageError(
+                f"the ontology has too few values for every {_write(slots[key][0])} to be different "
+                f"({len(candidates[key])} fit)",
+                hint="add entities, or give wildcards that may be equal the same name and number",
+            )
 
 
 def _augment(
@@ -134,10 +156,6 @@ def _write(wildcard: Wildcard) -> str:
     return print_wildcard(replace(wildcard, id=wildcard.id if is_numbered else None, meta=()))
 
 
-def _refers(wildcard: Wildcard) -> bool:
-    return any(True for _ in wildcards_in(wildcard.where))
-
-
 def _in_order_of_reference(later: Mapping[Identity, list[Wildcard]]) -> list[Identity]:
     """Return the identities so that each comes after those it refers to.
 
@@ -162,9 +180,53 @@ def _in_order_of_reference(later: Mapping[Identity, list[Wildcard]]) -> list[Ide
     return order
 
 
-def _too_few(wildcard: Wildcard, available: int) -> LanguageError:
-    return LanguageError(
-        f"the ontology has too few values for every {_write(wildcard)} to be different "
-        f"({available} fit)",
-        hint="add entities, or give wildcards that may be equal the same name and number",
-    )
+def holds(condition: Condition, entity: Entity, value_of: Callable[[Wildcard], str]) -> bool:
+    """Return whether ``entity`` satisfies ``condition`` (docs/reference/formats.md, Conditions and notes).
+
+    Texts are compared ignoring case. A property that the entity does not have is null, and false if
+    it is compared with a truth value. Only numbers have an order. ``value_of`` gives the text of a
+    wildcard that is used as a value.
+    """
+    if isinstance(condition, Negation):
+        return not holds(condition.operand, entity, value_of)
+    if isinstance(condition, Combination):
+        left = holds(condition.left, entity, value_of)
+        right = holds(condition.right, entity, value_of)
+        return {"and": left and right, "or": left or right, "xor": left != right}[
+            condition.operator
+        ]
+    value = condition.value
+    wanted = value_of(value) if isinstance(value, Wildcard) else value
+    actual, sign = entity.attribute(condition.property), condition.operator
+    if sign in _ORDERS:
+        number, limit = _number(actual), _number(wanted)
+        return number is not None and limit is not None and _ORDERS[sign](number, limit)
+    return _equals(actual, wanted) == (sign == "=")
+
+
+def wildcards_in(condition: Condition | None) -> Iterator[Wildcard]:
+    """Yield the wildcards that a condition uses as values."""
+    if isinstance(condition, Negation):
+        yield from wildcards_in(condition.operand)
+    elif isinstance(condition, Combination):
+        yield from wildcards_in(condition.left)
+        yield from wildcards_in(condition.right)
+    elif isinstance(condition, Comparison) and isinstance(condition.value, Wildcard):
+        yield condition.value
+
+
+def _equals(actual: str | None, wanted: Value) -> bool:
+    if isinstance(wanted, bool):
+        return ((actual or "").lower() == "true") == wanted
+    if wanted is None or actual is None:
+        return actual is wanted
+    if isinstance(wanted, float):
+        return _number(actual) == wanted
+    return actual.lower() == wanted.lower()
+
+
+def _number(value: Value) -> float | None:
+    try:
+        return float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        return None

@@ -13,8 +13,7 @@ from typing import TypeAlias
 from annotations.language.english import OBFUSCATED, PRONOUNS
 from annotations.language.forms import Application, Constant, Form, Lambda
 from annotations.language.grammar import anonymized
-from annotations.language.grounding.drawing import Drawn, draw
-from annotations.language.grounding.satisfaction import wildcards_in
+from annotations.language.grounding.drawing import Drawn, draw, wildcards_in
 from annotations.language.ontology import Entity, Ontology
 from annotations.language.symbols import Choice, Symbol, Symbols, Text, Wildcard, read_wildcard
 
@@ -165,12 +164,11 @@ class _Speaker:
             return Constant(self._value(numbers.of(form)))
         if isinstance(form, Constant) and isinstance(form.value, str) and "{" in form.value:
             return Constant(
-                _IN_BRACES.sub(lambda match: self._inside(match[0], numbers), form.value)
+                _IN_BRACES.sub(
+                    lambda match: self._value(numbers.of(read_wildcard(match[0]))), form.value
+                )
             )
         return form
-
-    def _inside(self, braces: str, numbers: _Numbers) -> str:
-        return self._value(numbers.of(read_wildcard(braces)))
 
     def _value(self, wildcard: Wildcard) -> str:
         """Return what a form says for a wildcard; a pronoun gives what it refers to."""
@@ -185,22 +183,18 @@ class _Speaker:
         if wildcard.kind == "void":
             return ""
         if wildcard.kind == "pron":
-            return self._pronoun(wildcard)
+            type_ = _PRONOUN_TYPES.get(wildcard.type, wildcard.type)
+            return PRONOUNS[self._gender()][type_]
         if wildcard.kind == "question":
             return "question"
         entity = self._drawn[wildcard.identity]
-        return self._obfuscate(wildcard, entity) if wildcard.obfuscated else entity.text
-
-    def _obfuscate(self, wildcard: Wildcard, entity: Entity) -> str:
+        if not wildcard.obfuscated:
+            return entity.text
         if wildcard.entity_class == "object":
             return self._ontology.singular(entity.attribute("category") or "object")
         if wildcard.entity_class == "location":
             return entity.attribute("room") or "room"
         return OBFUSCATED.get(wildcard.entity_class, wildcard.entity_class)
-
-    def _pronoun(self, wildcard: Wildcard) -> str:
-        type_ = _PRONOUN_TYPES.get(wildcard.type, wildcard.type)
-        return PRONOUNS[self._gender()][type_]
 
     def _gender(self) -> str:
         """Return the gender for a pronoun.

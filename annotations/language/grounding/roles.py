@@ -31,7 +31,7 @@ class Context:
 
 
 @dataclass(frozen=True, slots=True)
-class Role:
+class SlotRole:
     """The way to a slot: ``exact`` through all predicates, ``similar`` by the last of them alone."""
 
     exact: str
@@ -59,7 +59,7 @@ def context_of(words: Sequence[str], place: int) -> Context:
     return Context("<>" if class_of(cue) else cue, next(filter(None, kinds), ""))
 
 
-def role_of(form: Form, path: SlotPath) -> Role:
+def role_of(form: Form, path: SlotPath) -> SlotRole:
     """Return the role of the slot at ``path``."""
     exact: list[str] = []
     similar, outermost = "", 0
@@ -82,7 +82,7 @@ def role_of(form: Form, path: SlotPath) -> Role:
         form = parts[place]
     if similar.startswith("is_a") or similar.startswith("name"):
         similar = f"{similar} in argument {outermost}"
-    return Role("/".join(exact), similar)
+    return SlotRole("/".join(exact), similar)
 
 
 def tokens_of(form: Form, path: SlotPath = ()) -> Iterator[tuple[SlotPath, str]]:

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from annotations.language.ontology.additions import Additions, additions_to, read_entities
-from annotations.language.ontology.checks import ontology_problems
 from annotations.language.ontology.entities import Entity, Ontology
-from annotations.language.ontology.reading import ONTOLOGY_FILES, read_ontology
-from annotations.language.ontology.writing import write_ontology
+from annotations.language.ontology.ontology_checks import ontology_problems
+from annotations.language.ontology.ontology_files import (
+    ONTOLOGY_FILES,
+    read_ontology,
+    write_ontology,
+)
 
 __all__ = [
     "ONTOLOGY_FILES",

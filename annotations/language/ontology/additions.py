@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from annotations.language.errors import Position, Problem, warning_at
-from annotations.language.ontology.checks import ontology_problems
 from annotations.language.ontology.entities import Entity, Ontology
+from annotations.language.ontology.ontology_checks import ontology_problems
 
 SOURCE = "entities"  # of the positions of what is read here
 
@@ -46,7 +46,7 @@ def read_entities(
 
 
 def additions_to(ontology: Ontology, entities: Iterable[Entity]) -> Additions:
-    """Return which of ``entities`` are new, and the problems that ``ontology`` has not got without them."""
+    """Return which of ``entities`` are new, and the problems that they would add to ``ontology``."""
     known = {_key(entity) for entity in ontology.entities}
     new: list[Entity] = []
     duplicates: list[Entity] = []
@@ -55,23 +55,8 @@ def additions_to(ontology: Ontology, entities: Iterable[Entity]) -> Additions:
         known.add(_key(entity))
     before = {(each.position, each.message) for each in ontology_problems(ontology)}
     after = ontology_problems(Ontology((*ontology.entities, *new)))
-    problems = [each for each in after if (each.position, each.message) not in before]
-    return Additions(
-        tuple(new),
-        tuple(duplicates),
-        tuple(sorted({*problems, *_warn_of_shared_names(ontology, new)})),
-    )
-
-
-def _key(entity: Entity) -> tuple[str, str, str]:
-    """Return what may not be there twice: a place once in a room, a name once for each gender."""
-    beside = {"location": "room", "name": "gender"}.get(entity.entity_class, "")
-    return entity.entity_class, entity.text.casefold(), (entity.attribute(beside) or "").casefold()
-
-
-def _warn_of_shared_names(ontology: Ontology, new: Iterable[Entity]) -> Iterable[Problem]:
-    """Warn of names that another entity of the class has too: nobody can tell which one is meant."""
-    owner: dict[tuple[str, str], str] = {}
+    problems = {each for each in after if (each.position, each.message) not in before}
+    owner: dict[tuple[str, str], str] = {}  # class and name → the entity that has the name first
     for entity in ontology.entities:
         for name in (entity.text, *entity.aliases):
             owner.setdefault((entity.entity_class, name.casefold()), entity.text)
@@ -80,4 +65,11 @@ def _warn_of_shared_names(ontology: Ontology, new: Iterable[Entity]) -> Iterable
             other = owner.setdefault((entity.entity_class, name.casefold()), entity.text)
             if other.casefold() != entity.text.casefold():
                 message = f"{other} is called {name} too"
-                yield warning_at(entity.position, message, "use a name of its own")
+                problems.add(warning_at(entity.position, message, "use a name of its own"))
+    return Additions(tuple(new), tuple(duplicates), tuple(sorted(problems)))
+
+
+def _key(entity: Entity) -> tuple[str, str, str]:
+    """Return what may not be there twice: a place once in a room, a name once for each gender."""
+    beside = {"location": "room", "name": "gender"}.get(entity.entity_class, "")
+    return entity.entity_class, entity.text.casefold(), (entity.attribute(beside) or "").casefold()

@@ -4,23 +4,26 @@ from __future__ import annotations
 
 from annotations.language.plans.behavior_tree import to_behavior_tree
 from annotations.language.plans.lookup import Lookup
-from annotations.language.plans.plan import ASK, ActionName, Plan, PlanProblem, Step, Trouble
-from annotations.language.plans.planning import doubts_about, make_plan
-from annotations.language.plans.schemas import (
-    behavior_tree_schema_text,
-    plan_schema,
-    plan_schema_text,
-)
-from annotations.language.plans.values import (
+from annotations.language.plans.plan import (
+    ASK,
+    ActionName,
     Condition,
     Described,
     Named,
     Number,
-    Open,
-    Result,
+    OpenValue,
+    Plan,
+    PlanProblem,
+    Step,
+    StepResult,
+    Trouble,
     Value,
     Words,
+    behavior_tree_schema_text,
+    plan_schema,
+    plan_schema_text,
 )
+from annotations.language.plans.planning import doubts_about, make_plan
 
 __all__ = [
     "ASK",
@@ -30,11 +33,11 @@ __all__ = [
     "Lookup",
     "Named",
     "Number",
-    "Open",
+    "OpenValue",
     "Plan",
     "PlanProblem",
-    "Result",
     "Step",
+    "StepResult",
     "Trouble",
     "Value",
     "Words",

@@ -12,8 +12,16 @@ import json
 import re
 from xml.etree import ElementTree
 
-from annotations.language.plans.plan import Plan
-from annotations.language.plans.values import Described, Named, Number, Open, Result, Value, Words
+from annotations.language.plans.plan import (
+    Described,
+    Named,
+    Number,
+    OpenValue,
+    Plan,
+    StepResult,
+    Value,
+    Words,
+)
 
 TREE = "Command"
 RESULT = "result"
@@ -61,13 +69,13 @@ def port_name(argument: str) -> str:
 
 
 def _port(value: Value) -> str:
-    if isinstance(value, Result):
+    if isinstance(value, StepResult):
         return _blackboard(value.step)
     if isinstance(value, Number):
         return str(value.value)
     if isinstance(value, Named | Words):
         return _plain(value.text)
-    assert isinstance(value, Described | Open)
+    assert isinstance(value, Described | OpenValue)
     return "json:" + json.dumps(value.as_json(), ensure_ascii=False, separators=(",", ":"))
 
 

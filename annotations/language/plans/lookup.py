@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from annotations.language.english import ANY_OBJECT, spellings
 from annotations.language.grounding import QUESTION_WORD
 from annotations.language.ontology import Entity, Ontology
-from annotations.language.plans.values import Named, Value, Words
+from annotations.language.plans.plan import Named, Value, Words
 from annotations.language.predicates import ENTITY_KINDS, ArgumentKind, Predicate
 
 # Words in the place of an entity that name none: any category, any question, where the robot is.
@@ -49,32 +49,26 @@ class Lookup:
 
     def value(self, text: str, predicate: str, place: int) -> tuple[Value, bool]:
         """Return the value of a text as an argument, and whether an entity was expected but not found."""
-        kinds = self._kinds(predicate, place)
+        declared = self._predicates.get(predicate)
+        if declared is None or not declared.signatures:
+            kinds = _KINDS.get((predicate, place), frozenset())
+        else:
+            taken = {
+                each.arguments[place] for each in declared.signatures if each.arguments[place:]
+            }
+            kinds = ENTITY_KINDS & taken
         rows = self._rows.get(text.casefold(), [])
         fitting = [each for each in rows if each.entity_class in kinds] or rows
         if fitting:
-            return _named(text, fitting), False
+            entity_class = fitting[0].entity_class
+            same_class = [each for each in fitting if each.entity_class == entity_class]
+            attributes: dict[str, str] = {}  # those that the rows agree on
+            for name in _ATTRIBUTES.get(entity_class, ()):
+                values = {each.attribute(name) for each in same_class}
+                value = values.pop() if len(values) == 1 else None
+                if value:
+                    attributes[name] = value
+            exact = [each.text for each in same_class if each.text.casefold() == text.casefold()]
+            return Named(entity_class, (exact or [text])[0], attributes), False
         is_missing = bool(kinds - _SPOKEN) and text.casefold() not in NEUTRAL_WORDS
         return Words(text), is_missing
-
-    def _kinds(self, predicate: str, place: int) -> frozenset[ArgumentKind]:
-        """Return the entity kinds that a predicate takes at a place."""
-        declared = self._predicates.get(predicate)
-        if declared is None or not declared.signatures:
-            return _KINDS.get((predicate, place), frozenset())
-        kinds = (each.arguments[place : place + 1] for each in declared.signatures)
-        return frozenset(kind for some in kinds for kind in some) & ENTITY_KINDS
-
-
-def _named(text: str, rows: list[Entity]) -> Named:
-    """Return the entity of some rows, with the attributes that they agree on."""
-    entity_class = rows[0].entity_class
-    rows = [each for each in rows if each.entity_class == entity_class]
-    attributes: dict[str, str] = {}
-    for name in _ATTRIBUTES.get(entity_class, ()):
-        values = {each.attribute(name) for each in rows}
-        value = values.pop() if len(values) == 1 else None
-        if value:
-            attributes[name] = value
-    exact = [each.text for each in rows if each.text.casefold() == text.casefold()]
-    return Named(entity_class, (exact or [text])[0], attributes)

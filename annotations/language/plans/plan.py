@@ -1,16 +1,18 @@
-"""A plan: the steps of a command as data for a robot, and what stands in its way."""
+"""A plan as data for a robot: its steps, the values of their arguments, and what stands in its way."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Any
-
-from annotations.language.plans.values import Value
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeAlias
 
 VERSION = 1  # of the JSON that ``Plan.as_json`` writes; see plan.schema.json
 ASK = "ask_operator"
+_FOLDER = Path(__file__).parent
 
 
 class Trouble(StrEnum):
@@ -97,3 +99,118 @@ class Plan:
             "steps": [step.as_json() for step in self.steps],
             "problems": [problem.as_json() for problem in self.problems],
         }
+
+
+@dataclass(frozen=True, slots=True)
+class Named:
+    """An entity of the ontology. ``attributes`` are those that a robot needs: room, category."""
+
+    entity_class: str
+    text: str
+    attributes: Mapping[str, str] = field(default_factory=dict, hash=False)
+
+    def as_json(self) -> dict[str, Any]:
+        return {
+            "kind": "entity",
+            "entity_class": self.entity_class,
+            "text": self.text,
+            "attributes": dict(self.attributes),
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Words:
+    """A text that is no entity: words to say, ``current``."""
+
+    text: str
+
+    def as_json(self) -> dict[str, Any]:
+        return {"kind": "text", "text": self.text}
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """An integer."""
+
+    value: int
+
+    def as_json(self) -> dict[str, Any]:
+        return {"kind": "number", "value": self.value}
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """Something that has to hold of what is described: ``at`` a place, ``sitting``."""
+
+    predicate: str
+    values: tuple[Value, ...] = ()
+
+    def as_json(self) -> dict[str, Any]:
+        return {"predicate": self.predicate, "values": [each.as_json() for each in self.values]}
+
+
+@dataclass(frozen=True, slots=True)
+class Described:
+    """Something to be found by what is said of it. In one plan the same ``id`` is the same thing.
+
+    ``of`` is the id of another described thing, of which this is the ``attribute``: her name.
+    """
+
+    id: str
+    text: str
+    conditions: tuple[Condition, ...]
+    attribute: str = ""
+    of: Described | None = None
+
+    def as_json(self) -> dict[str, Any]:
+        if self.of is not None:
+            owner = self.of.as_json()
+            return {
+                "kind": "attribute",
+                "attribute": self.attribute,
+                "text": self.text,
+                "of": owner,
+            }
+        conditions = [each.as_json() for each in self.conditions]
+        return {"kind": "description", "id": self.id, "text": self.text, "conditions": conditions}
+
+
+@dataclass(frozen=True, slots=True)
+class StepResult:
+    """What an earlier step of the plan gives; ``step`` counts from 1."""
+
+    step: int
+
+    def as_json(self) -> dict[str, Any]:
+        return {"kind": "result", "step": self.step}
+
+
+@dataclass(frozen=True, slots=True)
+class OpenValue:
+    """An entity of a class that the command does not name; the plan asks the operator for it if it can."""
+
+    entity_class: str
+
+    def as_json(self) -> dict[str, Any]:
+        return {"kind": "open", "entity_class": self.entity_class}
+
+
+Value: TypeAlias = "Named | Words | Number | Described | StepResult | OpenValue"
+
+
+@cache
+def plan_schema_text() -> str:
+    """Return the JSON Schema (2020-12) that ``Plan.as_json`` follows, as text."""
+    return (_FOLDER / "plan.schema.json").read_text(encoding="utf-8")
+
+
+def plan_schema() -> dict[str, Any]:
+    """Return the JSON Schema that ``Plan.as_json`` follows."""
+    schema: dict[str, Any] = json.loads(plan_schema_text())
+    return schema
+
+
+@cache
+def behavior_tree_schema_text() -> str:
+    """Return the XML Schema of what ``to_behavior_tree`` writes, as text."""
+    return (_FOLDER / "behavior_tree.xsd").read_text(encoding="utf-8")

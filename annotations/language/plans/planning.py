@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import count
 
-from annotations.language.english import NEEDED_ARGUMENTS
+from annotations.language.english import ARGUMENT_NAMES, ARGUMENT_QUESTIONS, NEEDED_ARGUMENTS
 from annotations.language.forms import (
     CONJUNCTION,
     Application,
@@ -15,23 +16,45 @@ from annotations.language.forms import (
     Unknown,
     Variable,
     children,
+    walk,
 )
 from annotations.language.grounding import Slot
 from annotations.language.ontology import Ontology
-from annotations.language.plans.arguments import argument_name, question_of
-from annotations.language.plans.describing import (
+from annotations.language.plans.descriptions import (
     Describer,
     is_description,
     open_lambdas,
     superlative_without_set,
 )
 from annotations.language.plans.lookup import Lookup
-from annotations.language.plans.plan import ASK, ActionName, Plan, PlanProblem, Step, Trouble
-from annotations.language.plans.values import Described, Named, Number, Open, Result, Value, Words
-from annotations.language.predicates import Predicate, PredicateKind, declared_or_inferred, gloss
+from annotations.language.plans.plan import (
+    ASK,
+    ActionName,
+    Described,
+    Named,
+    Number,
+    OpenValue,
+    Plan,
+    PlanProblem,
+    Step,
+    StepResult,
+    Trouble,
+    Value,
+    Words,
+)
+from annotations.language.predicates import (
+    ArgumentKind,
+    Predicate,
+    PredicateKind,
+    argument_kind,
+    declared_or_inferred,
+    gloss,
+)
 
 MOST_STEPS = 50
 NOT_UNDERSTOOD = "I did not understand that. What shall I do?"
+_PLACES = frozenset((ArgumentKind.LOCATION, ArgumentKind.ROOM))
+_OF_A_PERSON = frozenset(("person", "name", "male", "female", "gesture", "pose", "gender"))
 
 
 def make_plan(
@@ -50,7 +73,7 @@ def make_plan(
         predicates: which predicates are actions, and how to say them.
         action_names: predicate, or ``ask_operator`` → what the robot calls it and its arguments.
         slots: the slots that were asked about; an entity that is only likely is named as a problem.
-        lookup: that of ontology and predicates, for who makes many plans; made anew if there is none.
+        lookup: of ontology and predicates, to be shared by many plans; made here by default.
     """
     known = declared_or_inferred(predicates or {}, form)
     lookup = lookup or Lookup(ontology, predicates or {})
@@ -73,7 +96,7 @@ def doubts_about(slots: Sequence[Slot]) -> tuple[PlanProblem, ...]:
 
 
 @dataclass(frozen=True, slots=True)
-class _Scope:
+class _ActionScope:
     """The descriptions that hold for the variables of a λ around actions, and their ids."""
 
     conjuncts: tuple[Form, ...] = ()
@@ -106,13 +129,13 @@ class _Planner:
             )
             self.ask(NOT_UNDERSTOOD, "command")
             return
-        self._add(form, _Scope())
+        self._add(form, _ActionScope())
         if not any(step.predicate != ASK for step in self.steps):
             message = "the form says nothing to do"
             self.report(Trouble.NO_ACTION, message, "put an action around it, such as find", step=0)
             self.ask(NOT_UNDERSTOOD, "command")
 
-    def _add(self, form: Form, scope: _Scope) -> None:
+    def _add(self, form: Form, scope: _ActionScope) -> None:
         if isinstance(form, Lambda):
             bodies = tuple(open_lambdas(form))
             about = tuple(each for each in bodies if is_description(each, self.predicates))
@@ -120,18 +143,16 @@ class _Planner:
             for body in bodies:
                 if body not in about:
                     self._add(body, inner)
-        elif isinstance(form, Application) and self._is_sequence(form):
-            for argument in form.arguments:
-                self._add(argument, scope)
         elif isinstance(form, Application):
-            self.step(form, scope)
+            declared = self.predicates.get(str(form.predicate))
+            is_sequence = declared is not None and declared.kind is PredicateKind.SEQUENCE
+            if is_sequence or form.predicate == CONJUNCTION:
+                for argument in form.arguments:
+                    self._add(argument, scope)
+            else:
+                self.step(form, scope)
 
-    def _is_sequence(self, form: Application) -> bool:
-        declared = self.predicates.get(str(form.predicate))
-        is_declared = declared is not None and declared.kind is PredicateKind.SEQUENCE
-        return is_declared or form.predicate == CONJUNCTION
-
-    def step(self, form: Application, scope: _Scope) -> int:
+    def step(self, form: Application, scope: _ActionScope) -> int:
         """Add the step of one action, after the steps whose results it needs; return its number."""
         if len(self.steps) >= MOST_STEPS:
             if not any(each.trouble is Trouble.TOO_LONG for each in self.problems):
@@ -140,27 +161,40 @@ class _Planner:
             return MOST_STEPS
         action = str(form.predicate)
         before, self.waiting = self.waiting, []
-        text = gloss(_with_scope(form, scope), self.predicates)
+        spoken = Lambda(1, "e", (*scope.conjuncts, form)) if scope.conjuncts else form
+        text = gloss(spoken, self.predicates)
         arguments: dict[str, Value] = {}
         for place, argument in enumerate(self._gather(form, scope)):
             value = self._value(argument, action, place, scope)
             entity_class = value.entity_class if isinstance(value, Named) else ""
             name = argument_name(action, place, argument, entity_class)
-            arguments[_free_name(name, arguments)] = self._asked(value, name, action)
+            numbered = (f"{name}_{number}" for number in count(2))
+            free = (
+                name
+                if name not in arguments
+                else next(each for each in numbered if each not in arguments)
+            )
+            arguments[free] = self._asked(value, name, action)
         for name in NEEDED_ARGUMENTS.get(action, ()):
             if name not in arguments:
-                arguments[name] = self._asked(Open(""), name, action)
-        self._check_superlatives(arguments)
+                arguments[name] = self._asked(OpenValue(""), name, action)
+        # A source says among what something is the largest, as in ``from the table``.
+        for value in arguments.values():
+            superlative = superlative_without_set(value) if isinstance(value, Described) else ""
+            if superlative and "source" not in arguments:
+                message = f"“{superlative}” does not say among which things"
+                hint = "name a category or a place"
+                self.waiting.append((Trouble.SUPERLATIVE_WITHOUT_SET, message, hint))
         number = self._append(action, arguments, text)
         for trouble, message, hint in self.waiting:
             self.report(trouble, message, hint, step=number)
         self.waiting = before
         return number
 
-    def ask(self, question: str, expects: str) -> Result:
+    def ask(self, question: str, expects: str) -> StepResult:
         """Add a question to the operator; return its answer."""
         arguments: dict[str, Value] = {"question": Words(question), "expects": Words(expects)}
-        return Result(self._append(ASK, arguments, f"ask: {question}", gives_result=True))
+        return StepResult(self._append(ASK, arguments, f"ask: {question}", gives_result=True))
 
     def report(self, trouble: Trouble, message: str, hint: str, step: int) -> None:
         problem = PlanProblem(trouble, step, f"{message[:1].upper()}{message[1:]}.", hint)
@@ -170,7 +204,7 @@ class _Planner:
     def text_value(self, constant: Constant, predicate: str, place: int) -> Value:
         """Return the value of a constant; an open one is asked for, an unknown one reported."""
         if constant.token_class:
-            return self._asked(Open(constant.token_class), constant.token_class, predicate)
+            return self._asked(OpenValue(constant.token_class), constant.token_class, predicate)
         value, is_missing = self.lookup.value(str(constant.value), predicate, place)
         if is_missing:
             message = f"the ontology has no “{constant.value}”"
@@ -178,7 +212,7 @@ class _Planner:
             self.waiting.append((Trouble.UNKNOWN_ENTITY, message, hint))
         return value
 
-    def _gather(self, form: Application, scope: _Scope) -> tuple[Form, ...]:
+    def _gather(self, form: Application, scope: _ActionScope) -> tuple[Form, ...]:
         """Put the variable in place of the descriptions in ``(follow (person $1) (at $1 …))``."""
         about = [each for each in form.arguments if is_description(each, self.predicates)]
         if not about:
@@ -189,32 +223,29 @@ class _Planner:
         scope.described[variable.index] = self.describer.of_variable(variable.index, conjuncts, {})
         return (variable, *(each for each in form.arguments if each not in about))
 
-    def _value(self, form: Form, action: str, place: int, scope: _Scope) -> Value:
+    def _value(self, form: Form, action: str, place: int, scope: _ActionScope) -> Value:
         if isinstance(form, Constant):
             is_number = isinstance(form.value, int)
             return Number(int(form.value)) if is_number else self.text_value(form, action, place)
         if isinstance(form, Lambda):
             return self.describer.of_lambda(form)
         if isinstance(form, Variable):
-            return self._variable(form, scope)
+            described = scope.described.get(form.index)
+            if described is None:
+                described = self.describer.of_variable(form.index, scope.conjuncts, {})
+                if not described.conditions and described.of is None:
+                    return OpenValue("")
+                scope.described[form.index] = described
+            return described
         if isinstance(form, Application):
             number = self.step(form, scope)
             self.steps[number - 1] = replace(self.steps[number - 1], gives_result=True)
-            return Result(number)
-        return Open("")
-
-    def _variable(self, variable: Variable, scope: _Scope) -> Value:
-        described = scope.described.get(variable.index)
-        if described is None:
-            described = self.describer.of_variable(variable.index, scope.conjuncts, {})
-            if not described.conditions and described.of is None:
-                return Open("")
-            scope.described[variable.index] = described
-        return described
+            return StepResult(number)
+        return OpenValue("")
 
     def _asked(self, value: Value, name: str, action: str) -> Value:
         """Return the answer of the operator in place of an open value."""
-        if not isinstance(value, Open):
+        if not isinstance(value, OpenValue):
             return value
         if value.entity_class:
             what = f"the {value.entity_class} is open"
@@ -223,15 +254,6 @@ class _Planner:
         message = f"{action} has no {name.replace('_', ' ')}"
         self.waiting.append((Trouble.MISSING_ARGUMENT, message, "say it in the command"))
         return self.ask(question_of(name), name)
-
-    def _check_superlatives(self, arguments: Mapping[str, Value]) -> None:
-        """Report ``the largest`` of nothing; a source says among what, as in ``from the table``."""
-        for value in arguments.values():
-            superlative = superlative_without_set(value) if isinstance(value, Described) else ""
-            if superlative and "source" not in arguments:
-                message = f"“{superlative}” does not say among which things"
-                hint = "name a category or a place"
-                self.waiting.append((Trouble.SUPERLATIVE_WITHOUT_SET, message, hint))
 
     def _append(
         self, predicate: str, arguments: Mapping[str, Value], text: str, gives_result: bool = False
@@ -243,15 +265,33 @@ class _Planner:
         return number
 
 
-def _with_scope(form: Application, scope: _Scope) -> Form:
-    """Return the action with the descriptions around it, to be said in English."""
-    return Lambda(1, "e", (*scope.conjuncts, form)) if scope.conjuncts else form
+def argument_name(action: str, place: int, argument: Form, entity_class: str = "") -> str:
+    """Return the name of an argument: ``destination`` for the second one of ``guide``.
+
+    ``entity_class`` is that of a text that names an entity. An action that is not known calls its
+    arguments ``argument_1``, ``argument_2``, ….
+    """
+    names = ARGUMENT_NAMES.get(action, ())
+    if place >= len(names):
+        return f"argument_{place + 1}"
+    name = names[place]
+    if isinstance(name, str):
+        return name
+    return name.get(_kind(argument, entity_class)) or name.get("") or f"argument_{place + 1}"
 
 
-def _free_name(name: str, taken: Mapping[str, Value]) -> str:
-    number = 1
-    free = name
-    while free in taken:
-        number += 1
-        free = f"{name}_{number}"
-    return free
+def question_of(name: str) -> str:
+    """Return what to ask the operator for an argument that a command leaves open."""
+    return ARGUMENT_QUESTIONS.get(name, f"What is the {name.replace('_', ' ')}?")
+
+
+def _kind(argument: Form, entity_class: str) -> str:
+    kind = argument_kind(argument)
+    if kind in _PLACES or entity_class in ("location", "room"):
+        return "place"
+    if kind is ArgumentKind.NUMBER or isinstance(argument, Unknown):
+        return "number" if kind is ArgumentKind.NUMBER else "unknown"
+    if not isinstance(argument, Lambda):
+        return "name" if kind is ArgumentKind.NAME or entity_class == "name" else "text"
+    names = {node.predicate for node in walk(argument) if isinstance(node, Application)}
+    return "person" if names & _OF_A_PERSON else "thing"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from annotations.language.predicates.gloss_patterns import pattern_of_name
-from annotations.language.predicates.notation import print_signatures, read_signatures
 from annotations.language.predicates.predicates import (
     Misuse,
     Predicate,
@@ -13,13 +12,15 @@ from annotations.language.predicates.predicates import (
     find_misuses,
     gloss,
     infer_signatures,
+    sample_forms,
 )
-from annotations.language.predicates.samples import sample_forms
 from annotations.language.predicates.signatures import (
     ENTITY_KINDS,
     ArgumentKind,
     Signature,
     argument_kind,
+    print_signatures,
+    read_signatures,
     signature_of,
 )
 from annotations.language.predicates.standing_in import (

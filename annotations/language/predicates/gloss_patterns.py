@@ -26,7 +26,7 @@ _SLOT = re.compile(r"\{(?P<place>[1-9][0-9]?|\*)(?::(?P<kind>\w+)|=(?P<value>[^{
 
 
 @dataclass(frozen=True, slots=True)
-class Slot:
+class PatternSlot:
     """An argument in a pattern; ``place`` counts from 0 and is None for ``{*}``."""
 
     place: int | None
@@ -35,19 +35,19 @@ class Slot:
 
 
 @dataclass(frozen=True, slots=True)
-class Alternative:
+class GlossAlternative:
     """Texts and slots in turn; ``is_nested`` for one marked with ``=``."""
 
-    pieces: tuple[str | Slot, ...]
+    pieces: tuple[str | PatternSlot, ...]
     is_nested: bool = False
 
     @property
-    def slots(self) -> tuple[Slot, ...]:
-        return tuple(piece for piece in self.pieces if isinstance(piece, Slot))
+    def slots(self) -> tuple[PatternSlot, ...]:
+        return tuple(piece for piece in self.pieces if isinstance(piece, PatternSlot))
 
 
 @lru_cache(maxsize=1 << 12)
-def read_pattern(pattern: str) -> tuple[Alternative, ...]:
+def read_pattern(pattern: str) -> tuple[GlossAlternative, ...]:
     """Return the alternatives of a pattern. Any text is a pattern: what is not a slot is plain text."""
     return tuple(_alternative(part.strip()) for part in pattern.split("|"))
 
@@ -66,19 +66,19 @@ def pattern_of_name(name: str, is_action: bool, signatures: tuple[Signature, ...
     return " | ".join(dict.fromkeys(_description(name, words, arity) for arity in arities))
 
 
-def _alternative(text: str) -> Alternative:
+def _alternative(text: str) -> GlossAlternative:
     is_nested = text.startswith("=")
-    pieces: list[str | Slot] = []
+    pieces: list[str | PatternSlot] = []
     end = 0
     text = text.removeprefix("=").strip()
     for match in _SLOT.finditer(text):
         place = None if match["place"] == "*" else int(match["place"]) - 1
         pieces += [
             text[end : match.start()],
-            Slot(place, match["kind"] or "", match["value"] or ""),
+            PatternSlot(place, match["kind"] or "", match["value"] or ""),
         ]
         end = match.end()
-    return Alternative(tuple(piece for piece in (*pieces, text[end:]) if piece), is_nested)
+    return GlossAlternative(tuple(piece for piece in (*pieces, text[end:]) if piece), is_nested)
 
 
 def _action(words: str, arity: int, signatures: tuple[Signature, ...]) -> str:

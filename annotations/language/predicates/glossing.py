@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TypeGuard
 
@@ -17,7 +17,11 @@ from annotations.language.forms import (
     Variable,
     to_reading,
 )
-from annotations.language.predicates.gloss_patterns import Alternative, Slot, read_pattern
+from annotations.language.predicates.gloss_patterns import (
+    GlossAlternative,
+    PatternSlot,
+    read_pattern,
+)
 from annotations.language.predicates.signatures import ArgumentKind, argument_kind
 from annotations.language.symbols import Wildcard
 
@@ -69,7 +73,18 @@ class _NounPhrase:
         noun = self.noun or ("one" if self.is_person else "object")
         is_person = noun.endswith("person") or (not self.noun and self.is_person)
         noun = plural(noun) if is_plural else noun
-        return " ".join([*self.before, noun, *_join_clauses(self.after, is_person, is_plural)])
+        # Fit clauses like ``that is at …`` to people and to plurals; join a second one with "and".
+        verb = "are" if is_plural else "is"
+        pronoun = "who" if is_person else "that"
+        joined: list[str] = []
+        has_clause = False
+        for clause in self.after:
+            if clause.startswith("that is "):
+                rest = clause.removeprefix("that is ")
+                clause = f"and {rest}" if has_clause else f"{pronoun} {verb} {rest}"
+                has_clause = True
+            joined.append(clause)
+        return " ".join([*self.before, noun, *joined])
 
 
 def sentence(form: Form, patterns: Mapping[str, str], actions: frozenset[str]) -> str:
@@ -123,19 +138,23 @@ def _gather(form: Application, scope: _Scope) -> tuple[Application, _Scope]:
     return gathered, replace(scope, conjuncts=about)
 
 
-def _choose(form: Application, patterns: Mapping[str, str], is_nested: bool) -> Alternative:
+def _choose(form: Application, patterns: Mapping[str, str], is_nested: bool) -> GlossAlternative:
     """Return the alternative that fits the arguments best."""
     pattern = patterns.get(str(form.predicate)) or str(form.predicate).replace("_", " ")
     alternatives = read_pattern(pattern)
-    fitting = [each for each in alternatives if _fits(each, form.arguments)] or [alternatives[0]]
-    return max(fitting, key=lambda each: _merit(each, is_nested))
+    fitting = [
+        each for each in alternatives if all(_fits(slot, form.arguments) for slot in each.slots)
+    ]
+
+    def merit(alternative: GlossAlternative) -> tuple[bool, int, int]:
+        slots = alternative.slots
+        specific = sum(bool(slot.value or slot.kind not in ("", "plural")) for slot in slots)
+        return alternative.is_nested == is_nested, len(slots), specific
+
+    return max(fitting or alternatives[:1], key=merit)
 
 
-def _fits(alternative: Alternative, arguments: tuple[Form, ...]) -> bool:
-    return all(_slot_fits(slot, arguments) for slot in alternative.slots)
-
-
-def _slot_fits(slot: Slot, arguments: tuple[Form, ...]) -> bool:
+def _fits(slot: PatternSlot, arguments: tuple[Form, ...]) -> bool:
     if slot.place is None:
         return True
     if slot.place >= len(arguments):
@@ -147,13 +166,7 @@ def _slot_fits(slot: Slot, arguments: tuple[Form, ...]) -> bool:
     return slot.kind in ("", "plural", argument_kind(argument))
 
 
-def _merit(alternative: Alternative, is_nested: bool) -> tuple[bool, int, int]:
-    slots = alternative.slots
-    specific = sum(bool(slot.value or slot.kind not in ("", "plural")) for slot in slots)
-    return alternative.is_nested == is_nested, len(slots), specific
-
-
-def _fill(alternative: Alternative, arguments: tuple[Form, ...], scope: _Scope) -> str:
+def _fill(alternative: GlossAlternative, arguments: tuple[Form, ...], scope: _Scope) -> str:
     """Return the text of an alternative with its slots filled."""
     texts = (
         piece if isinstance(piece, str) else _slot(piece, arguments, scope)
@@ -162,7 +175,7 @@ def _fill(alternative: Alternative, arguments: tuple[Form, ...], scope: _Scope) 
     return " ".join("".join(texts).split())
 
 
-def _slot(slot: Slot, arguments: tuple[Form, ...], scope: _Scope) -> str:
+def _slot(slot: PatternSlot, arguments: tuple[Form, ...], scope: _Scope) -> str:
     if slot.place is None:
         return ", then ".join(_phrase(each, scope) for each in arguments)
     if slot.value or slot.place >= len(arguments):
@@ -203,22 +216,20 @@ def _describe(variable: int, scope: _Scope, is_plural: bool = False) -> str:
     """Return the noun phrase for what a λ describes."""
     about = scope.about(variable)
     if not about:
-        return _attribute(variable, scope)
+        # Say ``(name $2 $1)`` from the side of ``$1``: the name of what ``$2`` stands for.
+        for conjunct in scope.conjuncts:
+            if Variable(variable) in conjunct.arguments[1:] and isinstance(
+                conjunct.arguments[0], Variable
+            ):
+                inner = replace(scope, said=scope.said | {variable})
+                owner = _describe(conjunct.arguments[0].index, inner)
+                return f"the {str(conjunct.predicate).replace('_', ' ')} of {owner}"
+        return "something"
     inner = replace(scope, said=scope.said | {variable})
     phrase = _NounPhrase()
     for each in about:
         _add(phrase, each, inner)
     return ("" if is_plural else "the ") + phrase.words(is_plural)
-
-
-def _attribute(variable: int, scope: _Scope) -> str:
-    """Say ``(name $2 $1)`` from the side of ``$1``: the name of what ``$2`` stands for."""
-    for each in scope.conjuncts:
-        if Variable(variable) in each.arguments[1:] and isinstance(each.arguments[0], Variable):
-            inner = replace(scope, said=scope.said | {variable})
-            owner = _describe(each.arguments[0].index, inner)
-            return f"the {str(each.predicate).replace('_', ' ')} of {owner}"
-    return "something"
 
 
 def _add(phrase: _NounPhrase, conjunct: Application, scope: _Scope) -> None:
@@ -230,7 +241,7 @@ def _add(phrase: _NounPhrase, conjunct: Application, scope: _Scope) -> None:
         for each in conjunct.arguments
     )
     chosen = _choose(conjunct, scope.patterns, False)
-    if chosen.pieces == (Slot(1),) and len(conjunct.arguments) > 1:
+    if chosen.pieces == (PatternSlot(1),) and len(conjunct.arguments) > 1:
         phrase.noun = _bare(conjunct.arguments[1])
         return
     before, underscore, after = _fill(chosen, conjunct.arguments, scope).partition("_")
@@ -239,18 +250,3 @@ def _add(phrase: _NounPhrase, conjunct: Application, scope: _Scope) -> None:
         return
     phrase.before += [before.strip()] * bool(before.strip())
     phrase.after += [after.strip()] * bool(after.strip())
-
-
-def _join_clauses(clauses: Iterable[str], is_person: bool, is_plural: bool) -> list[str]:
-    """Fit clauses like ``that is at …`` to people and to plurals; join a second one with "and"."""
-    verb = "are" if is_plural else "is"
-    pronoun = "who" if is_person else "that"
-    joined: list[str] = []
-    has_clause = False
-    for clause in clauses:
-        if clause.startswith("that is "):
-            rest = clause.removeprefix("that is ")
-            clause = f"and {rest}" if has_clause else f"{pronoun} {verb} {rest}"
-            has_clause = True
-        joined.append(clause)
-    return joined

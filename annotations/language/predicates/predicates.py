@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
@@ -12,11 +12,22 @@ from rapidfuzz.process import extractOne
 
 from annotations.language.english import say_count
 from annotations.language.errors import Position, Problem, warning_at
-from annotations.language.forms import Application, Form, Lambda, Variable, children, walk
+from annotations.language.forms import (
+    UNKNOWN,
+    Application,
+    Constant,
+    Form,
+    Lambda,
+    Variable,
+    children,
+    walk,
+)
 from annotations.language.limits import MAX_GLOSS
 from annotations.language.predicates.gloss_patterns import ALL_IN_ORDER, default_pattern
 from annotations.language.predicates.glossing import sentence
 from annotations.language.predicates.signatures import (
+    ENTITY_KINDS,
+    ArgumentKind,
     Signature,
     signature_of,
 )
@@ -71,13 +82,20 @@ def infer_signatures(forms: Iterable[Form]) -> dict[str, Predicate]:
     def kind(name: str) -> PredicateKind:
         if name not in actions:
             return PredicateKind.DESCRIPTION
-        is_sequence = all(_are_several(each, actions) for each in arguments[name])
+        is_sequence = all(
+            len(given) > 1
+            and all(isinstance(each, Application) and each.predicate in actions for each in given)
+            for given in arguments[name]
+        )
         return PredicateKind.SEQUENCE if is_sequence else PredicateKind.ACTION
 
-    return {
-        name: _predicate(name, kind(name), tuple(sorted(signatures[name])))
-        for name in sorted(signatures)
-    }
+    inferred: dict[str, Predicate] = {}
+    for name in sorted(signatures):
+        predicate = Predicate(name, kind(name), tuple(sorted(signatures[name])))
+        pattern = _default(predicate)
+        # A pattern too long to store is made again from the name whenever a form is glossed.
+        inferred[name] = replace(predicate, gloss=pattern if len(pattern) <= MAX_GLOSS else "")
+    return inferred
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,20 +155,6 @@ def _name_of(application: Application) -> str:
     return str(application.predicate)
 
 
-def _are_several(arguments: tuple[Form, ...], actions: Collection[str]) -> bool:
-    """Return whether two or more arguments are given, and all are applications of ``actions``."""
-    return len(arguments) > 1 and all(
-        isinstance(each, Application) and each.predicate in actions for each in arguments
-    )
-
-
-def _predicate(name: str, kind: PredicateKind, signatures: tuple[Signature, ...]) -> Predicate:
-    predicate = Predicate(name, kind, signatures)
-    pattern = _default(predicate)
-    # A pattern too long to store is made again from the name whenever a form is glossed.
-    return replace(predicate, gloss=pattern if len(pattern) <= MAX_GLOSS else "")
-
-
 def _default(predicate: Predicate) -> str:
     if predicate.kind is PredicateKind.SEQUENCE:
         return ALL_IN_ORDER
@@ -204,3 +208,34 @@ def _misuse(node: int, form: Application, predicates: Mapping[str, Predicate]) -
     message = f"argument {places[0] + 1} of {name} cannot be of the kind {kind}"
     before = sum(1 for each in form.arguments[: places[0]] for _ in walk(each))
     return Misuse(node + 1 + before, message, f"write {choices}")
+
+
+def sample_forms(predicate: Predicate) -> Iterator[Form]:
+    """Yield a form with class tokens for each signature; a description stands in ``find``."""
+    for signature in predicate.signatures:
+        kinds = signature.arguments
+        arguments = tuple(
+            _argument(ArgumentKind.ANY if kind in kinds[:place] and kind == "variable" else kind)
+            for place, kind in enumerate(kinds)
+        )
+        form = Application(predicate.name, arguments)
+        takes_variable = ArgumentKind.VARIABLE in signature.arguments
+        if predicate.is_action and not takes_variable:
+            yield form
+        else:
+            yield Application("find", (Lambda(1, "e", (form,)),))
+
+
+def _argument(kind: ArgumentKind) -> Form:
+    if kind in ENTITY_KINDS:
+        return Constant(f"<{kind}>")
+    thing = Constant("<object>")
+    others: dict[ArgumentKind, Form] = {
+        ArgumentKind.VARIABLE: Variable(1),
+        ArgumentKind.LAMBDA: Lambda(2, "e", (Application("is_a", (Variable(2), thing)),)),
+        ArgumentKind.FORM: Application("go", (Constant("<room>"),)),
+        ArgumentKind.NUMBER: Constant(2),
+        ArgumentKind.TEXT: Constant("something"),
+        ArgumentKind.UNKNOWN: UNKNOWN,
+    }
+    return others.get(kind, thing)

@@ -1,7 +1,7 @@
 """Tell which texts can be put into a gloss that was made with signs in their places (``english.stand_in``).
 
-A gloss depends on the texts of a form in few ways, and this names them all, so that the gloss with the texts
-put in is the very one that would be made with them.
+A gloss depends on the texts of its form in a few ways only. All of them are checked here, so that a gloss
+with texts put in equals the gloss that is made from the texts.
 """
 
 from __future__ import annotations
@@ -47,6 +47,5 @@ def can_stand_in(text: str, of_patterns: frozenset[str]) -> bool:
 
 
 def is_loose(text: str) -> bool:
-    """Return whether the signs in ``text`` are words of their own, so that no text that is put in grows together
-    with another word."""
+    """Return whether each sign in ``text`` stands apart, so that a text in its place joins no other word."""
     return not _TOUCHING.search(text)

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from annotations.language.symbols.places import (
+from annotations.language.symbols.cursor import lone_closing_parentheses
+from annotations.language.symbols.printing import print_sequence, print_symbol, print_wildcard
+from annotations.language.symbols.reader import NAMES as WILDCARD_NAMES
+from annotations.language.symbols.reader import SymbolReader, read_wildcard
+from annotations.language.symbols.slot_places import (
     SlotPlace,
     places_in_form,
     places_in_pattern,
     slot_key,
 )
-from annotations.language.symbols.printing import print_sequence, print_symbol, print_wildcard
-from annotations.language.symbols.reader import SymbolReader
 from annotations.language.symbols.symbols import (
     ENTITY_CLASSES,
     TYPES,
@@ -25,8 +27,6 @@ from annotations.language.symbols.symbols import (
     Wildcard,
     walk,
 )
-from annotations.language.symbols.wildcard_heads import NAMES as WILDCARD_NAMES
-from annotations.language.symbols.wildcards import read_wildcard
 
 __all__ = [
     "ENTITY_CLASSES",
@@ -44,6 +44,7 @@ __all__ = [
     "Symbols",
     "Text",
     "Wildcard",
+    "lone_closing_parentheses",
     "places_in_form",
     "places_in_pattern",
     "print_sequence",

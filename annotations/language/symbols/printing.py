@@ -35,7 +35,7 @@ def print_symbol(symbol: Symbol) -> str:
     """Return the text of one symbol."""
     match symbol:
         case Text(value):
-            return value if value == "," else _escape(value)
+            return value if value == "," else _MEANING.sub(r"\\\g<0>", value)
         case Nonterminal(name):
             return f"${name}"
         case Wildcard():
@@ -45,7 +45,7 @@ def print_symbol(symbol: Symbol) -> str:
 
 
 def print_wildcard(wildcard: Wildcard) -> str:
-    """Return the wildcard with its braces, its parts in the order of FORMATS §1."""
+    """Return the wildcard with its braces, its parts in the order of docs/reference/formats.md, Wildcards."""
     parts = [wildcard.name + ("?" if wildcard.obfuscated else "")]
     if wildcard.type:
         parts.append(wildcard.type)
@@ -89,7 +89,3 @@ def _alternatives(choice: Choice) -> str:
         " ".join(print_symbol(symbol) for symbol in alternative)
         for alternative in choice.alternatives
     )
-
-
-def _escape(word: str) -> str:
-    return _MEANING.sub(r"\\\g<0>", word)

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
+from difflib import get_close_matches
 
 from annotations.language.errors import Position
 from annotations.language.limits import MAX_NONTERMINAL, require_name
-from annotations.language.symbols.conditions import read_condition
 from annotations.language.symbols.cursor import Cursor
 from annotations.language.symbols.symbols import (
+    ALIASES,
+    TYPES,
     Choice,
     Nonterminal,
     Symbol,
@@ -16,13 +19,71 @@ from annotations.language.symbols.symbols import (
     Text,
     Wildcard,
 )
-from annotations.language.symbols.wildcard_heads import read_head
+from annotations.language.symbols.where_clauses import read_condition
 
+_HEAD_WORD = re.compile(r"\w+")
+# The generator reads letters and then digits: {object1} is {object 1}.
+_LETTERS_BEFORE_ID = re.compile(r"[^\W\d_]++(?=\d++\b)")
+_KEYWORD = re.compile(r"(where\b|meta\s*:)", re.IGNORECASE)
+NAMES = (*TYPES, *ALIASES)
 _NONTERMINAL = re.compile(r"\$([^\W\d]\w*)")
 _SPECIAL = r"\s$\{\}()|,"
 _WORD = re.compile(rf"(?:[^{_SPECIAL}\\]|\\.)+")
 _META = re.compile(r"meta\s*:\s*", re.IGNORECASE)
 _WHERE = re.compile(r"where\b\s*", re.IGNORECASE)
+
+
+@dataclass(frozen=True, slots=True)
+class WildcardHead:
+    """The parts before ``where`` and ``meta``."""
+
+    name: str
+    type: str = ""
+    id: int | None = None
+    obfuscated: bool = False
+
+
+def read_head(cursor: Cursor) -> WildcardHead:
+    """Read ``kind[?] [type] [id]`` and stop before ``where``, ``meta:`` or the closing brace.
+
+    Raises:
+        LanguageError: an unknown kind, a type its kind does not have, or an id too long.
+    """
+    cursor.skip_spaces()
+    start = cursor.index
+    written = cursor.match(_LETTERS_BEFORE_ID) or cursor.match(_HEAD_WORD)
+    if written is None:
+        raise cursor.fail("a wildcard needs a kind", f"one of {', '.join(NAMES)}")
+    name = written.lower()
+    if name not in NAMES:
+        near = get_close_matches(name, NAMES, 1)
+        hint = f"did you mean {{{near[0]}}}?" if near else f"the kinds are {', '.join(NAMES)}"
+        raise cursor.fail(f"there is no wildcard {{{written}}}", hint, at=start)
+    cursor.skip_spaces()
+    obfuscated = cursor.accept("?")
+    type_ = ""
+    identifier: int | None = None
+    while (word := _next_word(cursor)) is not None:
+        if word.isascii() and word.isdigit() and identifier is None and len(word) < 10:
+            identifier = int(word)
+        elif not type_ and word.lower() in TYPES.get(name, ()):
+            type_ = word.lower()
+        else:
+            types = TYPES.get(name, ())
+            offer = f"its types are {', '.join(types)}" if types else f"{{{name}}} has no types"
+            raise cursor.fail(f"{word} is neither a type nor an id of {{{name}}}", offer)
+        cursor.index += len(word)
+    return WildcardHead(name, type_, identifier, obfuscated)
+
+
+def _next_word(cursor: Cursor) -> str | None:
+    cursor.skip_spaces()
+    if _KEYWORD.match(cursor.text, cursor.index):
+        return None
+    match = _LETTERS_BEFORE_ID.match(cursor.text, cursor.index) or _HEAD_WORD.match(
+        cursor.text, cursor.index
+    )
+    return None if match is None else match.group()
 
 
 class SymbolReader(Cursor):
@@ -130,16 +191,17 @@ class SymbolReader(Cursor):
         self.skip_spaces()
         while self.index < end:
             lone = self.next == ")" or (self.next == "(" and self.index not in self.pairs)
-            if lone or self.next == "|" or (self.next == "$" and not self._at_nonterminal()):
+            if (
+                lone
+                or self.next == "|"
+                or (self.next == "$" and not _NONTERMINAL.match(self.text, self.index))
+            ):
                 symbols.append(Text(self.next))
                 self.index += 1
             else:
                 symbols.extend(self.symbols())
             self.skip_spaces()
         return tuple(symbols)
-
-    def _at_nonterminal(self) -> bool:
-        return _NONTERMINAL.match(self.text, self.index) is not None
 
 
 def as_sequence(alternatives: list[Symbols]) -> Symbols:
@@ -156,3 +218,24 @@ def as_sequence(alternatives: list[Symbols]) -> Symbols:
     if len(distinct) == 1:
         return next(iter(distinct))
     return (Choice(tuple(distinct)),)
+
+
+def read_wildcard(text: str, position: Position | None = None) -> Wildcard:
+    """Read one wildcard with its braces, and nothing else.
+
+    Args:
+        text: like ``{placement 2 meta: Block access to {placement 2}}``.
+        position: the position of its first character; the start of an unnamed text by default.
+
+    Raises:
+        LanguageError: the text is not exactly one well-formed wildcard.
+    """
+    reader = SymbolReader(text, position or Position())
+    reader.skip_spaces()
+    if reader.next != "{":
+        raise reader.fail("a wildcard begins with {", "write it like {object 1}")
+    wildcard = reader.wildcard()
+    reader.skip_spaces()
+    if reader.next:
+        raise reader.fail("there is more than one wildcard here")
+    return wildcard

@@ -17,7 +17,7 @@ ENTITY_CLASSES = (
     "whattosay",
 )
 
-# Wildcard name as written → (kind, type). FORMATS §1.
+# Wildcard name as written → (kind, type). docs/reference/formats.md, Wildcards.
 ALIASES: dict[str, tuple[str, str]] = {
     "kobject": ("object", "known"),
     "aobject": ("object", "alike"),
@@ -116,7 +116,7 @@ class Wildcard:
 
     @property
     def token(self) -> str:
-        """The word for it in an anonymized command (FORMATS §4): ``<class>``, ``them``, or none for void."""
+        """The word for it in an anonymized command: ``<class>``, ``them``, or none for void."""
         if self.kind == "pron":
             return "them"
         return f"<{self.entity_class}>" if self.entity_class else ""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from annotations.language.templates.bounded_cache import BoundedCache
 from annotations.language.templates.chart import TemplateChart
 from annotations.language.templates.consequences import (
     Consequences,
@@ -18,16 +19,20 @@ from annotations.language.templates.expansion import (
 )
 from annotations.language.templates.filling import bare, fill_anonymized
 from annotations.language.templates.generator_folder import (
+    Composition,
     GeneratorFolder,
+    is_template_name,
     read_generator_files,
     read_generator_folder,
 )
 from annotations.language.templates.grammar_expansions import DEFAULT_LIMIT, GrammarExpansions
-from annotations.language.templates.keeping import Kept
-from annotations.language.templates.problems import TemplateChecker, template_checker
-from annotations.language.templates.sets import set_problems, shared_problems
 from annotations.language.templates.synchronous import Derivation, TemplateExpander
-from annotations.language.templates.task_categories import Composition, is_template_name
+from annotations.language.templates.template_checks import (
+    TemplateChecker,
+    set_problems,
+    shared_problems,
+    template_checker,
+)
 from annotations.language.templates.templates import (
     SemanticTemplate,
     make_template,
@@ -38,6 +43,7 @@ from annotations.language.templates.templates import (
 
 __all__ = [
     "DEFAULT_LIMIT",
+    "BoundedCache",
     "Composition",
     "Conflict",
     "Consequences",
@@ -47,7 +53,6 @@ __all__ = [
     "GeneratedState",
     "GeneratorFolder",
     "GrammarExpansions",
-    "Kept",
     "SemanticTemplate",
     "TaskCategory",
     "TemplateChart",

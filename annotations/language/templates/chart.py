@@ -6,7 +6,7 @@ Patterns of templates are rules of the same chart as the grammar (``recognizer``
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from annotations.language.errors import LanguageError
@@ -16,7 +16,6 @@ from annotations.language.grammar import (
     Alternative,
     Budget,
     Chart,
-    Item,
     RuleBook,
     TooManyCombinations,
 )
@@ -87,17 +86,17 @@ class _TemplateSet:
     def _forms_of(self, index: int, chart: Chart) -> set[str]:
         template, budget = self.category.templates[index], Budget(CHECK_STEPS)
         forms = set()
-        for bindings in _bindings(chart, self.rules[index], template.tracked, budget):
+        possible: Iterable[Bindings] = ((),)
+        if template.tracked:
+            unifier = _Unifier(chart, template.tracked, budget)
+            possible = unifier.of_rule(self.rules[index], 0, len(chart.words))
+        for bindings in possible:
             budget.spend(STEPS_PER_FORM)
-            forms.add(self._form(index, template, bindings))
+            key = (index, bindings)
+            if key not in self._forms:
+                self._forms[key] = _fill_text(template, bindings)
+            forms.add(self._forms[key])
         return forms
-
-    def _form(self, index: int, template: SemanticTemplate, bindings: Bindings) -> str:
-        """Return the canonical form; empty if one of its slots is missing or cannot be filled."""
-        key = (index, bindings)
-        if key not in self._forms:
-            self._forms[key] = _fill_text(template, bindings)
-        return self._forms[key]
 
 
 def _fill_text(template: SemanticTemplate, bindings: Bindings) -> str:
@@ -107,13 +106,6 @@ def _fill_text(template: SemanticTemplate, bindings: Bindings) -> str:
         return canonical_text(fill_anonymized(template.form, dict(bindings)))
     except LanguageError:
         return ""
-
-
-def _bindings(chart: Chart, rule: int, tracked: frozenset[str], budget: Budget) -> list[Bindings]:
-    """Return what the tracked nonterminals can be when ``rule`` derives the whole command."""
-    if not tracked:
-        return [()]
-    return list(_Unifier(chart, tracked, budget).of_rule(rule, 0, len(chart.words)))
 
 
 class _Unifier:
@@ -154,19 +146,15 @@ class _Unifier:
             for place, bindings in reached.items():
                 for stop in self.chart.ends(item, place):
                     if stop <= end:
-                        inner = self._of_item(item, place, stop)
+                        inner: dict[Bindings, None] = {(): None}
+                        if not isinstance(item, tuple):
+                            inner = self.of_rule(item, place, stop)
                         self.budget.spend(STEPS_PER_UNION * len(bindings) * len(inner))
-                        following.setdefault(stop, {}).update(_unite_all(bindings, inner))
+                        joined = (_unite(one, other) for one in bindings for other in inner)
+                        united = {each: None for each in joined if each is not None}
+                        following.setdefault(stop, {}).update(united)
             reached = following
         return reached.get(end, {})
-
-    def _of_item(self, item: Item, start: int, end: int) -> dict[Bindings, None]:
-        return {(): None} if isinstance(item, tuple) else self.of_rule(item, start, end)
-
-
-def _unite_all(left: dict[Bindings, None], right: dict[Bindings, None]) -> dict[Bindings, None]:
-    joined = (_unite(one, other) for one in left for other in right)
-    return {bindings: None for bindings in joined if bindings is not None}
 
 
 def _unite(one: Bindings, other: Bindings) -> Bindings | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -47,7 +47,7 @@ class ChangedForm:
 
 
 @dataclass(frozen=True, slots=True)
-class Duplicate:
+class DuplicateTemplate:
     """``template`` says the same as ``earlier``, which stands before it in a task category."""
 
     template: Name
@@ -75,7 +75,7 @@ class Consequences:
     changed: tuple[ChangedForm, ...] = ()
     conflicts: tuple[Conflict, ...] = ()
     conflicts_gone: tuple[Conflict, ...] = ()
-    duplicates: tuple[Duplicate, ...] = ()
+    duplicates: tuple[DuplicateTemplate, ...] = ()
     shadowed: tuple[Shadowed, ...] = ()
     left_out: tuple[LeftOut, ...] = ()
 
@@ -99,7 +99,7 @@ def consequences_of(before: GeneratedState, after: GeneratedState) -> Consequenc
     """Return the difference of two generations of the same task categories."""
     old = {each.command: each for each in before.generated.expansions}
     new = {each.command: each for each in after.generated.expansions}
-    conflicts, conflicts_gone = _compare(_conflicts(before), _conflicts(after))
+    old_conflicts, new_conflicts = _conflicts(before), _conflicts(after)
     return Consequences(
         covered=tuple(each for command, each in new.items() if command not in old),
         lost=tuple(each for command, each in old.items() if command not in new),
@@ -108,15 +108,15 @@ def consequences_of(before: GeneratedState, after: GeneratedState) -> Consequenc
             for command, each in new.items()
             if command in old and old[command].form_text != each.form_text
         ),
-        conflicts=conflicts,
-        conflicts_gone=conflicts_gone,
+        conflicts=_find_added(old_conflicts, new_conflicts),
+        conflicts_gone=_find_added(new_conflicts, old_conflicts),
         duplicates=_find_added(_duplicates(before), _duplicates(after)),
         shadowed=_find_added(_find_shadowed(before), _find_shadowed(after)),
         left_out=_find_added(_index_left_out(before), _index_left_out(after)),
     )
 
 
-def _conflicts(state: GeneratedState) -> dict[tuple[object, ...], Conflict]:
+def _conflicts(state: GeneratedState) -> dict[Hashable, Conflict]:
     """Return the conflicts by what they say: the same forms for the same command, whichever templates give them."""
     return {
         (each.task_category, each.command, tuple(form for _, form in each.candidates)): each
@@ -124,31 +124,19 @@ def _conflicts(state: GeneratedState) -> dict[tuple[object, ...], Conflict]:
     }
 
 
-def _compare(
-    before: Mapping[tuple[object, ...], Conflict], after: Mapping[tuple[object, ...], Conflict]
-) -> tuple[tuple[Conflict, ...], tuple[Conflict, ...]]:
-    """Return the conflicts that are new and those that are gone."""
-    return (
-        tuple(each for key, each in after.items() if key not in before),
-        tuple(each for key, each in before.items() if key not in after),
-    )
-
-
 def _find_added(before: Mapping[Name, Row], after: Mapping[Name, Row]) -> tuple[Row, ...]:
     return tuple(each for name, each in after.items() if name not in before)
 
 
-def _duplicates(state: GeneratedState) -> dict[Name, Duplicate]:
-    return {each.template: each for category in state.categories for each in _in(category, state)}
-
-
-def _in(category: TaskCategory, state: GeneratedState) -> Iterator[Duplicate]:
-    first: dict[object, Name] = {}
-    names = state.names[category.name]
-    for name, template in zip(names, category.templates, strict=True):
-        earlier = first.setdefault((template.pattern_text, template.form_text), name)
-        if earlier != name:
-            yield Duplicate(name, earlier)
+def _duplicates(state: GeneratedState) -> dict[Name, DuplicateTemplate]:
+    duplicates: dict[Name, DuplicateTemplate] = {}
+    for category in state.categories:
+        first: dict[object, Name] = {}
+        for name, template in zip(state.names[category.name], category.templates, strict=True):
+            earlier = first.setdefault((template.pattern_text, template.form_text), name)
+            if earlier != name:
+                duplicates[name] = DuplicateTemplate(name, earlier)
+    return duplicates
 
 
 def _find_shadowed(state: GeneratedState) -> dict[Name, Shadowed]:

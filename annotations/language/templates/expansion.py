@@ -1,4 +1,4 @@
-"""Generate all commands of task categories, each with the one form it keeps (FORMATS §3)."""
+"""Generate all commands of task categories, each with the one form it keeps (docs/reference/formats.md, Templates)."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class Conflict:
 
 @dataclass(frozen=True, slots=True)
 class LeftOut:
-    """A template that makes no commands because of ``problem``: too many of them, or one that cannot be."""
+    """A template that is left out because of ``problem``: too many commands, or one that cannot be stored."""
 
     task_category: str
     template_index: int
@@ -118,8 +118,8 @@ def generate(
     ``limit`` commands by itself, or one that cannot be stored, is left out.
 
     Args:
-        expansions: where to look up what was expanded before; nothing is kept by default.
-        budget: for what was not; ``STEPS_PER_COMMAND`` times ``limit`` steps by default.
+        expansions: gives the kept expansions of a grammar; nothing is kept by default.
+        budget: for what is expanded anew; ``STEPS_PER_COMMAND`` times ``limit`` steps by default.
 
     Raises:
         LanguageError: the size of the others is above ``limit`` (then nothing is expanded), or a
@@ -127,28 +127,30 @@ def generate(
         TooManyCombinations: the budget is spent.
     """
     chosen = _choose(categories, limit, expansions)
-    _refuse_above(limit, sum(each.size for each in chosen))
-    budget = budget or Budget(None if limit is None else limit * STEPS_PER_COMMAND)
-    expanded = [_expand(each, budget) for each in chosen]
-    return Generated(
-        _distinct(expanded),
-        tuple(conflict for each in expanded for conflict in each.conflicts()),
-        _find_unmatched(expanded),
-        tuple(left for each in chosen for left in each.left_out),
-        {
-            (each.category.name, index): commands
-            for each in expanded
-            for index, commands in each.commands.items()
-        },
-    )
-
-
-def _refuse_above(limit: int | None, size: int) -> None:
+    size = sum(each.size for each in chosen)
     if limit is not None and size > limit:
         raise LanguageError(
             f"the templates make up to {readable(size)} commands, more than the limit of {limit:,}",
             hint="raise the limit, or use narrower patterns",
         )
+    budget = budget or Budget(None if limit is None else limit * STEPS_PER_COMMAND)
+    expanded = [_expand(each, budget) for each in chosen]
+    distinct: dict[str, Expansion] = {}  # as the first category that has the command expands it
+    for result in expanded:
+        for command in result.candidates:
+            if command not in distinct:
+                distinct[command] = result.expansion(command)
+    return Generated(
+        tuple(distinct.values()),
+        tuple(conflict for result in expanded for conflict in result.conflicts()),
+        _find_unmatched(expanded),
+        tuple(left for result in chosen for left in result.left_out),
+        {
+            (result.category.name, index): commands
+            for result in expanded
+            for index, commands in result.commands.items()
+        },
+    )
 
 
 def _choose(
@@ -169,8 +171,12 @@ class _Chosen:
         self.left_out: list[LeftOut] = []
         self.indexes: list[int] = []
         for index, template in enumerate(category.templates):
-            problem, size = _judge_size(expansions, template, limit)
-            if problem is not None:
+            try:
+                size = expansions.size(template)
+            except LanguageError as error:
+                self.leave_out(index, error.problem)
+                continue
+            if problem := too_many_commands(template, size, limit):
                 self.leave_out(index, problem)
             else:
                 self.size += size
@@ -178,17 +184,6 @@ class _Chosen:
 
     def leave_out(self, index: int, problem: Problem) -> None:
         self.left_out.append(LeftOut(self.category.name, index, problem))
-
-
-def _judge_size(
-    expansions: GrammarExpansions, template: SemanticTemplate, limit: int | None
-) -> tuple[Problem | None, int]:
-    """Return why the template is left out, or its size."""
-    try:
-        size = expansions.size(template)
-    except LanguageError as error:
-        return error.problem, 0
-    return too_many_commands(template, size, limit), size
 
 
 @dataclass(frozen=True, slots=True)
@@ -240,24 +235,14 @@ def _expand(chosen: _Chosen, budget: Budget) -> _Expanded:
     return _Expanded(category, candidates, commands, inside)
 
 
-def _distinct(expanded: Sequence[_Expanded]) -> tuple[Expansion, ...]:
-    """Return each command once, as the first category that has it expands it."""
-    expansions: dict[str, Expansion] = {}
-    for each in expanded:
-        for command in each.candidates:
-            if command not in expansions:
-                expansions[command] = each.expansion(command)
-    return tuple(expansions.values())
-
-
 def _find_unmatched(expanded: Sequence[_Expanded]) -> tuple[tuple[str, int], ...]:
     """Return templates whose commands no category's grammar derives, each with its first category."""
     places: dict[SemanticTemplate, tuple[str, int]] = {}
     matched: set[SemanticTemplate] = set()
-    for each in expanded:
-        for index, commands in each.commands.items():
-            template = each.category.templates[index]
-            places.setdefault(template, (each.category.name, index))
-            if not each.inside.isdisjoint(commands):
+    for result in expanded:
+        for index, commands in result.commands.items():
+            template = result.category.templates[index]
+            places.setdefault(template, (result.category.name, index))
+            if not result.inside.isdisjoint(commands):
                 matched.add(template)
     return tuple(place for template, place in places.items() if template not in matched)

@@ -2,17 +2,108 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import chain
 from pathlib import Path
 
-from annotations.language.decoding import decode, read_folder
-from annotations.language.errors import LanguageError, Position, Problem, error_at, warning_at
-from annotations.language.grammar import GrammarFolder, read_grammar_files
+from annotations.language.decoding import EmptyFile, read_folder, read_text
+from annotations.language.errors import (
+    LanguageError,
+    Position,
+    Problem,
+    Severity,
+    error_at,
+    warning_at,
+)
+from annotations.language.grammar import (
+    ROOT,
+    TEMPLATE_SUFFIX,
+    GrammarFile,
+    GrammarFolder,
+    read_grammar_files,
+)
 from annotations.language.limits import MAX_TASK_CATEGORY, require_name
 from annotations.language.templates.expansion import TaskCategory
-from annotations.language.templates.task_categories import Composition, compose, is_template_name
 from annotations.language.templates.templates import SemanticTemplate, read_templates
+
+_NUMBERED = re.compile(r"(?P<prefix>.*)category_?(?P<number>\d+)", re.IGNORECASE)
+# Category 2 reuses the templates of category 1; every other one has only its own.
+_INHERITED = {"2": ("1",)}
+
+
+@dataclass(frozen=True, slots=True)
+class Composition:
+    """One task category: its name, the file with its ``$Main`` and its template files in order.
+
+    A later template wins, so a category's own file comes last.
+    """
+
+    name: str
+    grammar_file: str
+    template_files: tuple[str, ...]
+
+    @property
+    def own_template_file(self) -> str:
+        """``X_semantics.txt`` for ``X_grammar.txt`` or ``X.txt``, whether it exists or not.
+
+        A file that exists keeps its own spelling.
+        """
+        own = _base(self.grammar_file) + TEMPLATE_SUFFIX
+        return next((name for name in self.template_files if name.lower() == own.lower()), own)
+
+
+def compose(
+    grammar_files: Mapping[str, GrammarFile], file_names: Iterable[str]
+) -> tuple[Composition, ...]:
+    """Return the task categories of a folder: numbered ones first, then the others by name.
+
+    Args:
+        grammar_files: the grammars of the folder by file name.
+        file_names: the names of all its files; template files are picked from them.
+
+    A file with ``$Main`` whose stem ends in ``category_N`` is category N; any other one is named after
+    its stem (without ``_grammar``). ``X_grammar.txt`` and ``X.txt`` go with ``X_semantics.txt``.
+    """
+    templates = {name.lower(): name for name in file_names if is_template_name(name)}
+    roots = sorted(name for name, file in grammar_files.items() if file.defines(ROOT))
+    bases = {name: _base(name) for name in roots}
+    names = {name: _category_name(base, bases.values()) for name, base in bases.items()}
+    compositions: list[Composition] = []
+    for file, base in bases.items():
+        match = _NUMBERED.fullmatch(base)
+        inherited = _INHERITED.get(match["number"], ()) if match is not None else ()
+        of_files = (*(re.sub(r"(?<!\d)\d+$", number, base) for number in inherited), base)
+        wanted = (f"{each}{TEMPLATE_SUFFIX}".lower() for each in of_files)
+        own = tuple(templates[name] for name in wanted if name in templates)
+        compositions.append(Composition(names[file], file, own))
+    return tuple(sorted(compositions, key=_order))
+
+
+def is_template_name(name: str) -> bool:
+    """Return whether a file of this name holds semantic templates."""
+    return name.lower().endswith(TEMPLATE_SUFFIX)
+
+
+def _base(file_name: str) -> str:
+    stem = file_name.rsplit(".", 1)[0]
+    return re.sub("_grammar$", "", stem, flags=re.IGNORECASE)
+
+
+def _category_name(base: str, bases: Iterable[str]) -> str:
+    """Return the number of a numbered base, unless other files claim the same number."""
+    match = _NUMBERED.fullmatch(base)
+    if match is None:
+        return base
+    rivals = (_NUMBERED.fullmatch(other) for other in bases)
+    claims = sum(rival is not None and rival["number"] == match["number"] for rival in rivals)
+    return match["number"] if claims == 1 else base
+
+
+def _order(composition: Composition) -> tuple[bool, int, str]:
+    name = composition.name
+    return (not name.isdecimal(), int(name) if name.isdecimal() else 0, name)
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +111,7 @@ class GeneratorFolder:
     """The content of the text files of a generator folder; its ontology is read elsewhere.
 
     ``problems`` come from reading and from the grammars. If there are no errors,
-    ``sets.set_problems`` checks the templates against the grammars.
+    ``set_problems`` checks the templates against the grammars.
     """
 
     grammars: GrammarFolder
@@ -34,12 +125,13 @@ class GeneratorFolder:
 
     def categories(self) -> tuple[TaskCategory, ...]:
         """Return the task categories in order, each with the templates of its set."""
-        return tuple(self._category(composition) for composition in self.compositions)
-
-    def _category(self, composition: Composition) -> TaskCategory:
-        sets = (self.templates.get(name, ()) for name in composition.template_files)
-        grammar = self.grammars.grammar(composition.grammar_file)
-        return TaskCategory(composition.name, grammar, tuple(t for file in sets for t in file))
+        categories: list[TaskCategory] = []
+        for composition in self.compositions:
+            sets = (self.templates.get(name, ()) for name in composition.template_files)
+            templates = tuple(chain.from_iterable(sets))
+            grammar = self.grammars.grammar(composition.grammar_file)
+            categories.append(TaskCategory(composition.name, grammar, templates))
+        return tuple(categories)
 
 
 def read_generator_folder(folder: Path) -> GeneratorFolder:
@@ -54,12 +146,30 @@ def read_generator_folder(folder: Path) -> GeneratorFolder:
 def read_generator_files(contents: Mapping[str, bytes]) -> GeneratorFolder:
     """Read the grammars and templates among files given as name → bytes. Errors are returned, not raised."""
     grammars = read_grammar_files(contents)
-    templates, problems = _read_templates(contents)
+    templates: dict[str, tuple[SemanticTemplate, ...]] = {}
+    problems: list[Problem] = []
+    for name in sorted(filter(is_template_name, contents)):
+        try:
+            text, changes = read_text(contents[name], name)
+            templates[name], unread = read_templates(text, name)
+            problems.extend((*changes, *unread))
+        except EmptyFile as error:
+            problems.append(replace(error.problem, severity=Severity.WARNING))
+        except LanguageError as error:
+            problems.append(error.problem)
     compositions = compose(grammars.files, contents)
+    used = {name for composition in compositions for name in composition.template_files}
     all_problems = [
         *grammars.problems,
         *problems,
-        *_lonely_templates(templates, compositions),
+        *(
+            warning_at(
+                Position(name),
+                "no grammar goes with these templates",
+                "X_semantics.txt goes with X_grammar.txt or X.txt, if that defines $Main",
+            )
+            for name in templates.keys() - used
+        ),
         *_bad_names(compositions),
         *_grammar_problems(grammars, compositions),
     ]
@@ -72,32 +182,6 @@ def read_generator_files(contents: Mapping[str, bytes]) -> GeneratorFolder:
             error_at(Position(min(grammars.files)), "no grammar here defines $Main")
         )
     return GeneratorFolder(grammars, templates, compositions, tuple(sorted(all_problems)))
-
-
-def _read_templates(
-    contents: Mapping[str, bytes],
-) -> tuple[dict[str, tuple[SemanticTemplate, ...]], list[Problem]]:
-    templates: dict[str, tuple[SemanticTemplate, ...]] = {}
-    problems: list[Problem] = []
-    for name in sorted(filter(is_template_name, contents)):
-        try:
-            templates[name], unread = read_templates(decode(contents[name], name), name)
-            problems.extend(unread)
-        except LanguageError as error:
-            problems.append(error.problem)
-    return templates, problems
-
-
-def _lonely_templates(
-    templates: Mapping[str, object], compositions: tuple[Composition, ...]
-) -> Iterator[Problem]:
-    used = {name for composition in compositions for name in composition.template_files}
-    for name in templates.keys() - used:
-        yield warning_at(
-            Position(name),
-            "no grammar goes with these templates",
-            "X_semantics.txt goes with X_grammar.txt or X.txt, if that defines $Main",
-        )
 
 
 def _bad_names(compositions: tuple[Composition, ...]) -> Iterator[Problem]:

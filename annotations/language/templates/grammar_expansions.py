@@ -1,4 +1,4 @@
-"""What templates make with one grammar, and which commands the grammar derives: each worked out once."""
+"""Expand templates over one grammar and recognise the commands of the grammar, each only once."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TypeAlias
 from annotations.language.errors import LanguageError, Problem, warning_at
 from annotations.language.forms import Form
 from annotations.language.grammar import Budget, Grammar, Recognizer, readable
-from annotations.language.templates.keeping import Kept
+from annotations.language.templates.bounded_cache import BoundedCache
 from annotations.language.templates.synchronous import TemplateExpander
 from annotations.language.templates.templates import SemanticTemplate
 
@@ -19,8 +19,8 @@ Pairs: TypeAlias = Mapping[str, tuple[str, ...]]
 
 
 @dataclass(frozen=True, slots=True)
-class Made:
-    """What a template makes: ``forms`` are its distinct ones; ``n_pairs`` counts repetitions, ``steps`` the work."""
+class TemplatePairs:
+    """The pairs of a template. ``forms`` are distinct; ``n_pairs`` counts repetitions, ``steps`` the work."""
 
     pairs: Pairs
     forms: tuple[Form, ...]
@@ -44,10 +44,10 @@ ENUMERATED_FOR_ONE = 15
 class GrammarExpansions:
     """Expands templates over one grammar and keeps what they made.
 
-    Several threads may share one: what is kept never changes, and what two work out at once is equal.
+    Several threads may share one: kept values never change, and two that are made at once are equal.
 
     Args:
-        most_kept: how many pairs are kept, those of the templates asked for longest ago go first.
+        most_kept: how many pairs to keep; those of the least recently used templates go first.
 
     Raises:
         LanguageError: the grammar has a cycle.
@@ -57,8 +57,8 @@ class GrammarExpansions:
         self.grammar = grammar
         self.expander = TemplateExpander(grammar)
         self._most_kept = most_kept
-        self._kept: Kept[tuple[str, str], Made] = Kept(most_kept, len)
-        self._sizes: Kept[tuple[str, str], int] = Kept(most_kept)
+        self._kept: BoundedCache[tuple[str, str], TemplatePairs] = BoundedCache(most_kept, len)
+        self._sizes: BoundedCache[tuple[str, str], int] = BoundedCache(most_kept)
         self._judged: dict[str, bool] = {}
 
     def size(self, template: SemanticTemplate) -> int:
@@ -78,7 +78,7 @@ class GrammarExpansions:
         """
         return self.made(template, budget).pairs
 
-    def made(self, template: SemanticTemplate, budget: Budget) -> Made:
+    def made(self, template: SemanticTemplate, budget: Budget) -> TemplatePairs:
         """Return everything that the template makes. Raises as ``pairs``."""
         return self._kept.get(_key(template), lambda: _collect(self.expander, template, budget))
 
@@ -130,7 +130,9 @@ def _key(template: SemanticTemplate) -> tuple[str, str]:
     return template.pattern_text, template.form_text
 
 
-def _collect(expander: TemplateExpander, template: SemanticTemplate, budget: Budget) -> Made:
+def _collect(
+    expander: TemplateExpander, template: SemanticTemplate, budget: Budget
+) -> TemplatePairs:
     before, count = budget.spent, 0
     commands: dict[str, set[str]] = {}
     forms: dict[str, Form] = {}
@@ -139,7 +141,7 @@ def _collect(expander: TemplateExpander, template: SemanticTemplate, budget: Bud
         forms.setdefault(filled.text, filled.form)
         count += 1
     pairs = {command: tuple(sorted(texts)) for command, texts in commands.items()}
-    return Made(pairs, tuple(forms.values()), count, budget.spent - before)
+    return TemplatePairs(pairs, tuple(forms.values()), count, budget.spent - before)
 
 
 def too_many_commands(template: SemanticTemplate, size: int, limit: int | None) -> Problem | None:

@@ -20,8 +20,8 @@ from annotations.language.grammar import (
 )
 from annotations.language.limits import MAX_INDEXED_BYTES
 from annotations.language.symbols import Text, Wildcard
+from annotations.language.templates.bounded_cache import BoundedCache
 from annotations.language.templates.filling import fill_anonymized, fill_intact
-from annotations.language.templates.keeping import Kept
 from annotations.language.templates.templates import SemanticTemplate
 
 # Sets of nonterminals that forms mention, whose expansions are kept.
@@ -66,8 +66,10 @@ class TemplateExpander:
     def __init__(self, grammar: Grammar) -> None:
         grammar.require_finite()
         self.grammar = grammar
-        self._anonymized: Kept[frozenset[str], Expander[str]] = Kept(MOST_TRACKED)
-        self._intact: Kept[frozenset[str], Expander[Text | Wildcard]] = Kept(MOST_TRACKED)
+        self._anonymized: BoundedCache[frozenset[str], Expander[str]] = BoundedCache(MOST_TRACKED)
+        self._intact: BoundedCache[frozenset[str], Expander[Text | Wildcard]] = BoundedCache(
+            MOST_TRACKED
+        )
 
     def size(self, template: SemanticTemplate) -> int:
         """Return an upper bound on the number of pairs of the template, without enumeration.
@@ -106,7 +108,11 @@ class TemplateExpander:
                 if not words or len(bindings) < len(tracked):
                     continue
                 if bindings not in forms:
-                    form = _fill_anonymized(template, dict(bindings))
+                    try:
+                        form = fill_anonymized(template.form, dict(bindings))
+                    except LanguageError as error:
+                        place = template.form_position
+                        raise LanguageError(error.message, place, error.hint) from None
                     forms[bindings] = FilledForm(form, canonical_text(form))
                     budget.spend(len(forms[bindings].text))
                     _require_indexable(forms[bindings].text, "form", template)
@@ -172,10 +178,3 @@ def _require_indexable(text: str, what: str, template: SemanticTemplate) -> None
             template.position,
             f"{MAX_INDEXED_BYTES:,} is the limit; shorten the pattern and the form",
         )
-
-
-def _fill_anonymized(template: SemanticTemplate, bindings: dict[str, tuple[str, ...]]) -> Form:
-    try:
-        return fill_anonymized(template.form, bindings)
-    except LanguageError as error:
-        raise LanguageError(error.message, template.form_position, error.hint) from None

@@ -1,4 +1,4 @@
-"""Read and print semantic templates ``pattern = form`` (FORMATS §3)."""
+"""Read and print semantic templates ``pattern = form`` (docs/reference/formats.md, Templates)."""
 
 from __future__ import annotations
 
@@ -69,8 +69,13 @@ def read_templates(
             continue
         if template is not None:
             templates.append(template)
-    if not templates:
-        problems = [_not_templates(problems, source)]
+    if not templates and not any(_marks(line)[0] for line in text.split("\n")):
+        # One problem for a file without templates, instead of one for each line.
+        if problems:
+            place = problems[0].position
+            problems = [error_at(place, "the file holds no semantic template", _EXAMPLE)]
+        else:
+            problems = [warning_at(Position(source), "the file holds no template", _EXAMPLE)]
     return tuple(templates), tuple(problems)
 
 
@@ -185,13 +190,3 @@ def _form(text: str, place: Position) -> tuple[Form, str, Position]:
 
 def _behind_spaces(text: str, place: Position) -> Position:
     return place.shifted(len(text) - len(text.lstrip()))
-
-
-def _not_templates(problems: list[Problem], source: str) -> Problem:
-    """Return one problem for a file without templates, instead of one for each line."""
-    if not problems:
-        return warning_at(Position(source), "the file holds no template", _EXAMPLE)
-    if "equals sign" not in problems[0].message:
-        return problems[0]
-    place = problems[0].position
-    return error_at(place, "the file holds no semantic template", _EXAMPLE)

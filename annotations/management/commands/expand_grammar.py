@@ -8,8 +8,8 @@ from typing import Any
 from django.core.management.base import CommandError, CommandParser
 
 from annotations.language.templates import DEFAULT_LIMIT
-from annotations.management.base import Refused, ReportingCommand, find_world
-from annotations.models import TaskCategory, World
+from annotations.management.base import RefusedReport, ReportingCommand, find_world
+from annotations.models import TaskCategory
 from annotations.rows.from_rows import grammar_of
 
 
@@ -25,21 +25,17 @@ class Command(ReportingCommand):
         parser.add_argument("--limit", type=int, default=DEFAULT_LIMIT)
 
     def report(self, *, world: str, category: str, limit: int, **options: Any) -> Mapping[str, Any]:
-        grammar = grammar_of(_find_category(find_world(world), category))
+        categories = TaskCategory.objects.filter(grammar__world=find_world(world))
+        chosen = categories.filter(name=category).first()
+        if chosen is None:
+            names = ", ".join(categories.values_list("name", flat=True)) or "none"
+            raise CommandError(f"“{world}” has no task category “{category}”. It has: {names}.")
+        grammar = grammar_of(chosen)
         size = grammar.size()
         if size > limit:
             sentence = (
                 f"Category “{category}” has up to {size:,} commands, more than the limit of "
                 f"{limit:,}. Raise it with --limit."
             )
-            raise Refused({"size": size, "commands": None}, [sentence])
+            raise RefusedReport({"size": size, "commands": None}, [sentence])
         return {"size": size, "commands": sum(1 for _ in grammar.commands(limit=limit))}
-
-
-def _find_category(world: World, name: str) -> TaskCategory:
-    categories = TaskCategory.objects.filter(grammar__world=world)
-    category = categories.filter(name=name).first()
-    if category is None:
-        names = ", ".join(categories.values_list("name", flat=True)) or "none"
-        raise CommandError(f"“{world}” has no task category “{name}”. It has: {names}.")
-    return category

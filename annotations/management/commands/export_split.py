@@ -1,4 +1,4 @@
-"""``export_split W NAME --as txt|jsonl|csv|parquet|zip --output PATH``: gives a frozen split out."""
+"""``export_split W NAME --as txt|jsonl|csv|parquet|zip --output PATH``: exports a frozen split."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import Any
 
 from django.core.management.base import CommandParser
 
-from annotations.auditing import examples_before
-from annotations.exporting.split_export import Format, export_split
+from annotations.exporting.split_export import SplitFormat, export_split
+from annotations.label_audit.label_changes import examples_before
 from annotations.management.base import ReportingCommand, find_split, find_world
 
 
@@ -19,7 +19,7 @@ class Command(ReportingCommand):
     def add_options(self, parser: CommandParser) -> None:
         parser.add_argument("world")
         parser.add_argument("name")
-        parser.add_argument("--as", dest="as_", choices=Format.values, default=Format.TXT)
+        parser.add_argument("--as", dest="as_", choices=SplitFormat.values, default=SplitFormat.TXT)
         parser.add_argument("--output", type=Path, required=True, help="a folder (txt) or file")
 
     def report(

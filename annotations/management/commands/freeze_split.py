@@ -1,4 +1,4 @@
-"""``freeze_split W --name N``: parts a world's commands and paraphrases once and for all."""
+"""``freeze_split W --name N``: freezes a world's commands and paraphrases as splits."""
 
 from __future__ import annotations
 
@@ -75,7 +75,10 @@ def _describe(splits: Sequence[Split]) -> list[dict[str, Any]]:
             "seed": split.seed,
             "content_hash": split.content_hash,
             **_unresolved(split),
-            "counts": {each.source: _without_source(asdict(each)) for each in counts[split.pk]},
+            "counts": {
+                each.source: {key: value for key, value in asdict(each).items() if key != "source"}
+                for each in counts[split.pk]
+            },
         }
         for split in splits
     ]
@@ -87,7 +90,3 @@ def _unresolved(split: Split) -> dict[str, list[str]]:
         return {}
     items = as_items(split.examples.order_by().iterator(chunk_size=BATCH))
     return {"unresolved_prompts": sorted(unresolved_prompts(items).values())}
-
-
-def _without_source(counts: dict[str, Any]) -> dict[str, Any]:
-    return {key: value for key, value in counts.items() if key != "source"}

@@ -13,7 +13,6 @@ from annotations.generation.grounded_pairs import grounded_pairs
 from annotations.language.corpus import by_length, write_pairs
 from annotations.language.templates import DEFAULT_LIMIT
 from annotations.management.base import ReportingCommand, find_world
-from annotations.models import World
 
 
 class Command(ReportingCommand):
@@ -46,11 +45,11 @@ class Command(ReportingCommand):
         report = generate_pairs(chosen, limit).as_json()
         if output is None:
             return report
-        pairs = grounded_pairs(chosen, grounded, seed) if grounded else _pairs_of(chosen)
+        pairs = (
+            grounded_pairs(chosen, grounded, seed)
+            if grounded
+            else list(chosen.commands.values_list("anonymized_text", "logical_form__text"))
+        )
         with output.open("w", encoding="utf-8", newline="") as file:
             file.writelines(write_pairs(by_length(pairs)))
         return {**report, "output": {"path": str(output), "pairs": len(pairs)}}
-
-
-def _pairs_of(world: World) -> list[tuple[str, str]]:
-    return list(world.commands.values_list("anonymized_text", "logical_form__text"))

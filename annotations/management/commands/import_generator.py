@@ -1,4 +1,4 @@
-"""``import_generator DIR --world NAME``: takes a command generator in."""
+"""``import_generator DIR --world NAME``: imports a command generator."""
 
 from __future__ import annotations
 
@@ -8,11 +8,12 @@ from typing import Any
 
 from django.core.management.base import CommandParser
 
-from annotations.importing import import_generator
+from annotations.importing.generator_import import import_generator
 from annotations.management.base import (
-    Refused,
+    RefusedReport,
     ReportingCommand,
     add_brings_back,
+    add_encoding,
     say_left_out,
 )
 
@@ -36,15 +37,25 @@ class Command(ReportingCommand):
             help="remove what the world has and the files do not; refused without it",
         )
         add_brings_back(parser)
+        add_encoding(parser)
 
     def report(
-        self, *, folder: Path, world: str, remove_missing: bool, bring_back: bool, **options: Any
+        self,
+        *,
+        folder: Path,
+        world: str,
+        remove_missing: bool,
+        bring_back: bool,
+        encoding: str,
+        **options: Any,
     ) -> Mapping[str, Any]:
-        report = import_generator(world, folder, may_remove=remove_missing, brings_back=bring_back)
+        report = import_generator(
+            world, folder, may_remove=remove_missing, brings_back=bring_back, encoding=encoding
+        )
         if report.is_waiting:
-            raise Refused(report.as_json(), _question(world, report.removals.as_json()))
+            raise RefusedReport(report.as_json(), _question(world, report.removals.as_json()))
         if report.is_refused:
-            raise Refused.because(report.errors, report.as_json(), folder)
+            raise RefusedReport.because(report.errors, report.as_json(), folder)
         return report.as_json()
 
     def audit_subject(self, report: Mapping[str, Any], options: Mapping[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""``import_pairs DIR --world W --name N``: takes published pairs in."""
+"""``import_pairs DIR --world W --name N``: imports published pairs."""
 
 from __future__ import annotations
 
@@ -8,11 +8,13 @@ from typing import Any
 
 from django.core.management.base import CommandParser
 
-from annotations.importing import import_pairs
+from annotations.importing.pair_files import Notation
+from annotations.importing.pair_import import import_pairs
 from annotations.management.base import (
-    Refused,
+    RefusedReport,
     ReportingCommand,
     add_brings_back,
+    add_encoding,
     say_left_out,
 )
 
@@ -31,14 +33,35 @@ class Command(ReportingCommand):
         parser.add_argument("folder", type=Path)
         parser.add_argument("--world", required=True, help="made where there is none")
         parser.add_argument("--name", required=True, help="what the splits are called")
+        parser.add_argument(
+            "--notation",
+            choices=[str(Notation.LAMBDA)],
+            default=Notation.OURS,
+            help="lambda: train, dev and test (.txt, .tsv) of another λ-corpus, read as far as possible",
+        )
         add_brings_back(parser)
+        add_encoding(parser)
 
     def report(
-        self, *, folder: Path, world: str, name: str, bring_back: bool, **options: Any
+        self,
+        *,
+        folder: Path,
+        world: str,
+        name: str,
+        bring_back: bool,
+        encoding: str,
+        notation: str,
+        **options: Any,
     ) -> Mapping[str, Any]:
-        report = import_pairs(world, name, folder, brings_back=bring_back, most_bytes=MOST_BYTES)
+        report = import_pairs(
+            *(world, name, folder),
+            brings_back=bring_back,
+            most_bytes=MOST_BYTES,
+            encoding=encoding,
+            notation=notation,
+        )
         if report.is_refused:
-            raise Refused.because(report.errors, report.as_json(), folder)
+            raise RefusedReport.because(report.errors, report.as_json(), folder)
         return report.as_json()
 
     def audit_subject(self, report: Mapping[str, Any], options: Mapping[str, Any]) -> str:

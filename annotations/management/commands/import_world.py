@@ -9,7 +9,7 @@ from typing import Any
 from django.core.management.base import CommandParser
 
 from annotations.management.base import ReportingCommand
-from annotations.world_archive import import_world
+from annotations.world_archive.world_import import import_world
 
 
 class Command(ReportingCommand):
@@ -28,4 +28,4 @@ class Command(ReportingCommand):
         return import_world(world, file).as_json()
 
     def audit_subject(self, report: Mapping[str, Any], options: Mapping[str, Any]) -> str:
-        return options["file"].name
+        return str(options["file"].name)

@@ -1,4 +1,4 @@
-"""Makes an API token and prints its secret once."""
+"""Make an API token and print its secret once."""
 
 from __future__ import annotations
 

@@ -8,7 +8,6 @@ from typing import Any
 
 from django.core.management.base import CommandParser
 
-from annotations.language.corpus import Leak
 from annotations.management.base import ReportingCommand, find_split, find_world
 from annotations.splits.split_statistics import leakage_of, near_duplicates_of
 
@@ -32,7 +31,10 @@ class Command(ReportingCommand):
         return {
             "split": split.name,
             "criterion": split.criterion,
-            "shared": [_row(leak) for leak in [*leakage_of(split), *(each.leak for each in near)]],
+            "shared": [
+                {**asdict(leak), "share": round(leak.share, 4)}
+                for leak in [*leakage_of(split), *(each.leak for each in near)]
+            ],
             "near_duplicates": {
                 each.leak.part: [asdict(pair) for pair in each.duplicates[: max(examples, 0)]]
                 for each in near
@@ -51,7 +53,3 @@ class Command(ReportingCommand):
                     f"  {each['similarity']:.2f}: {each['training']}",
                 ]
         return "\n".join(lines)
-
-
-def _row(leak: Leak) -> dict[str, Any]:
-    return {**asdict(leak), "share": round(leak.share, 4)}

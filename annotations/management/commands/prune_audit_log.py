@@ -9,6 +9,7 @@ from typing import Any
 from django.core.management.base import CommandParser
 from django.utils import timezone
 
+from annotations.language.errors import Refusal
 from annotations.management.base import ReportingCommand, find_world
 from annotations.people.audit_log import prune
 
@@ -26,11 +27,15 @@ class Command(ReportingCommand):
 
     def report(self, *, older_than: int, world: str | None, **options: Any) -> Mapping[str, Any]:
         if older_than < 1:
-            raise ValueError(f"--older-than is {older_than}; it has to be one day or more.")
+            raise Refusal(
+                f"--older-than is {older_than}; it has to be one day or more.", "days_too_few"
+            )
         try:
             before = timezone.now() - timedelta(days=older_than)
         except OverflowError:
-            raise ValueError(f"--older-than is {older_than} days, before there were any.") from None
+            raise Refusal(
+                f"--older-than is {older_than} days, before there were any.", "days_too_many"
+            ) from None
         chosen = find_world(world) if world else None
         return {"before": before.isoformat(timespec="seconds"), "deleted": prune(before, chosen)}
 

@@ -1,6 +1,6 @@
 """A ROS 2 node: speech in, questions and plans out.
 
-    ros2 run … or:  GPSR_TOKEN=… python ros2_command_node.py --ros-args -p url:=http://localhost:8000 -p world:=starter
+    GPSR_TOKEN=… python ros2_command_node.py --ros-args -p url:=http://localhost:8000 -p world:=household
 
 Topics: ``speech/text`` (std_msgs/String, what was recognised), ``speech/say`` (std_msgs/String, to be spoken) and
 ``command/plan`` (std_msgs/String, the JSON of the plan that somebody has agreed to).
@@ -11,22 +11,24 @@ from __future__ import annotations
 import os
 import queue
 import threading
+from collections.abc import Callable
 
 import rclpy
 from command_desk import CommandDesk
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 from std_msgs.msg import String
 
 from gpsr_client import Workbench
 
 
-class CommandNode(Node):
+class CommandNode(Node):  # type: ignore[misc]
     """Asks the workbench in a thread of its own, so that no callback waits for the network."""
 
     def __init__(self) -> None:
         super().__init__("gpsr_command")
         url = self.declare_parameter("url", "http://localhost:8000").value
-        world = self.declare_parameter("world", "starter").value
+        world = self.declare_parameter("world", "household").value
         workbench = Workbench(url, world, os.environ["GPSR_TOKEN"])
         self._say = self.create_publisher(String, "speech/say", 10)
         self._plan = self.create_publisher(String, "command/plan", 10)
@@ -40,8 +42,11 @@ class CommandNode(Node):
             self._desk.hear(self._heard.get())
 
     @staticmethod
-    def _publish(publisher):
-        return lambda text: publisher.publish(String(data=text))
+    def _publish(publisher: Publisher) -> Callable[[str], None]:
+        def publish(text: str) -> None:
+            publisher.publish(String(data=text))
+
+        return publish
 
 
 def main() -> None:

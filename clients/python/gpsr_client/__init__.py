@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from gpsr_client.answers import Candidate, OpenSlot, Parse, Plan, PlanProblem, Step
 from gpsr_client.client import Workbench
-from gpsr_client.dialogue import Asked, Dialogue
+from gpsr_client.dialogue import Dialogue, SlotQuestion
 from gpsr_client.errors import Away, Refused, WorkbenchError
+from gpsr_client.responses import Candidate, OpenSlot, Parse, Plan, PlanProblem, Step
 
 __all__ = [
-    "Asked",
     "Away",
     "Candidate",
     "Dialogue",
@@ -17,6 +16,7 @@ __all__ = [
     "Plan",
     "PlanProblem",
     "Refused",
+    "SlotQuestion",
     "Step",
     "Workbench",
     "WorkbenchError",

@@ -10,9 +10,9 @@ from pathlib import Path
 from urllib.parse import quote
 from uuid import uuid4
 
-from gpsr_client.answers import Parse, Plan
 from gpsr_client.dialogue import Dialogue
-from gpsr_client.errors import Away, WorkbenchError
+from gpsr_client.errors import Away, Refused, WorkbenchError
+from gpsr_client.responses import Parse, Plan
 from gpsr_client.transport import Transport
 
 
@@ -25,7 +25,7 @@ class Workbench:
         token: from the page of your account. Scope read for ``parse`` and ``export``, annotate for ``dialogue``.
         timeout: seconds until an answer has to begin.
 
-    Everything raises ``Away`` where nobody answers, and ``Refused`` with a status and a sentence where the
+    Every method raises ``Away`` if nobody answers, and ``Refused`` with a status and a sentence if the
     workbench refuses.
     """
 
@@ -43,11 +43,13 @@ class Workbench:
     def parse_many(self, utterances: Iterable[str], beam: int = 5) -> Iterator[Parse]:
         """Yield the answers to many utterances, in order, as they come; one parser answers all of them.
 
-        Raises WorkbenchError with the sentence of the workbench for an utterance that cannot be parsed.
+        Raises WorkbenchError with a sentence of the workbench for an utterance that cannot be parsed, and
+        Away if the answer ends before the last of them.
         """
-        lines = "".join(json.dumps({"utterance": each}) + "\n" for each in utterances).encode()
-        if not lines:
+        asked = [json.dumps({"utterance": each}) + "\n" for each in utterances]
+        if not asked:
             return
+        lines, answered = "".join(asked).encode(), 0
         path = f"{self._path}parse/"
         with self._transport.open(
             "POST", path, lines, "application/jsonl", {"beam": beam}
@@ -55,11 +57,16 @@ class Workbench:
             try:
                 for line in response:
                     value = json.loads(line)
+                    if "answered" in value:
+                        raise Away(_say_broken_off(answered, len(asked), value["error"]))
                     if "candidates" not in value:
                         raise WorkbenchError(str(value.get("detail", value)))
                     yield Parse.from_json(value)
+                    answered += 1
             except (HTTPException, OSError, ValueError) as error:
-                raise Away(f"The answer broke off: {error}") from error
+                raise Away(_say_broken_off(answered, len(asked), str(error))) from error
+        if answered < len(asked):
+            raise Away(_say_broken_off(answered, len(asked)))
 
     def plan(self, form: str) -> Plan:
         """Return the plan of a form with entities, such as ``grounded`` of a candidate."""
@@ -81,25 +88,27 @@ class Workbench:
         return Dialogue(self._transport, path, value)
 
     def dialogue_at(self, key: int) -> Dialogue:
-        """Return a dialogue that was started before, to go on with it."""
+        """Return a dialogue that was started earlier, to continue it."""
         path = f"{self._path}dialogues/"
         return Dialogue(self._transport, path, self._transport.get(f"{path}{int(key)}/"))
 
     def export(
         self,
-        split: int,
+        split: int | str,
         file: str | Path,
         format: str = "jsonl",
         part: str | None = None,
         source: str | None = None,
     ) -> Path:
-        """Write the examples of a split to a file and return its path.
+        """Write the examples of a split, named or by its number, to a file and return its path.
 
-        It is written beside and renamed when it is whole, so that a file that breaks off replaces nothing.
-        ``format`` is one that the page of a split offers: txt, jsonl, csv. ``part`` is train, validation
-        or test; ``source`` generated or paraphrased. All without them.
+        The file is written under another name and renamed when it is complete, so that a download that
+        breaks off replaces nothing. ``format`` is one that the page of a split offers: txt, jsonl, csv.
+        ``part`` is train, validation or test; ``source`` generated or paraphrased. By default all
+        examples are written.
         """
-        path = f"{self._path}splits/{int(split)}/export/"
+        key = split if isinstance(split, int) else self._key_of_split(split)
+        path = f"{self._path}splits/{key}/export/"
         query = {"as": format, "part": part, "source": source}
         target = Path(file)
         beside = target.with_name(f".{target.name}.part")
@@ -112,3 +121,15 @@ class Workbench:
         finally:
             beside.unlink(missing_ok=True)
         return target
+
+    def _key_of_split(self, name: str) -> int:
+        """Return the number of the split that is called ``name``. Raises Refused where there is none."""
+        rows = self._transport.get(f"{self._path}splits/", q=name, limit=1000)["results"]
+        for row in rows:
+            if row["name"] == name:
+                return int(row["id"])
+        raise Refused(404, f"This world has no split called {name!r}.", [])
+
+
+def _say_broken_off(answered: int, asked: int, why: str = "The connection ended.") -> str:
+    return f"The answer broke off after {answered} of {asked} utterances. {why}"

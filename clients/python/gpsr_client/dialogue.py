@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from typing import Any
 from uuid import uuid4
 
-from gpsr_client.answers import Plan
+from gpsr_client.responses import Plan
 from gpsr_client.transport import Transport
 
 
 @dataclass(frozen=True)
-class Asked:
+class SlotQuestion:
     """What a dialogue asks for: a class of entities, and what there is to choose from."""
 
     entity_class: str
@@ -67,12 +67,12 @@ class Dialogue:
         return Plan.from_json(self.raw["plan"])
 
     @property
-    def asked(self) -> Asked | None:
+    def asked(self) -> SlotQuestion | None:
         """What it asks for; None where it waits for a yes, for another utterance or for nothing."""
         asked = self.raw["asked"]
         if asked is None:
             return None
-        return Asked(
+        return SlotQuestion(
             asked["entity_class"],
             tuple(asked["choices"]),
             asked["likely"],
@@ -82,7 +82,7 @@ class Dialogue:
     def answer(self, text: str) -> Dialogue:
         """Answer what it asks, and return the dialogue after that.
 
-        Raises Refused with status 409 where somebody else has answered meanwhile.
+        Raises Refused with status 409 if somebody else has answered in the meantime.
         """
         body = {"answer": text, "version": self.raw["version"]}
         value = self._transport.post(f"{self._path}{self.id}/answer/", body, uuid4().hex)

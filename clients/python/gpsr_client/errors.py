@@ -1,4 +1,4 @@
-"""What can go wrong when one asks a workbench."""
+"""The errors of the client."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ class Transport:
         return _read_json(self.open("GET", path, query=query))
 
     def post(self, path: str, body: Mapping[str, object], key: str = "") -> Any:
-        """Return the JSON that a POST is answered with; one ``key`` does its work only once."""
+        """Return the JSON answer to a POST; requests with the same ``key`` do their work only once."""
         headers = {"Idempotency-Key": key} if key else {}
         data = json.dumps(body).encode()
         return _read_json(self.open("POST", path, data, headers=headers))
@@ -82,7 +82,7 @@ def _read_json(response: HTTPResponse) -> Any:
     try:
         with response:
             return json.loads(response.read())
-    except (HTTPException, OSError, ValueError) as error:
+    except (HTTPException, OSError, ValueError, RecursionError) as error:
         raise Away(f"The answer broke off: {error}") from error
 
 
@@ -91,6 +91,6 @@ def _refusal(error: HTTPError) -> Away | Refused:
     try:
         problem = json.loads(error.read())
         detail, problems = str(problem["detail"]), list(problem.get("problems", ()))
-    except (HTTPException, OSError, ValueError, KeyError, TypeError):
+    except (HTTPException, OSError, ValueError, KeyError, TypeError, RecursionError):
         detail, problems = f"The workbench answered with status {error.code}.", []
     return Away(detail) if error.code in _AWAY else Refused(error.code, detail, problems)

@@ -9,7 +9,7 @@ from typing import Any
 from django.core.management.base import CommandParser
 
 from annotations.management.base import ReportingCommand
-from gpsr_site.backup import write_backup
+from gpsr_site.backup.backup_writing import write_backup
 
 
 class Command(ReportingCommand):

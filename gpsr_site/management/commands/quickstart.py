@@ -12,9 +12,10 @@ from typing import Any
 from django.conf import settings
 from django.core.management import call_command
 from django.core.management.base import BaseCommand, CommandError
+from django.db import IntegrityError, transaction
 
+from annotations.language.corpus import Criterion
 from annotations.models import Split, User, World
-from annotations.models.splits import Criterion
 from annotations.people.audit_log import record_command
 from annotations.worlds.starter_world import STARTER_WORLD, load_starter_world
 from gpsr_site.processes import PARSE_SERVER, Supervisor, web_server_commands, worker_command
@@ -72,7 +73,14 @@ class Command(BaseCommand):
         if User.objects.filter(is_superuser=True).exists():
             return
         password = secrets.token_urlsafe(12)
-        User.objects.create_superuser("admin", password=password)
+        try:
+            with transaction.atomic():
+                User.objects.create_superuser("admin", password=password)
+        except IntegrityError:
+            self.say(
+                "There is an account “admin” already; manage.py createsuperuser makes another."
+            )
+            return
         record_command("make an account", "admin, administrator of the site")
         self.say(f"Created the administrator. Log in as: admin   password: {password}")
         self.say("The password is not shown again; change it with: manage.py changepassword admin")

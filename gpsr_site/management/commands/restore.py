@@ -9,7 +9,7 @@ from typing import Any
 from django.core.management.base import CommandParser
 
 from annotations.management.base import ReportingCommand
-from gpsr_site.backup import restore
+from gpsr_site.backup.backup_reading import restore
 
 
 class Command(ReportingCommand):

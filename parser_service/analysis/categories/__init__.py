@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from parser_service.analysis.categories.error_categories import DESCRIPTIONS, NAMES, ErrorCategory
-from parser_service.analysis.categories.evidence import (
-    NOTHING_MORE,
-    Audit,
-    ErrorEvidence,
-    Neighbour,
-    RunEvidence,
-)
-from parser_service.analysis.categories.proposing import (
+from parser_service.analysis.categories.category_proposals import (
     Proposals,
     propose_categories,
     propose_category,
+)
+from parser_service.analysis.categories.error_categories import DESCRIPTIONS, NAMES, ErrorCategory
+from parser_service.analysis.categories.error_evidence import (
+    NOTHING_MORE,
+    ErrorEvidence,
+    LabelDoubt,
+    Neighbour,
+    RunEvidence,
 )
 from parser_service.analysis.categories.structure import OF_DIFFERENCES
 from parser_service.analysis.categories.word_use import SpokenFor, WordUse
@@ -23,9 +23,9 @@ __all__ = [
     "NAMES",
     "NOTHING_MORE",
     "OF_DIFFERENCES",
-    "Audit",
     "ErrorCategory",
     "ErrorEvidence",
+    "LabelDoubt",
     "Neighbour",
     "Proposals",
     "RunEvidence",

@@ -32,7 +32,7 @@ _BOTH_MEAN_THE_SAME = (
 
 
 @dataclass(frozen=True, slots=True)
-class Proposal:
+class CategoryProposal:
     """An error category and a sentence that says why."""
 
     category: ErrorCategory
@@ -40,7 +40,7 @@ class Proposal:
 
 
 @lru_cache(maxsize=1 << 14)
-def read_structure(gold: Form, predicted: Form) -> tuple[Proposal, ...]:
+def read_structure(gold: Form, predicted: Form) -> tuple[CategoryProposal, ...]:
     """Return what the difference of two forms suggests, the most likely first; at least one.
 
     A different head predicate comes first, and then predicates that only the label has where there are
@@ -49,7 +49,7 @@ def read_structure(gold: Form, predicted: Form) -> tuple[Proposal, ...]:
     """
     left, right = flatten_conjunctions(gold), flatten_conjunctions(predicted)
     if equivalent(left, right):
-        return (Proposal(ErrorCategory.WRONG_STRUCTURE, _BOTH_MEAN_THE_SAME),)
+        return (CategoryProposal(ErrorCategory.WRONG_STRUCTURE, _BOTH_MEAN_THE_SAME),)
     head = _compare_heads(left, right)
     if head is not None and UNKNOWN in (left, right):
         return (head,)
@@ -59,7 +59,7 @@ def read_structure(gold: Form, predicted: Form) -> tuple[Proposal, ...]:
     ranked = sorted(
         by_category, key=lambda kind: (-len(by_category[kind]), OF_DIFFERENCES.index(kind))
     )
-    proposals = {kind: Proposal(kind, " ".join(by_category[kind])) for kind in ranked}
+    proposals = {kind: CategoryProposal(kind, " ".join(by_category[kind])) for kind in ranked}
     exchange = _compare_predicates(left, right)
     if exchange is not None:
         proposals = {exchange.category: exchange} | proposals
@@ -78,7 +78,7 @@ OF_DIFFERENCES = (
 )
 
 
-def _compare_heads(gold: Form, predicted: Form) -> Proposal | None:
+def _compare_heads(gold: Form, predicted: Form) -> CategoryProposal | None:
     """Return what follows from different outermost predicates; None where they are equal."""
     said, answered = head_predicate(gold), head_predicate(predicted)
     if said == answered:
@@ -89,16 +89,16 @@ def _compare_heads(gold: Form, predicted: Form) -> Proposal | None:
         reason = f"The label is UNKNOWN, the answer says {answered}."
     elif answered in predicates(gold):
         reason = f"The answer says {answered} alone, which is only a part of the label's {said}."
-        return Proposal(ErrorCategory.WRONG_STRUCTURE, reason)
+        return CategoryProposal(ErrorCategory.WRONG_STRUCTURE, reason)
     elif said in predicates(predicted):
         reason = f"The answer says {answered} around the label's {said}."
-        return Proposal(ErrorCategory.WRONG_STRUCTURE, reason)
+        return CategoryProposal(ErrorCategory.WRONG_STRUCTURE, reason)
     else:
         reason = f"The answer says {answered} instead of {said}."
-    return Proposal(ErrorCategory.WRONG_PREDICATE, reason)
+    return CategoryProposal(ErrorCategory.WRONG_PREDICATE, reason)
 
 
-def _compare_predicates(gold: Form, predicted: Form) -> Proposal | None:
+def _compare_predicates(gold: Form, predicted: Form) -> CategoryProposal | None:
     """Return what follows from predicates that only one of the forms has; None where it is not both of them."""
     said, answered = (dict.fromkeys(predicates(form)) for form in (gold, predicted))
     only_said = [name for name in said if name not in answered]
@@ -106,10 +106,12 @@ def _compare_predicates(gold: Form, predicted: Form) -> Proposal | None:
     if not only_said or not only_answered:
         return None
     reason = f"The answer says {' and '.join(only_answered)} instead of {' and '.join(only_said)}."
-    return Proposal(ErrorCategory.WRONG_PREDICATE, reason)
+    return CategoryProposal(ErrorCategory.WRONG_PREDICATE, reason)
 
 
-def _changes(node: Difference, parent: Difference | None, place: int = 0) -> Iterator[Proposal]:
+def _changes(
+    node: Difference, parent: Difference | None, place: int = 0
+) -> Iterator[CategoryProposal]:
     """Yield each change below a pair of nodes; ``place`` is the argument of the parent, from 1."""
     if node.left is None or node.right is None:
         yield _missing_or_extra(node, parent, place)
@@ -120,7 +122,7 @@ def _changes(node: Difference, parent: Difference | None, place: int = 0) -> Ite
         yield from _changes(child, node, number)
 
 
-def _missing_or_extra(node: Difference, parent: Difference | None, place: int) -> Proposal:
+def _missing_or_extra(node: Difference, parent: Difference | None, place: int) -> CategoryProposal:
     form, is_missing = (node.right, False) if node.left is None else (node.left, True)
     verb = "lacks" if is_missing else "adds"
     assert form is not None
@@ -128,24 +130,24 @@ def _missing_or_extra(node: Difference, parent: Difference | None, place: int) -
         category = (
             ErrorCategory.MISSING_CONSTRAINT if is_missing else ErrorCategory.EXTRA_CONSTRAINT
         )
-        return Proposal(category, f"The answer {verb} the constraint {to_reading(form)}.")
+        return CategoryProposal(category, f"The answer {verb} the constraint {to_reading(form)}.")
     predicate = parent.left.predicate
     if isinstance(form, Application):
         reason = f"The answer {verb} the part {to_reading(form)} of {predicate}."
-        return Proposal(ErrorCategory.WRONG_STRUCTURE, reason)
+        return CategoryProposal(ErrorCategory.WRONG_STRUCTURE, reason)
     reason = f"The answer {verb} argument {place} of {predicate}, {to_reading(form)}."
-    return Proposal(ErrorCategory.WRONG_ARGUMENT, reason)
+    return CategoryProposal(ErrorCategory.WRONG_ARGUMENT, reason)
 
 
-def _exchanged(left: Form, right: Form, parent: Difference | None, place: int) -> Proposal:
+def _exchanged(left: Form, right: Form, parent: Difference | None, place: int) -> CategoryProposal:
     if isinstance(left, Application) and isinstance(right, Application):
         reason = f"The answer says {right.predicate} instead of {left.predicate}."
-        return Proposal(ErrorCategory.WRONG_PREDICATE, reason)
+        return CategoryProposal(ErrorCategory.WRONG_PREDICATE, reason)
     texts = f"{to_reading(right)} instead of {to_reading(left)}"
     is_argument = parent is not None and isinstance(parent.left, Application)
     fillers = Constant | Variable | Unknown | Lambda
     if is_argument and (isinstance(left, fillers) or isinstance(right, fillers)):
         assert parent is not None and isinstance(parent.left, Application)
         reason = f"The answer gives {parent.left.predicate} {texts} as argument {place}."
-        return Proposal(ErrorCategory.WRONG_ARGUMENT, reason)
-    return Proposal(ErrorCategory.WRONG_STRUCTURE, f"The answer has {texts}.")
+        return CategoryProposal(ErrorCategory.WRONG_ARGUMENT, reason)
+    return CategoryProposal(ErrorCategory.WRONG_STRUCTURE, f"The answer has {texts}.")

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from annotations.language.english import ARTICLES
 from annotations.language.forms import head_predicate, predicates
+from parser_service.analysis.answer_forms import read_or_none
 from parser_service.analysis.arrays import Bools, Floats, Ints
-from parser_service.analysis.reading import read_or_none
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array

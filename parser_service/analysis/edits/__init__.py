@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from parser_service.analysis.edits.all_edits import generate_edits
 from parser_service.analysis.edits.edit import EditKind
 from parser_service.analysis.edits.facts import WorldFacts, gather_facts
-from parser_service.analysis.edits.generating import generate_edits
 from parser_service.analysis.edits.mining import mine_pairs, words_of
 
 __all__ = [

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
-from annotations.language.forms import Form
+from annotations.language.forms import Application, Constant, Form, Lambda
 
 
 class EditKind(StrEnum):
@@ -27,7 +27,7 @@ class EditKind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Edit:
+class UtteranceEdit:
     """``text`` is the utterance with ``new`` in place of ``old`` (either may be empty); ``form`` is what
     it must be parsed to."""
 
@@ -36,3 +36,15 @@ class Edit:
     form: Form
     old: str
     new: str
+
+
+def substitute(form: Form, old: Constant, new: Constant) -> Form:
+    """Return the form with ``new`` wherever it has ``old``."""
+    if form == old:
+        return new
+    if isinstance(form, Lambda):
+        return replace(form, bodies=tuple(substitute(body, old, new) for body in form.bodies))
+    if isinstance(form, Application):
+        arguments = tuple(substitute(each, old, new) for each in form.arguments)
+        return replace(form, arguments=arguments)
+    return form

@@ -14,8 +14,8 @@ from annotations.language.grounding import Anonymizer
 from annotations.language.ontology import Ontology
 from annotations.language.predicates import Predicate
 from annotations.language.symbols import ENTITY_CLASSES, Nonterminal
+from parser_service.analysis.edits.edit import substitute
 from parser_service.analysis.edits.mining import mine_pairs, words_of
-from parser_service.analysis.edits.substitution import substitute
 
 MOST_PHRASES = 12  # a nonterminal with more of them is no set of synonyms
 _TOKENS = tuple(f"<{name}>" for name in ENTITY_CLASSES)

@@ -9,11 +9,15 @@ from annotations.language.english import RECIPIENT_PRONOUNS
 from annotations.language.forms import Constant, Form, equivalent, head_predicate, size
 from annotations.language.ontology import Entity
 from annotations.language.predicates import find_misuses
-from annotations.language.suggesting import solve_analogy
-from parser_service.analysis.edits.edit import Edit, EditKind
+from annotations.language.suggestions import solve_analogy
+from parser_service.analysis.edits.edit import EditKind, UtteranceEdit, substitute
 from parser_service.analysis.edits.facts import WorldFacts
-from parser_service.analysis.edits.mentions import Mention, Utterance, constant_of, is_named
-from parser_service.analysis.edits.substitution import substitute
+from parser_service.analysis.edits.mentions import (
+    TokenizedUtterance,
+    UtteranceToken,
+    constant_of,
+    is_named,
+)
 
 # Classes that may be exchanged, and what such an edit is called.
 _EXCHANGES = {
@@ -27,8 +31,8 @@ _NOUNS = ("object", "category", "name", "location", "room")
 
 
 def exchange_entity(
-    utterance: Utterance, form: Form, facts: WorldFacts, random: Random
-) -> Iterator[Edit]:
+    utterance: TokenizedUtterance, form: Form, facts: WorldFacts, random: Random
+) -> Iterator[UtteranceEdit]:
     """Name another entity of the same class; a form with class tokens stays as it is."""
     for mention in utterance.mentions:
         if not mention.is_exact or mention.entity_class not in _NOUNS:
@@ -42,12 +46,12 @@ def exchange_entity(
             changed = constant and substitute(form, constant, Constant(entity.text))
         if changed is not None:
             text = utterance.replace(mention, entity.text)
-            yield Edit(EditKind.ENTITY, text, changed, mention.text, entity.text)
+            yield UtteranceEdit(EditKind.ENTITY, text, changed, mention.text, entity.text)
 
 
 def exchange_class(
-    utterance: Utterance, form: Form, facts: WorldFacts, random: Random
-) -> Iterator[Edit]:
+    utterance: TokenizedUtterance, form: Form, facts: WorldFacts, random: Random
+) -> Iterator[UtteranceEdit]:
     """Name a location instead of a room, a category instead of an object, or the other way round.
 
     Only where it is certain which constant of the form is meant. The grammar decides what the form becomes
@@ -67,12 +71,14 @@ def exchange_class(
             by_grammar = [] if is_entity else _by_contrast(form, words, facts)
             changed = _only(by_grammar or [substitute(form, constant, value)])
             if changed is not None and _is_well_typed(changed, facts):
-                yield Edit(kind, utterance.replace(mention, new), changed, mention.text, new)
+                yield UtteranceEdit(
+                    kind, utterance.replace(mention, new), changed, mention.text, new
+                )
 
 
 def exchange_recipient(
-    utterance: Utterance, form: Form, facts: WorldFacts, random: Random
-) -> Iterator[Edit]:
+    utterance: TokenizedUtterance, form: Form, facts: WorldFacts, random: Random
+) -> Iterator[UtteranceEdit]:
     """Put a name in place of “me”, or “me” in place of a name, where the grammar has such a pair.
 
     Nothing is made of a form that names entities itself: the grammar's forms have class tokens.
@@ -91,11 +97,15 @@ def exchange_recipient(
         changed = _only(_by_contrast(form, pair, facts))
         if new and changed is not None and _is_well_typed(changed, facts):
             text = utterance.replace(mention, new)
-            yield Edit(EditKind.RECIPIENT, text, changed, mention.text, new)
+            yield UtteranceEdit(EditKind.RECIPIENT, text, changed, mention.text, new)
 
 
 def _say(
-    entity_class: str, mention: Mention, utterance: Utterance, facts: WorldFacts, random: Random
+    entity_class: str,
+    mention: UtteranceToken,
+    utterance: TokenizedUtterance,
+    facts: WorldFacts,
+    random: Random,
 ) -> str:
     """Return a class token where the utterance has such tokens, else the text of an entity; empty if none."""
     has_tokens = any(each.entity_class and not each.value for each in utterance.mentions)
@@ -106,7 +116,7 @@ def _say(
 
 
 def _another(
-    entity_class: str, utterance: Utterance, facts: WorldFacts, random: Random
+    entity_class: str, utterance: TokenizedUtterance, facts: WorldFacts, random: Random
 ) -> Entity | None:
     """Return an entity of the class that the utterance does not name; None if there is none."""
     named = {each.value.casefold() for each in utterance.mentions}

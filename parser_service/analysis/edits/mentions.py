@@ -13,7 +13,7 @@ _WORD = re.compile(r"<\w+>|[\w'’]+")
 
 
 @dataclass(frozen=True, slots=True)
-class Mention:
+class UtteranceToken:
     """``text[start:end]`` of an utterance. ``entity_class`` is empty for a plain word; ``value`` is the text of the
     entity that is named, empty for a plain word and for a class token."""
 
@@ -35,26 +35,28 @@ class Mention:
 
 
 @dataclass(frozen=True, slots=True)
-class Utterance:
+class TokenizedUtterance:
     """An utterance and its mentions, in order and apart from each other."""
 
     text: str
-    mentions: tuple[Mention, ...]
+    mentions: tuple[UtteranceToken, ...]
 
-    def of_class(self, entity_class: str) -> tuple[Mention, ...]:
+    def of_class(self, entity_class: str) -> tuple[UtteranceToken, ...]:
         return tuple(each for each in self.mentions if each.entity_class == entity_class)
 
-    def replace(self, mention: Mention, new: str) -> str:
+    def replace(self, mention: UtteranceToken, new: str) -> str:
         """Return the text with ``new`` in place of a mention; an article before it fits the new word."""
         before, after = self.text[: mention.start], self.text[mention.end :]
         return _fit_article(before, new) + new + after
 
 
-def read_utterance(text: str, anonymizer: Anonymizer) -> Utterance:
+def read_utterance(text: str, anonymizer: Anonymizer) -> TokenizedUtterance:
     """Return the words of an utterance; the names of entities are one mention each."""
     spans = anonymizer.anonymize(text).spans
     mentions = [
-        Mention(text[span.start : span.end], span.start, span.end, span.entity_class, span.value)
+        UtteranceToken(
+            text[span.start : span.end], span.start, span.end, span.entity_class, span.value
+        )
         for span in spans
     ]
     taken = [(span.start, span.end) for span in spans]
@@ -62,8 +64,8 @@ def read_utterance(text: str, anonymizer: Anonymizer) -> Utterance:
         if not any(start < match.end() and match.start() < end for start, end in taken):
             token = CLASS_TOKEN.fullmatch(match[0])
             entity_class = token[1].rstrip("0123456789") if token else ""
-            mentions.append(Mention(match[0], match.start(), match.end(), entity_class))
-    return Utterance(text, tuple(sorted(mentions, key=lambda each: each.start)))
+            mentions.append(UtteranceToken(match[0], match.start(), match.end(), entity_class))
+    return TokenizedUtterance(text, tuple(sorted(mentions, key=lambda each: each.start)))
 
 
 def constants(form: Form) -> list[Constant]:
@@ -71,19 +73,21 @@ def constants(form: Form) -> list[Constant]:
     return [node for node in walk(form) if isinstance(node, Constant)]
 
 
-def is_named(mention: Mention, form: Form) -> bool:
+def is_named(mention: UtteranceToken, form: Form) -> bool:
     """Return whether a form says a mention's entity itself, and not only its class."""
     value = mention.value.casefold()
     return bool(value) and any(str(each.value).casefold() == value for each in constants(form))
 
 
-def constant_of(mention: Mention, utterance: Utterance, form: Form) -> Constant | None:
+def constant_of(
+    mention: UtteranceToken, utterance: TokenizedUtterance, form: Form
+) -> Constant | None:
     """Return the constant of a form that a mention became: the entity, or else the token of its class.
 
     None where it cannot be told: the utterance or the form has several of the kind, or none.
     """
     if is_named(mention, form):
-        rivals: Sequence[Mention] = [
+        rivals: Sequence[UtteranceToken] = [
             each for each in utterance.mentions if each.value.casefold() == mention.value.casefold()
         ]
         value = mention.value.casefold()

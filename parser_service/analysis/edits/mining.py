@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from parser_service.analysis.arrays import Bools, Ints
-from parser_service.analysis.labels import encode
+from parser_service.analysis.encoded_labels import encode
 
 MOST_NEIGHBOURS = 8
 _NO_WORDS = "".join(set(punctuation) - set("<>'_")) + "“”„…–—"

@@ -7,15 +7,15 @@ from random import Random
 
 from annotations.language.english import ARTICLES, NO_COMMAND_WORDS, POLITE_OPENINGS
 from annotations.language.forms import Form, head_predicate
-from parser_service.analysis.edits.edit import Edit, EditKind
+from parser_service.analysis.edits.edit import EditKind, UtteranceEdit
 from parser_service.analysis.edits.facts import WorldFacts
-from parser_service.analysis.edits.mentions import Mention, Utterance
+from parser_service.analysis.edits.mentions import TokenizedUtterance, UtteranceToken
 
 SHORTEST_MISSPELLED = 5  # letters; shorter words become other words too easily
 _OPENINGS = sorted((opening.split() for opening in POLITE_OPENINGS), key=len, reverse=True)
 
 
-def change_politeness(utterance: Utterance, form: Form) -> Iterator[Edit]:
+def change_politeness(utterance: TokenizedUtterance, form: Form) -> Iterator[UtteranceEdit]:
     """Take polite words away where there are some, add “please” where there are none."""
     words = [each.text.lower() for each in utterance.mentions]
     if not words:
@@ -24,23 +24,25 @@ def change_politeness(utterance: Utterance, form: Form) -> Iterator[Edit]:
     if opening and len(words) > len(opening):
         old = utterance.text[: utterance.mentions[len(opening)].start]
         text = _like(utterance.text, utterance.text[len(old) :])
-        yield Edit(EditKind.POLITENESS, text, form, old.strip(" ,"), "")
+        yield UtteranceEdit(EditKind.POLITENESS, text, form, old.strip(" ,"), "")
     elif "please" in words:
         mention = utterance.mentions[words.index("please")]
         before = utterance.text[: mention.start].rstrip(" ,")
         text = before + utterance.text[mention.end :]
-        yield Edit(EditKind.POLITENESS, text, form, mention.text, "")
+        yield UtteranceEdit(EditKind.POLITENESS, text, form, mention.text, "")
     elif words[0] in NO_COMMAND_WORDS:
         end = len(utterance.text.rstrip(" .?!"))
         text = f"{utterance.text[:end]} please{utterance.text[end:]}"
-        yield Edit(EditKind.POLITENESS, text, form, "", "please")
+        yield UtteranceEdit(EditKind.POLITENESS, text, form, "", "please")
     else:
-        rest = utterance.text if utterance.mentions[0].value else _lower_first(utterance.text)
+        rest = utterance.text
+        if not utterance.mentions[0].value:
+            rest = rest[:1].lower() + rest[1:]
         text = f"{_like(utterance.text, 'please')} {rest}"
-        yield Edit(EditKind.POLITENESS, text, form, "", "please")
+        yield UtteranceEdit(EditKind.POLITENESS, text, form, "", "please")
 
 
-def change_article(utterance: Utterance, form: Form) -> Iterator[Edit]:
+def change_article(utterance: TokenizedUtterance, form: Form) -> Iterator[UtteranceEdit]:
     """Exchange “the” and “a” before something that the world has by name or class."""
     for article, noun in zip(utterance.mentions, utterance.mentions[1:], strict=False):
         if article.text.lower() in ARTICLES and noun.entity_class in ("object", "location", "room"):
@@ -48,19 +50,23 @@ def change_article(utterance: Utterance, form: Form) -> Iterator[Edit]:
             vowel = noun.text.lstrip("<")[:1].lower() in tuple("aeiou")
             new = _like(article.text, ("an" if vowel else "a") if definite else "the")
             text = utterance.text[: article.start] + new + utterance.text[article.end :]
-            yield Edit(EditKind.ARTICLE, text, form, article.text, new)
+            yield UtteranceEdit(EditKind.ARTICLE, text, form, article.text, new)
 
 
-def misspell(utterance: Utterance, form: Form, facts: WorldFacts, random: Random) -> Iterator[Edit]:
+def misspell(
+    utterance: TokenizedUtterance, form: Form, facts: WorldFacts, random: Random
+) -> Iterator[UtteranceEdit]:
     """Exchange two letters inside one long plain word, unless that makes a word of the world."""
     for word in utterance.mentions:
         new = _misspelled(word, random) if not word.entity_class else ""
         if new and new.lower() not in facts.vocabulary:
             text = utterance.replace(word, new)
-            yield Edit(EditKind.SPELLING, text, form, word.text, new)
+            yield UtteranceEdit(EditKind.SPELLING, text, form, word.text, new)
 
 
-def exchange_synonym(utterance: Utterance, form: Form, facts: WorldFacts) -> Iterator[Edit]:
+def exchange_synonym(
+    utterance: TokenizedUtterance, form: Form, facts: WorldFacts
+) -> Iterator[UtteranceEdit]:
     """Exchange a phrase for another alternative of its nonterminal, where the grammar keeps the form."""
     head = head_predicate(form)
     words = [each.word for each in utterance.mentions]
@@ -74,10 +80,10 @@ def exchange_synonym(utterance: Utterance, form: Form, facts: WorldFacts) -> Ite
         for new in others:
             written = _like(first.text, new)
             text = utterance.text[: first.start] + written + utterance.text[last.end :]
-            yield Edit(EditKind.SYNONYM, text, form, old, new)
+            yield UtteranceEdit(EditKind.SYNONYM, text, form, old, new)
 
 
-def _misspelled(word: Mention, random: Random) -> str:
+def _misspelled(word: UtteranceToken, random: Random) -> str:
     letters = word.text
     if len(letters) < SHORTEST_MISSPELLED or not letters.isalpha():
         return ""
@@ -97,7 +103,3 @@ def _places(words: list[str], phrase: list[str]) -> list[int]:
 def _like(model: str, text: str) -> str:
     """Return the text with a capital letter at its beginning where ``model`` has one."""
     return text[:1].upper() + text[1:] if model[:1].isupper() else text
-
-
-def _lower_first(text: str) -> str:
-    return text[:1].lower() + text[1:]

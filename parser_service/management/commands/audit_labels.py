@@ -8,9 +8,11 @@ from typing import Any
 
 from django.core.management.base import CommandParser
 
-from annotations.language.auditing import Reason, Suspect
+from annotations.language.errors import Refusal
+from annotations.language.label_errors import Reason, Suspect
 from annotations.management.base import ReportingCommand, find_world
-from parser_service.audit import AUDITORS, audit_labels
+from parser_service.label_audit.audit_job import audit_labels
+from parser_service.label_audit.out_of_fold import AUDITORS
 
 
 class Command(ReportingCommand):
@@ -34,7 +36,7 @@ class Command(ReportingCommand):
         self, *, world: str, parser: str, folds: int, seed: int, most: int | None, **options: Any
     ) -> Mapping[str, Any]:
         if most is not None and most < 1:
-            raise ValueError(f"--most is {most}; it has to be 1 or more.")
+            raise Refusal(f"--most is {most}; it has to be 1 or more.", "option_out_of_range")
         audit = audit_labels(find_world(world), parser, folds, seed)
         counts = Counter(reason for each in audit.suspects for reason in each.reasons)
         return {

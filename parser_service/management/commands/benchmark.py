@@ -10,12 +10,15 @@ from typing import Any
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 from tqdm import tqdm
 
+from annotations.background.failures import FREE_SPACE, is_disk_full
 from annotations.language.corpus import Criterion
+from annotations.language.errors import Refusal
 from annotations.management.base import find_world
 from annotations.models import World
-from parser_service.benchmarking.cells import CellFile, Group, jobs
-from parser_service.benchmarking.plan import find_missing, measure_all
-from parser_service.benchmarking.sources import find_sources
+from parser_service.benchmarking.benchmark_cells import CellFile, TrialGroup
+from parser_service.benchmarking.missing_cells import find_missing, measure_all
+from parser_service.benchmarking.paraphrase_sources import find_sources
+from parser_service.benchmarking.trials import trials
 from parser_service.management.options import (
     read_columns,
     read_configurations,
@@ -63,8 +66,15 @@ class Command(BaseCommand):
     def handle(self, *args: Any, folder: Path, world: str | None, **options: Any) -> None:
         try:
             failures = self._run(folder, find_world(world) if world else None, options)
-        except (ValueError, OSError) as error:
+        except Refusal as error:
             raise CommandError(str(error)) from error
+        except OSError as error:
+            said = (
+                f"“{error.filename}” cannot be read or written: {error.strerror}. Check the path."
+            )
+            raise CommandError(
+                f"The disk is full. {FREE_SPACE}." if is_disk_full(error) else said
+            ) from error
         except KeyboardInterrupt:
             raise CommandError(
                 f"Stopped. {options['json']} keeps the cells that were finished; the same command "
@@ -77,9 +87,9 @@ class Command(BaseCommand):
         """Measure what is missing; return sentences for what could not be measured."""
         at_once = options["jobs"]
         if at_once < 1:
-            raise ValueError(f"--jobs is {at_once}; it has to be 1 or more.")
+            raise Refusal(f"--jobs is {at_once}; it has to be 1 or more.", "option_out_of_range")
         todo = list(
-            jobs(
+            trials(
                 read_names(options["parsers"], list(PARSERS)),
                 read_columns(
                     options["columns"],
@@ -93,11 +103,13 @@ class Command(BaseCommand):
                 read_names(options["new_splits_by"], list(Criterion)),
             )
         )
-        if any(job.criterion == Criterion.SOURCE_COMMAND for job in todo) and world:
-            self._report_unresolved(folder, world)
+        is_by_source = any(trial.criterion == Criterion.SOURCE_COMMAND for trial in todo)
+        can_be_resolved = is_by_source and world is not None and folder.is_dir()
+        if can_be_resolved and (sentence := find_sources(folder, world).sentence):
+            self.stderr.write(sentence)
         cells = CellFile(options["json"])
         groups, failures = find_missing(todo, cells, folder, world)
-        done = len(todo) - sum(len(group.jobs) for group in groups)
+        done = len(todo) - sum(len(group.trials) for group in groups)
         with (
             tqdm(total=len(todo), initial=done, disable=None, unit="cell") as bar,
             closing(measure_all(_announce(groups, bar), at_once)) as answers,
@@ -109,10 +121,6 @@ class Command(BaseCommand):
                     cells.append(answer)
                 bar.update()
         return failures
-
-    def _report_unresolved(self, folder: Path, world: World) -> None:
-        if folder.is_dir() and (sentence := find_sources(folder, world).sentence):
-            self.stderr.write(sentence)
 
 
 def _add_choice_of_cells(parser: CommandParser) -> None:
@@ -152,7 +160,7 @@ def _add_choice_of_cells(parser: CommandParser) -> None:
     )
 
 
-def _announce(groups: Iterable[Group], bar: tqdm) -> Iterator[Group]:
+def _announce(groups: Iterable[TrialGroup], bar: tqdm) -> Iterator[TrialGroup]:
     """Yield the groups, naming each on the bar when its turn comes."""
     for group in groups:
         bar.set_description(str(group))

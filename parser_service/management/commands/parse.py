@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from http import HTTPStatus
 from typing import Any
 
 from django.core.management.base import CommandParser
 
+from annotations.language.errors import Refusal
 from annotations.management.base import ReportingCommand, find_world
 from annotations.models import World
 from parser_service.models import TrainingRun
-from parser_service.runs.carrying_out.evaluating import BEAM_WIDTH
-from parser_service.serving.answers import parse
-from parser_service.serving.choosing import best_run
+from parser_service.runs.training.evaluating import BEAM_WIDTH
+from parser_service.serving.default_runs import best_run
+from parser_service.serving.parse_answers import parse
+from parser_service.serving.preparing import require_utterance
 
 
 class Command(ReportingCommand):
@@ -27,12 +30,12 @@ class Command(ReportingCommand):
         )
 
     def report(self, *, text: str, world: str, **options: Any) -> Mapping[str, Any]:
-        if not text.strip():
-            raise ValueError("There is no text to parse.")
+        utterance = require_utterance(text)
         if options["beam"] < 1:
-            raise ValueError("--beam has to be at least 1.")
+            raise Refusal("--beam has to be at least 1.", "option_out_of_range")
         run = find_run(find_world(world), options["run"])
-        return {"run": run.pk, "parser": run.parser, **parse(run, text, options["beam"]).as_json()}
+        answers = parse(run, utterance, options["beam"]).as_json()
+        return {"run": run.pk, "parser": run.parser, **answers}
 
     def describe(self, report: Mapping[str, Any]) -> str:
         lines = [f"{report['parser']} (run {report['run']}): {report['parsed_text']}"]
@@ -46,10 +49,10 @@ class Command(ReportingCommand):
 
 
 def find_run(world: World, number: int | None) -> TrainingRun:
-    """Return run ``number`` of ``world``, or its best. Raises ValueError where there is none."""
+    """Return run ``number`` of ``world``, or its best. Raises Refusal where there is none."""
     if number is None:
         return best_run(world)
     run = world.runs.filter(pk=number).first()
     if run is None:
-        raise ValueError(f"There is no run {number} in {world}.")
+        raise Refusal(f"There is no run {number} in {world}.", "no_such_run", HTTPStatus.NOT_FOUND)
     return run

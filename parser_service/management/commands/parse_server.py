@@ -7,7 +7,7 @@ from typing import Any
 from django.conf import settings
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 
-from parser_service.serving.server import serve
+from parser_service.serving.server_process import serve
 
 
 class Command(BaseCommand):

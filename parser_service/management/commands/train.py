@@ -10,19 +10,18 @@ from typing import Any
 
 from django.core.management.base import CommandError, CommandParser
 
-from annotations.management.base import Refused, ReportingCommand, find_split, find_world
-from annotations.models import World
+from annotations.language.corpus import Criterion
+from annotations.management.base import RefusedReport, ReportingCommand, find_split, find_world
 from annotations.models.background import Status
-from annotations.models.splits import Criterion
 from annotations.people.audit_log import record_command
 from parser_service.management.options import read_hyperparameters, read_sources
 from parser_service.models import TrainingRun
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.registry import PARSERS
-from parser_service.results.reports import report_run, report_seeds, with_reach
+from parser_service.results.run_figures import report_run, report_seeds, with_reach
 from parser_service.runs import lifecycle
-from parser_service.runs.carrying_out.training import train
-from parser_service.runs.requests import requesting
+from parser_service.runs.requests import run_requests
+from parser_service.runs.training.train_run import train
 
 LOOK_EVERY = 1.0
 
@@ -71,7 +70,7 @@ class Command(ReportingCommand):
 
     def report(self, *, parser: str, world: str, **options: Any) -> Mapping[str, Any]:
         home = find_world(world)
-        seeds = requesting.seeds_from(options["seed"], options["seeds"])
+        seeds = run_requests.seeds_from(options["seed"], options["seeds"])
         asked = {
             "split": find_split(home, options["split"], options["criterion"]),
             "parser": parser,
@@ -81,33 +80,32 @@ class Command(ReportingCommand):
             "train_share": options["share"],
         }
         # Each is requested when its turn comes: nothing stays in the queue where this is interrupted.
-        runs = [self._train(home, seed, asked) for seed in seeds]
+        runs = []
+        for seed in seeds:
+            run, _ = run_requests.request(home, seed=seed, send=False, anywhere=True, **asked)
+            self._carry_out(run)
+            runs.append(run)
         record_command("start a run", ", ".join(f"run {run.pk}" for run in runs), home)
         report = report_run(runs[0]) if len(runs) == 1 else report_seeds(runs)
         failed = [run for run in runs if run.status != Status.SUCCEEDED]
         if failed:
             sentences = [run.failure or f"Run {run.pk} is {run.status}." for run in failed]
-            raise Refused(report, list(dict.fromkeys(sentences)))
+            raise RefusedReport(report, list(dict.fromkeys(sentences)))
         return report
 
     def describe(self, report: Mapping[str, Any]) -> str:
         lines = [super().describe(report)]
-        for each in report.get("means", ()):
-            where, share = _where(each), with_reach(each["mean"], each["interval"])
+        for mean in report.get("means", ()):
+            where, share = _where(mean), with_reach(mean["mean"], mean["interval"])
             spread = (
-                "" if each["spread"] is None else f", standard deviation {100 * each['spread']:.1f}"
+                "" if mean["spread"] is None else f", standard deviation {100 * mean['spread']:.1f}"
             )
-            lines.append(f"  {where}: {share} over {each['n_seeds']} seeds{spread}")
-        for each in report["harmonic_means"]:
-            share = with_reach(each["harmonic_mean"], each["interval"])
-            both = f"unseen {100 * each['unseen']:.1f}, known {100 * each['known']:.1f}"
-            lines.append(f"  {_where(each)}, harmonic mean: {share} ({both})")
+            lines.append(f"  {where}: {share} over {mean['n_seeds']} seeds{spread}")
+        for mean in report["harmonic_means"]:
+            share = with_reach(mean["harmonic_mean"], mean["interval"])
+            both = f"unseen {100 * mean['unseen']:.1f}, known {100 * mean['known']:.1f}"
+            lines.append(f"  {_where(mean)}, harmonic mean: {share} ({both})")
         return "\n".join(lines)
-
-    def _train(self, world: World, seed: int, asked: Mapping[str, Any]) -> TrainingRun:
-        run, _ = requesting.request(world, seed=seed, send=False, anywhere=True, **asked)
-        self._carry_out(run)
-        return run
 
     def _carry_out(self, run: TrainingRun) -> None:
         """Train the run here, or wait for the worker that has it."""

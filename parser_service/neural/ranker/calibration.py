@@ -19,7 +19,7 @@ TERMS = (*EXPERTS, "novelty", "others")
 EQUAL: Weights = (1.0,) * len(EXPERTS)
 SPREAD = 0.5  # standard deviation of the prior of the logarithm of a weight
 # How much the nearest example says about whether a form is new, beside the glosses, and how near one
-# has to be to say that it is known (docs/ranker-experiments.md).
+# has to be to say that it is known (docs/research/ranker-experiments.md).
 NEAREST_SHARE = 0.5
 NEAR = 11.0  # nats; a cosine of 0.55
 # A command means a new form a fifth as often as a known one. This is the novelty where nothing was held
@@ -62,7 +62,7 @@ class Scores:
 
 
 @dataclass(frozen=True, slots=True)
-class Decision:
+class DecisionRule:
     """The weight of each expert among known and among new forms, and when a form is new.
 
     The log-odds that it is new are ``novelty`` + evidence. An utterance below ``least_nearness`` is like
@@ -116,7 +116,7 @@ class Decision:
 
 def weigh(
     novelty: float, scores: Scores, targets: Tensor, spoken: Tensor | None = None
-) -> Decision:
+) -> DecisionRule:
     """Return the decision with the weights at which ``targets`` [utterances] are most probable among the
     known forms, and among the new ones; and with the bound of nearness that withholds ``WITHHELD`` of the
     right answers.
@@ -126,7 +126,7 @@ def weigh(
     """
     number = scores.known.shape[-1]
     is_known, is_made = (targets >= 0) & (targets < number), targets >= number
-    decision = Decision(
+    decision = DecisionRule(
         novelty,
         best_weights(scores.known[:, is_known], targets[is_known]),
         best_weights(scores.new[:, is_made], targets[is_made] - number),

@@ -13,29 +13,29 @@ from parser_service.neural.pretrained import load_encoder
 from parser_service.neural.ranker.averaging import Average
 from parser_service.neural.ranker.calibration import (
     USUAL_NOVELTY,
-    Decision,
+    DecisionRule,
     best_novelty,
 )
-from parser_service.neural.ranker.checkpoints import load_training, save_training
 from parser_service.neural.ranker.holding_out import HeldOut, hold_out
 from parser_service.neural.ranker.model import RankerModel
 from parser_service.neural.ranker.ranked_forms import RankedForms, collect
-from parser_service.neural.ranker.slot_term import SlotTerm
-from parser_service.neural.ranker.training import (
+from parser_service.neural.ranker.slots import SlotFiller, SlotTerm
+from parser_service.neural.ranker.steps import (
     RankerTraining,
-    Span,
+    StepSpan,
     cut,
+    load_training,
     plan,
     reduced_precision,
+    save_training,
 )
 from parser_service.neural.ranker.weighing import Report, weigh_by
 from parser_service.neural.sentence_encoder import SentenceEncoder
 from parser_service.neural.training import TRAINING, Clock, resume
-from parser_service.parsers.candidates.slot_filling import SlotFiller
 from parser_service.parsers.hyperparameters.ranker import RankerConfig
 from parser_service.parsers.interface import Check, EpochReport, Knowledge, Observer, Pair
+from parser_service.parsers.pretrained_files import encoders_folder
 from parser_service.parsers.storage import read_json
-from parser_service.parsers.weights.encoder_places import encoders_folder
 
 VALIDATIONS = 4  # in a training; each re-encodes all examples, which takes a while
 FIRST_SHARE = 0.3  # of the steps, before the forms that were held out are learned as well
@@ -60,7 +60,7 @@ class Fitting:
     ):
         self.config, self.seed, self.knowledge = config, seed, knowledge
         self.validation, self.observe = validation, observe
-        self.decision = Decision()
+        self.decision = DecisionRule()
         self._clock = Clock(config.minutes, config.threads or torch.get_num_threads())
         self._seconds_to_encode = 0.0  # all examples and glosses
 
@@ -94,7 +94,7 @@ class Fitting:
             if self._at == len(self._trainings) - 1:
                 break
             assert held is not None
-            self.decision = Decision(self._learn_novelty(held))
+            self.decision = DecisionRule(self._learn_novelty(held))
             self._at, self._is_started = self._at + 1, False
             self._trainings[self._at].continue_from(training)
         self._average.keep()
@@ -108,38 +108,30 @@ class Fitting:
         self._sets = [ranked for ranked, _, _ in collected]
         examples = [of_set for _, of_set, _ in collected]
         self.observe.log(collected[-1][2])
-        pretrained = load_encoder(self.config.encoder, encoders_folder())
-        encoder = SentenceEncoder.of(pretrained, self.config.dropout)
+        config = self.config
+        pretrained = load_encoder(config.encoder, encoders_folder())
+        encoder = SentenceEncoder.of(pretrained, config.dropout)
         models = [make_model(encoder, ranked, self.knowledge) for ranked in self._sets]
-        self._average = self._make_average(models[-1])
+        is_strict = self.knowledge.predicates is None
+        share = config.pretrained_share if is_strict else config.pretrained_share_domain
+        kept = {name: share for name, _ in models[-1].trained()}
+        self._average = Average(models[-1].trained(), config.averaging, kept)
         shares = (FIRST_SHARE, 1 - FIRST_SHARE) if len(sets) > 1 else (1.0,)
-        spans = plan(shares, list(map(len, examples)), self.config)
-        self._say_what_is_cut(spans[-1], len(examples[-1]))
+        spans = plan(shares, list(map(len, examples)), config)
+        last = spans[-1]
+        if (seen := last.a_pass * config.batch_size) < len(examples[-1]):
+            self.observe.log(
+                f"A pass over {len(examples[-1]):,} pairs would take longer than the {config.steps:,} steps "
+                f"allow; the last {last.end - last.first:,} steps see {seen:,} of them. More steps "
+                "see more."
+            )
         ontology = self.knowledge.ontology
         fill = SlotFiller(ontology).fill if ontology is not None else None
         self._trainings = [
-            RankerTraining(
-                model, self.config, self.seed, of_set, self._average, span, fill, self._clock
-            )
+            RankerTraining(model, config, self.seed, of_set, self._average, span, fill, self._clock)
             for model, of_set, span in zip(models, examples, spans, strict=True)
         ]
         self._set_spans(spans)
-
-    def _make_average(self, model: RankerModel) -> Average:
-        config = self.config
-        is_strict = self.knowledge.predicates is None
-        share = config.pretrained_share if is_strict else config.pretrained_share_domain
-        kept = {name: share for name, _ in model.trained()}
-        return Average(model.trained(), config.averaging, kept)
-
-    def _say_what_is_cut(self, span: Span, examples: int) -> None:
-        seen = span.a_pass * self.config.batch_size
-        if seen < examples:
-            self.observe.log(
-                f"A pass over {examples:,} pairs would take longer than the {self.config.steps:,} steps "
-                f"allow; the last {span.end - span.first:,} steps see {seen:,} of them. More steps "
-                "see more."
-            )
 
     def _run_pass(self, training: RankerTraining) -> None:
         begin = time.monotonic()
@@ -171,7 +163,7 @@ class Fitting:
             f"{training.step + left:,} of them: the training ends after {training.span.total:,}."
         )
 
-    def _set_spans(self, spans: Sequence[Span]) -> None:
+    def _set_spans(self, spans: Sequence[StepSpan]) -> None:
         for training, span in zip(self._trainings, spans, strict=True):
             training.span = span
         for later in self._trainings[self._at + 1 :]:
@@ -207,10 +199,10 @@ class Fitting:
     def _load(self, folder: Path) -> int:
         state = read_json(folder / TRAINING)
         self._at, self._is_started = state["training"], True
-        self.decision = Decision(state["novelty"])
+        self.decision = DecisionRule(state["novelty"])
         self._clock.before = state["seconds"]
         self._seconds_to_encode = state["seconds_to_encode"]
-        self._set_spans([Span(*span) for span in state["spans"]])
+        self._set_spans([StepSpan(*span) for span in state["spans"]])
         for earlier in self._trainings[: self._at]:
             earlier.step = earlier.span.end
         training = self._trainings[self._at]

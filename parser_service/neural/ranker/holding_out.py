@@ -52,7 +52,8 @@ def hold_out(pairs: Sequence[Pair], seed: int) -> HeldOut | None:
     left_out = set(map(id, known))
     train = (pair for pair in pairs if pair.form not in new and id(pair) not in left_out)
     of_new = [pair for pair in pairs if pair.form in new]
-    return HeldOut(tuple(train), *map(_some, (of_new, known)))
+    some = (tuple(spread(each, MOST_ASKED, lambda pair: pair.form)) for each in (of_new, known))
+    return HeldOut(tuple(train), *some)
 
 
 def _draw_forms(forms: Sequence[str], random: Random) -> list[str]:
@@ -96,7 +97,3 @@ def _likeness(pair: Pair, other: Pair) -> float:
     """Return the share of common words (Jaccard 1912)."""
     mine, its = set(words(pair.utterance)), set(words(other.utterance))
     return len(mine & its) / (len(mine | its) or 1)
-
-
-def _some(pairs: Sequence[Pair]) -> tuple[Pair, ...]:
-    return tuple(spread(pairs, MOST_ASKED, lambda pair: pair.form))

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any, Self
 
 from annotations.language.grounding import Anonymizer
 from annotations.language.ontology import Ontology
-from parser_service.parsers.candidates.generation import generate_candidates
-from parser_service.parsers.candidates.glosses import glosses
+from annotations.language.predicates import (
+    Predicate,
+    gloss,
+    infer_signatures,
+    pattern_of_name,
+)
 from parser_service.parsers.interface import TRAINING, Check, Knowledge, Pair, keep_going
+from parser_service.parsers.new_forms.generation import generate_candidates
 from parser_service.parsers.spreading import spread
+from parser_service.parsers.written_forms import read_or_none
 
 MOST_EXAMPLES = 20_000
 MOST_SUPPORT = 4  # kinds of step, above which more of them say no more
@@ -105,3 +111,29 @@ def collect(
     if len(kept) < len(meant):
         line += f" Of {len(meant):,} pairs, {len(kept):,} are read, of all forms alike."
     return ranked, examples, line
+
+
+def glosses(
+    forms: Sequence[str],
+    predicates: Mapping[str, Predicate] | None,
+    check: Check = keep_going,
+) -> list[str]:
+    """Return a short English sentence for each form; a text that is not a form is its own gloss.
+
+    Declared ``predicates`` have glosses (*domain*). Without them (*strict*) a predicate is called by
+    the words of its name, even where this program knows better.
+    """
+    read = [read_or_none(form) for form in forms]
+    if predicates is None:
+        inferred = infer_signatures(form for form in read if form is not None)
+        known: Mapping[str, Predicate] = {
+            name: replace(each, gloss=pattern_of_name(name, each.is_action, each.signatures))
+            for name, each in inferred.items()
+        }
+    else:
+        known = predicates
+    texts = []
+    for text, form in zip(forms, read, strict=True):
+        check()
+        texts.append(text if form is None else gloss(form, known))
+    return texts

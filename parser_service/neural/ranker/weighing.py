@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import torch
 
-from parser_service.neural.ranker.calibration import Decision, weigh
+from parser_service.neural.ranker.calibration import DecisionRule, weigh
 from parser_service.neural.ranker.model import RankerModel
 from parser_service.neural.ranker.ranked_forms import RankedForms
 from parser_service.parsers.interface import Check, Pair
@@ -25,13 +25,13 @@ def weigh_by(
     ranked: RankedForms,
     model: RankerModel,
     check: Check,
-) -> tuple[Decision, Report]:
+) -> tuple[DecisionRule, Report]:
     """Return the decision with the weights that ``validation`` tells, and its loss and accuracy there; of very
     many pairs, some of each form tell."""
     most = max(LEAST_VALIDATED, MOST_SCORES // len(ranked.forms))
     asked = spread(validation, most, lambda pair: pair.form)
     if not asked:
-        return Decision(novelty), (None, None)
+        return DecisionRule(novelty), (None, None)
     number = {form: at for at, form in enumerate(ranked.forms)}
     targets = torch.tensor([number.get(pair.form, -1) for pair in asked])
     scores = model.scores([pair.utterance for pair in asked], check)

@@ -1,4 +1,7 @@
-"""A pretrained transformer that encodes each text as one vector."""
+"""A pretrained transformer that encodes each text as one vector: ``Bert``, or what else transformers knows.
+
+Transformers is imported for the latter alone: that takes longer than all else that answering does.
+"""
 
 from __future__ import annotations
 
@@ -15,12 +18,14 @@ from torch.nn.functional import normalize
 
 from parser_service.neural.device import denormals_flushed
 from parser_service.neural.pretrained import Pretrained
-from parser_service.neural.sentence_encoder.bert import Bert
-from parser_service.neural.sentence_encoder.networks import describe, make_empty, make_trainable
+from parser_service.neural.sentence_encoder.bert import Bert, BertConfig, is_bert, share_dropout
 from parser_service.parsers.interface import Check, keep_going
+from parser_service.parsers.storage import read_json
 
 if TYPE_CHECKING:
-    from parser_service.neural.sentence_encoder.networks import Network
+    from transformers import PreTrainedModel
+
+    Network = Bert | PreTrainedModel
 
 ENCODER = "encoder.json"
 TOKENIZER = "tokenizer.json"
@@ -45,7 +50,7 @@ class SentenceEncoder(nn.Module):
         tokenizer: Tokenizer,
         dropout: float = 0.0,
     ):
-        """``description`` is that of ``model``, as ``networks`` makes and reads it."""
+        """``description`` is that of ``model``, as ``describe`` returns and ``make_empty`` reads it."""
         super().__init__()
         self.model = model
         self.description = description
@@ -66,7 +71,7 @@ class SentenceEncoder(nn.Module):
     @classmethod
     def described_in(cls, folder: Path) -> Self:
         """Return an encoder of the shape that ``describe`` wrote. Its weights are uninitialised memory."""
-        description = json.loads((folder / ENCODER).read_text(encoding="utf-8"))
+        description = read_json(folder / ENCODER)
         tokenizer = Tokenizer.from_file(str(folder / TOKENIZER))
         return cls(make_empty(description), description, tokenizer)
 
@@ -135,3 +140,39 @@ class SentenceEncoder(nn.Module):
         if was_training:
             self.train()
         return vectors
+
+
+def describe(model: PreTrainedModel) -> dict[str, Any]:
+    """Return the whole configuration of a network, ready for JSON."""
+    description: dict[str, Any] = json.loads(model.config.to_json_string(use_diff=False))
+    return description
+
+
+def make_trainable(model: PreTrainedModel) -> Network:
+    """Return a network with the weights of ``model`` to train, which may be ``model`` itself."""
+    description = describe(model)
+    if not is_bert(description):
+        return _prepare(model)
+    network = Bert(BertConfig.read(description))
+    network.load_state_dict(model.state_dict())
+    return network
+
+
+def make_empty(description: Mapping[str, Any]) -> Network:
+    """Return the network that ``describe`` described. Its weights are uninitialised memory."""
+    if is_bert(description):
+        return Bert(BertConfig.read(description))
+    from transformers import AutoConfig, AutoModel
+    from transformers.initialization import no_init_weights
+
+    values = dict(description)
+    config = AutoConfig.for_model(values.pop("model_type"), **values)
+    with no_init_weights():
+        model = AutoModel.from_config(config)  # type: ignore[no-untyped-call]
+    return _prepare(model)
+
+
+def _prepare(model: PreTrainedModel) -> PreTrainedModel:
+    share_dropout(model)
+    model.set_attn_implementation("eager")  # on short texts the fused one takes longer
+    return model

@@ -16,7 +16,7 @@ POOL = 8  # batches sorted by length together: little padding, yet another mix e
 
 
 @dataclass(frozen=True, slots=True)
-class Example:
+class NumberedPair:
     """One pair in numbers: the words of the utterance, the tokens of the form and, where there is a
     frozen encoder, its vectors of the words [words, layers, width]."""
 
@@ -60,7 +60,7 @@ def contexts(vectors: Sequence[Tensor | None]) -> Tensor | None:
     return pad_ends(padded, (0, 0, 0, 0, 0, 1))
 
 
-def collate(examples: Sequence[Example]) -> Batch:
+def collate(examples: Sequence[NumberedPair]) -> Batch:
     """Make one batch of ``examples``."""
     source, lengths = sources([example.source for example in examples])
     inputs = pad([[START, *example.target] for example in examples])
@@ -69,13 +69,15 @@ def collate(examples: Sequence[Example]) -> Batch:
     return Batch(source, lengths, inputs, outputs, context)
 
 
-def in_order(examples: Sequence[Example], size: int) -> Iterator[Batch]:
+def in_order(examples: Sequence[NumberedPair], size: int) -> Iterator[Batch]:
     """Yield batches of ``size`` in the given order."""
     for begin in range(0, len(examples), size):
         yield collate(examples[begin : begin + size])
 
 
-def shuffle(examples: Sequence[Example], size: int, generator: torch.Generator) -> Iterator[Batch]:
+def shuffle(
+    examples: Sequence[NumberedPair], size: int, generator: torch.Generator
+) -> Iterator[Batch]:
     """Yield batches of ``size`` in random order, each of forms of similar length."""
     order = torch.randperm(len(examples), generator=generator).tolist()
     chunks: list[list[int]] = []

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-from parser_service.neural.seq2seq.decoder import Decoder
-from parser_service.neural.seq2seq.encoder import Encoded
+from parser_service.neural.seq2seq.lstm import Decoder, Encoded
 from parser_service.neural.seq2seq.vocabulary import END, PADDING, START, UNKNOWN
 from parser_service.parsers.interface import Check, keep_going
 
@@ -38,11 +37,12 @@ def search(
     written = torch.full((batch, width, 1), START, device=device)  # [batch, width, tokens so far]
     scores = torch.full((batch, width), IMPOSSIBLE, device=device)  # [batch, width]
     scores[:, 0] = 0.0  # before the first token all hypotheses are the same: one is enough
+    firsts = torch.arange(batch, device=device)[:, None] * width  # [batch, 1], rows of ``repeated``
     for _ in range(longest):
         check()
         logits, state = decoder(written[:, :, -1].reshape(-1, 1), state, repeated)
         scores, origins, tokens = _best(scores, logits.view(batch, width, -1), written)
-        state = state.rows(_flat(origins))
+        state = state.rows((firsts + origins).flatten())
         written = written.gather(1, origins[:, :, None].expand(-1, -1, written.shape[2]))
         written = torch.cat((written, tokens[:, :, None]), dim=2)
         if bool(_is_finished(written).all()):
@@ -69,13 +69,6 @@ def _is_finished(written: Tensor) -> Tensor:
     """Return a mask [batch, width], true where the last token ends a form or pads one that has ended."""
     last = written[:, :, -1]  # [batch, width]
     return (last == END) | (last == PADDING)
-
-
-def _flat(origins: Tensor) -> Tensor:
-    """Return hypotheses of each beam [batch, width] as rows of the repeated batch [batch * width]."""
-    batch, width = origins.shape
-    firsts = torch.arange(batch, device=origins.device) * width  # [batch]
-    return (firsts[:, None] + origins).flatten()
 
 
 def _hypotheses(written: Tensor, scores: Tensor) -> list[Hypothesis]:

@@ -8,7 +8,7 @@ Variables are numbered by depth and each form has one spelling, so no two answer
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum, auto
 from functools import lru_cache
@@ -17,12 +17,12 @@ from annotations.language.forms import UNKNOWN, Application, Form, Lambda, Varia
 from annotations.language.predicates import ArgumentKind, argument_kind
 from parser_service.neural.t5.rules import NESTED, NEVER, Costs, Kinds, Rules, own_length
 from parser_service.neural.t5.spelling import INSIDE, spell
-from parser_service.parsers.candidates.short import CLOSE
+from parser_service.parsers.new_forms.short import CLOSE
 
 REMEMBERED = 2_000  # states whose continuations are kept, of some kilobytes each
 
 
-class Place(Enum):
+class PartKind(Enum):
     """What an open part of a form is."""
 
     ROOT = auto()  # the place of the whole form
@@ -32,14 +32,14 @@ class Place(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Open:
+class OpenPart:
     """A part of a form that more may be added to.
 
     ``signatures`` are those that its arguments allow so far, ``filled`` counts its parts, and ``bound``
     the λs around them.
     """
 
-    place: Place
+    place: PartKind
     signatures: tuple[Kinds, ...] = ()
     filled: int = 0
     has_nested: bool = False
@@ -47,19 +47,19 @@ class Open:
 
     def is_closable(self) -> bool:
         """Return whether it may end here, spelled as it is."""
-        if self.place in (Place.ROOT, Place.LAMBDA):
+        if self.place in (PartKind.ROOT, PartKind.LAMBDA):
             return self.filled > 0
-        if self.place == Place.NESTED and self.filled and not self.has_nested:
+        if self.place == PartKind.NESTED and self.filled and not self.has_nested:
             return False
         return any(len(kinds) == self.filled for kinds in self.signatures)
 
-    def with_part(self, kind: ArgumentKind, may_refuse: bool = False) -> Open | None:
+    def with_part(self, kind: ArgumentKind, may_refuse: bool = False) -> OpenPart | None:
         """Return it with one more part of ``kind``; None where that is not allowed."""
         is_nested = kind in NESTED
-        if self.place in (Place.ROOT, Place.LAMBDA):
-            is_refusal = may_refuse and self.place == Place.ROOT and kind == ArgumentKind.UNKNOWN
+        if self.place in (PartKind.ROOT, PartKind.LAMBDA):
+            is_refusal = may_refuse and self.place == PartKind.ROOT and kind == ArgumentKind.UNKNOWN
             is_allowed = is_nested or is_refusal
-            if not is_allowed or (self.place == Place.ROOT and self.filled):
+            if not is_allowed or (self.place == PartKind.ROOT and self.filled):
                 return None
             return replace(self, filled=self.filled + 1)
         place = self.filled
@@ -73,15 +73,15 @@ class Open:
 
 
 @dataclass(frozen=True, slots=True)
-class State:
+class UnfinishedForm:
     """A form that is being written: its open parts, the innermost last, and its bytes so far."""
 
-    parts: tuple[Open, ...] = (Open(Place.ROOT),)
+    parts: tuple[OpenPart, ...] = (OpenPart(PartKind.ROOT),)
     spent: int = 0
     has_just_closed: bool = False
 
 
-START = State()
+START = UnfinishedForm()
 
 
 class Automaton:
@@ -91,31 +91,43 @@ class Automaton:
         self.rules = rules
         self.costs = Costs(rules)
         self.may_refuse = rules.may_refuse or self._least(START) > rules.longest
-        self._terms = {atom: term for term in self._all_terms() for atom in _spellings(term)}
+        # Every term that one atom writes or begins, without its parts.
+        levels = range(1, rules.lambdas + 1)
+        terms: list[Form] = [
+            *rules.leaves(rules.lambdas),
+            *(Lambda(level, type_, ()) for level in levels for type_ in rules.types),
+            *map(Application, rules.signatures),
+        ]
+        self._terms = {atom: term for term in terms for atom in _spellings(term)}
         self.atoms = (*self._terms, CLOSE)
         self._alike = self._group()
         self._needs = lru_cache(maxsize=REMEMBERED)(self._count_needs)
 
-    def continuations(self, state: State) -> list[str]:
+    def continuations(self, state: UnfinishedForm) -> list[str]:
         """Return the atoms after which a form within the limits can be completed."""
         left = self.rules.longest - state.spent
         needs = self._needs(replace(state, spent=0))
         return [atom for atom, needed in needs if needed <= left]
 
-    def follow(self, state: State, atom: str) -> State | None:
+    def follow(self, state: UnfinishedForm, atom: str) -> UnfinishedForm | None:
         """Return the state after ``atom``; None where it may not follow."""
+        inner, ended = state.parts[-1], state
+        if inner.place == PartKind.LEAF and not atom.startswith(INSIDE):  # which no atom ends
+            if not inner.is_closable():
+                return None
+            ended = replace(state, parts=state.parts[:-1])
         if atom == CLOSE:
-            return self._close(state)
+            if len(ended.parts) == 1 or not ended.parts[-1].is_closable():
+                return None
+            return UnfinishedForm(ended.parts[:-1], ended.spent, has_just_closed=True)
         term = self._terms.get(atom)
         if term is None:
             return None
-        if atom.startswith(INSIDE):
-            is_inside = state.parts[-1].place == Place.LEAF
-            return self._add(state, term, atom) if is_inside else None
-        ended = _end_leaf(state)
-        return self._add(ended, term, atom) if ended else None
+        if atom.startswith(INSIDE) and inner.place != PartKind.LEAF:
+            return None
+        return self._add(ended, term, atom)
 
-    def can_end(self, state: State) -> bool:
+    def can_end(self, state: UnfinishedForm) -> bool:
         """Return whether the form may end here: all that is open closes without an atom."""
         return not state.has_just_closed and all(each.is_closable() for each in state.parts)
 
@@ -129,7 +141,7 @@ class Automaton:
             state = after
         return self.can_end(state)
 
-    def _count_needs(self, state: State) -> list[tuple[str, int]]:
+    def _count_needs(self, state: UnfinishedForm) -> list[tuple[str, int]]:
         """Return the atoms that may follow, each with the least bytes of it and of what completes the
         form. Atoms that are alike are tried together."""
         needs = []
@@ -137,7 +149,9 @@ class Automaton:
             after = self.follow(state, atoms[0])
             if after is None or (least := self._least(after)) >= NEVER:
                 continue
-            needs += [(atom, self._own_length(atom) + least) for atom in atoms]
+            for atom in atoms:
+                own = 0 if atom == CLOSE else own_length(self._terms[atom])
+                needs.append((atom, own + least))
         return needs
 
     def _group(self) -> list[list[str]]:
@@ -152,17 +166,7 @@ class Automaton:
             groups.setdefault(key, []).append(atom)
         return [*groups.values(), [CLOSE]]
 
-    def _own_length(self, atom: str) -> int:
-        return 0 if atom == CLOSE else own_length(self._terms[atom])
-
-    def _all_terms(self) -> Iterator[Form]:
-        """Yield every term that one atom writes or begins, without its parts."""
-        yield from self.rules.leaves(self.rules.lambdas)
-        for level in range(1, self.rules.lambdas + 1):
-            yield from (Lambda(level, type_, ()) for type_ in self.rules.types)
-        yield from map(Application, self.rules.signatures)
-
-    def _add(self, state: State, term: Form, atom: str) -> State | None:
+    def _add(self, state: UnfinishedForm, term: Form, atom: str) -> UnfinishedForm | None:
         """Return the state with ``term`` in the innermost open part."""
         *outer, inner = state.parts
         if isinstance(term, Variable) and term.index > inner.bound:
@@ -172,52 +176,45 @@ class Automaton:
             return None
         spent = state.spent + own_length(term)
         if not isinstance(term, Lambda | Application):
-            return State((*outer, holder), spent)
+            return UnfinishedForm((*outer, holder), spent)
         opened = self._open(term, atom, inner.bound)
         if opened is None or len(state.parts) > self.rules.deepest:
             return None
-        return State((*outer, holder, opened), spent)
+        return UnfinishedForm((*outer, holder, opened), spent)
 
-    def _open(self, term: Lambda | Application, atom: str, bound: int) -> Open | None:
+    def _open(self, term: Lambda | Application, atom: str, bound: int) -> OpenPart | None:
         if isinstance(term, Lambda):
             is_next = term.variable == bound + 1
-            return Open(Place.LAMBDA, bound=bound + 1) if is_next else None
+            return OpenPart(PartKind.LAMBDA, bound=bound + 1) if is_next else None
         overloads = self.rules.signatures[str(term.predicate)]
         if not atom.endswith(INSIDE):
-            return Open(Place.NESTED, overloads, bound=bound)
+            return OpenPart(PartKind.NESTED, overloads, bound=bound)
         with_arguments = tuple(kinds for kinds in overloads if kinds)
-        return Open(Place.LEAF, with_arguments, bound=bound) if with_arguments else None
+        return OpenPart(PartKind.LEAF, with_arguments, bound=bound) if with_arguments else None
 
-    def _close(self, state: State) -> State | None:
-        ended = _end_leaf(state)
-        if ended is None or len(ended.parts) == 1 or not ended.parts[-1].is_closable():
-            return None
-        return State(ended.parts[:-1], ended.spent, has_just_closed=True)
-
-    def _least(self, state: State) -> int:
+    def _least(self, state: UnfinishedForm) -> int:
         """Return the least bytes that complete a form. After a closing parenthesis something has to
         follow: at the end of a form none is written."""
-        missing = [self._missing(part, level) for level, part in enumerate(state.parts)]
-        total = sum(missing)
+        total = sum(
+            self._more(part, level)
+            for level, part in enumerate(state.parts)
+            if not part.is_closable()
+        )
         if state.has_just_closed and not total:
             return min(self._more(part, level) for level, part in enumerate(state.parts))
         return min(NEVER, total)
 
-    def _missing(self, part: Open, level: int) -> int:
-        """Return the least bytes after which a part may end; ``level`` is the number of parts around."""
-        return 0 if part.is_closable() else self._more(part, level)
-
-    def _more(self, part: Open, level: int) -> int:
+    def _more(self, part: OpenPart, level: int) -> int:
         """Return the least bytes of one or more parts after which it may end."""
         costs, bound = self.costs, part.bound
-        if part.place == Place.ROOT:
+        if part.place == PartKind.ROOT:
             can_refuse = self.rules.may_refuse
             refusal = own_length(UNKNOWN) if can_refuse else NEVER
             return NEVER if part.filled else min(refusal, costs.body(level, bound))
-        if part.place == Place.LAMBDA:
+        if part.place == PartKind.LAMBDA:
             return costs.body(level, bound)
         longer = [kinds for kinds in part.signatures if len(kinds) > part.filled]
-        if part.place == Place.LEAF:
+        if part.place == PartKind.LEAF:
             return min(
                 (
                     min(NEVER, sum(costs.leaf(kind, bound) for kind in kinds[part.filled :]))
@@ -230,15 +227,6 @@ class Automaton:
             (costs.fill(kinds, part.filled, needs_nested, level, bound) for kinds in longer),
             default=NEVER,
         )
-
-
-def _end_leaf(state: State) -> State | None:
-    """Return the state after an application of leaves has ended, if the innermost part is one that may
-    end; the state itself where it is none."""
-    inner = state.parts[-1]
-    if inner.place != Place.LEAF:
-        return state
-    return replace(state, parts=state.parts[:-1]) if inner.is_closable() else None
 
 
 def _spellings(term: Form) -> tuple[str, ...]:

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any, Protocol
 import torch
 from torch import Tensor
 
-from parser_service.neural.t5.automaton import START, Automaton, State
-from parser_service.neural.t5.network import EncoderDecoder, Source
+from parser_service.neural.t5.automaton import START, Automaton, UnfinishedForm
+from parser_service.neural.t5.network import EncoderDecoder, SourceTokens
 from parser_service.parsers.interface import Check
 
 if TYPE_CHECKING:
-    from transformers import GenerationConfig
+    pass
 
 SCORED_AT_ONCE = 8  # hypotheses; each token of one has a logit for every word of the vocabulary
 
@@ -32,7 +32,7 @@ class Typed:
     def __init__(self, automaton: Automaton, network: EncoderDecoder):
         self._automaton = automaton
         self._network = network
-        self._states: dict[tuple[int, ...], State | None] = {(): START}
+        self._states: dict[tuple[int, ...], UnfinishedForm | None] = {(): START}
 
     def continuations(self, tokens: Sequence[int]) -> list[int]:
         state = self._state(tuple(tokens))
@@ -42,7 +42,7 @@ class Typed:
         allowed = [self._network.numbers[atom] for atom in atoms]
         return [*allowed, self._network.end] if self._automaton.can_end(state) else allowed
 
-    def _state(self, tokens: tuple[int, ...]) -> State | None:
+    def _state(self, tokens: tuple[int, ...]) -> UnfinishedForm | None:
         """Return the state after ``tokens``, from that before the last of them."""
         if tokens not in self._states:
             before, [atom] = self._state(tokens[:-1]), self._network.text(tokens[-1:])
@@ -51,7 +51,7 @@ class Typed:
 
 
 @dataclass(frozen=True, slots=True)
-class Hypothesis:
+class ScoredForm:
     """A form as it was written: its tokens without the end, and its log-probability."""
 
     tokens: list[int]
@@ -60,12 +60,12 @@ class Hypothesis:
 
 def search(
     network: EncoderDecoder,
-    sources: Sequence[Source],
+    sources: Sequence[SourceTokens],
     limits: Limits | None,
     width: int,
     longest: int,
     check: Check,
-) -> Iterator[list[Hypothesis]]:
+) -> Iterator[list[ScoredForm]]:
     """Yield for each utterance the most probable of the forms that the search reaches, best first.
 
     Args:
@@ -111,28 +111,21 @@ def _generate(
     rows = network.model.generate(
         encoder_outputs=BaseModelOutput(last_hidden_state=states),
         attention_mask=mask,
-        generation_config=_settings(network, width, longest),
+        generation_config=GenerationConfig(  # type: ignore[no-untyped-call]
+            num_beams=width,
+            num_return_sequences=width,
+            max_new_tokens=longest,
+            length_penalty=0.0,  # by log-probability, whatever the length
+            decoder_start_token_id=network.start,
+            eos_token_id=network.end,
+            pad_token_id=network.padding,
+        ),
         stopping_criteria=StoppingCriteriaList([stop]),
         prefix_allowed_tokens_fn=allowed if limits else None,
     )
     texts = [_without_padding(row, network) for row in rows[:, 1:].cpu().tolist()]
     beams = [texts[begin : begin + width] for begin in range(0, len(texts), width)]
     return [[list(each) for each in dict.fromkeys(map(tuple, beam))] for beam in beams]
-
-
-def _settings(network: EncoderDecoder, width: int, longest: int) -> GenerationConfig:
-    """Return how to search: beam search by log-probability, whatever the length."""
-    from transformers import GenerationConfig
-
-    return GenerationConfig(  # type: ignore[no-untyped-call]
-        num_beams=width,
-        num_return_sequences=width,
-        max_new_tokens=longest,
-        length_penalty=0.0,
-        decoder_start_token_id=network.start,
-        eos_token_id=network.end,
-        pad_token_id=network.padding,
-    )
 
 
 def _without_padding(tokens: list[int], network: EncoderDecoder) -> list[int]:
@@ -161,7 +154,7 @@ def _score(
     mask: Tensor,
     targets: Sequence[list[int]],
     check: Check,
-) -> list[Hypothesis]:
+) -> list[ScoredForm]:
     """Return hypotheses with their log-probabilities among all texts, the best first; ``states`` [1, source
     length, width] and ``mask`` [1, source length] are of one utterance."""
     from transformers.modeling_outputs import BaseModelOutput
@@ -180,5 +173,5 @@ def _score(
         scores = of_tokens.masked_fill(labels < 0, 0.0).sum(1).cpu().tolist()
         for tokens, score in zip(some, scores, strict=True):
             is_ended = tokens[-1] == network.end
-            hypotheses.append(Hypothesis(tokens[:-1] if is_ended else tokens, score))
+            hypotheses.append(ScoredForm(tokens[:-1] if is_ended else tokens, score))
     return sorted(hypotheses, key=lambda each: -each.score)

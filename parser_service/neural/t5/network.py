@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from http import HTTPStatus
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -14,6 +15,7 @@ from tokenizers import Tokenizer
 from torch import Tensor, nn
 from torch.nn.utils.rnn import pad_sequence
 
+from annotations.language.errors import Refusal
 from annotations.language.limits import MAX_INDEXED_BYTES
 from parser_service.neural.pretrained import PretrainedWriter
 from parser_service.neural.t5.spelling import words_of
@@ -32,7 +34,7 @@ LONGEST = (
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
+class SourceTokens:
     """The tokens of an utterance; ``cut`` counts those at its end that the encoder does not read."""
 
     tokens: list[int]
@@ -67,20 +69,22 @@ class EncoderDecoder:
     @classmethod
     def of(cls, pretrained: PretrainedWriter, atoms: Sequence[str]) -> Self:
         """Return a published network with a vector for each of ``atoms``: the mean of the vectors that its
-        English words have. Raises ValueError, a sentence."""
+        English words have. Raises Refusal."""
         model: Any = pretrained.model
         folder = pretrained.folder
         for name in ("decoder_start_token_id", "eos_token_id", "pad_token_id"):
             if not isinstance(getattr(model.config, name, None), int):
-                raise ValueError(
+                raise Refusal(
                     f"The configuration in {folder} has no {name}, so it is not known how the decoder "
-                    "starts and ends. Use the files of a published T5, FLAN-T5 or BART."
+                    "starts and ends. Use the files of a published T5, FLAN-T5 or BART.",
+                    "pretrained_weights_unreadable",
                 )
         first = model.get_input_embeddings().num_embeddings
         if pretrained.tokenizer.get_vocab_size() > first:
-            raise ValueError(
+            raise Refusal(
                 f"The tokenizer in {folder} knows more tokens than the network has vectors. Put "
-                "the files of one model there."
+                "the files of one model there.",
+                "pretrained_weights_unreadable",
             )
         network = cls(model, pretrained.tokenizer, atoms, first)
         network._grow()
@@ -88,7 +92,7 @@ class EncoderDecoder:
 
     @classmethod
     def described_in(cls, folder: Path) -> Self:
-        """Return the network that ``save`` wrote. Raises ValueError, a sentence."""
+        """Return the network that ``save`` wrote. Raises Refusal."""
         from transformers import AutoConfig, AutoModelForSeq2SeqLM
         from transformers.initialization import no_init_weights
 
@@ -126,17 +130,26 @@ class EncoderDecoder:
 
     @torch.no_grad()
     def load(self, values: Mapping[str, Tensor], source: Path) -> None:
-        """Take the state that ``tensors`` returned. Raises ValueError, a sentence, where it is that of
+        """Take the state that ``tensors`` returned. Raises Refusal where it is that of
         another network."""
         mine = self.tensors()
         if {n: t.shape for n, t in mine.items()} != {n: t.shape for n, t in values.items()}:
-            raise ValueError(f"{source} holds the weights of another model; train it again.")
+            raise Refusal(
+                f"{source} holds the weights of another model; train it again.",
+                "saved_parser_unreadable",
+                HTTPStatus.CONFLICT,
+            )
         for name, tensor in mine.items():
             tensor.copy_(values[name])
 
-    def read(self, utterance: str) -> Source:
+    def read(self, utterance: str) -> SourceTokens:
         """Return the tokens of an utterance, with those that the tokenizer adds at both ends."""
-        return self._cut(self.tokenizer.encode(utterance).ids)
+        tokens: list[int] = self.tokenizer.encode(utterance).ids
+        if not tokens or tokens[-1] != self.end:
+            tokens = [*tokens, self.end]
+        # What is too long is cut before the last token, which ends the utterance.
+        cut = max(0, len(tokens) - self.longest)
+        return SourceTokens([*tokens[: self.longest - 1], tokens[-1]] if cut else tokens, cut)
 
     def write(self, atoms: Sequence[str]) -> list[int]:
         """Return the tokens of the form that is spelled so, the end included."""
@@ -150,7 +163,7 @@ class EncoderDecoder:
             texts.append(self.atoms[place] if place >= 0 else self.tokenizer.decode([token]))
         return texts
 
-    def sources(self, sources: Sequence[Source]) -> dict[str, Tensor]:
+    def sources(self, sources: Sequence[SourceTokens]) -> dict[str, Tensor]:
         """Return padded utterances and their masks, each [batch, source length]."""
         rows = [torch.tensor(each.tokens) for each in sources]
         ids = pad_sequence(rows, batch_first=True, padding_value=self.padding)
@@ -167,12 +180,6 @@ class EncoderDecoder:
         shifted = torch.cat((before, labels[:, :-1]), 1)  # [batch, target length]
         shifted = shifted.masked_fill(shifted == -100, self.padding)
         return self.model(decoder_input_ids=shifted, use_cache=False, **inputs).logits, labels
-
-    def _cut(self, tokens: list[int]) -> Source:
-        """Cut what is too long before the last token, which ends the utterance."""
-        tokens = tokens if tokens and tokens[-1] == self.end else [*tokens, self.end]
-        cut = max(0, len(tokens) - self.longest)
-        return Source([*tokens[: self.longest - 1], tokens[-1]] if cut else tokens, cut)
 
     @torch.no_grad()
     def _grow(self) -> None:

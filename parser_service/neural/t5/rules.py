@@ -146,9 +146,7 @@ class Costs:
     def __init__(self, rules: Rules):
         self.rules = rules
         self.leaf = cache(self._leaf)
-        self.term = cache(self._term)
         self.nested = cache(self._nested)
-        self.body = cache(self._body)
         self.fill = cache(self._fill)
 
     def _leaf(self, kind: ArgumentKind, bound: int) -> int:
@@ -156,43 +154,36 @@ class Costs:
         allowed = (x for x in self.rules.leaves(bound) if kind.admits(argument_kind(x)))
         return min(map(own_length, allowed), default=NEVER)
 
-    def _term(self, kind: ArgumentKind, level: int, bound: int) -> int:
-        """Of any term that is allowed where ``kind`` is declared."""
-        return min(self.leaf(kind, bound), self.nested(kind, level, bound))
-
     def _nested(self, kind: ArgumentKind, level: int, bound: int) -> int:
         """Of a λ or an application that is allowed where ``kind`` is declared."""
         is_allowed = any(map(kind.admits, NESTED))
         if not is_allowed or level >= self.rules.deepest:
             return NEVER
-        of_lambda = self._lambda(level, bound) if kind.admits(ArgumentKind.LAMBDA) else NEVER
-        of_form = self._application(level, bound) if kind.admits(ArgumentKind.FORM) else NEVER
-        return min(of_lambda, of_form)
+        of_lambda = of_form = NEVER
+        if kind.admits(ArgumentKind.LAMBDA) and bound < self.rules.lambdas:
+            own = min(own_length(Lambda(bound + 1, each, ())) for each in self.rules.types)
+            of_lambda = own + self.body(level + 1, bound + 1)
+        if kind.admits(ArgumentKind.FORM):
+            of_form = min(
+                (
+                    own_length(Application(name)) + self.fill(kinds, 0, False, level + 1, bound)
+                    for name, overloads in self.rules.signatures.items()
+                    for kinds in overloads
+                ),
+                default=NEVER,
+            )
+        return min(NEVER, of_lambda, of_form)
 
-    def _body(self, level: int, bound: int) -> int:
+    def body(self, level: int, bound: int) -> int:
         """Of what may stand in a λ: another λ or an application."""
         return self.nested(ArgumentKind.ANY, level, bound)
-
-    def _lambda(self, level: int, bound: int) -> int:
-        if bound >= self.rules.lambdas:
-            return NEVER
-        own = min(own_length(Lambda(bound + 1, each, ())) for each in self.rules.types)
-        return min(NEVER, own + self.body(level + 1, bound + 1))
-
-    def _application(self, level: int, bound: int) -> int:
-        return min(
-            (
-                own_length(Application(name)) + self.fill(kinds, 0, False, level + 1, bound)
-                for name, overloads in self.rules.signatures.items()
-                for kinds in overloads
-            ),
-            default=NEVER,
-        )
 
     def _fill(self, kinds: Kinds, filled: int, needs_nested: bool, level: int, bound: int) -> int:
         """Of the arguments from number ``filled`` on, with a λ or an application among them where
         ``needs_nested``."""
-        costs = [self.term(kind, level, bound) for kind in kinds[filled:]]
+        costs = [
+            min(self.leaf(kind, bound), self.nested(kind, level, bound)) for kind in kinds[filled:]
+        ]
         total = sum(costs)
         if needs_nested:
             total += min(

@@ -13,7 +13,7 @@ from urllib.parse import unquote
 
 from annotations.language.errors import LanguageError
 from annotations.language.forms import Form, read_form
-from parser_service.parsers.candidates.short import (
+from parser_service.parsers.new_forms.short import (
     CLOSE,
     is_leaf_application,
     lengthen,

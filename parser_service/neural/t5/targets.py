@@ -7,16 +7,34 @@ from dataclasses import dataclass, replace
 from itertools import chain
 from typing import Any, Self
 
+from annotations.language.errors import Refusal
 from annotations.language.forms import Form, read_form
 from parser_service.neural.t5.automaton import Automaton
 from parser_service.neural.t5.network import EncoderDecoder
 from parser_service.neural.t5.rules import Rules
 from parser_service.neural.t5.spelling import spell, try_to_spell
-from parser_service.neural.t5.trie import Trie
-from parser_service.parsers.candidates.generation import generate_candidates
 from parser_service.parsers.interface import TRAINING, Check, Knowledge, Pair
+from parser_service.parsers.new_forms.generation import generate_candidates
 
 SHORTEST_ATOM = 2  # bytes of an atom in corpus notation, on average over any form
+
+
+class Trie:
+    """Sequences of tokens by their beginnings. Each ends with the token that ends a form."""
+
+    def __init__(self, sequences: Iterable[Sequence[int]]):
+        self._root: dict[int, dict] = {}  # type: ignore[type-arg]
+        for sequence in sequences:
+            node = self._root
+            for token in sequence:
+                node = node.setdefault(token, {})
+
+    def continuations(self, tokens: Sequence[int]) -> list[int]:
+        """Return what follows ``tokens`` in a sequence; nothing where no sequence begins so."""
+        node = self._root
+        for token in tokens:
+            node = node.get(token, {})
+        return list(node)
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,11 +52,12 @@ class Targets:
     @classmethod
     def of(cls, train: Sequence[Pair], knowledge: Knowledge, is_listed: bool, check: Check) -> Self:
         """Return the targets of training pairs; under *domain* those that are listed are more than theirs.
-        Raises ValueError, a sentence, where no pair has a form."""
+        Raises Refusal where no pair has a form."""
         forms = _readable({pair.form for pair in train})
         if not forms:
-            raise ValueError(
-                "No training pair has a form that can be read, so there is nothing to learn."
+            raise Refusal(
+                "No training pair has a form that can be read, so there is nothing to learn.",
+                "no_training_pairs",
             )
         origins = dict.fromkeys(forms, TRAINING)
         rules = Rules.of(list(forms.values()), knowledge.predicates)
@@ -55,7 +74,7 @@ class Targets:
         return sorted({*chain.from_iterable(spelled), *Automaton(self.rules).atoms})
 
     def fitted_to(self, network: EncoderDecoder) -> Self:
-        """Return what of it ``network`` can write. Raises ValueError, a sentence, where a form of the
+        """Return what of it ``network`` can write. Raises Refusal where a form of the
         training pairs is too long."""
         most = network.most_written - 1  # and the end of the form
         kept = {
@@ -65,9 +84,10 @@ class Targets:
         }
         for text in self.origins.keys() - kept.keys():
             if self.origins[text] == TRAINING:
-                raise ValueError(
+                raise Refusal(
                     f"This network writes at most {most} tokens, but a form of the training pairs "
-                    f"has more: {text[:100]}… Use another network."
+                    f"has more: {text[:100]}… Use another network.",
+                    "form_too_long_for_network",
                 )
         rules = replace(self.rules, longest=min(self.rules.longest, most * SHORTEST_ATOM))
         return replace(self, origins=kept, longest=min(self.longest, most), rules=rules)

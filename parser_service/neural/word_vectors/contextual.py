@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
 import torch
 from tokenizers import Tokenizer
@@ -12,7 +12,6 @@ from torch import Tensor
 
 from parser_service.neural.device import processor
 from parser_service.neural.pretrained import Pretrained, encoder_hash, load_encoder
-from parser_service.neural.word_vectors.word_pooling import mean_by_word
 
 LONGEST = 256  # subwords; the longest published paraphrase has 45
 
@@ -44,9 +43,8 @@ class TransformerWords:
 
     def __init__(self, pretrained: Pretrained):
         self.identity = encoder_hash(pretrained.folder)
-        self._model = pretrained.model.requires_grad_(False).to(processor())
-        self._model.eval()  # type: ignore[no-untyped-call]
-        self._model.float()  # type: ignore[no-untyped-call]
+        model: Any = pretrained.model  # whose own types say too little
+        self._model = model.requires_grad_(False).to(processor()).eval().float()
         text = pretrained.tokenizer.backend_tokenizer.to_str()
         self._tokenizer: Tokenizer = Tokenizer.from_str(text)
         self._tokenizer.no_padding()
@@ -54,7 +52,7 @@ class TransformerWords:
 
     @classmethod
     def named(cls, name: str, encoders: Path | None = None) -> TransformerWords:
-        """Load the transformer ``name``. Raises ValueError, which says what to put where."""
+        """Load the transformer ``name``. Raises Refusal, which says what to put where."""
         with torch.random.fork_rng(devices=[]):  # parts that the file lacks are drawn, but not used
             return cls(load_encoder(name, encoders))
 
@@ -72,3 +70,22 @@ class TransformerWords:
         states = self._model(input_ids=subwords, attention_mask=torch.ones_like(subwords))
         last = states.last_hidden_state[0].cpu()  # [subwords, width]
         return mean_by_word(last, encoding.word_ids, len(words))[:, None]
+
+
+def mean_by_word(subwords: Tensor, words: Sequence[int | None], number: int) -> Tensor:
+    """Return the mean vector of each word's subwords.
+
+    Args:
+        subwords: [subwords, width].
+        words: the word that each subword is part of; None for special tokens.
+        number: the number of words.
+
+    Returns:
+        [number, width]; zero for a word without subwords, such as one that was cut off.
+    """
+    places = [place for place, word in enumerate(words) if word is not None]
+    owners = torch.tensor([word for word in words if word is not None], dtype=torch.long)
+    sums = subwords.new_zeros(number, subwords.shape[1])
+    sums.index_add_(0, owners, subwords[places])
+    counts = torch.bincount(owners, minlength=number).clamp(min=1)  # [number]
+    return sums / counts[:, None]

@@ -10,12 +10,16 @@ import torch
 from torch import Tensor
 
 from parser_service.neural.device import full_fp32, processor
-from parser_service.neural.word_vectors.elmo_characters import spell
-from parser_service.neural.word_vectors.elmo_layers import ProjectedLstm
-from parser_service.neural.word_vectors.elmo_options import ElmoOptions, read_elmo_options
-from parser_service.neural.word_vectors.elmo_weights import BACKWARD, FORWARD, open_weights
+from parser_service.neural.word_vectors.elmo_files import (
+    BACKWARD,
+    FORWARD,
+    ElmoOptions,
+    open_weights,
+    read_elmo_options,
+)
+from parser_service.neural.word_vectors.elmo_layers import ProjectedLstm, spell
+from parser_service.parsers.pretrained_files import find_elmo
 from parser_service.parsers.storage import file_hash
-from parser_service.parsers.weights.files import find_elmo
 
 
 class Elmo:
@@ -26,7 +30,7 @@ class Elmo:
     """
 
     def __init__(self, options: Path, weights: Path):
-        """Read the files. Raises ValueError, a sentence, where they are not an ELMo's."""
+        """Read the files. Raises Refusal where they are not an ELMo's."""
         self.options: ElmoOptions = read_elmo_options(options)
         self.identity = sha256(f"{file_hash(options)} {file_hash(weights)}".encode()).hexdigest()
         with open_weights(weights, self.options) as file:
@@ -37,7 +41,7 @@ class Elmo:
 
     @classmethod
     def named(cls, name: str, encoders: Path | None = None) -> Elmo:
-        """Load the ELMo in the folder ``name``. Raises ValueError, which says what to put where."""
+        """Load the ELMo in the folder ``name``. Raises Refusal, which says what to put where."""
         files = find_elmo(name, encoders)
         return cls(files.options, files.weights)
 

@@ -1,15 +1,31 @@
-"""The layers of ELMo, frozen: each holds the tensors that its HDF5 file names."""
+"""The layers of ELMo, frozen: each holds the tensors that its HDF5 file names. The first reads the bytes of words."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import torch
 from torch import Tensor
 from torch.nn.functional import conv1d
 
+# Numbers 0 to 255 are bytes.
+SENTENCE_BEGIN, SENTENCE_END, WORD_BEGIN, WORD_END, PADDING = range(256, 261)
+CHARACTERS = 261  # rows of the published table; files that also count a mask say one more
 FORGET_BIAS = 1.0  # added when the published cells run, and not in their file
+
+
+def spell(sentence: Sequence[str], longest: int) -> list[list[int]]:
+    """Return the characters of each word of ``sentence``, whose begin and end are words of their own.
+
+    Shape [words + 2, longest]; a word is cut where it is longer with its two markers.
+    """
+    words = [list(word.encode("utf-8")) for word in sentence]
+    rows = []
+    for word in ([SENTENCE_BEGIN], *words, [SENTENCE_END]):
+        marked = [WORD_BEGIN, *word[: longest - 2], WORD_END]
+        rows.append(marked + [PADDING] * (longest - len(marked)))
+    return rows
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -11,6 +11,8 @@ from typing import BinaryIO
 
 from torch import Tensor, tensor
 
+from annotations.language.errors import Refusal
+
 _GZIP = b"\x1f\x8b"
 
 
@@ -26,7 +28,7 @@ def read_glove(path: Path, wanted: Collection[str], size: int) -> dict[str, Tens
         A vector [size] by word.
 
     Raises:
-        ValueError: a line is malformed (the message says which), or the archive is damaged.
+        Refusal: a line is malformed (the message says which), or the archive is damaged.
     """
     vectors = {}
     with _open(path) as stream:
@@ -53,7 +55,10 @@ def _lines(stream: BinaryIO, path: Path) -> Iterator[bytes]:
         for line in stream:
             yield line.rstrip(b"\r\n").rstrip(b" ")
     except (EOFError, gzip.BadGzipFile, zlib.error):
-        raise ValueError(f"{path} is a damaged gzip archive; get GloVe's file again.") from None
+        raise Refusal(
+            f"{path} is a damaged gzip archive; get GloVe's file again.",
+            "pretrained_weights_unreadable",
+        ) from None
 
 
 def _vector(numbers: bytes, path: Path, line: int, size: int) -> list[float]:
@@ -66,8 +71,9 @@ def _vector(numbers: bytes, path: Path, line: int, size: int) -> list[float]:
     return values
 
 
-def _malformed_line(path: Path, line: int, fault: str, size: int) -> ValueError:
-    return ValueError(
+def _malformed_line(path: Path, line: int, fault: str, size: int) -> Refusal:
+    return Refusal(
         f"{path}, line {line}: a line is a word and {size} numbers, but this one {fault}. Get "
-        f"GloVe's file again, or set embedding_size to the width of its vectors."
+        f"GloVe's file again, or set embedding_size to the width of its vectors.",
+        "pretrained_weights_unreadable",
     )

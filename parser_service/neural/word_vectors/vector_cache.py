@@ -58,7 +58,10 @@ class VectorCache:
         """Compute or load the vectors of ``utterances``, and keep them as long as this object lives."""
         wanted = sorted(set(utterances) - self._kept.keys())
         if self._are_many(wanted):
-            self._take_from_files(wanted)
+            by_key = {_key(words): words for words in wanted}
+            if self._folder is not None and self._folder.is_dir():
+                for path in sorted(self._folder.glob("*.safetensors")):
+                    self._take(path, by_key)
             wanted = [words for words in wanted if words not in self._kept]
         done = 0
         for part in self._parts(wanted):
@@ -98,12 +101,6 @@ class VectorCache:
         save_file({_key(words): value for words, value in computed.items()}, unfinished)
         unfinished.replace(path)
         self._take(path, {_key(words): words for words in computed})
-
-    def _take_from_files(self, wanted: Sequence[Words]) -> None:
-        by_key = {_key(words): words for words in wanted}
-        if self._folder is not None and self._folder.is_dir():
-            for path in sorted(self._folder.glob("*.safetensors")):
-                self._take(path, by_key)
 
     def _take(self, path: Path, by_key: dict[str, Words]) -> None:
         """Keep the vectors that a file has of the utterances in ``by_key``."""

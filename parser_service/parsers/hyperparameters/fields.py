@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import Field, dataclass, field, fields
 from typing import Any, TypeAlias, TypeVar
 
+from annotations.language.errors import Refusal
+
 C = TypeVar("C")
 Value: TypeAlias = "bool | int | float | str"
 
@@ -46,14 +48,18 @@ def hyperparameter(
 
 def describe(config_class: type) -> tuple[ConfigField, ...]:
     """Return the hyperparameters of a config dataclass, in order."""
-    return tuple(map(_describe_field, _declared_fields(config_class)))
+    described = []
+    for item in _declared_fields(config_class):
+        default: Any = item.default
+        described.append(ConfigField(item.name, type(default), default, **item.metadata))
+    return tuple(described)
 
 
 def validate(config: Any) -> None:
     """Check every field of ``config`` against its declaration, for ``__post_init__``.
 
     Where a fraction is expected, a whole number is taken, and stored as a fraction.
-    Raises ValueError naming the field, the value and what is allowed.
+    Raises Refusal naming the field, the value and what is allowed.
     """
     for declared in describe(type(config)):
         value = getattr(config, declared.name)
@@ -61,39 +67,44 @@ def validate(config: Any) -> None:
             value = float(value)
             object.__setattr__(config, declared.name, value)
         if fault := _fault(declared, value):
-            raise ValueError(f"{declared.name} is {value!r}, but {fault}.")
+            raise Refusal(
+                f"{declared.name} is {value!r}, but {fault}.", "hyperparameter_out_of_range"
+            )
 
 
 def refuse_empty(config: Any, field: str) -> None:
     """Refuse a configuration without weights that the parser needs: without them it would be another
-    parser of the same name. Raises ValueError, a sentence."""
+    parser of the same name. Raises Refusal."""
     if not getattr(config, field).strip():
-        raise ValueError(f"{field} is empty, but this parser needs it. Name the weights to read.")
+        raise Refusal(
+            f"{field} is empty, but this parser needs it. Name the weights to read.",
+            "hyperparameter_missing",
+        )
 
 
 def refuse_unnamed(config: Any) -> None:
-    """Refuse a configuration that lacks a required hyperparameter. Raises ValueError, a sentence."""
+    """Refuse a configuration that lacks a required hyperparameter. Raises Refusal."""
     for declared in describe(type(config)):
         if declared.is_required and not getattr(config, declared.name).strip():
-            raise ValueError(f"{declared.name} is empty. {declared.description}")
+            raise Refusal(
+                f"{declared.name} is empty. {declared.description}", "hyperparameter_missing"
+            )
 
 
 def read_config(config_class: type[C], values: Mapping[str, Any]) -> C:
-    """Make a config from JSON ``values``, with defaults. Raises ValueError, a sentence."""
+    """Make a config from JSON ``values``, with defaults. Raises Refusal."""
     known = [item.name for item in _declared_fields(config_class)]
     if unknown := sorted(set(values) - set(known)):
         names = ", ".join(unknown)
-        raise ValueError(f"No hyperparameter is called {names}; there are: {', '.join(known)}.")
+        raise Refusal(
+            f"No hyperparameter is called {names}; there are: {', '.join(known)}.",
+            "unknown_hyperparameter",
+        )
     return config_class(**values)
 
 
 def _declared_fields(config_class: type) -> list[Field[Any]]:
     return [item for item in fields(config_class) if "description" in item.metadata]
-
-
-def _describe_field(item: Field[Any]) -> ConfigField:
-    default: Any = item.default
-    return ConfigField(item.name, type(default), default, **item.metadata)
 
 
 def _fault(declared: ConfigField, value: Value) -> str:

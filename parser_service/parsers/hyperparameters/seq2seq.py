@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from annotations.language.errors import Refusal
 from parser_service.parsers.hyperparameters.fields import hyperparameter, validate
 
 
@@ -62,7 +63,8 @@ class Seq2SeqConfig:
     def __post_init__(self) -> None:
         validate(self)
         if self.hidden_size % 2:
-            raise ValueError(
+            raise Refusal(
                 f"hidden_size is {self.hidden_size}, but it has to be even: the two directions of "
-                "the encoder share it."
+                "the encoder share it.",
+                "hyperparameter_out_of_range",
             )

@@ -8,7 +8,7 @@ from typing import Generic, TypeVar
 
 from parser_service.parsers.interface import Check
 from parser_service.parsers.llm.exchange import Abandoned, Exchange, Reply
-from parser_service.parsers.llm.places import Server
+from parser_service.parsers.llm.server_address import ModelServer
 
 LOOK_EVERY = 0.1  # seconds between two looks at whether to stop
 T = TypeVar("T")
@@ -20,7 +20,7 @@ class Crew(Generic[T]):
     What ``check`` or a job raises ends all of them within moments: exchanges are broken off, pauses end.
     """
 
-    def __init__(self, server: Server, at_once: int, check: Check) -> None:
+    def __init__(self, server: ModelServer, at_once: int, check: Check) -> None:
         self._server = server
         self._at_once = at_once
         self._check = check

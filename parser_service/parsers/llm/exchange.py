@@ -14,17 +14,19 @@ from contextlib import closing, suppress
 from dataclasses import dataclass
 from http.client import HTTPConnection, HTTPException, HTTPResponse
 from ipaddress import ip_address
-from typing import Any
 from urllib.parse import urlsplit
 
-from parser_service.parsers.llm.places import Server, problem_of, refusal_of
+from annotations.language.errors import Refusal
+from parser_service.parsers.llm.server_address import ModelServer, problem_of, refusal_of
 
 MOST_BYTES = 1024 * 1024  # of a reply; an answer has a few thousand
 PIECE = 64 * 1024
 
 
-class Refused(ValueError):
-    """Asking again would change nothing; a sentence that says what to do."""
+class ServerRefusal(Refusal):
+    """Asking the language model's server again would change nothing. It says what to do."""
+
+    code = "language_model_refused"
 
 
 class NoReply(Exception):
@@ -53,7 +55,7 @@ class Exchange:
     """A request and its reply, which ``send`` waits for. Another thread may end that by ``abandon`` or,
     once it takes too long, by ``look_at_the_clock``."""
 
-    def __init__(self, server: Server, seconds: float) -> None:
+    def __init__(self, server: ModelServer, seconds: float) -> None:
         self._server = server
         self._seconds = seconds
         self._until = time.monotonic() + seconds
@@ -62,7 +64,7 @@ class Exchange:
         self._is_late = False
 
     def send(self, method: str, path: str, body: bytes | None = None) -> Reply:
-        """Return the reply, whatever its status. Raises Refused, NoReply and Abandoned."""
+        """Return the reply, whatever its status. Raises ServerRefusal, NoReply and Abandoned."""
         try:
             with closing(self._connect()) as connection:
                 connection.request(method, self._server.path + path, body, self._headers(body))
@@ -94,7 +96,7 @@ class Exchange:
         """Connect to an address that was looked at, so that the name cannot stand for another by then."""
         server = self._server
         if problem := problem_of(server):
-            raise Refused(problem)
+            raise ServerRefusal(problem)
         self._socket = _reach(server)
         self._socket.settimeout(self._seconds)
         if server.parts.scheme == "https":
@@ -116,12 +118,12 @@ class Exchange:
 
     def _read(self, response: HTTPResponse) -> Reply:
         if 300 <= response.status < 400:
-            raise Refused(_redirected(self._server, response.getheader("Location", "")))
+            raise ServerRefusal(_redirected(self._server, response.getheader("Location", "")))
         body = b""
         while piece := response.read(PIECE):
             body += piece
             if len(body) > MOST_BYTES:
-                raise Refused(
+                raise ServerRefusal(
                     f"The server at {self._server.name} answers with more than {MOST_BYTES:,} bytes, which is "
                     "no answer of a language model. Look at the address in GPSR_LLM_URL."
                 )
@@ -133,14 +135,15 @@ class Exchange:
         return Reply(response.status, headers, body)
 
 
-def _reach(server: Server) -> socket.socket:
+def _reach(server: ModelServer) -> socket.socket:
     """Connect to the first address of the server that answers, if all of them may be asked."""
     try:
         found = socket.getaddrinfo(server.host, server.port, type=socket.SOCK_STREAM)
     except (OSError, UnicodeError) as error:
         raise NoReply(f"the name {server.host} is not known ({_in_words(error)})") from None
-    if refusal := refusal_of(server, [ip_address(_host_of(each[4])) for each in found]):
-        raise Refused(refusal)
+    hosts = [ip_address(str(address[0]).partition("%")[0]) for *_, address in found]
+    if refusal := refusal_of(server, hosts):
+        raise ServerRefusal(refusal)
     faults = []
     for family, kind, protocol, _, address in found:
         line = socket.socket(family, kind, protocol)
@@ -155,16 +158,12 @@ def _reach(server: Server) -> socket.socket:
     raise NoReply("; ".join(dict.fromkeys(faults)) or "it has no address")
 
 
-def _host_of(address: tuple[Any, ...]) -> str:
-    return str(address[0]).partition("%")[0]
-
-
-def _encrypt(line: socket.socket, server: Server) -> socket.socket:
+def _encrypt(line: socket.socket, server: ModelServer) -> socket.socket:
     try:
         return ssl.create_default_context().wrap_socket(line, server_hostname=server.host)
     except ssl.SSLCertVerificationError as error:
         line.close()
-        raise Refused(
+        raise ServerRefusal(
             f"The certificate of {server.name} is not to be trusted: {error.verify_message}. Set "
             "GPSR_LLM_URL to the name that its certificate has, or have the system trust it."
         ) from None
@@ -173,7 +172,7 @@ def _encrypt(line: socket.socket, server: Server) -> socket.socket:
         raise
 
 
-def _redirected(server: Server, location: str) -> str:
+def _redirected(server: ModelServer, location: str) -> str:
     try:
         target = urlsplit(location).hostname or server.host
     except ValueError:

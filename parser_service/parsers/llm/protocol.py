@@ -1,6 +1,6 @@
 """How OpenAI's chat protocol is written and read, and where servers of it differ.
 
-Sources: the API references of OpenAI, of llama.cpp's server, of Ollama and of vLLM (docs/llm.md says what
+Sources: the API references of OpenAI, of llama.cpp's server, of Ollama and of vLLM (docs/guides/llm.md says what
 each of them does with a JSON schema, a seed and the limit of tokens).
 """
 
@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from parser_service.parsers.llm.exchange import NoReply, Refused, Reply
+from parser_service.parsers.llm.exchange import NoReply, Reply, ServerRefusal
 
 Message = dict[str, str]
 
@@ -35,7 +35,7 @@ class Question:
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class ModelAnswer:
     """What a model wrote, and its name as the server reports it."""
 
     text: str
@@ -94,10 +94,10 @@ class Dialect:
             )
 
 
-def read_answer(reply: Reply, key: str) -> Answer:
+def read_answer(reply: Reply, key: str) -> ModelAnswer:
     """Return the answer in a reply with status 200.
 
-    Raises NoReply where it is none, and Refused where the model ran out of tokens before it answered.
+    Raises NoReply where it is none, and ServerRefusal where the model ran out of tokens before it answered.
     """
     content = _json_of(reply)
     try:
@@ -109,11 +109,13 @@ def read_answer(reply: Reply, key: str) -> Answer:
         raise NoReply(f"its answer is none of the protocol{detail and f' ({detail})'}") from None
     text = THOUGHTS.sub("", text).strip()
     if not text and choice.get("finish_reason") == "length":
-        raise Refused(
+        raise ServerRefusal(
             "The model had used all its tokens before it answered. Raise max_tokens, switch its thinking "
-            "off, or give the server a longer context (docs/llm.md)."
+            "off, or give the server a longer context (docs/guides/llm.md)."
         )
-    return Answer(cleaned(text, key), cleaned(_name_of(content), key)[:MOST_NAME])
+    name = content.get("model")
+    model = name if isinstance(name, str) else ""
+    return ModelAnswer(cleaned(text, key), cleaned(model, key)[:MOST_NAME])
 
 
 def read_models(reply: Reply, key: str) -> list[str] | None:
@@ -169,8 +171,3 @@ def _text_of(message: Mapping[str, Any]) -> str:
     if not isinstance(content, str):
         raise TypeError
     return content
-
-
-def _name_of(content: Mapping[str, Any]) -> str:
-    name = content.get("model")
-    return name if isinstance(name, str) else ""

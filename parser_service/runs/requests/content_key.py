@@ -8,7 +8,7 @@ from hashlib import sha256
 from typing import Any
 
 from annotations.language.corpus import KNOWN_SHARE, Criterion
-from annotations.models import Split, World
+from annotations.models import Grammar, Split, World
 from annotations.models.description import TemplateStatus
 from parser_service.parsers.registry import entry
 
@@ -53,24 +53,17 @@ def knowledge_hash(world: World, protocol: str) -> str:
         rows["predicates"] = list(
             world.predicates.order_by("name").values("name", "kind", "signatures", "gloss")
         )
-        rows["entities"] = _entities(world)
+        ontology = getattr(world, "ontology", None)
+        fields = ("entity_class", "text", "aliases", "attributes")
+        entities = ontology.entities.order_by("position").values(*fields) if ontology else ()
+        rows["entities"] = list(entities)
     if protocol == "grammar":
-        rows["grammar"] = _grammar(world)
+        grammar = getattr(world, "grammar", None)
+        rows["grammar"] = _rows_of(grammar) if grammar else {}
     return _hash(rows)
 
 
-def _entities(world: World) -> list[dict[str, Any]]:
-    ontology = getattr(world, "ontology", None)
-    if ontology is None:
-        return []
-    fields = ("entity_class", "text", "aliases", "attributes")
-    return list(ontology.entities.order_by("position").values(*fields))
-
-
-def _grammar(world: World) -> dict[str, Any]:
-    grammar = getattr(world, "grammar", None)
-    if grammar is None:
-        return {}
+def _rows_of(grammar: Grammar) -> dict[str, Any]:
     categories = ("name", "rule_sources", "template_sources")
     return {
         "task_categories": list(grammar.task_categories.order_by("position").values(*categories)),

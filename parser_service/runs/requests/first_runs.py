@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+from annotations.language.corpus import Criterion
 from annotations.models import Split
-from annotations.models.splits import Criterion
 from parser_service.models import TrainingRun
-from parser_service.runs.requests import requesting
+from parser_service.runs.requests import run_requests
 
 
 class FirstRun(NamedTuple):
@@ -21,11 +21,13 @@ class FirstRun(NamedTuple):
     config: Mapping[str, Any] = {}
 
 
-# Those that take seconds, then the best one, on all cores (nothing else computes on a new installation)
-# and with half of its usual steps, which are enough for the starter world.
+# First those that take seconds: ``knn`` so that a robot is answered early, ``linear`` so that it is answered well.
+# The ranker, which is the best one, uses all cores, since nothing else computes on a new installation, and half of
+# its usual steps, which are enough for the starter world.
 FIRST_RUNS = (
-    FirstRun("grammar-oracle", "grammar", Criterion.COMMAND, "gen+para"),
     FirstRun("knn", "strict", Criterion.COMMAND, "gen+para"),
+    FirstRun("linear", "domain", Criterion.COMMAND, "gen+para"),
+    FirstRun("grammar-oracle", "grammar", Criterion.COMMAND, "gen+para"),
     FirstRun("ranker", "strict", Criterion.COMMAND, "gen+para", {"threads": 0, "steps": 200}),
     FirstRun("seq2seq", "strict", Criterion.COMMAND, "gen+para"),
     FirstRun("knn", "strict", Criterion.LOGICAL_FORM, "gen+para"),
@@ -42,6 +44,6 @@ def request_first_runs(splits: Mapping[Criterion, Split]) -> None:
     for run in FIRST_RUNS:
         if run.criterion in untouched:
             split = untouched[run.criterion]
-            requesting.request(
+            run_requests.request(
                 split.world, split, run.parser, run.config, run.protocol, run.sources
             )

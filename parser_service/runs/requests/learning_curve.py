@@ -6,7 +6,7 @@ from django.db import transaction
 
 from annotations.models import User
 from parser_service.models import TrainingRun
-from parser_service.runs.requests import requesting
+from parser_service.runs.requests import run_requests
 
 SHARES = (0.1, 0.25, 0.5, 1.0)
 MOST_SEEDS = 5
@@ -23,11 +23,11 @@ def request_learning_curve(
     """Request runs like ``run`` on all ``SHARES`` with ``n_seeds``, all or none, and return those that are new.
 
     Those that are there already are reused, ``run`` too unless its parser or what it knows of the world
-    has changed since. Raises ValueError as ``requesting.request`` does.
+    has changed since. Raises Refusal as ``run_requests.request`` does.
     """
     with transaction.atomic():
         answers = [
-            requesting.request(
+            run_requests.request(
                 run.world,
                 run.split,
                 run.parser,

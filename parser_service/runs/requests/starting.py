@@ -3,28 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from http import HTTPStatus
 from typing import Any
 
 from django.db import transaction
 
+from annotations.language.errors import Refusal
 from annotations.models import User, World
 from annotations.people.rate_limits import STARTED_RUNS
 from annotations.splits.renewing import last_of
 from parser_service.models import TrainingRun
 from parser_service.runs.requests.learning_curve import request_learning_curve
-from parser_service.runs.requests.requesting import request_seeds, retrain
+from parser_service.runs.requests.run_requests import request_seeds, retrain
 
 Answer = tuple[TrainingRun, bool]
 
 
-class TooMany(ValueError):
+class TooMany(Refusal):
     """Somebody asks for more runs than they may start within this hour."""
+
+    code = "too_many_runs"
+    status = HTTPStatus.TOO_MANY_REQUESTS
 
 
 def start_runs(world: World, by: User, *, seeds: Sequence[int], **asked: Any) -> list[Answer]:
     """Request one run per seed, all or none. Return what ``request`` returns, in the order of ``seeds``.
 
-    Raises TooMany, and ValueError as ``requesting.request`` does.
+    Raises TooMany, and Refusal as ``run_requests.request`` does.
     """
     _require_left(by, len(seeds))
     answers = request_seeds(world, seeds=seeds, by=by, **asked)
@@ -35,12 +40,13 @@ def start_runs(world: World, by: User, *, seeds: Sequence[int], **asked: Any) ->
 def start_again(run: TrainingRun, by: User) -> Answer:
     """Request the configuration of ``run`` on the newest split that follows its own.
 
-    Raises TooMany, and ValueError where its split has not been frozen anew, or as ``retrain`` does.
+    Raises TooMany, and Refusal where its split has not been frozen anew, or as ``retrain`` does.
     """
     newest = last_of(run.split)
     if newest.pk == run.split_id:
-        raise ValueError(
-            f"{run.split} has not been frozen anew, so there is nothing to retrain on."
+        raise Refusal(
+            f"{run.split} has not been frozen anew, so there is nothing to retrain on.",
+            "split_not_frozen_anew",
         )
     _require_left(by, 1)
     answer = retrain(run, newest, by)
@@ -51,7 +57,7 @@ def start_again(run: TrainingRun, by: User) -> Answer:
 def start_learning_curve(run: TrainingRun, by: User, n_seeds: int = 1) -> list[TrainingRun]:
     """Request the missing runs of a learning curve, all or none, and return them.
 
-    Raises TooMany, and ValueError as ``request_learning_curve`` does.
+    Raises TooMany, and Refusal as ``request_learning_curve`` does.
     """
     with transaction.atomic():
         new = request_learning_curve(run, by, n_seeds=n_seeds)

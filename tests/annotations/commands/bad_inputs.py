@@ -57,6 +57,7 @@ FAULTS = {
     ),
     "a grammar for XML": Fault("objects.xml", "$Main = hello\n", 1, "XML", replaces=True),
     "rooms for objects": Fault("objects.xml", "<rooms/>", 1, "categories", replaces=True),
-    "an empty file": Fault(TEMPLATES, "", 1, "empty", replaces=True),
+    "an empty grammar": Fault(GRAMMAR, "", 1, "empty", replaces=True),
+    "an empty XML file": Fault("objects.xml", "", 1, "empty", replaces=True),
     "a UTF-16 file": Fault(GRAMMAR, "$Main = hi\n".encode("utf-16"), 1, "UTF-16", replaces=True),
 }

@@ -5,7 +5,7 @@ from django.core.management import CommandError, call_command
 
 from annotations.language.errors import Position, warning_at
 from annotations.management.base import ReportingCommand
-from annotations.rows.problems import as_json
+from annotations.rows.stored_problems import as_json
 
 pytestmark = pytest.mark.django_db
 

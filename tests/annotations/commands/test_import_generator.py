@@ -99,3 +99,10 @@ def test_what_people_deleted_is_left_out_unless_asked_for(tiny_world, tiny_folde
     report, _ = run("import_generator", tiny_folder, "--world", "home", "--bring-back")
     assert report["left_out"]["templates"] == []
     assert tiny_world.grammar.templates.count() == 2
+
+
+def test_the_name_of_a_world_is_normalised_as_everywhere(db, tiny_folder):
+    for name in ("new", "ne\u200bw", "\ufeffnew"):
+        _, failure = run("import_generator", tiny_folder, "--world", name)
+        assert failure is None
+    assert [world.name for world in World.objects.all()] == ["new"]

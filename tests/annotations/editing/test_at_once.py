@@ -2,43 +2,18 @@
 
 from __future__ import annotations
 
-import threading
-
 import pytest
-from django.db import connection
 from django.test import Client
 
 from annotations.editing.drafts import read_draft, save_draft
 from annotations.editing.edits import Overtaken, change
 from annotations.models import Draft, SemanticTemplate, Utterance, World
-from annotations.rows.kinds import KINDS
+from annotations.rows.row_kinds import KINDS
+from tests.at_once import at_once
 from tests.conftest import member
-from tests.sample_world import fill_world, paraphrase_in
-from tests.waiting import PATIENCE_SECONDS
+from tests.sample_world import fill_world, guidelines_in, paraphrase_in
 
 NEW = {"pattern": "$vbfind the {kobject}", "form": "(find {kobject})", "status": "ready"}
-
-
-def at_once(*actions):
-    """Run the actions at the same time and return what they return, in their order."""
-    results = [None] * len(actions)
-    start = threading.Barrier(len(actions))
-
-    def run(number, action):
-        start.wait()
-        try:
-            results[number] = action()
-        finally:
-            connection.close()
-
-    threads = [
-        threading.Thread(target=run, args=(number, action)) for number, action in enumerate(actions)
-    ]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join(PATIENCE_SECONDS)
-    return results
 
 
 @pytest.fixture
@@ -115,6 +90,7 @@ def test_worlds_of_one_name_at_once_make_one(transactional_db, superuser):
 @pytest.mark.parametrize("kind", KINDS.values(), ids=lambda kind: kind.name)
 def test_of_those_who_change_one_row_at_once_one_is_first(kind, sample, world):
     paraphrase_in(world)
+    guidelines_in(world)
     Utterance.objects.create(world=world, text="go", anonymized_text="go")
     row = kind.rows_of(world).first()
     field = next(

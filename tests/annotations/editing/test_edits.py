@@ -7,7 +7,7 @@ from django.core.exceptions import ValidationError
 from django.db import transaction
 
 from annotations.editing.edits import Overtaken, add, change, delete, restore
-from annotations.importing import import_generator
+from annotations.importing.generator_import import import_generator
 from annotations.models import Entity, Paraphrase, Predicate, Production, SemanticTemplate
 from annotations.models.description import TemplateStatus
 from annotations.worlds.world_deletion import delete_world

@@ -5,9 +5,8 @@ from __future__ import annotations
 from django.core.files.uploadedfile import SimpleUploadedFile
 
 from annotations.editing.edits import add, change
-from annotations.exporting.completing import complete
-from annotations.exporting.generator_export import Part, files_of_part
-from annotations.importing import import_generator
+from annotations.exporting.generator_export import GeneratorPart, complete, files_of_part
+from annotations.importing.generator_import import import_generator
 from annotations.models import Entity, Production, SemanticTemplate
 
 
@@ -26,7 +25,7 @@ def test_what_was_downloaded_and_is_uploaded_again_changes_nothing(tiny_world, a
     values = {"grammar": row.grammar, "source": row.source, "task_category": row.task_category}
     add(SemanticTemplate(pattern="move to the {room}", form="(go {room})", **values), admin)
     before = lines_of(tiny_world)
-    downloaded = files_of_part(tiny_world, Part.TEMPLATES)
+    downloaded = files_of_part(tiny_world, GeneratorPart.TEMPLATES)
     uploads = {name: text.encode() for name, text in downloaded.items()}
     report = import_generator("home", complete(tiny_world, uploads), admin)
     assert not report.is_refused

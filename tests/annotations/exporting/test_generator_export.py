@@ -6,7 +6,7 @@ import pytest
 
 import annotations
 from annotations.exporting.generator_export import generator_files
-from annotations.importing import import_generator
+from annotations.importing.generator_import import import_generator
 from annotations.models import SemanticTemplate, World
 from annotations.models.description import TemplateStatus
 from tests.annotations.rows_of import contents_of

@@ -4,10 +4,10 @@ import pytest
 
 from annotations.generation.complexity import complexity
 from annotations.generation.generating import generate_pairs
-from annotations.importing import import_generator
+from annotations.importing.generator_import import import_generator
 from annotations.language.errors import LanguageError
 from annotations.models import Command, LogicalForm, World
-from annotations.models.description import Subject
+from annotations.models.description import ProblemSubject
 from tests.annotations.rows_of import rows_of
 from tests.sample_world import make_paraphrase
 
@@ -100,7 +100,7 @@ def test_a_conflict_is_stored_with_both_places(tiny_world, tiny):
     tiny["tiny_category_1_semantics.txt"] += b"go to the {room} = (visit {room})\n"
     import_generator(tiny_world.name, tiny)
     generate_pairs(tiny_world)
-    problem = tiny_world.problems.get(subject=Subject.COMMANDS)
+    problem = tiny_world.problems.get(subject=ProblemSubject.COMMANDS)
     assert problem.line == 4
     assert "( visit " in problem.message
     assert "tiny_category_1_semantics.txt:3:1" in problem.message

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from annotations.editing.edits import add, change, delete, restore
 from annotations.generation import kept_expansions
 from annotations.generation.generating import generate_pairs
-from annotations.importing import import_generator
-from annotations.language.templates import Kept
+from annotations.importing.generator_import import import_generator
+from annotations.language.templates import BoundedCache
 from annotations.models import Job, JobKind, Production, SemanticTemplate, TaskCategory, World
-from annotations.models.description import Subject, TemplateStatus
+from annotations.models.description import ProblemSubject, TemplateStatus
 from tests.annotations.conftest import as_bytes
 from tests.annotations.rows_of import rows_of
 from tests.sample_world import make_paraphrase
@@ -121,7 +121,7 @@ def test_what_is_taken_back_leaves_everything_as_it_was(two_categories, annotato
 
 
 def test_a_conflict_comes_and_goes_with_the_template(two_categories, annotator):
-    conflicts = two_categories.problems.filter(subject=Subject.COMMANDS)
+    conflicts = two_categories.problems.filter(subject=ProblemSubject.COMMANDS)
     before = set(conflicts.values_list("message", flat=True))
     category = TaskCategory.objects.get(grammar__world=two_categories, name="1")
     row = add(SemanticTemplate.for_category(category, pattern="bring it", form="(x)"), annotator)
@@ -166,7 +166,7 @@ def test_paraphrases_keep_their_commands_and_find_them_again(two_categories, ann
 def test_a_world_too_large_for_a_request_is_marked_and_left_to_a_worker(
     two_categories, annotator, monkeypatch
 ):
-    monkeypatch.setattr(kept_expansions, "_GENERATED", Kept(0))
+    monkeypatch.setattr(kept_expansions, "_GENERATED", BoundedCache(0))
     monkeypatch.setattr(kept_expansions, "MOST_AT_ONCE", 3)
     before = rows_of(two_categories)["Command"]
     row = SemanticTemplate.objects.get(form="(leave)")

@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 
 from annotations.editing.edits import change, delete
-from annotations.exporting.completing import complete
-from annotations.exporting.generator_export import generator_files
-from annotations.importing import import_generator, import_pairs
+from annotations.exporting.generator_export import complete, generator_files
+from annotations.importing.generator_import import import_generator
+from annotations.importing.pair_import import import_pairs
 from annotations.models import Entity, Paraphrase, Production, SemanticTemplate
-from tests.annotations.importing.test_importing_pairs import folder, generated  # noqa: F401
+from tests.annotations.importing.test_pair_import import folder, generated  # noqa: F401
 
 LINE = "tiny_category_1_semantics.txt: go to the {room} = (go {room})"
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from annotations.generation.generating import generate_pairs
-from annotations.importing import import_generator
 from annotations.importing.generator_files import read_generator
+from annotations.importing.generator_import import import_generator
 from annotations.models import World
 from tests.work import growth, steps_of
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from annotations.importing import import_generator
+from annotations.importing.generator_import import import_generator
 from annotations.language.errors import Position, error_at
 from annotations.models import StoredProblem
-from annotations.rows.problems import MOST_PROBLEMS, first_problems
+from annotations.rows.stored_problems import MOST_PROBLEMS, first_problems
 
 WARNED = "".join(f"$Main = go {number}\n$lost{number} = x\n" for number in range(1_500))
 

@@ -7,19 +7,21 @@ from django.core.files.uploadedfile import SimpleUploadedFile
 
 from annotations import background
 from annotations.generation.generating import generate_pairs
-from annotations.importing import import_generator
+from annotations.importing.generator_import import import_generator
 from annotations.jobs import answer_job, cancel_job, request_job
 from annotations.jobs.carrying_out import carry_out
 from annotations.jobs.files import folder_of, jobs_folder
-from annotations.jobs.sweeping import hidden_name, sweep
+from annotations.jobs.kinds import verb_of
+from annotations.jobs.sweeping import sweep
 from annotations.jobs.watching import JobProgress
 from annotations.models import Job, JobKind, World
 from annotations.models.background import Status
-from annotations.world_archive import reading
+from annotations.world_archive import world_import
+from annotations.worlds.hidden_worlds import hidden_name
 from annotations.worlds.world_deletion import request_deletion
 from tests.annotations.conftest import TINY, as_bytes
 from tests.annotations.rows_of import contents_of, rows_of
-from tests.annotations.views.worlds.test_import import archive, uploads
+from tests.annotations.web.worlds.test_import_pages import archive, uploads
 from tests.annotations.world_archive.packing import everything_of, pack
 
 
@@ -48,6 +50,11 @@ def done(job: Job) -> Job:
 
 def files_left() -> list[str]:
     return [path.name for path in jobs_folder().glob("*")]
+
+
+@pytest.mark.parametrize("kind", JobKind)
+def test_each_kind_of_job_has_its_verb(kind):
+    assert callable(verb_of(kind))
 
 
 def test_an_import_of_generator_files(home, tiny):
@@ -176,10 +183,10 @@ def test_an_interrupted_import_of_a_world_starts_over(home, tiny, monkeypatch):
     upload = SimpleUploadedFile("home-world.zip", pack(home).read())
     job = request_job(JobKind.IMPORT_WORLD, "again", None, uploads=[upload])
     with monkeypatch.context() as patch:
-        patch.setattr(reading, "delete_world", lambda world: None)
-        patch.setattr(reading, "_check_world", lambda world: 1 / 0)
+        patch.setattr(world_import, "delete_world", lambda world: None)
+        patch.setattr(world_import, "_check_world", lambda world: 1 / 0)
         with pytest.raises(ZeroDivisionError), upload.open() as file:
-            reading.import_world("again", file, hidden_name=hidden_name(job))
+            world_import.import_world("again", file, hidden_name=hidden_name(job))
     assert World.objects.filter(name=hidden_name(job)).exists()
     assert done(job).status == Status.SUCCEEDED
     assert set(World.objects.values_list("name", flat=True)) == {"home", "again"}
@@ -225,3 +232,10 @@ def test_an_error_analysis_says_of_which_run(home):
     job = Job(world=home, kind=JobKind.ANALYSE, arguments={"run": 7})
     assert job.title == "Error analysis of run 7"
     assert Job(world=home, kind=JobKind.GENERATE).title == "Generation of commands"
+
+
+def test_an_archive_that_is_refused_leaves_no_traceback(home, caplog):
+    broken = SimpleUploadedFile("home.zip", b"PK\x03\x04" + b"\xff" * 50)
+    job = done(request_job(JobKind.IMPORT_WORLD, "copy", None, uploads=[broken]))
+    assert job.status == Status.FAILED and "home.zip" in job.failure
+    assert [record for record in caplog.records if record.exc_info] == []

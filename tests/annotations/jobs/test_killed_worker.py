@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from django.core.files.uploadedfile import SimpleUploadedFile
 
-from annotations.importing import import_generator
+from annotations.importing.generator_import import import_generator
 from annotations.jobs import cancel_job, request_job
 from annotations.jobs.files import folder_of
 from annotations.models import Job, JobKind, Production

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from annotations.labelling import collect, mend_span
-from annotations.labelling.collecting import MOST_AT_ONCE, _read
+from annotations.labelling.collecting import MOST_AT_ONCE, _read, collect
+from annotations.labelling.entity_spans import mend_span
 from annotations.models import Entity
 
 

@@ -1,4 +1,4 @@
-"""The figures of FORMATS §3: what must come out of the 2018 generator with its templates."""
+"""What must come out of the 2018 generator with its templates."""
 
 from collections import Counter
 from itertools import chain

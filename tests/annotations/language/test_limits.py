@@ -11,7 +11,7 @@ from annotations.language.decoding import decode
 from annotations.language.errors import LanguageError, Offsets, Position, Problem, Severity
 from annotations.language.forms import read_form
 from annotations.language.grammar import Grammar, Recognizer, read_production, read_productions
-from annotations.language.ontology import read_ontology, xml_elements
+from annotations.language.ontology import ontology_files, read_ontology
 from annotations.language.predicates import infer_signatures
 from annotations.language.templates import (
     TaskCategory,
@@ -21,7 +21,7 @@ from annotations.language.templates import (
     read_generator_files,
     set_problems,
 )
-from annotations.language.templates.problems import problems
+from annotations.language.templates.template_checks import problems
 from tests.work import growth
 
 GRAMMAR = Grammar(read_productions("$Main = get the $thing\n$thing = " + "x" * 100).productions)
@@ -128,7 +128,7 @@ class Piece(str):
 
 
 def test_xml_text_in_pieces_is_joined_once():
-    handler = xml_elements._Handler("names.xml")
+    handler = ontology_files._Handler("names.xml")
     handler.setDocumentLocator(Locator())
     handler.startElement("name", {})
     for _ in range(3):

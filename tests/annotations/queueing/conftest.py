@@ -2,11 +2,11 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.labelling import collect
+from annotations.labelling.collecting import collect
 from annotations.models import Assignment, Utterance, Verdict
 from annotations.models.worlds import Role
-from annotations.queueing import answer
-from annotations.queueing.sources import refill
+from annotations.queueing.enqueuing import refill
+from annotations.queueing.item_answers import answer
 from tests.conftest import member
 
 BRING = '( bring ( lambda $1 e ( is_a $1 " <object> " ) ) )'

@@ -11,8 +11,9 @@ from django.db import connections
 from annotations.models import Assignment, Utterance, Verdict, WorkKind, World
 from annotations.models.queueing import Outcome
 from annotations.models.worlds import Role
-from annotations.queueing import answer, next_item, set_share
-from annotations.queueing.sources import refill
+from annotations.queueing.enqueuing import refill, set_share
+from annotations.queueing.giving import next_item
+from annotations.queueing.item_answers import answer
 from tests.conftest import member
 
 pytestmark = pytest.mark.django_db(transaction=True)

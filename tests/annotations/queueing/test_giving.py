@@ -9,27 +9,13 @@ import pytest
 from django.db.models import Count, Q
 from django.utils import timezone
 
-from annotations.labelling import label
+from annotations.labelling.label_answers import NoLongerYours, label
 from annotations.models import Assignment, Label, Verdict, WorkItem, WorkKind
 from annotations.models.queueing import Outcome
-from annotations.queueing import (
-    NoLongerYours,
-    NotForThem,
-    Wanted,
-    WantedItem,
-    answer,
-    assign,
-    enqueue,
-    finish,
-    give_back,
-    next_item,
-    set_share,
-    skip,
-    take,
-    take_answer_back,
-    withdraw,
-)
-from annotations.queueing.sources import refill
+from annotations.queueing.enqueuing import WantedItem, enqueue, refill, set_share
+from annotations.queueing.finishing import finish, give_back, skip
+from annotations.queueing.giving import ItemFilter, NotForThem, assign, next_item, take, withdraw
+from annotations.queueing.item_answers import answer, take_answer_back
 from tests.annotations.queueing.conftest import kinds, say
 
 
@@ -171,9 +157,9 @@ def test_an_answer_to_what_was_closed_meanwhile_is_taken_back(
 
 
 def test_a_page_asks_for_more_than_it_has(world, queue, utterances, annotator):
-    first = next_item(annotator, world, Wanted(labels_only=True))
+    first = next_item(annotator, world, ItemFilter(labels_only=True))
     assert first.item.utterance == utterances[0]
-    more = next_item(annotator, world, Wanted(labels_only=True, without=[utterances[0].pk]))
+    more = next_item(annotator, world, ItemFilter(labels_only=True, without=[utterances[0].pk]))
     assert more.item.utterance == utterances[1]
     assert next_item(annotator, world).item.utterance == utterances[0]
 
@@ -217,8 +203,7 @@ def test_shares_change_what_nobody_has_touched(world, queue, annotator):
 
 
 def test_the_share_is_about_as_large_as_it_says(world, annotator):
-    from annotations.queueing.enqueuing import draw_of
-    from annotations.queueing.shares import people_for
+    from annotations.queueing.enqueuing import draw_of, people_for
 
     draws = [draw_of("unlabelled", "utterance", key) for key in range(5000)]
     doubles = sum(people_for("unlabelled", "utterance", d, {"unlabelled": 20}) == 2 for d in draws)

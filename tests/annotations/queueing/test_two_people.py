@@ -4,15 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from annotations.labelling.label_answers import NoLongerYours
 from annotations.models import Utterance, Verdict, WorkItem, WorkKind
-from annotations.queueing import (
-    NoLongerYours,
-    NotForThem,
-    assign,
-    next_item,
-    set_share,
-    take_answer_back,
-)
+from annotations.queueing.enqueuing import set_share
+from annotations.queueing.giving import NotForThem, assign, next_item
+from annotations.queueing.item_answers import take_answer_back
 from tests.annotations.queueing.conftest import BRING, GO, kinds, say
 
 

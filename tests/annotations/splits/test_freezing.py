@@ -6,7 +6,7 @@ import pytest
 
 from annotations.exporting.split_export import export_split
 from annotations.generation.generating import generate_pairs
-from annotations.importing import import_pairs
+from annotations.importing.pair_import import import_pairs
 from annotations.language.errors import LanguageError
 from annotations.models import Command, Example, Paraphrase
 from annotations.models.corpus import ParaphraseStatus

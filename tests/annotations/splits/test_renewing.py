@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.auditing import correct_label
-from annotations.importing import import_pairs
+from annotations.importing.pair_import import import_pairs
+from annotations.label_audit.label_decisions import correct_label
 from annotations.language.errors import LanguageError
 from annotations.models import Command, Paraphrase, Split, Utterance
 from annotations.models.corpus import ParaphraseStatus

@@ -11,8 +11,9 @@ from django.db.models import ForeignKey
 
 from annotations.commenting import SUBJECTS
 from annotations.models import Comment, World
-from annotations.world_archive import import_world, world_archive
-from annotations.world_archive.tables import tables
+from annotations.world_archive.archive_tables import tables
+from annotations.world_archive.world_export import world_archive
+from annotations.world_archive.world_import import import_world
 
 
 def pack(world: World) -> io.BytesIO:

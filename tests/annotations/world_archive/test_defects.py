@@ -13,7 +13,8 @@ from annotations.generation.generating import generate_pairs
 from annotations.language.errors import LanguageError
 from annotations.models import World
 from annotations.splits.freezing import freeze_split
-from annotations.world_archive import import_world, reading
+from annotations.world_archive import world_import
+from annotations.world_archive.world_import import import_world
 from tests.annotations.rows_of import counts
 from tests.annotations.world_archive.packing import members_of, pack, pack_members
 
@@ -82,7 +83,8 @@ def test_a_row_twice(members):
     first, *rest = members["rows/commands.jsonl"].splitlines()
     members["rows/commands.jsonl"] = b"\n".join([first, first, *rest[1:]]) + b"\n"
     refusal = refusal_of(pack_members(members))
-    assert "are the same" in str(refusal) and refusal.source == "rows/commands.jsonl"
+    assert "lines 1 and 2 are the same: “" in refusal.message
+    assert (refusal.source, refusal.line) == ("rows/commands.jsonl", 2)
 
 
 @pytest.mark.parametrize(
@@ -205,7 +207,7 @@ def test_a_name_that_is_taken_in_the_meantime(members, monkeypatch):
     def check_slowly(world):
         World.objects.create(name="again")
 
-    monkeypatch.setattr(reading, "_check_world", check_slowly)
+    monkeypatch.setattr(world_import, "_check_world", check_slowly)
     with pytest.raises(LanguageError, match="there is a world “again” already"):
         import_world("again", pack_members(members))
     assert set(World.objects.values_list("name", flat=True)) == {"again", "home"}

@@ -8,12 +8,15 @@ import pytest
 from django.apps import apps
 from django.db import models
 
-from annotations.auditing import decide, store_findings
 from annotations.commenting import SUBJECTS, add_comment
 from annotations.editing.edits import change, delete
 from annotations.generation.generating import generate_pairs
-from annotations.importing import import_generator, import_pairs
-from annotations.labelling import collect, label, take_back
+from annotations.importing.generator_import import import_generator
+from annotations.importing.pair_import import import_pairs
+from annotations.label_audit.audit_findings import store_findings
+from annotations.label_audit.label_decisions import decide
+from annotations.labelling.collecting import collect
+from annotations.labelling.label_answers import label, take_back
 from annotations.language.errors import LanguageError
 from annotations.language.plans import ActionName
 from annotations.models import (
@@ -28,11 +31,13 @@ from annotations.models import (
     World,
 )
 from annotations.models.worlds import Duty
-from annotations.queueing import finish, next_item, set_share
-from annotations.world_archive import import_world
-from annotations.world_archive.tables import tables
+from annotations.queueing.enqueuing import set_share
+from annotations.queueing.finishing import finish
+from annotations.queueing.giving import next_item
+from annotations.world_archive.archive_tables import tables
+from annotations.world_archive.world_import import import_world
 from annotations.worlds.starter_world import STARTER_WORLD, load_starter_world
-from parser_service.robots.action_names import names_of, store_names, version_of
+from parser_service.robots.action_naming import names_of, store_names, version_of
 from tests.annotations.world_archive.packing import (
     everything_of,
     members_of,
@@ -222,5 +227,5 @@ def models_below():
 
 def not_of_the_world():
     """What goes with a world and is no part of it: not written by people, or for one person alone."""
-    names = ("Job", "Proposal", "CommandProposal", "Draft", "Notice", "Invitation")
+    names = ("Job", "Proposal", "CommandProposal", "Draft", "Notice", "Invitation", "Upload")
     return {model for model in apps.get_models() if model.__name__ in names}

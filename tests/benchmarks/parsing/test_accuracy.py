@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import csv
 import json
+from pathlib import Path
 
 import pytest
 
@@ -211,3 +213,43 @@ def test_a_model_that_may_have_read_the_corpus_is_marked(printed):
     assert "† Answers of a language model, which may have read a public corpus" in text
     assert "†" not in printed([cell()])
     assert r"\texttt{llm\textdagger{}} & 40.0" in printed(cells, "--latex")
+
+
+def test_csv_has_a_row_for_each_cell_without_what_its_intervals_are_drawn_from(printed):
+    curve = {"area": 0.1, "brier_score": 0.2, "coverage": [0.5, 1.0], "risk": [0.0, 0.3]}
+    cells = [
+        cell(
+            seed=seed,
+            interval=[0.4, 0.6],
+            outcomes={"validation": outcomes(20)},
+            calibration={"validation": curve},
+        )
+        for seed in (0, 1)
+    ]
+    first, second = csv.DictReader(
+        printed([*cells, cell("seq2seq")], "--csv", "--parsers", "knn").splitlines()
+    )
+    assert (first["seed"], second["seed"]) == ("0", "1")
+    assert (first["parser"], first["setting"], first["accuracy_validation"]) == (
+        "knn",
+        "para-para",
+        "0.5",
+    )
+    assert json.loads(first["configuration"]) == {"neighbours": 1}
+    assert (first["interval_low"], first["interval_high"]) == ("0.4", "0.6")
+    assert (first["area_validation"], first["brier_score_validation"]) == ("0.1", "0.2")
+    assert not {"key", "outcomes", "coverage_validation", "risk_validation"} & set(first)
+
+
+def test_the_kept_figures_of_the_ranker_are_those_of_its_tables():
+    kept = Path(__file__).resolve().parents[3] / "benchmarks" / "results" / "ranker.csv"
+    with kept.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    columns = {(row["setting"], row["criterion"], row["protocol"]) for row in rows}
+    assert len(rows) == 28 and len(columns) == 9
+    figures = {
+        row["seed"]: round(100 * float(row["accuracy_validation"]), 1)
+        for row in rows
+        if (row["setting"], row["criterion"], row["protocol"]) == ("para-para", "command", "strict")
+    }
+    assert figures == {"0": 90.1, "1": 87.8, "2": 89.0}

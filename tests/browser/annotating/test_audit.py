@@ -7,13 +7,14 @@ import re
 import pytest
 from playwright.sync_api import Page, expect
 
-from annotations.auditing import store_findings
+from annotations.label_audit.audit_findings import store_findings
 from annotations.models import AuditFinding
 from tests.browser.arriving import wait_for_swap
 from tests.doubted_labels import FEMALE, GO, MALE, doubt, say
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
+READING = 300  # milliseconds: who decides sooner has not read the label (static/src/typing.js)
 SAID = [f"how many girls are in room {number}" for number in range(5)]
 
 
@@ -31,10 +32,11 @@ def row_of(page: Page, text: str):
 
 
 def expect_finding(page: Page, text: str) -> None:
-    """The label is shown, and its row has the focus."""
+    """The label is shown, its row has the focus, and it has been read."""
     expect(page.locator(".audit-text")).to_have_text(text)
     expect(row_of(page, text)).to_be_focused()
     wait_for_swap(page)
+    page.wait_for_timeout(READING)
 
 
 def status_of(text: str) -> str:

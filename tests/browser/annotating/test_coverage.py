@@ -37,3 +37,18 @@ def test_a_suggested_form_is_chosen_by_its_digit_and_covers_the_command(
     expect(page.locator(".message")).to_contain_text("Saved")
     page.goto(f"{live_server.url}/w/home/coverage/")
     expect(page.get_by_text("Every command looked at has a form.")).to_be_visible()
+
+
+def test_a_suggestion_is_ready_once_somebody_takes_it(page_of, live_server, sample, annotator):
+    page = page_of(annotator)
+    delete(sample.template, annotator, sample.template.version)
+    category = sample.world.grammar.task_categories.get()
+    values = {"pattern": "find me the {kobject}", "status": "ready"}
+    form = "(find (λ$1:e (is_a $1 {kobject})))"
+    add(SemanticTemplate.for_category(category, form=form, **values), annotator)
+    page.goto(f"{live_server.url}/w/home/templates/new/?command=find+the+<object>")
+    expect(page.locator(".cm-content").nth(1)).to_have_text(form)
+    expect(page.get_by_label("Status")).to_have_value("draft")
+    page.locator("h1").click()
+    page.keyboard.press("1")
+    expect(page.get_by_label("Status")).to_have_value("ready")

@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import expect
 
 from annotations.models import SemanticTemplate
-from annotations.rows.kinds import KINDS, as_text
+from annotations.rows.row_kinds import KINDS, as_text
 from tests.browser.arriving import arrive
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 from playwright.sync_api import expect
 
-from annotations.labelling import collect
+from annotations.labelling.collecting import collect
 from annotations.models import Utterance, WorkKind
 from annotations.models.worlds import Role
-from annotations.queueing import set_share
+from annotations.queueing.enqueuing import set_share
 from tests.browser.arriving import arrive_at
 from tests.conftest import member
 

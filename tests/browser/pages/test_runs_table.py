@@ -7,7 +7,7 @@ import pytest
 from annotations.models import Split
 from parser_service.models import TrainingRun
 from tests.browser.variants import NARROW_DARK, WIDE_LIGHT, Variant
-from tests.parser_service.views.results.test_results import by_form
+from tests.parser_service.web.results.test_result_pages import by_form
 from tests.sample_world import scored_run
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]

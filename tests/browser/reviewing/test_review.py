@@ -7,7 +7,7 @@ from playwright.sync_api import Page, expect
 
 from annotations.background.progress import UNWATCHED
 from parser_service.models import Review
-from parser_service.reviewing.proposing import propose_for_run
+from parser_service.reviews.category_proposals import propose_for_run
 from tests.sample_world import make_paraphrase, scored_run
 from tests.waiting import wait_for
 

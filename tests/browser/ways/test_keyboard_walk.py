@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from annotations.editing.edits import delete
-from annotations.labelling import collect
+from annotations.labelling.collecting import collect
 from annotations.models import Entity, Label, SemanticTemplate, Utterance
 from annotations.models.worlds import World
 from tests.browser.arriving import arrive
@@ -78,10 +78,9 @@ def write_template(page: Page) -> None:
 
 
 def expect_utterance(page: Page, text: str) -> None:
-    key = str(Utterance.objects.get(text=text).pk)
-    page.wait_for_function(
-        "key => document.querySelector('[data-item]')?.dataset.item === key", arg=key
-    )
+    """Wait until an utterance is shown and takes keys, which is once somebody can have read it."""
+    key = Utterance.objects.get(text=text).pk
+    expect(page.locator(f"[data-item='{key}'][data-asks]")).to_have_count(1)
 
 
 def label_fifty(page: Page) -> None:

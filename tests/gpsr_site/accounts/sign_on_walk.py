@@ -9,12 +9,14 @@ import json
 import os
 import sys
 import threading
+import time
 from http.server import BaseHTTPRequestHandler, HTTPServer
 from urllib.parse import parse_qs, urlsplit
 
 from django.test import Client
 
 PERSON = {"sub": "1"}  # who signs on next, as the server says
+TOKEN: dict[str, object] = {}  # what the server gives beside the access token
 
 
 class Server(BaseHTTPRequestHandler):
@@ -37,7 +39,7 @@ class Server(BaseHTTPRequestHandler):
 
     def do_POST(self) -> None:
         self.rfile.read(int(self.headers["Content-Length"]))
-        self.answer({"access_token": "t", "token_type": "Bearer", "expires_in": 60})
+        self.answer({"access_token": "t", "token_type": "Bearer", "expires_in": 60, **TOKEN})
 
     def answer(self, values: dict[str, object]) -> None:
         body = json.dumps(values).encode()
@@ -53,12 +55,21 @@ class Server(BaseHTTPRequestHandler):
 
 def sign_on(client, sub: str, name: str, process: str = "login", next_page: str = ""):
     """Let ``client`` go to the server and come back as ``sub``; returns the last response."""
-    PERSON.update(sub=sub, preferred_username=name, email=f"{name}@example.org")
+    return come_back(client, sub, name, begin(client, next_page, process))
+
+
+def begin(client, next_page: str, process: str = "login") -> str:
+    """Let ``client`` go to the server; returns the state with which it comes back."""
     sent = client.post("/sso/site/login/", {"process": process, "next": next_page})
     assert sent.status_code == 302, sent.content
     query = parse_qs(urlsplit(sent["Location"]).query)
     assert query["code_challenge_method"] == ["S256"]
-    return client.get("/sso/site/login/callback/", {"code": "c", "state": query["state"][0]})
+    return query["state"][0]
+
+
+def come_back(client, sub: str, name: str, state: str):
+    PERSON.update(sub=sub, preferred_username=name, email=f"{name}@example.org")
+    return client.get("/sso/site/login/callback/", {"code": "c", "state": state})
 
 
 def walk() -> None:
@@ -74,8 +85,10 @@ def walk() -> None:
     sign_on_again()
     refuse_strangers(page)
     connect_an_account()
+    refuse_a_foreign_issuer()
     refuse_a_closed_account()
     refuse_what_is_made_up()
+    take_the_only_place(world, adam)
 
 
 def join_by_invitation(world, page: str) -> None:
@@ -120,6 +133,26 @@ def connect_an_account() -> None:
     assert "You are adam." in later.get("/account/").content.decode()
 
 
+def refuse_a_foreign_issuer() -> None:
+    """A token that names another issuer or is for another site lets nobody in, whoever it says they are."""
+    import jwt
+
+    now = int(time.time())
+    ours = {"iss": os.environ["SSO_SERVER_URL"], "aud": "site", "sub": "n"}
+    for claims, is_ours in (
+        (ours, True),
+        ({**ours, "iss": "https://elsewhere.example"}, False),
+        ({**ours, "aud": "another site"}, False),
+    ):
+        sent = {**claims, "iat": now, "exp": now + 60}
+        TOKEN["id_token"] = jwt.encode(sent, "a key of forty characters, as it has to be", "HS256")
+        nora = Client()
+        answer = sign_on(nora, "n", "nora")
+        assert (answer.status_code == 302) is is_ours, (claims, answer.status_code)
+        assert (nora.get("/w/home/").status_code == 200) is is_ours, claims
+    TOKEN.clear()
+
+
 def refuse_a_closed_account() -> None:
     from annotations.models import User
 
@@ -133,6 +166,22 @@ def refuse_what_is_made_up() -> None:
     made_up = Client().get("/sso/site/login/callback/", {"code": "c", "state": "made up"})
     assert made_up.status_code == 403 and b"did not succeed" in made_up.content
     assert Client().get("/sso/signup/").status_code in (302, 404)
+
+
+def take_the_only_place(world, adam) -> None:
+    """Three begin while the link is open and come back after each other: the place makes one account."""
+    from annotations.models import Invitation, User
+    from annotations.models.worlds import Role
+
+    _, key = Invitation.issue(world, [Role.REVIEWER], adam, 7, 1, "")
+    page = f"/join/{key}/"
+    browsers = {name: Client() for name in ("olga", "pia", "rosa")}
+    states = {name: begin(client, page) for name, client in browsers.items()}
+    statuses = [come_back(browsers[name], name, name, states[name]).status_code for name in states]
+    assert statuses == [302, 403, 403], statuses
+    assert not User.objects.filter(username__in=["pia", "rosa"]).exists()
+    assert world.memberships.get(role=Role.REVIEWER).user.username == "olga"
+    assert browsers["olga"].get(page)["Location"] == "/w/home/"
 
 
 def main() -> None:

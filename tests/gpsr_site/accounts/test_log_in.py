@@ -10,8 +10,8 @@ from types import SimpleNamespace
 import pytest
 
 from annotations.models import User
-from gpsr_site.accounts import passwords
-from gpsr_site.accounts.passwords import BY_ADDRESS, BY_NAME, BY_NAME_AND_ADDRESS, TOO_OFTEN
+from gpsr_site.accounts import password_pages
+from gpsr_site.accounts.password_pages import BY_ADDRESS, BY_NAME, BY_NAME_AND_ADDRESS, TOO_OFTEN
 from tests.waiting import PATIENCE_SECONDS
 
 RIGHT = {"username": "anna", "password": "correct horse"}
@@ -114,11 +114,11 @@ def test_a_class_behind_one_address_logs_in(client):
 
 def test_a_name_that_the_world_tries_is_slow_and_not_locked(client, monkeypatch):
     waited = []
-    monkeypatch.setattr(passwords, "time", SimpleNamespace(sleep=waited.append))
+    monkeypatch.setattr(password_pages, "time", SimpleNamespace(sleep=waited.append))
     while BY_NAME.take("anna"):
         pass
     assert client.post("/login/", RIGHT).status_code == 302
-    assert waited == [passwords.SLOW_SECONDS]
+    assert waited == [password_pages.SLOW_SECONDS]
 
 
 def test_slow_attempts_never_hold_all_threads(client, monkeypatch):
@@ -129,10 +129,10 @@ def test_slow_attempts_never_hold_all_threads(client, monkeypatch):
             everybody_waits.wait(PATIENCE_SECONDS)
             over.wait(PATIENCE_SECONDS)
 
-    monkeypatch.setattr(passwords, "time", SimpleNamespace(sleep=sleep))
+    monkeypatch.setattr(password_pages, "time", SimpleNamespace(sleep=sleep))
     while BY_NAME.take("anna"):
         pass
-    waiting = [threading.Thread(target=passwords.wait_slowly) for _ in range(2)]
+    waiting = [threading.Thread(target=password_pages.wait_slowly) for _ in range(2)]
     for thread in waiting:
         thread.start()
     everybody_waits.wait(PATIENCE_SECONDS)

@@ -16,9 +16,10 @@ from django.db import connection, connections, transaction
 
 from annotations.models import ApiToken, LogInSession, SemanticTemplate, User, World
 from annotations.models.worlds import Role
-from gpsr_site.backup import restore, write_backup
-from gpsr_site.backup.manifest import NAME
-from gpsr_site.backup.tables import SNAPSHOT, snapshot, tables
+from gpsr_site.backup.backup_manifest import NAME
+from gpsr_site.backup.backup_reading import restore
+from gpsr_site.backup.backup_tables import SNAPSHOT, snapshot, tables
+from gpsr_site.backup.backup_writing import write_backup
 from parser_service.models import TrainingRun
 from parser_service.serving.loading import load_anew
 from tests.annotations.commands.run_command import run, run_process
@@ -101,7 +102,7 @@ from pathlib import Path
 from django.db import transaction
 from annotations.models import World
 from annotations.models.worlds import Role
-from gpsr_site.backup import write_backup
+from gpsr_site.backup.backup_writing import write_backup
 from tests.conftest import member
 from tests.filled_world import leave_traces
 from tests.sample_world import fill_world
@@ -217,6 +218,54 @@ def test_a_damaged_backup_changes_nothing(change, small, var, tmp_path):
     with pytest.raises(ValueError, match="was changed or damaged"):
         restore(damaged, replace=True)
     assert backup_of(tmp_path / "three.zip") == before
+
+
+WRONG_MANIFESTS = {
+    "unknown key": lambda values: {**values, "comment": "mine"},
+    "key left out": lambda values: {k: v for k, v in values.items() if k != "missing"},
+    "no version": lambda values: {k: v for k, v in values.items() if k != "version"},
+    "next version": lambda values: {**values, "version": 2},
+    "version of another kind": lambda values: {**values, "version": ["1"]},
+    "a list": lambda values: [values],
+    "nothing": lambda values: None,
+    "tables are a list": lambda values: {**values, "tables": []},
+    "files are a text": lambda values: {**values, "files": "none"},
+    "a part is a number": lambda values: {**values, "files": {"runs/1/weights": 1}},
+    "a part has another key": lambda values: {
+        **values,
+        "files": {"runs/1/weights": {"bytes": 1, "sha256": "", "rows": None, "mode": 7}},
+    },
+    "rows are negative": lambda values: {
+        **values,
+        "tables": {name: {**part, "rows": -1} for name, part in values["tables"].items()},
+    },
+    "a moment that is a path": lambda values: {**values, "created_at": "../../elsewhere"},
+    "no migrations": lambda values: {**values, "migrations": {}},
+    "migrations of numbers": lambda values: {**values, "migrations": {"annotations": 25}},
+    "an empty name": lambda values: {**values, "files": {"": values["files"].popitem()[1]}},
+    "nested": lambda values: json.loads("[" * 900 + "]" * 900),
+}
+
+
+@pytest.mark.parametrize("change", WRONG_MANIFESTS.values(), ids=WRONG_MANIFESTS)
+def test_a_manifest_that_nobody_wrote_is_refused_with_a_sentence(change, small, var, tmp_path):
+    before = backup_of(tmp_path / "one.zip")
+    odd = changed(
+        tmp_path / "one.zip",
+        tmp_path / "two.zip",
+        lambda name, data: json.dumps(change(json.loads(data))).encode() if name == NAME else data,
+    )
+    _, failure = run("restore", odd, "--replace")
+    assert failure.returncode == 1 and str(failure).endswith((".", "upgrade."))
+    assert backup_of(tmp_path / "three.zip") == before
+
+
+@pytest.mark.parametrize("manifest", [b"[" * 100_000, b"\xff", b"{", b"", b"NaN"], ids=len)
+def test_a_manifest_that_is_no_json_is_refused(manifest, small, tmp_path):
+    with zipfile.ZipFile(tmp_path / "x.zip", "w") as archive:
+        archive.writestr(NAME, manifest)
+    _, failure = run("restore", tmp_path / "x.zip")
+    assert "This is no backup" in str(failure)
 
 
 def test_a_backup_of_another_version_is_refused(small, tmp_path):

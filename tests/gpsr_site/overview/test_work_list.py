@@ -22,7 +22,7 @@ from gpsr_site.overview.work_list import WorkList
 from gpsr_site.overview.workers import Workers
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.models.runs import Status
-from parser_service.runs.requests import requesting
+from parser_service.runs.requests import run_requests
 from tests.parser_service.made_up import make_split
 from tests.sample_world import make_paraphrase, scored_run
 
@@ -51,7 +51,7 @@ def busy(sample):
     for seed, status in enumerate(
         (Status.FAILED, Status.FAILED, Status.LOST, Status.QUEUED, Status.RUNNING), start=1
     ):
-        run, _ = requesting.request(sample.world, sample.split, "knn", seed=seed, send=False)
+        run, _ = run_requests.request(sample.world, sample.split, "knn", seed=seed, send=False)
         TrainingRun.objects.filter(pk=run.pk).update(status=status)
     TaskCategory.objects.update(commands_in_grammar=3, commands_with_form=1)
     sample.world.commands.last().delete()

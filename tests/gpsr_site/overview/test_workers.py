@@ -7,7 +7,7 @@ from django.utils import timezone
 
 from gpsr_site.overview.workers import workers_now
 from parser_service.models import TrainingRun, Worker
-from parser_service.runs.requests import requesting
+from parser_service.runs.requests import run_requests
 
 
 def alive(*queues: str) -> None:
@@ -30,8 +30,8 @@ def test_one_worker_may_serve_all_queues(db, served):
 
 def test_each_queue_needs_a_worker(sample):
     alive("quick")
-    requesting.request(sample.world, sample.split, "seq2seq", send=False)
-    requesting.request(sample.world, sample.split, "knn", seed=7, send=False)
+    run_requests.request(sample.world, sample.split, "seq2seq", send=False)
+    run_requests.request(sample.world, sample.split, "knn", seed=7, send=False)
     workers = workers_now()
     assert workers.headline == "No training worker is running."
     assert workers.sentence == "1 run waits for one."
@@ -40,15 +40,32 @@ def test_each_queue_needs_a_worker(sample):
 
 def test_a_gpu_worker_is_missed_only_where_work_waits_for_one(sample):
     alive("cpu", "quick")
-    requesting.request(sample.world, sample.split, "seq2seq", send=False)
+    run_requests.request(sample.world, sample.split, "seq2seq", send=False)
     assert workers_now().is_alive
     TrainingRun.objects.filter(status="queued").update(queue="gpu")
     assert workers_now().headline == "No GPU worker is running."
 
 
+def test_of_several_missing_workers_the_one_is_named_that_work_waits_for(sample):
+    alive("gpu")
+    run_requests.request(sample.world, sample.split, "knn", seed=7, send=False)
+    workers = workers_now()
+    assert workers.missing == ["cpu", "quick"]
+    assert workers.headline == "No quick worker is running."
+    assert workers.is_work_left
+
+
+def test_work_that_a_living_worker_takes_is_not_left_where_another_worker_is_missing(sample):
+    alive("quick")
+    run_requests.request(sample.world, sample.split, "knn", seed=7, send=False)
+    assert not workers_now().is_work_left
+    run_requests.request(sample.world, sample.split, "seq2seq", send=False)
+    assert workers_now().is_work_left
+
+
 def test_what_a_stopped_worker_left_behind_waits_too(sample):
-    requesting.request(sample.world, sample.split, "seq2seq", send=False)
-    requesting.request(sample.world, sample.split, "knn", seed=7, send=False)
+    run_requests.request(sample.world, sample.split, "seq2seq", send=False)
+    run_requests.request(sample.world, sample.split, "knn", seed=7, send=False)
     TrainingRun.objects.filter(status="queued", parser="knn").update(status="running")
     workers = workers_now()
     assert workers.summary == "No worker, 2 waiting"

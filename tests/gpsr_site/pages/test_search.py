@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.labelling import collect
+from annotations.labelling.collecting import collect
 from annotations.models import Entity, Paraphrase
 from tests.sample_world import make_paraphrase
 

@@ -28,6 +28,7 @@ from tests.gpsr_site.routes.sample_rows import (
     saved_slice,
     split,
     template,
+    upload,
     utterance,
     waiting_job,
     work_item,
@@ -141,7 +142,7 @@ KEYS: dict[str, RouteKeys] = {
     **dict.fromkeys(
         (
             *("job", "job_state", "job_cancel", "job_answer"),
-            *("api:job", "api:job-cancel", "api:job-answer"),
+            *("api:job", "api:job-cancel", "api:job-answer", "api:job-result"),
         ),
         pk_of(waiting_job),
     ),
@@ -151,6 +152,13 @@ KEYS: dict[str, RouteKeys] = {
             *("api:utterance-label", "api:utterance-spans", "api:utterance-candidates"),
         ),
         pk_of(utterance),
+    ),
+    **dict.fromkeys(
+        (
+            *("upload", "upload_undo", "upload_redo"),
+            *("api:upload", "api:upload-undo", "api:upload-redo"),
+        ),
+        pk_of(upload),
     ),
     **dict.fromkeys(("label_take_back", "api:label-take-back"), pk_of(answer_of_nobody)),
     **dict.fromkeys(

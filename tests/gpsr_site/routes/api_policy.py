@@ -23,8 +23,16 @@ READABLE = (
     *("slices", "slice", "error-categories", "error-category"),
     *("jobs", "job", "download", "history", "deleted", "comments", "comment"),
     *("members", "member", "labels", "audit", "download-part", "run-findings", "run-probes"),
-    *("complexity", "uncovered", "conflicts", "near-duplicates", "agreement", "progress"),
-    "split-changes",
+    *(
+        "complexity",
+        "uncovered",
+        "conflicts",
+        "near-duplicates",
+        "agreement",
+        "progress",
+        "guidelines",
+    ),
+    *("split-changes", "uploads", "upload", "utterances-export"),
 )
 # Lists that annotators add to, and rows that they change and delete.
 ADDED_BY_ANNOTATORS = ("entities", "predicates", "productions", "templates", "utterances", "splits")
@@ -91,6 +99,10 @@ API_POLICY = [
     Rule("api:comment", NO_TOKEN, NOWHERE, NO, NO, NO_VERSION, method="delete"),
     Rule("api:comment-restore", NO_TOKEN, NOWHERE, YES, YES, YES, method="post"),  # it is there
     Rule("api:generate", *annotators(YES), method="post"),
+    Rule("api:uploads", *annotators(400), method="post"),  # neither a file nor a text
+    Rule("api:upload-undo", *annotators(NO_JSON), method="post"),
+    Rule("api:upload-redo", *annotators(CLASH), method="post"),  # it is not undone
+    Rule("api:utterance", *annotators(NO_VERSION), method="delete"),
     Rule("api:history", *annotators(NO_JSON), method="post"),
     Rule("api:rename", *annotators(NO_VERSION), method="post"),
     *(Rule(f"api:{name}", *admins(400), method="post") for name in ("import", "import-pairs")),
@@ -111,6 +123,8 @@ API_POLICY = [
     Rule("api:label-take-back", *annotators(CLASH), method="post"),  # it is of nobody
     Rule("api:work-item-take", NO_TOKEN, NOWHERE, YES, CLASH, YES, method="post"),
     Rule("api:work-item-skip", *members(CLASH), method="post"),  # nobody holds it
+    Rule("api:job-result", NO_TOKEN, *[NOWHERE] * 4),  # it has made no file
+    Rule("api:parse-jobs", *members(NO_JSON), method="post"),
     Rule("api:parse-wrong", *members(NO_JSON), method="post"),
     # Everybody with a role decides about labels in doubt, reviewers let them be looked for
     Rule("api:audit-decide", *members(NO_JSON), method="post"),
@@ -120,6 +134,7 @@ API_POLICY = [
         for name in ("audit", "work-items", "example-send")
     ),
     # Admins say who does what
+    Rule("api:guidelines", *admins(NO_VERSION), method="patch"),
     Rule("api:queue-settings", *admins(YES)),
     Rule("api:queue-settings", *admins(NO_VERSION), method="patch"),
     *(

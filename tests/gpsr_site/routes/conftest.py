@@ -116,3 +116,8 @@ def other_sample(filled_worlds, db) -> SampleWorld:
 @pytest.fixture
 def other_world(other_sample) -> World:
     return other_sample.world
+
+
+@pytest.fixture
+def reviewer(logged_in_people, db) -> User:
+    return deepcopy(logged_in_people["reviewer"][0])

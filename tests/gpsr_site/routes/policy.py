@@ -85,6 +85,7 @@ POLICY = [
             "paraphrase",
             "utterances",
             "utterance",
+            "uploads",
             "splits",
             "split",
             "example",
@@ -187,6 +188,17 @@ POLICY = [
     Rule("split_new", *ANNOTATORS, method="post"),
     Rule("utterances_new", *ANNOTATORS),
     Rule("utterances_new", LOG_IN, NOWHERE, 422, NO, 422, method="post"),
+    *(Rule(name, *ANNOTATORS) for name in ("upload", "upload_undo", "utterances_delete")),
+    *(
+        Rule(name, LOG_IN, NOWHERE, outcome, NO, outcome, method="post")
+        for name, outcome in (
+            ("upload", YES),  # it is stored already
+            ("upload_undo", GONE_ON),
+            ("upload_redo", GONE_ON),
+            ("utterances_delete", YES),  # does not say how many
+            ("utterances_restore", GONE_ON),
+        )
+    ),
     Rule("label", *ANNOTATORS),
     Rule("label_item", *ANNOTATORS),
     Rule("label_answer", LOG_IN, NOWHERE, GONE_ON, NO, GONE_ON, method="post"),
@@ -239,6 +251,9 @@ POLICY = [
     Rule("promotion_roll_back", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("promotion_decline", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("queue_assign", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
+    Rule("guidelines", *MEMBERS),
+    Rule("guidelines", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
+    Rule("guidelines_preview", *ADMINS, method="post"),
     Rule("queue_settings", *ADMINS),
     Rule("queue_settings", *ADMINS, method="post"),
     *(Rule(name, *ADMINS) for name in ("import", "import_pairs")),

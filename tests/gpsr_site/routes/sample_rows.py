@@ -7,7 +7,7 @@ from datetime import timedelta
 from django.db.models import Model
 from django.utils import timezone
 
-from annotations.language.dialogue import Offer, Phase, State
+from annotations.language.dialogue import DialogueState, Offer, Phase
 from annotations.models import (
     AuditDecision,
     AuditFinding,
@@ -15,15 +15,16 @@ from annotations.models import (
     Job,
     Label,
     Membership,
+    Upload,
     User,
     Utterance,
     WorkItem,
 )
 from annotations.models.people import digest_of
 from annotations.models.worlds import Role
-from parser_service.conversing.offering import offer
+from parser_service.dialogues.entity_offers import offer
 from parser_service.models import Dialogue, OfferedEntity, Promotion, PromotionState, Slice
-from parser_service.reviewing.categories import ensure_categories
+from parser_service.reviews.world_categories import ensure_categories
 from tests.sample_world import SampleWorld, paraphrase_in
 
 
@@ -56,7 +57,8 @@ def invitation(sample: SampleWorld) -> Invitation:
     """Return an invitation to the world, whose link has a key that ``key_of`` knows."""
     later = timezone.now() + timedelta(days=1)
     values = {"roles": [Role.REVIEWER], "places": 100, "expires_at": later}
-    values["created_by"] = removable_member(sample)
+    values["created_by"], _ = User.objects.get_or_create(username=f"host of {sample.world}")
+    Membership.objects.get_or_create(world=sample.world, user=values["created_by"], role=Role.ADMIN)
     return Invitation.objects.get_or_create(
         world=sample.world, digest=digest_of(key_of(sample)), defaults=values
     )[0]
@@ -74,6 +76,14 @@ def join_keys(sample: SampleWorld) -> dict[str, object]:
 def utterance(sample: SampleWorld) -> Utterance:
     texts = {"text": "bring me tea", "anonymized_text": "bring me <object>"}
     return Utterance.objects.get_or_create(world=sample.world, **texts)[0]
+
+
+def upload(sample: SampleWorld) -> Upload:
+    """Return an upload that is stored and not undone, of an account that was deleted."""
+    values = {"added": 0, "stored_at": timezone.now()}
+    return Upload.objects.get_or_create(world=sample.world, file_name="said.csv", defaults=values)[
+        0
+    ]
 
 
 def answer_of_nobody(sample: SampleWorld) -> Label:
@@ -121,7 +131,7 @@ def review(sample: SampleWorld) -> Model:
 
 def dialogue(sample: SampleWorld) -> Dialogue:
     """Return a dialogue about a command that nobody understood."""
-    state = State(Phase.REPHRASING, prompt="Please say it another way.").as_json()
+    state = DialogueState(Phase.REPHRASING, prompt="Please say it another way.").as_json()
     values = {"state": state, "phase": "rephrasing"}
     return Dialogue.objects.get_or_create(world=sample.world, utterance="dance", defaults=values)[0]
 

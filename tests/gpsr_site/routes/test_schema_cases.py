@@ -19,25 +19,23 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from annotations.models import ApiToken, Notice
-from annotations.people.sessions import sessions_of
-from parser_service.promotion import promote
+from annotations.people.accounts import sessions_of
+from annotations.web.rest.streaming import JSON_LINES
+from parser_service.promotions.promoting import promote
 from tests.filled_world import save_parser
 from tests.gpsr_site.routes.addresses import KEYS, RouteKeys
+from tests.gpsr_site.routes.bodies import NAMES_IN_THE_SCHEMA, numbered
 from tests.parser_service.live_server import parse_server  # noqa: F401
 from tests.sample_world import SampleWorld, comment_in
 
 CASES = int(os.environ.get("TEST_SCHEMA_CASES", "60"))
-NAMES_IN_THE_SCHEMA = {"pk": "id"}
 WRITES = {"post": 4, "patch": 4, "delete": 1, "get": 2}  # how often one is tried beside the others
-STAND_INS = {
-    **{"world": "home", "id": "1", "run": "1", "split": "1"},
-    **{"kind": "template", "handle": "none", "part": "grammar"},
-}
 
 
 @pytest.fixture
 def operations():
     schemathesis = pytest.importorskip("schemathesis")
+    schemathesis.serializer.alias(JSON_LINES, "text/plain")
     described = Client().get("/api/v1/schema/", headers={"accept": "application/json"}).json()
     results = [*schemathesis.openapi.from_dict(described).get_all_operations()]
     step = -(
@@ -160,10 +158,3 @@ def point_to_rows(case: Any, caller: Caller) -> None:
     values |= {NAMES_IN_THE_SCHEMA.get(each, each): value for each, value in keys.items()}
     known = {each: value for each, value in values.items() if f"{{{each}}}" in case.path}
     case.path_parameters = {**(case.path_parameters or {}), **known}
-
-
-def numbered(path: str) -> str:
-    """Return an address of the form of ``path``."""
-    for name, value in STAND_INS.items():
-        path = path.replace(f"{{{name}}}", value)
-    return path

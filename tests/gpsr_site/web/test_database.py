@@ -12,7 +12,7 @@ from django.test import RequestFactory
 
 from gpsr_site.web import database
 from gpsr_site.web.deadlines import Deadline
-from gpsr_site.web.errors import is_outage
+from gpsr_site.web.error_pages import is_outage
 
 
 @pytest.fixture

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import threading
+import time
+from contextlib import contextmanager
 
 import pytest
 from django.http import HttpResponse
 from django.test import RequestFactory
 
+from annotations.web.rest.streaming import BrokenOff
 from gpsr_site.web import deadlines
-from gpsr_site.web.deadlines import Deadline, TookTooLong
+from gpsr_site.web.deadlines import Deadline, TookTooLong, Watchdog
 from tests.waiting import PATIENCE_SECONDS
 from tests.work import steps_of
 
@@ -84,3 +87,41 @@ def test_many_at_once_are_all_interrupted(half_a_second):
 
 def test_no_handler_of_errors_takes_it_for_one_of_its_own():
     assert not issubclass(TookTooLong, Exception)
+
+
+def test_an_interruption_that_arrives_when_the_request_ends_is_forgotten_with_it():
+    watchdog = Watchdog()
+    watched = watchdog.begin(PATIENCE_SECONDS)
+    lock = watchdog._lock
+
+    @contextmanager
+    def interrupting():
+        with lock:
+            if not watched.is_interrupted:
+                watched.is_interrupted = True
+                deadlines._raise_in(watched.thread, TookTooLong)
+            yield
+
+    class Lock:
+        def __enter__(self):
+            self._held = interrupting()
+            return self._held.__enter__()
+
+        def __exit__(self, *error):
+            return self._held.__exit__(*error)
+
+    watchdog._lock = Lock()
+    watchdog.end(watched)
+    assert watchdog._watched == {}
+
+
+def test_pieces_that_are_each_made_quickly_have_an_end_too():
+    def pieces():
+        for _ in range(4):
+            time.sleep(0.03)
+            yield b"."
+
+    answered = []
+    with pytest.raises(BrokenOff):
+        answered.extend(deadlines._bound(pieces(), 0.05))
+    assert len(answered) <= 2

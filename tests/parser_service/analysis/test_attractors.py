@@ -10,10 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from parser_service.analysis.attractors import find_attractors
-from parser_service.analysis.attractors.dispersion import (
+from parser_service.analysis.attractors import (
     compare_dispersion,
-    mean_distance,
+    find_attractors,
+    mean_distances,
     unit_vectors,
 )
 
@@ -99,7 +99,7 @@ def test_equal_seeds_give_equal_rows():
 def test_the_mean_distance_is_that_of_all_pairs(texts):
     vectors = unit_vectors(texts)
     pairs = [1 - float(a @ b) for a, b in combinations(vectors, 2)]
-    assert mean_distance(vectors) == pytest.approx(np.mean(pairs))
+    assert mean_distances(vectors, np.arange(len(vectors))) == pytest.approx(np.mean(pairs))
 
 
 def test_few_texts_are_dealt_in_every_way():

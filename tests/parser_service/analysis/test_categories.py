@@ -8,9 +8,9 @@ from hypothesis import assume, given
 from annotations.language.forms import canonical_text, read_form
 from parser_service.analysis.categories import (
     DESCRIPTIONS,
-    Audit,
     ErrorCategory,
     ErrorEvidence,
+    LabelDoubt,
     Neighbour,
     RunEvidence,
     propose_categories,
@@ -160,7 +160,7 @@ def test_an_attractor_that_is_worded_as_usual_is_no_default():
 
 
 def test_evidence_about_the_label_comes_first():
-    audit = Audit("The command says female, the label male.", GO)
+    audit = LabelDoubt("The command says female, the label male.", GO)
     suggested = propose_category(GOLD, GO, error=ErrorEvidence(audit=audit))
     assert suggested.first.category is ErrorCategory.WRONG_GOLD_LABEL
     assert suggested.first.reason == f"{audit.sentence} The answer is what the audit suggests."

@@ -14,8 +14,8 @@ from parser_service.analysis.comparing import (
     compare_runs,
     count_wins,
     holm,
+    mcnemar,
 )
-from parser_service.analysis.comparing.significance import mcnemar
 
 matrices = arrays.arrays(
     bool, st.tuples(st.integers(1, 4), st.integers(1, 40)), elements=st.booleans()

@@ -15,6 +15,7 @@ from parser_service.analysis.confusions import (
     confuse_heads,
     confuse_slots,
 )
+from parser_service.analysis.encoded_labels import encode
 
 FORMS = [
     '(go "<room>")',
@@ -32,7 +33,7 @@ def head(text):
 
 @given(pairs)
 def test_heads_are_counted_like_one_pair_at_a_time(rows):
-    confusion = confuse_heads([gold for gold, _ in rows], [answer for _, answer in rows])
+    confusion = confuse_heads(*(encode([head(row[side]) for row in rows]) for side in (0, 1)))
     expected = Counter((head(gold), head(answer)) for gold, answer in rows)
     for i, said in enumerate(confusion.heads):
         for j, answered in enumerate(confusion.heads):
@@ -62,4 +63,4 @@ def test_right_answers_confuse_no_slot(rows):
 
 def test_answers_have_to_fit_the_labels():
     with pytest.raises(ValueError, match="1 answers do not fit 2 labels"):
-        confuse_heads(FORMS[:2], FORMS[:1])
+        confuse_slots(FORMS[:2], FORMS[:1])

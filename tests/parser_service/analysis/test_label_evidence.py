@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from annotations.language.forms import read_form
 from parser_service.analysis.categories import (
-    Audit,
     ErrorEvidence,
+    LabelDoubt,
     SpokenFor,
     WordUse,
     propose_category,
@@ -82,9 +82,9 @@ def test_what_the_words_of_the_utterance_correct_is_compared_with_the_answer():
         read_form("(say (λ$1:e (biggest $1)))"),
     )
     answer = read_form('(say (λ$1:e (biggest $1) (is_a $1 "<category>")))')
-    sure = Audit("It says “biggest”.", corrected, is_sure=True)
+    sure = LabelDoubt("It says “biggest”.", corrected, is_sure=True)
     assert first(gold, answer, audit=sure)[0] == "extra_constraint"
-    assert first(gold, answer, audit=Audit("A parser.", corrected))[0] == "wrong_predicate"
+    assert first(gold, answer, audit=LabelDoubt("A parser.", corrected))[0] == "wrong_predicate"
 
 
 def test_a_text_that_training_has_with_other_names_is_ambiguous():

@@ -88,4 +88,4 @@ def test_scores_are_numbers(scores, message):
 
 def test_without_an_answer_there_is_no_risk():
     refusal = risk_coverage([0.5], np.array([False])).at(1.0)
-    assert (refusal.risk, refusal.risk_interval, refusal.coverage) == (None, None, 0.0)
+    assert (refusal.risk, refusal.coverage) == (None, 0.0)

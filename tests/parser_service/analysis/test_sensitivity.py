@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from annotations.language.forms import FormDistances, equivalent, read_form
-from parser_service.analysis.proportions import wilson_interval
+from parser_service.analysis.intervals import wilson_interval
 from parser_service.analysis.sensitivity import (
     ALL_KINDS,
     EditAnswers,

@@ -8,8 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from parser_service.analysis.clustered import Clustered, interval_of
-from parser_service.analysis.proportions import wilson_interval
-from parser_service.analysis.resampling import SAMPLES
+from parser_service.analysis.intervals import SAMPLES, wilson_interval
 from parser_service.analysis.slicing import (
     NO_FORM,
     accuracy_by,

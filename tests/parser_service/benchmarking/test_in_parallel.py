@@ -13,10 +13,11 @@ import pytest
 from django.conf import settings as site
 from django.core.management import CommandError, call_command
 
-from annotations.importing import import_generator
-from parser_service.benchmarking.cells import Group, jobs
+from annotations.importing.generator_import import import_generator
+from parser_service.benchmarking.benchmark_cells import TrialGroup
 from parser_service.benchmarking.corpus import read_corpus
 from parser_service.benchmarking.in_parallel import measure_in_parallel
+from parser_service.benchmarking.trials import trials
 from parser_service.management.options import read_column
 from parser_service.parsers.interface import Knowledge
 from tests.parser_service.made_up import TINY, make_folder
@@ -159,7 +160,7 @@ def test_a_refusal_of_the_parser_itself_is_a_sentence(folder, file):
     assert len(read(file)) == 3
 
 
-class Killed(Group):
+class Killed(TrialGroup):
     """A group whose process is killed after its first cell."""
 
     def measure(self):
@@ -168,9 +169,9 @@ class Killed(Group):
 
 
 def test_a_process_that_dies_is_a_sentence_for_each_cell_that_it_owes(folder):
-    todo = tuple(jobs(["knn"], [read_column(text) for text in ALIKE.split(",")], seeds=[0]))
+    todo = tuple(trials(["knn"], [read_column(text) for text in ALIKE.split(",")], seeds=[0]))
     known = (read_corpus(folder, "command"), Knowledge(), "")
-    answers = list(measure_in_parallel([Killed(todo, *known), Group(todo, *known)], 2))
+    answers = list(measure_in_parallel([Killed(todo, *known), TrialGroup(todo, *known)], 2))
     sentences = [answer for answer in answers if isinstance(answer, str)]
     assert len(answers) == 4
     assert sentences == [

@@ -9,11 +9,12 @@ import pytest
 from django.core.management import CommandError, call_command
 
 from annotations.generation.generating import generate_pairs
-from annotations.importing import import_generator, import_pairs
-from annotations.language.auditing import Reason
+from annotations.importing.generator_import import import_generator
+from annotations.importing.pair_import import import_pairs
+from annotations.language.label_errors import Reason
 from annotations.models import Command, Paraphrase
 from annotations.models.corpus import ParaphraseStatus
-from parser_service.audit import audit_labels
+from parser_service.label_audit.audit_job import audit_labels
 
 GO, FIND = '( go " <room> " )', '( find ( lambda $1 e ( is_a $1 " <object> " ) ) )'
 SAID = {
@@ -92,7 +93,7 @@ def test_a_world_with_too_few_pairs_is_told_so(sample):
 
 
 def test_the_published_faults_are_among_the_first(shared_data, world):
-    """FORMATS §5. Of the 23 published labels that say "male" of females, this copy holds two."""
+    """Of the 23 published labels that say "male" of females, this copy holds two."""
     assert not import_generator(world.name, shared_data / "generator-2018").is_refused
     generate_pairs(world)
     assert not import_pairs(world.name, "walker", shared_data / "walker2019").is_refused

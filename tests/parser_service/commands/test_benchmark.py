@@ -7,7 +7,8 @@ from itertools import groupby
 import pytest
 from django.core.management import CommandError
 
-from parser_service.benchmarking import cells as cells_module
+from parser_service.benchmarking import benchmark_cells as cells_module
+from parser_service.benchmarking.trials import trials
 from parser_service.management.options import read_column
 from parser_service.parsers.conditions import SETTINGS
 from tests.parser_service.commands.benchmark_run import run
@@ -59,7 +60,7 @@ def test_settings_that_train_alike_share_one_training(folder, tmp_path, monkeypa
     fits = []
     fit = cells_module._fit
     monkeypatch.setattr(
-        cells_module, "_fit", lambda job, *rest: fits.append(job) or fit(job, *rest)
+        cells_module, "_fit", lambda trial, *rest: fits.append(trial) or fit(trial, *rest)
     )
     cells = run(folder, tmp_path / "cells.json", seeds="2")
     assert len(cells) == 10 and len(fits) == 6
@@ -83,7 +84,7 @@ def test_columns_that_train_alike_stand_together():
         "gen+para-mixed:logical_form:strict", "gen+para-mixed:command:strict",
         "gen-para:command:strict", "gen+para-para:logical_form:strict",
     )  # fmt: skip
-    todo = list(cells_module.jobs(["ranker", "knn"], [read_column(text) for text in texts], [0, 1]))
+    todo = list(trials(["ranker", "knn"], [read_column(text) for text in texts], [0, 1]))
     assert len(todo) == len(set(todo)) == 2 * (7 + 6)
     trainings = [training for training, _ in groupby(todo, key=lambda job: job.training)]
     assert len(trainings) == len(set(trainings)) == 2 * (4 + 3)

@@ -15,9 +15,9 @@ from annotations.language.forms import read_form
 from annotations.language.predicates import infer_signatures
 from parser_service.analysis.probabilities import NO_PROBABILITY, probability_of
 from parser_service.analysis.scores import Judgement
-from parser_service.benchmarking.answers import Answer, Answers
-from parser_service.benchmarking.cells import Group, declared_by, jobs
-from parser_service.benchmarking.jobs import Column
+from parser_service.benchmarking.benchmark_cells import TrialGroup, declared_by
+from parser_service.benchmarking.measured_answers import PairAnswer, PartAnswers
+from parser_service.benchmarking.trials import TrialColumn, trials
 from parser_service.management.options import read_column
 from parser_service.parsers.interface import Knowledge, Pair, ScoreKind
 from tests.parser_service.made_up import make_folder
@@ -89,8 +89,8 @@ def test_a_similarity_is_no_probability_and_says_so(folder, tmp_path):
 
 
 def test_probabilities_are_measured_and_no_answer_counts_as_sure_to_be_wrong():
-    answers = Answers(
-        (Answer("a", RIGHT, -0.0), Answer("b", WRONG, -30.0), Answer("b", WRONG, None)),
+    answers = PartAnswers(
+        (PairAnswer("a", RIGHT, -0.0), PairAnswer("b", WRONG, -30.0), PairAnswer("b", WRONG, None)),
         seconds=0.003,
         kind=ScoreKind.LOG_PROBABILITY,
     )
@@ -116,23 +116,23 @@ def test_what_a_score_says(score, kind, probability):
 
 @pytest.mark.parametrize("setting", ["gen-gen", "gen+para-mixed"])
 def test_what_the_grammar_gives_is_no_test(setting):
-    (job,) = jobs(["ranker"], [Column(setting, "logical_form", "grammar")], seeds=[0])
-    [sentence] = Group((job,), None, Knowledge(), "").measure()
+    (trial,) = trials(["ranker"], [TrialColumn(setting, "logical_form", "grammar")], seeds=[0])
+    [sentence] = TrialGroup((trial,), None, Knowledge(), "").measure()
     assert sentence.startswith(f"ranker, grammar: {setting} would test it on what it has learned")
 
 
 def test_the_oracle_which_learns_nothing_may_be_tested_on_generated_commands():
-    (job,) = jobs(["grammar-oracle"], [Column("gen-gen", "command", "grammar")], seeds=[0])
-    job.require_unseen()
+    (trial,) = trials(["grammar-oracle"], [TrialColumn("gen-gen", "command", "grammar")], seeds=[0])
+    trial.require_unseen()
 
 
 def test_declared_by_training_alone_is_a_training_of_its_own_under_domain():
     texts = ("command:strict", "command:domain", "command:domain:training")
-    todo = list(jobs(["ranker"], [read_column(f"para-para:{text}") for text in texts], seeds=[0]))
-    assert [(job.protocol, job.declared) for job in todo] == [
+    todo = list(trials(["ranker"], [read_column(f"para-para:{text}") for text in texts], seeds=[0]))
+    assert [(trial.protocol, trial.declared) for trial in todo] == [
         ("strict", "all"), ("domain", "all"), ("domain", "training"),
     ]  # fmt: skip
-    assert len({job.training for job in todo}) == 3
+    assert len({trial.training for trial in todo}) == 3
 
 
 def test_only_what_training_forms_have_is_declared():
@@ -173,7 +173,7 @@ def test_only_known_ways_to_declare_are_taken(folder, tmp_path, column, sentence
 
 def test_new_splits_may_be_those_of_one_criterion_alone():
     columns = [read_column(f"para-para:{each}:strict") for each in ("command", "source_command")]
-    todo = jobs(["knn"], columns, [0], new_splits=range(14, 16), new_criteria=["source_command"])
-    assert [(job.criterion, job.split) for job in todo] == [
+    todo = trials(["knn"], columns, [0], new_splits=range(14, 16), new_criteria=["source_command"])
+    assert [(trial.criterion, trial.split) for trial in todo] == [
         ("command", None), ("source_command", 14), ("source_command", 15),
     ]  # fmt: skip

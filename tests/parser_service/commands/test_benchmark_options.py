@@ -47,6 +47,12 @@ def test_bad_input_is_a_sentence(folder, tmp_path, options, sentence):
     assert sentence in str(refused.value)
 
 
+def test_a_file_of_cells_that_cannot_be_read_is_named(folder, tmp_path):
+    with pytest.raises(CommandError) as refused:
+        run(folder, tmp_path)
+    assert str(tmp_path) in str(refused.value) and "Errno" not in str(refused.value)
+
+
 def test_a_broken_pair_file_is_named_with_its_line(folder, tmp_path):
     with (folder / "gen" / "val.txt").open("a") as file:
         file.write("one line too many\n")

@@ -6,7 +6,7 @@ import shutil
 
 import pytest
 
-from annotations.importing import import_generator
+from annotations.importing.generator_import import import_generator
 from parser_service.benchmarking.corpus import new_split, read_corpus, source_commands
 from parser_service.management.options import read_seeds
 from tests.parser_service.commands.benchmark_run import run

@@ -11,10 +11,10 @@ from django.core.management import CommandError, call_command
 from annotations.models import Entity, Ontology, Split
 from parser_service.models import TrainingRun
 from parser_service.runs import lifecycle
-from parser_service.runs.carrying_out.training import train
 from parser_service.runs.checkpoints import model_folder, remove_folder
-from parser_service.runs.requests import requesting
-from parser_service.serving.choosing import best_run
+from parser_service.runs.requests import run_requests
+from parser_service.runs.training.train_run import train
+from parser_service.serving.default_runs import best_run
 from tests.parser_service.made_up import TINY, make_split
 
 FETCH = '( bring ( lambda $1 e ( is_a $1 " <object> " ) ) )'
@@ -30,7 +30,7 @@ def split(world, transactional_db):
 
 
 def trained(split, parser="knn", **asked):
-    run, _ = requesting.request(split.world, split, parser, send=False, **asked)
+    run, _ = run_requests.request(split.world, split, parser, send=False, **asked)
     train(lifecycle.claim("the test", run.queue, run))
     run.refresh_from_db()
     assert run.status == "succeeded"
@@ -49,6 +49,16 @@ def test_every_parser_is_asked_as_people_speak_as_it_was_evaluated(split, source
     answer = ask("Bring me the red cup")
     assert (answer["run"], answer["parser"]) == (run.pk, "knn")
     assert answer["parsed_text"] == "Bring me the red cup"
+
+
+@pytest.mark.parametrize(
+    "asked", ["bring me the red c\u00adup", "bring\u200b me the\u00a0red cup\ufeff"]
+)
+def test_what_does_not_show_changes_no_answer(split, asked):
+    trained(split, train_sources="gen")
+    assert ask(asked) == ask("bring me the red cup")
+    with pytest.raises(CommandError):
+        ask("\u200b")
 
 
 def test_an_answer_names_the_entities_that_the_utterance_names(split):
@@ -146,7 +156,7 @@ def test_what_cannot_be_answered_is_a_sentence(split, options, sentence):
 
 
 def test_a_run_that_has_not_succeeded_is_not_asked(split):
-    run, _ = requesting.request(split.world, split, "knn", send=False)
+    run, _ = run_requests.request(split.world, split, "knn", send=False)
     with pytest.raises(CommandError, match=f"Run {run.pk} is queued"):
         ask("bring me the red cup", "--run", str(run.pk))
 

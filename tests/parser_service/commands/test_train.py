@@ -18,7 +18,7 @@ from django.utils import timezone
 from annotations.models import Split
 from parser_service.models import TrainingRun
 from parser_service.runs import lifecycle
-from parser_service.runs.requests import requesting
+from parser_service.runs.requests import run_requests
 from tests.parser_service.made_up import LONG, make_split
 from tests.parser_service.worker_process import ROOT, database_url, wait_for_epochs
 from tests.waiting import PATIENCE_SECONDS, wait_for
@@ -169,7 +169,7 @@ def test_ctrl_c_cancels_the_run(split):
 
 
 def test_a_run_whose_worker_is_gone_is_finished_here(split):
-    run, _ = requesting.request(split.world, split, "knn", train_sources="gen+para", send=False)
+    run, _ = run_requests.request(split.world, split, "knn", train_sources="gen+para", send=False)
     lifecycle.claim("cpu-1@elsewhere", run.queue, run)
     TrainingRun.objects.update(lease_until=timezone.now())
     assert call("knn", *HERE)["attempts"] == 2

@@ -9,7 +9,7 @@ from django.apps import apps
 
 from parser_service.models import Evaluation
 from tests.parser_service.made_up import make_split
-from tests.parser_service.runs.carrying_out.test_training import trained
+from tests.parser_service.runs.training.test_train_run import trained
 
 migration = import_module("parser_service.migrations.0014_evaluations_by_cluster")
 

@@ -6,10 +6,10 @@ from shutil import rmtree
 
 import pytest
 
+from parser_service.parsers import pretrained_files
 from parser_service.parsers.hyperparameters.seq2seq import Seq2SeqConfig
 from parser_service.parsers.interface import Cancelled, Observer, Pair
 from parser_service.parsers.registry import load_class
-from parser_service.parsers.weights import encoder_places
 
 SMALL = Seq2SeqConfig(
     embedding_size=16,
@@ -115,7 +115,7 @@ def pairs():
 @pytest.fixture(scope="session")
 def trained(pairs):
     """A parser that knows the toy language, from all pairs but one."""
-    from parser_service.neural.seq2seq.parser import Seq2Seq
+    from parser_service.neural.seq2seq.seq2seq_parser import Seq2Seq
 
     parser = Seq2Seq(LONGER, seed=1)
     parser.fit([pair for pair in pairs if pair.utterance != HELD_OUT])
@@ -144,5 +144,5 @@ def encoders(tmp_path_factory):
 @pytest.fixture
 def kept_there(encoders, tmp_path, monkeypatch):
     """Has parsers find those encoders, and keep vectors in a folder of the test."""
-    monkeypatch.setattr(encoder_places, "_encoders", encoders)
-    monkeypatch.setattr(encoder_places, "_vectors", tmp_path / "vectors")
+    monkeypatch.setattr(pretrained_files, "_encoders", encoders)
+    monkeypatch.setattr(pretrained_files, "_vectors", tmp_path / "vectors")

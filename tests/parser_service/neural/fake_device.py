@@ -14,12 +14,12 @@ from torch.utils._python_dispatch import TorchDispatchMode, return_and_correct_a
 CPU = torch.device("cpu")
 FAKE = torch.device("meta")  # the only other device for which torch's autograd needs no hardware
 CALLERS = (
-    "seq2seq.parser",
+    "seq2seq.seq2seq_parser",
     "ranker.fitting",
-    "t5.parser",
+    "t5.t5_parser",
     "word_vectors.contextual",
     "word_vectors.elmo",
-    "word_vectors.elmo_weights",
+    "word_vectors.elmo_files",
 )  # the modules that call processor()
 ATEN = torch.ops.aten
 PACK = ATEN._pack_padded_sequence.default

@@ -5,9 +5,8 @@ import pytest
 import torch
 
 from parser_service.neural.device import bf16_on_gpu, denormals_flushed, full_fp32
-from parser_service.neural.seq2seq.batches import Example, collate, sources
-from parser_service.neural.seq2seq.embeddings import Dropout
-from parser_service.neural.seq2seq.model import Seq2SeqModel
+from parser_service.neural.seq2seq.batches import NumberedPair, collate, sources
+from parser_service.neural.seq2seq.lstm import Dropout, Seq2SeqModel
 from parser_service.neural.word_vectors.contextual import TransformerWords
 from parser_service.parsers.interface import Cancelled
 from parser_service.parsers.words import words
@@ -144,7 +143,7 @@ def test_on_the_cpu_nothing_is_in_bf16_and_full_fp32_changes_nothing():
 
 def test_the_loss_is_in_fp32():
     model = Seq2SeqModel(SMALL, 12, 9, torch.Generator().manual_seed(1))
-    assert model.loss(collate([Example([4], [5])])).dtype == torch.float32
+    assert model.loss(collate([NumberedPair([4], [5])])).dtype == torch.float32
 
 
 def test_denormal_numbers_are_zero_inside_the_block_alone():

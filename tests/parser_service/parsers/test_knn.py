@@ -1,5 +1,6 @@
 import pytest
 
+from annotations.language.errors import Refusal
 from parser_service.parsers.interface import Cancelled, Candidate, Pair
 from parser_service.parsers.knn import NearestNeighbour, NearestNeighbourConfig
 from tests.parser_service.parsers.pair_files import read_pairs
@@ -85,8 +86,9 @@ def test_saved_and_loaded_it_answers_alike(parser, tmp_path):
 
 
 def test_without_training_pairs_it_refuses():
-    with pytest.raises(ValueError, match="no training pair"):
+    with pytest.raises(Refusal) as refused:
         NearestNeighbour().fit([])
+    assert refused.value.code == "no_training_pairs"
 
 
 def test_a_cancelled_prediction_stops(parser):

@@ -1,5 +1,6 @@
 import pytest
 
+from annotations.language.errors import Refusal
 from annotations.language.grammar import Grammar, read_productions
 from annotations.language.ontology import Entity, Ontology
 from annotations.language.templates import (
@@ -84,14 +85,16 @@ def test_saved_it_parses_without_the_world(oracle, tmp_path):
 def test_an_altered_grammar_is_refused(oracle, tmp_path):
     oracle.save(tmp_path)
     (tmp_path / GRAMMAR).write_text((tmp_path / GRAMMAR).read_text().replace("seek", "find"))
-    with pytest.raises(ValueError, match=r"grammar\.json is not the file that was saved"):
+    with pytest.raises(Refusal, match=r"grammar\.json is not the file that was saved") as refused:
         GrammarOracle.load(tmp_path)
+    assert refused.value.code == "saved_file_altered"
 
 
 @pytest.mark.parametrize("knowledge", [Knowledge(), Knowledge(grammar=(category("1"),))])
 def test_without_templates_it_refuses(knowledge):
-    with pytest.raises(ValueError, match="it was given none"):
+    with pytest.raises(Refusal) as refused:
         GrammarOracle(knowledge=knowledge).fit()
+    assert refused.value.code == "no_templates"
 
 
 def test_with_templates_there_is_nothing_to_learn(oracle):

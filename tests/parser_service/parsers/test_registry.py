@@ -5,6 +5,7 @@ from dataclasses import FrozenInstanceError, is_dataclass
 
 import pytest
 
+from annotations.language.errors import Refusal
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.interface import Parser, ScoreKind
 from parser_service.parsers.registry import (
@@ -46,17 +47,16 @@ def test_every_hyperparameter_has_a_description_and_a_default_within_its_bounds(
 
 
 def test_an_unknown_parser_is_refused_with_the_names_there_are():
-    with pytest.raises(
-        ValueError, match="No parser is called 'transformer'; there are: grammar-or"
-    ):
+    with pytest.raises(Refusal) as refused:
         make_config("transformer")
+    assert refused.value.code == "unknown_parser"
 
 
-def test_reading_the_hyperparameters_of_every_parser_loads_no_torch():
+def test_reading_the_hyperparameters_of_every_parser_loads_neither_torch_nor_sklearn():
     code = (
         "import sys; from parser_service.parsers.registry import PARSERS, config_fields, make_config\n"
         "for name in PARSERS: config_fields(name), make_config(name)\n"
-        "sys.exit('torch' in sys.modules)"
+        "sys.exit(bool({'torch', 'scipy', 'sklearn'} & {*sys.modules}))"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
@@ -64,12 +64,18 @@ def test_reading_the_hyperparameters_of_every_parser_loads_no_torch():
 def test_loading_a_class_leaves_the_garbage_collector_on():
     assert gc.isenabled()
     load_class("knn")
-    with pytest.raises(ValueError, match="No parser is called"):
+    with pytest.raises(Refusal) as refused:
         load_class("nobody")
+    assert refused.value.code == "unknown_parser"
     assert gc.isenabled()
 
 
 @pytest.mark.parametrize("name", PARSERS)
 def test_every_parser_says_what_its_scores_are(name):
-    kinds = {"grammar-oracle": None, "llm": None, "knn": ScoreKind.SIMILARITY}
+    kinds = {
+        "grammar-oracle": None,
+        "llm": None,
+        "knn": ScoreKind.SIMILARITY,
+        "linear": ScoreKind.PROBABILITY,
+    }
     assert load_class(name).score_kind == kinds.get(name, ScoreKind.LOG_PROBABILITY)

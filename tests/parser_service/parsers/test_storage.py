@@ -2,6 +2,7 @@ import json
 
 import pytest
 
+from annotations.language.errors import Refusal
 from parser_service.parsers.interface import Pair
 from parser_service.parsers.knn import NearestNeighbour
 from parser_service.parsers.nearest_pairs import PAIRS
@@ -34,43 +35,60 @@ def test_saving_again_gives_the_same_bytes(folder, tmp_path_factory):
 
 def test_an_altered_file_is_refused(folder):
     (folder / PAIRS).write_text((folder / PAIRS).read_text().replace("kitchen", "bedroom"))
-    with pytest.raises(ValueError, match=r"pairs\.json is not the file that was saved"):
+    with pytest.raises(Refusal, match=r"pairs\.json is not the file that was saved") as refused:
         NearestNeighbour.load(folder)
+    assert refused.value.code == "saved_file_altered"
+
+
+@pytest.mark.parametrize(
+    "written", [b"[" * 100_000, b'{"a":' * 100_000, b"\xff", b"", b"[]"], ids=len
+)
+def test_a_configuration_that_nobody_wrote_is_refused(written, folder):
+    (folder / CONFIG).write_bytes(written)
+    with pytest.raises(Refusal, match=r"config\.json .*(JSON file|describe a parser)") as refused:
+        NearestNeighbour.load(folder)
+    assert refused.value.code == "saved_parser_unreadable"
 
 
 def test_a_missing_file_is_refused(folder):
     (folder / PAIRS).unlink()
-    with pytest.raises(ValueError, match=r"pairs\.json is missing"):
+    with pytest.raises(Refusal, match=r"pairs\.json is missing") as refused:
         NearestNeighbour.load(folder)
+    assert refused.value.code == "saved_file_missing"
 
 
 def test_an_empty_folder_is_refused(tmp_path):
-    with pytest.raises(ValueError, match=r"config\.json is missing"):
+    with pytest.raises(Refusal, match=r"config\.json is missing") as refused:
         NearestNeighbour.load(tmp_path)
+    assert refused.value.code == "saved_file_missing"
 
 
 @pytest.mark.parametrize("content", [b"\x80\x04\x95", b"not json", b"[]", b"{}"])
 def test_a_config_that_describes_no_parser_is_refused(folder, content):
     (folder / CONFIG).write_bytes(content)
-    with pytest.raises(ValueError, match=r"config\.json (is not a JSON|does not describe)"):
+    with pytest.raises(Refusal, match=r"config\.json (is not a JSON|does not describe)") as refused:
         NearestNeighbour.load(folder)
+    assert refused.value.code == "saved_parser_unreadable"
 
 
 def test_another_parser_or_version_is_refused(folder):
     rewrite(folder / CONFIG, version=99)
-    with pytest.raises(ValueError, match="holds version 99 of knn, not version 1 of knn"):
+    with pytest.raises(Refusal, match="holds version 99 of knn, not version 1 of knn") as refused:
         NearestNeighbour.load(folder)
+    assert refused.value.code == "other_parser_version"
 
 
 def test_an_older_version_that_answers_as_it_did_is_read(folder, monkeypatch):
     monkeypatch.setattr(NearestNeighbour, "version", 3)
-    with pytest.raises(ValueError, match="holds version 1 of knn, not version 3 of knn"):
+    with pytest.raises(Refusal, match="holds version 1 of knn, not version 3 of knn") as refused:
         NearestNeighbour.load(folder)
+    assert refused.value.code == "other_parser_version"
     monkeypatch.setattr(NearestNeighbour, "reads", (1, 2))
     assert NearestNeighbour.load(folder).predict(["go"])[0][0].form == '( go " <room> " )'
 
 
 def test_a_hyperparameter_out_of_bounds_is_refused(folder):
     rewrite(folder / CONFIG, config={"least_overlap": 2})
-    with pytest.raises(ValueError, match="at most 1"):
+    with pytest.raises(Refusal, match="at most 1") as refused:
         NearestNeighbour.load(folder)
+    assert refused.value.code == "hyperparameter_out_of_range"

@@ -8,6 +8,7 @@ import pytest
 from django.utils import timezone
 
 from annotations.background import claim_in_turn, finish, wake_for_forgotten
+from annotations.language.errors import Refusal
 from parser_service.models import Checkpoint, TrainingRun
 from parser_service.parsers.interface import EpochReport
 from parser_service.runs import lifecycle
@@ -170,8 +171,9 @@ def test_a_run_that_has_ended_cannot_be_cancelled(split):
     ask(split)
     run = claim()
     lifecycle.finish(run, 0, 1.0)
-    with pytest.raises(ValueError, match=f"Run {run.pk} has already ended: succeeded"):
+    with pytest.raises(Refusal, match=f"Run {run.pk} has already ended: succeeded") as refused:
         lifecycle.cancel(run)
+    assert refused.value.code == "already_ended"
 
 
 def test_a_run_that_was_to_be_cancelled_is_not_resumed(split):

@@ -9,7 +9,7 @@ import pytest
 from django.db import connection
 
 from annotations.background import LEASE
-from parser_service.runs.requests import requesting
+from parser_service.runs.requests import run_requests
 from tests.parser_service.made_up import LONG
 from tests.parser_service.proxy import Proxy
 from tests.parser_service.worker_process import wait_for_epochs
@@ -34,7 +34,7 @@ def proxy(transactional_db):
 @can_be_cut_off
 def test_short_outages_cost_no_attempt(world, split, start_worker, proxy):
     start_worker(database_port=proxy.port, tempo=TEMPO)
-    run, _ = requesting.request(world, split, "seq2seq", LONG)
+    run, _ = run_requests.request(world, split, "seq2seq", LONG)
     for epoch in (2, 4, 6):
         wait_for_epochs(run, epoch)
         proxy.cut(1.5)
@@ -49,7 +49,7 @@ def test_a_long_outage_hands_the_run_back_and_says_how_long_it_was(
     world, split, start_worker, proxy
 ):
     start_worker(database_port=proxy.port, tempo=TEMPO)
-    run, _ = requesting.request(world, split, "seq2seq", LONG)
+    run, _ = run_requests.request(world, split, "seq2seq", LONG)
     wait_for_epochs(run, 2)
     proxy.cut(LEASE.total_seconds() / TEMPO + 3)
     away = run.events.filter(message__startswith="The database was away for")
@@ -65,7 +65,7 @@ def test_a_writer_that_locks_everybody_out_for_longer_than_a_lease_costs_no_atte
     world, split, start_worker
 ):
     start_worker(tempo=TEMPO)
-    run, _ = requesting.request(world, split, "seq2seq", LONG)
+    run, _ = run_requests.request(world, split, "seq2seq", LONG)
     wait_for_epochs(run, 2)
     other = sqlite3.connect(connection.settings_dict["NAME"], isolation_level=None, timeout=10)
     other.execute("BEGIN IMMEDIATE")

@@ -11,8 +11,8 @@ from django.db import OperationalError, connection, transaction
 
 from parser_service.models import TrainingRun, Worker
 from parser_service.runs import lifecycle
-from parser_service.runs.carrying_out.training import train
-from parser_service.runs.requests import requesting
+from parser_service.runs.requests import run_requests
+from parser_service.runs.training.train_run import train
 from tests.parser_service.made_up import LONG, TINY
 from tests.parser_service.worker_process import states, wait_for_epochs, wait_for_status
 from tests.waiting import LOOK_EVERY, wait_for
@@ -33,7 +33,7 @@ def undisturbed(split) -> list[list[tuple[str, float]]]:
 
 
 def train_here(split) -> list[list[tuple[str, float]]]:
-    run, _ = requesting.request(split.world, split, "seq2seq", SHORT, seed=SEED, send=False)
+    run, _ = run_requests.request(split.world, split, "seq2seq", SHORT, seed=SEED, send=False)
     train(lifecycle.claim("the test", run.queue, run))
     answers = predicted(run)
     run.delete()
@@ -62,7 +62,7 @@ def kill_both(worker) -> None:
 @pytest.mark.parametrize("kill", [kill_worker, kill_child, kill_both])
 def test_a_killed_run_goes_on_to_the_same_result(world, split, undisturbed, start_worker, kill):
     worker = start_worker()
-    run, _ = requesting.request(world, split, "seq2seq", SHORT, seed=SEED)
+    run, _ = run_requests.request(world, split, "seq2seq", SHORT, seed=SEED)
     wait_for_epochs(run, 5)
     kill(worker)
     run.refresh_from_db()
@@ -80,7 +80,7 @@ def test_a_killed_run_goes_on_to_the_same_result(world, split, undisturbed, star
 
 def test_a_child_does_not_outlive_its_killed_parent(world, split, start_worker):
     worker = start_worker()
-    run, _ = requesting.request(world, split, "seq2seq", LONG)
+    run, _ = run_requests.request(world, split, "seq2seq", LONG)
     wait_for_epochs(run, 1)
     children = worker.children()
     assert children
@@ -97,7 +97,7 @@ def test_a_paused_worker_that_comes_back_late_writes_nothing(
     world, split, undisturbed, start_worker
 ):
     paused = start_worker()
-    run, _ = requesting.request(world, split, "seq2seq", SHORT, seed=SEED)
+    run, _ = run_requests.request(world, split, "seq2seq", SHORT, seed=SEED)
     wait_for_epochs(run, 5)
     pause_between_writes(paused, run)
     start_worker()
@@ -136,7 +136,7 @@ def can_be_written(run) -> bool:
 
 
 def test_a_run_that_loses_three_workers_is_lost_and_says_what_to_do(world, split, start_worker):
-    run, _ = requesting.request(world, split, "seq2seq", LONG)
+    run, _ = run_requests.request(world, split, "seq2seq", LONG)
     worker = start_worker()
     for attempt in (1, 2, 3):
         wait_for(

@@ -13,7 +13,7 @@ import pytest
 from annotations.background import send_wake_up
 from parser_service.models import Worker
 from parser_service.runs import lifecycle
-from parser_service.runs.requests import requesting
+from parser_service.runs.requests import run_requests
 from tests.parser_service.made_up import LONG, TINY
 from tests.parser_service.worker_process import ROOT, wait_for_epochs, wait_for_status
 from tests.waiting import PATIENCE_SECONDS, wait_for
@@ -34,7 +34,7 @@ def worker(start_worker):
 
 
 def test_a_worker_shows_that_it_lives_and_trains_what_is_asked_for(world, split, worker):
-    run, _ = requesting.request(world, split, "knn", train_sources="gen+para")
+    run, _ = run_requests.request(world, split, "knn", train_sources="gen+para")
     wait_for_status(run, "succeeded")
     assert run.evaluations.count() == 6
     assert run.predictions.best().count() == 24
@@ -43,15 +43,15 @@ def test_a_worker_shows_that_it_lives_and_trains_what_is_asked_for(world, split,
 
 
 def test_the_timer_ticks_while_a_child_trains(world, split, worker):
-    run, _ = requesting.request(world, split, "seq2seq", LONG)
+    run, _ = run_requests.request(world, split, "seq2seq", LONG)
     wait_for_epochs(run, 1)
     seen = Worker.objects.get().last_seen
     wait_for(lambda: Worker.objects.get().last_seen > seen, "the worker's row is written")
 
 
 def test_a_second_run_waits_for_the_first(world, split, worker):
-    first, _ = requesting.request(world, split, "seq2seq", {**TINY, "epochs": 20}, seed=1)
-    second, _ = requesting.request(world, split, "seq2seq", {**TINY, "epochs": 1}, seed=2)
+    first, _ = run_requests.request(world, split, "seq2seq", {**TINY, "epochs": 20}, seed=1)
+    second, _ = run_requests.request(world, split, "seq2seq", {**TINY, "epochs": 1}, seed=2)
     wait_for_status(second, "succeeded")
     first.refresh_from_db()
     assert first.status == "succeeded"
@@ -63,9 +63,9 @@ def test_a_second_run_waits_for_the_first(world, split, worker):
 def test_a_short_run_passes_a_long_one_in_a_process_without_torch(world, split, start_worker):
     training, quick = start_worker("cpu", "gpu"), start_worker("quick")
     wait_for(lambda: Worker.objects.alive().count() == 2, "two workers show themselves")
-    long, _ = requesting.request(world, split, "seq2seq", LONG)
+    long, _ = run_requests.request(world, split, "seq2seq", LONG)
     wait_for_epochs(long, 1)
-    short, _ = requesting.request(world, split, "knn")
+    short, _ = run_requests.request(world, split, "knn")
     wait_for_status(short, "succeeded")
     long.refresh_from_db()
     assert (long.status, long.worker.partition("-")[0]) == ("running", "cpu")
@@ -77,10 +77,10 @@ def test_a_short_run_passes_a_long_one_in_a_process_without_torch(world, split, 
 
 def test_a_worker_without_a_queue_takes_all_work_in_turn(world, split, start_worker):
     runs = [
-        requesting.request(world, split, "seq2seq", {**TINY, "epochs": 2}, seed=seed)[0]
+        run_requests.request(world, split, "seq2seq", {**TINY, "epochs": 2}, seed=seed)[0]
         for seed in range(2)
     ]
-    runs.append(requesting.request(world, split, "knn", send=False)[0])
+    runs.append(run_requests.request(world, split, "knn", send=False)[0])
     start_worker()
     for run in runs:
         wait_for_status(run, "succeeded")
@@ -89,12 +89,12 @@ def test_a_worker_without_a_queue_takes_all_work_in_turn(world, split, start_wor
 
 
 def test_cancelling_a_running_run_takes_effect_long_before_its_end(world, split, worker):
-    run, _ = requesting.request(world, split, "seq2seq", LONG)
+    run, _ = run_requests.request(world, split, "seq2seq", LONG)
     wait_for_epochs(run, 2)
     lifecycle.cancel(run)
     wait_for_status(run, "cancelled")
     assert run.epochs.count() < LONG["epochs"] / 10
-    follower, _ = requesting.request(world, split, "knn")
+    follower, _ = run_requests.request(world, split, "knn")
     wait_for_status(follower, "succeeded")
 
 
@@ -102,7 +102,7 @@ def test_stopping_the_service_hands_the_run_back_and_the_next_start_goes_on(
     world, split, start_worker
 ):
     first = start_worker()
-    run, _ = requesting.request(world, split, "seq2seq", LONG)
+    run, _ = run_requests.request(world, split, "seq2seq", LONG)
     wait_for_epochs(run, 3)
     assert first.stop() == 0
     run.refresh_from_db()
@@ -123,14 +123,14 @@ def test_every_way_to_stop_a_worker_is_a_stop_in_good_order(worker, number):
 def test_a_run_whose_message_was_lost_is_picked_up_by_the_timer(world, split, worker):
     seen = Worker.objects.get().last_seen
     wait_for(lambda: Worker.objects.get().last_seen > seen, "the first tick is over")
-    run, _ = requesting.request(world, split, "knn", send=False)
+    run, _ = run_requests.request(world, split, "knn", send=False)
     wait_for_status(run, "succeeded")
 
 
 def test_wake_ups_for_nothing_hold_nobody_up(world, split, worker):
     for queue in ("quick", "cpu", "gpu", "cpu"):
         send_wake_up(queue)
-    run, _ = requesting.request(world, split, "knn")
+    run, _ = run_requests.request(world, split, "knn")
     wait_for_status(run, "succeeded")
 
 
@@ -139,7 +139,7 @@ def test_of_two_workers_racing_for_one_run_one_wins(world, split, start_worker):
     start_worker()
     wait_for(lambda: Worker.objects.alive().count() == 2, "two workers show themselves")
     for seed in range(4):
-        run, _ = requesting.request(world, split, "knn", seed=seed)
+        run, _ = run_requests.request(world, split, "knn", seed=seed)
         send_wake_up("quick")
         wait_for_status(run, "succeeded")
         assert run.attempt == 1

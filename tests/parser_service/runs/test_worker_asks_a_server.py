@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from parser_service.models import Worker
-from parser_service.parsers.llm.places import Server
+from parser_service.parsers.llm.server_address import ModelServer
 from parser_service.runs import lifecycle
-from parser_service.runs.requests import requesting
+from parser_service.runs.requests import run_requests
 from tests.parser_service.llm_server import KEY, MODEL, REPORTED, fails, installed, tiny_server
 from tests.parser_service.runs.test_worker import has_loaded_torch
 from tests.parser_service.worker_process import wait_for_status
@@ -22,7 +22,7 @@ pytestmark = [pytest.mark.processes, pytest.mark.django_db(transaction=True)]
 def test_runs_end_or_stop_without_torch_and_the_key_is_in_no_log(
     world, split, start_worker, monkeypatch
 ):
-    with tiny_server() as tiny, installed(Server(tiny.url, KEY)):
+    with tiny_server() as tiny, installed(ModelServer(tiny.url, KEY)):
         monkeypatch.setenv("GPSR_LLM_URL", tiny.url)
         monkeypatch.setenv("GPSR_LLM_KEY", KEY)
         monkeypatch.setenv("LOG_LEVEL", "DEBUG")
@@ -30,7 +30,7 @@ def test_runs_end_or_stop_without_torch_and_the_key_is_in_no_log(
         wait_for(Worker.objects.alive().exists, "the worker shows itself")
 
         def ask(seed: int):
-            return requesting.request(world, split, "llm", {"model": MODEL}, seed=seed)[0]
+            return run_requests.request(world, split, "llm", {"model": MODEL}, seed=seed)[0]
 
         tiny.always = fails(401, f"Wrong key: {KEY}")
         refused = ask(0)

@@ -7,8 +7,8 @@ import json
 
 import pytest
 
-from parser_service.promotion import promote
-from parser_service.serving.application import Application
+from parser_service.promotions.promoting import promote
+from parser_service.serving.application import ParseApplication
 from parser_service.serving.metrics import Metrics
 from parser_service.serving.shelf import LINES_TOGETHER, Shelf
 from tests.parser_service.served import make_home, trained_run
@@ -27,7 +27,7 @@ def shelf(world):
 @pytest.fixture
 def ask(shelf):
     """Returns a function that sends a request and returns status, content type and body."""
-    application = Application(shelf, "a secret", lambda: None)
+    application = ParseApplication(shelf, "a secret", lambda: None)
 
     def send(path, body=b"", secret="a secret", method="POST", kind="application/json", query=""):
         said = {}
@@ -111,3 +111,10 @@ def test_what_is_not_there_is_refused(ask):
     assert ask(PARSE, method="GET")[0] == 405
     assert ask(PARSE, b'{"utterance": "go", "run": 999}')[0] == 409
     assert ask(PARSE, b"{}", kind="application/jsonl", query="beam=x")[0] == 400
+
+
+@pytest.mark.parametrize("query", ["beam=x", "run=x", "beam=0"])
+def test_numbers_that_are_none_are_refused_in_words_of_ours(ask, query):
+    status, _, answer = ask(PARSE, b"{}", kind="application/jsonl", query=query)
+    said = json.loads(answer)["detail"]
+    assert status == 400 and "whole number" in said and "invalid literal" not in said

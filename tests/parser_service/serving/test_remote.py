@@ -9,12 +9,12 @@ import time
 
 import pytest
 
-from parser_service.parsers.llm.places import Server
-from parser_service.promotion import promote
+from parser_service.parsers.llm.server_address import ModelServer
+from parser_service.promotions.promoting import promote
 from parser_service.serving import remote
-from parser_service.serving.application import Application
-from parser_service.serving.client import PATIENCE
+from parser_service.serving.application import ParseApplication
 from parser_service.serving.metrics import Metrics
+from parser_service.serving.parser_client import PATIENCE
 from parser_service.serving.shelf import NotServed, Shelf
 from tests.parser_service.live_server import parse_server  # noqa: F401
 from tests.parser_service.llm_server import (
@@ -92,7 +92,7 @@ def test_a_server_that_fails_is_a_sentence_and_a_later_question_is_answered(
 
 
 def test_an_installation_without_a_server_says_so(shelf):
-    with installed(Server()):
+    with installed(ModelServer()):
         other = Shelf(10_000_000, Metrics())
         other.update()
         with pytest.raises(NotServed, match="GPSR_LLM_URL is not set"):
@@ -127,7 +127,7 @@ def test_other_parsers_answer_while_it_waits_and_too_many_are_refused(
 
 
 def test_lines_are_answered_in_parts_and_those_without_an_answer_say_why(shelf, tiny):
-    application = Application(shelf, "a secret", lambda: None)
+    application = ParseApplication(shelf, "a secret", lambda: None)
     lines = [json.dumps({"utterance": f"bring me the bowl {number}"}) for number in range(6)]
     body = "\n".join(lines).encode()
     tiny.faults = remote.TOGETHER * [says(json.dumps({"form": FETCH}))]

@@ -7,10 +7,10 @@ import json
 import pytest
 
 from annotations.models import Entity, World
-from parser_service.promotion import promote
-from parser_service.runs.carrying_out.knowledge import knowledge_of
+from parser_service.promotions.promoting import promote
 from parser_service.runs.checkpoints import model_folder, remove_folder
-from parser_service.runs.requests import requesting
+from parser_service.runs.requests import run_requests
+from parser_service.runs.training.knowledge import knowledge_of
 from parser_service.serving.metrics import Metrics
 from parser_service.serving.shelf import NotServed, Shelf
 from tests.parser_service.served import make_home, trained_run
@@ -99,6 +99,21 @@ def test_a_parser_that_cannot_be_loaded_leaves_the_old_one(split, shelf):
     assert "Bring that folder back, or train again" in said["problem"]
 
 
+def test_a_fault_of_the_program_is_in_the_log_and_not_among_what_people_read(
+    split, shelf, monkeypatch, caplog
+):
+    def break_down(run):
+        raise ValueError("inner words of a library")
+
+    run = trained_run(split)
+    promote(run, None)
+    monkeypatch.setattr("parser_service.serving.shelf.load_anew", break_down)
+    shelf.update()
+    (said,) = shelf.describe()
+    assert f"Run {run.pk} could not be loaded" in said["problem"]
+    assert "inner words" not in said["problem"] and "inner words" in caplog.text
+
+
 def test_an_entity_that_is_added_is_known_from_then_on(split, shelf):
     promote(trained_run(split, train_sources="gen"), None)
     shelf.update()
@@ -159,7 +174,7 @@ def test_what_cannot_be_asked_is_a_sentence(split, shelf):
     with pytest.raises(NotServed, match="No run of home has been promoted yet") as refused:
         shelf.find("home", None, 0)
     assert refused.value.status == 409
-    requesting.request(split.world, split, "seq2seq", send=False)
+    run_requests.request(split.world, split, "seq2seq", send=False)
     with pytest.raises(NotServed, match="Parsers are being trained there"):
         shelf.find("home", None, 0)
     with pytest.raises(NotServed, match="There is no world moon") as refused:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from annotations.language.errors import LanguageError
-from parser_service.slices import delete_slice, rename_slice, save_slice
+from parser_service.slices.saving import delete_slice, rename_slice, save_slice
 
 
 def test_a_slice_keeps_its_query_in_one_order(sample, annotator):

@@ -8,9 +8,10 @@ from django.db import connection
 
 from annotations.models import Example
 from parser_service.models import Slice
-from parser_service.slices import filters_of, save_slice, select, slice_query
-from parser_service.slices.columns import answers_of, examples_of
-from parser_service.slices.conditions import NoColumn
+from parser_service.slices.filter_conditions import NoColumn
+from parser_service.slices.saving import save_slice
+from parser_service.slices.selecting import filters_of, select, slice_query
+from parser_service.slices.stored_columns import answers_of, examples_of
 
 IN_COLUMNS = {
     "outcome=correct": 6,

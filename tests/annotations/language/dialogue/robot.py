@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from annotations.language.dialogue import Dialogue, State
+from annotations.language.dialogue import DialogueManager, DialogueState
 from annotations.language.forms import read_form
 from tests.annotations.language.sample_ontology import HOME
 
-ROBOT = Dialogue(HOME, {})
+ROBOT = DialogueManager(HOME, {})
 PUT = '(put (λ$1:e (is_a $1 "<object>") (at $1 "<location>")) "<location>")'
 BRING = '(bring (λ$1:e (is_a $1 "<object>")))'
 UNCLEAR = "grab the tea on the shelf and put it on the stool"
 
 
-def begin(text: str, form: str, is_sure: bool = True) -> State:
+def begin(text: str, form: str, is_sure: bool = True) -> DialogueState:
     return ROBOT.begin(read_form(form), ROBOT.anonymizer.anonymize(text), is_sure)
 
 
-def talk(text: str, form: str, *answers: str) -> State:
+def talk(text: str, form: str, *answers: str) -> DialogueState:
     state = begin(text, form)
     for answer in answers:
         state = ROBOT.reply(state, answer)

@@ -8,7 +8,7 @@ from dataclasses import replace
 from hypothesis import given
 from hypothesis import strategies as st
 
-from annotations.language.dialogue import ATTEMPTS, Phase, State, progress
+from annotations.language.dialogue import ATTEMPTS, DialogueState, Phase, progress
 from annotations.language.forms import read_form
 from tests.annotations.language.dialogue.robot import PUT, ROBOT, UNCLEAR, begin
 
@@ -60,14 +60,14 @@ def test_every_answer_brings_a_dialogue_closer_to_its_end(
         assert state.prompt
         if state.phase in (Phase.CONFIRMING, Phase.DONE):
             assert all(slot.value for slot in state.slots)
-        assert State.from_json(json.loads(json.dumps(state.as_json()))) == state
+        assert DialogueState.from_json(json.loads(json.dumps(state.as_json()))) == state
 
 
 @given(st.lists(st.tuples(COMMANDS, st.booleans()), min_size=ATTEMPTS, max_size=8))
 def test_a_dialogue_takes_only_so_many_utterances(
     utterances: list[tuple[tuple[str, str], bool]],
 ) -> None:
-    state: State | None = None
+    state: DialogueState | None = None
     for (text, form), is_sure in utterances[:ATTEMPTS]:
         heard = ROBOT.anonymizer.anonymize(text)
         state = ROBOT.begin(read_form(form), heard, is_sure, before=state)

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from annotations.language.dialogue import Dialogue, Offer, Phase
+from annotations.language.dialogue import DialogueManager, Offer, Phase
 from annotations.language.forms import canonical_text, read_form, to_template
 from annotations.language.grounding import Anonymizer
 from tests.annotations.language.dialogue.robot import BRING, PUT
@@ -12,7 +12,7 @@ from tests.annotations.language.published import SHARED, needs_corpus
 def test_the_examples_of_the_paper() -> None:
     """Walker et al. 2019, §3.1 to §3.3, in the house of 2018."""
     ontology, _ = read_ontology_folder(SHARED / "generator-2018")
-    robot = Dialogue(ontology, {})
+    robot = DialogueManager(ontology, {})
     anonymizer = Anonymizer(ontology)
     heard = anonymizer.anonymize("Fetch an apple from the kitchen")
     assert heard.text == "Fetch an <object> from the <room>"  # rooms have a token of their own

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.language.dialogue import Dialogue, Offer, Phase
+from annotations.language.dialogue import DialogueManager, Offer, Phase
 from annotations.language.forms import read_form, to_template
 from annotations.language.ontology import Entity, Ontology
 from tests.annotations.language.dialogue.robot import BRING, PUT, ROBOT, begin, talk
@@ -27,7 +27,7 @@ def test_an_unknown_word_is_asked_about_and_learnt_so_that_the_next_command_need
         after = ROBOT.reply(state, answer)
         assert after.offers == (Offer("object", "flurb"),), answer
         assert after.prompt == "Shall I bring you the flurb?"
-    wiser = Dialogue(Ontology((*HOME.entities, Entity("object", "flurb"))), {})
+    wiser = DialogueManager(Ontology((*HOME.entities, Entity("object", "flurb"))), {})
     heard = wiser.anonymizer.anonymize("bring me the flurb")
     assert wiser.begin(read_form(BRING), heard).phase is Phase.CONFIRMING
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 from hypothesis import given
 
 from annotations.language.forms import Change, Form, canonicalize, diff, read_form, to_reading
-from annotations.language.forms.difference import Span
+from annotations.language.forms.difference import MarkedText
 from tests.annotations.language.random_forms import forms, renamed
 
 
@@ -38,28 +38,28 @@ def test_a_dropped_conjunct_is_marked_on_the_left_alone() -> None:
     difference = diff(left, right)
     assert difference.cost == 3
     assert difference.left_spans() == (
-        Span("follow(λx. person(x) ∧ ", Change.SAME),
-        Span("name(x, ⟨name⟩)", Change.REMOVED),
-        Span(" ∧ at(x, ⟨location⟩))", Change.SAME),
+        MarkedText("follow(λx. person(x) ∧ ", Change.SAME),
+        MarkedText("name(x, ⟨name⟩)", Change.REMOVED),
+        MarkedText(" ∧ at(x, ⟨location⟩))", Change.SAME),
     )
     assert {span.change for span in difference.right_spans()} == {Change.SAME}
 
 
 def test_an_added_argument_is_marked_on_the_right() -> None:
     difference = diff(read_form("(find (λ$1:e (red $1)))"), read_form("(find (λ$1:e (red $1)) 3)"))
-    assert difference.right_spans()[-2] == Span("3", Change.ADDED)
+    assert difference.right_spans()[-2] == MarkedText("3", Change.ADDED)
 
 
 def test_an_exchanged_predicate_is_marked_without_its_arguments() -> None:
     difference = diff(
         read_form("(say (λ$1:e (biggest $1 3)))"), read_form("(say (λ$1:e (largest $1 3)))")
     )
-    assert Span("biggest", Change.CHANGED) in difference.left_spans()
-    assert Span("largest", Change.CHANGED) in difference.right_spans()
+    assert MarkedText("biggest", Change.CHANGED) in difference.left_spans()
+    assert MarkedText("largest", Change.CHANGED) in difference.right_spans()
     assert difference.cost == 1
 
 
 def test_a_form_against_unknown_is_exchanged_as_a_whole() -> None:
     difference = diff(read_form('(go "kitchen")'), read_form("UNKNOWN"))
-    assert difference.left_spans() == (Span('go("kitchen")', Change.CHANGED),)
-    assert difference.right_spans() == (Span("UNKNOWN", Change.CHANGED),)
+    assert difference.left_spans() == (MarkedText('go("kitchen")', Change.CHANGED),)
+    assert difference.right_spans() == (MarkedText("UNKNOWN", Change.CHANGED),)

@@ -20,7 +20,7 @@ from annotations.language.forms import (
     to_reading,
     to_template,
 )
-from annotations.language.forms.printing import tokens
+from annotations.language.forms.notations import tokens
 from annotations.language.limits import MAX_NESTING
 from annotations.language.symbols import Nonterminal, Wildcard
 from tests.annotations.language.random_forms import forms

@@ -18,7 +18,7 @@ from annotations.language.forms import (
     equivalent,
     read_form,
 )
-from annotations.language.forms.unordered_difference import order_like
+from annotations.language.forms.difference import order_like
 from tests.annotations.language.random_forms import forms, renamed
 
 

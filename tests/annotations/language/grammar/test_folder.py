@@ -6,7 +6,7 @@ from annotations.language.decoding import MAX_FILES, read_folder
 from annotations.language.errors import LanguageError, Position
 from annotations.language.grammar import print_production, read_grammar_files
 from annotations.language.templates import Composition
-from annotations.language.templates.task_categories import compose
+from annotations.language.templates.generator_folder import compose
 
 
 def folder_of(**texts):
@@ -156,3 +156,23 @@ def test_other_files_with_a_main_are_named_by_their_stem_and_files_without_are_n
 def test_two_families_that_claim_one_number_keep_their_stems():
     composed = compositions("gpsr_category_1_grammar", "eegpsr_category_1_grammar")
     assert [each.name for each in composed] == ["eegpsr_category_1", "gpsr_category_1"]
+
+
+def test_more_aliases_than_anybody_needs_are_an_error_at_their_place():
+    def imports(n: int) -> bytes:
+        lines = (f"; import b.txt as $x{number}\n" for number in range(n))
+        return f"$Main = go\n{''.join(lines)}".encode()
+
+    back = b"; import a.txt\n$Main = come\n"
+    folder = read_grammar_files({"a.txt": imports(3), "b.txt": back})
+    assert not folder.problems
+    assert len(folder.sources("a.txt")) == 7
+    (problem,) = read_grammar_files({"a.txt": imports(2_000), "b.txt": back}).problems
+    assert (problem.position.source, problem.position.line) == ("a.txt", 22)
+
+
+def test_imports_may_lead_through_many_files():
+    files = {f"f{n}.txt": f"; import f{n + 1}.txt\n$n{n} = go\n".encode() for n in range(1_500)}
+    files["f1500.txt"] = b"$Main = go\n"
+    folder = read_grammar_files(files)
+    assert folder.sources("f0.txt")[0] == ("f1500.txt", "")

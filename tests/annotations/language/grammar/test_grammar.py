@@ -103,10 +103,9 @@ def test_references_know_where_they_stand():
     ("text", "line", "column", "words"),
     [
         ("$Main = a\n$b = (x | y", 2, 6, "never closed"),
-        ("$Main = a\n$b = x | y)", 2, 11, "never opened"),
+        ("$Main = a\n$b = x) | y", 2, 7, "never opened"),
         ("$Main = a | ", 1, 13, "empty"),
         ("$Main = (a | | b)", 1, 14, "empty"),
-        ("$Main =", 1, 8, "no expansion"),
         ("$Main = a\nhello there", 2, 1, "neither a production nor a comment"),
         ("$Main = {spaceship}", 1, 10, "no wildcard {spaceship}"),
         ("$Main = {room", 1, 9, "never closed"),
@@ -224,3 +223,40 @@ def test_the_stream_equals_a_naive_expansion_and_the_size_bounds_it(grammar):
 def test_problems_are_looked_for_once():
     grammar = grammar_of("$Main = $a | x", "$a = x", "$b = y")
     assert grammar.problems() is grammar.problems()
+
+
+@pytest.mark.parametrize(
+    ("text", "column", "commands"),
+    [
+        ("$Main = a\n$Main =", 8, ["a"]),
+        ("$Main = a\n$Main =  \t", 8, ["a"]),
+        ("$Main = a\n$Main = b (c | d) e)", 20, ["a", "b c e", "b d e"]),
+        ("$Main = a\n$Main = b)) ", 10, ["a", "b"]),
+    ],
+)
+def test_what_the_generator_reads_without_a_word_is_a_warning(text, column, commands):
+    file = read_productions(text, "rules.txt")
+    (problem,) = file.problems
+    assert not problem.is_error and problem.position == Position("rules.txt", 2, column)
+    assert list(Grammar(file.productions).commands()) == commands
+
+
+@pytest.mark.parametrize("text", [r"$Main = a \)", r"$Main = (a\))", "$Main = {void meta: a)} b"])
+def test_a_parenthesis_that_is_meant_is_no_problem(text):
+    assert read_productions(text, "rules.txt").problems == ()
+
+
+@pytest.mark.parametrize(
+    ("glued", "apart"),
+    [
+        ("{object1}", "{object 1}"),
+        ("{location beacon12?}", None),
+        ("{KObject7 meta: x}", "{kobject 7 meta: x}"),
+    ],
+)
+def test_an_id_may_be_glued_to_what_is_before_it(glued, apart):
+    if apart is None:
+        with pytest.raises(LanguageError):
+            read_production(f"$Main = {glued}")
+    else:
+        assert print_production(read_production(f"$Main = {glued}")) == f"$Main = {apart}"

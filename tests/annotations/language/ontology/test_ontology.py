@@ -105,8 +105,8 @@ def test_entity_bombs_and_external_entities_are_refused(declaration: str) -> Non
     assert "error: the document declares entities or refers to another file" in problems[0]
 
 
-def test_utf16_is_refused_with_a_hint() -> None:
-    _, (problem,) = read_ontology({"names.xml": "<names/>".encode("utf-16")})
+def test_utf16_text_is_refused_with_a_hint() -> None:
+    _, (problem,) = read_ontology({"whattosay.txt": "a joke".encode("utf-16")})
     assert problem.severity == Severity.ERROR
     assert "UTF-16" in problem.message and problem.hint
 

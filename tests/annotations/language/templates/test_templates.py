@@ -15,7 +15,7 @@ from annotations.language.templates import (
     read_template,
     set_problems,
 )
-from annotations.language.templates.problems import problems
+from annotations.language.templates.template_checks import problems
 from annotations.language.templates.templates import read_templates
 from tests.annotations.language.grammar.test_grammar import huge_grammar
 

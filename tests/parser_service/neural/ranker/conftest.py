@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from parser_service.neural.ranker.parser import FormRanker
-from parser_service.parsers.candidates.glosses import glosses
+from parser_service.neural.ranker.form_ranker import FormRanker
+from parser_service.neural.ranker.ranked_forms import glosses
 from parser_service.parsers.hyperparameters.ranker import RankerConfig
 from tests.parser_service.neural.conftest import toy_pairs
 from tests.parser_service.neural.ranker.sample_domain import UNSEEN

@@ -6,7 +6,7 @@ from math import exp, log
 import pytest
 
 from parser_service.neural.ranker.calibration import TERMS
-from parser_service.neural.ranker.parser import FormRanker
+from parser_service.neural.ranker.form_ranker import FormRanker
 from parser_service.parsers.interface import Cancelled, Knowledge
 from tests.parser_service.neural.ranker.sample_domain import UNSEEN, domain, utterances
 
@@ -88,7 +88,7 @@ def test_nothing_asked_nothing_answered(learned):
 
 
 def test_asked_before_it_has_learned_it_says_so(config):
-    with pytest.raises(ValueError, match="has learned nothing yet"):
+    with pytest.raises(ValueError, match="learned nothing yet"):
         FormRanker(config).predict(["go"])
 
 

@@ -9,7 +9,7 @@ from parser_service.neural.ranker.calibration import (
     NEAR,
     USUAL_NEARNESS,
     USUAL_NOVELTY,
-    Decision,
+    DecisionRule,
     Scores,
     best_novelty,
     best_weights,
@@ -36,14 +36,14 @@ SCORES = Scores(
 
 
 def test_each_row_is_a_distribution_over_known_and_new_forms():
-    logs = Decision(novelty=0.5, known=(0.7, 1, 1, 1)).log_probabilities(SCORES)
+    logs = DecisionRule(novelty=0.5, known=(0.7, 1, 1, 1)).log_probabilities(SCORES)
     assert logs.shape == (2, 4)
     assert torch.allclose(logs.exp().sum(-1), torch.ones(2))
 
 
 def test_without_new_forms_all_is_known():
     closed = Scores(SCORES.known, torch.zeros(len(EXPERTS), 2, 0))
-    logs = Decision(novelty=9.0).log_probabilities(closed)
+    logs = DecisionRule(novelty=9.0).log_probabilities(closed)
     assert torch.allclose(logs.exp().sum(-1), torch.ones(2))
 
 
@@ -75,7 +75,8 @@ def test_evidence_is_the_same_for_ten_and_for_ten_thousand_forms(times):
 
 def test_the_more_often_forms_are_new_the_more_new_forms_are_answered():
     chosen = [
-        Decision(novelty).log_probabilities(SCORES).argmax(-1).tolist() for novelty in (-20, -6, 9)
+        DecisionRule(novelty).log_probabilities(SCORES).argmax(-1).tolist()
+        for novelty in (-20, -6, 9)
     ]
     assert chosen == [[0, 1], [0, 2], [3, 2]]
 
@@ -151,14 +152,14 @@ def test_the_weights_follow_how_often_the_scores_are_right():
 
 def test_a_form_that_is_in_no_list_counts_for_no_weight_and_no_pair_moves_the_novelty():
     decision = weigh(1.5, SCORES, torch.tensor([-1, -1]))
-    assert decision == Decision(1.5)
+    assert decision == DecisionRule(1.5)
     assert weigh(1.5, SCORES, torch.tensor([0, 2])).known != EQUAL
     assert weigh(1.5, SCORES, torch.tensor([2, 3])).novelty == 1.5
 
 
 def test_a_decision_can_be_written_and_read():
     decision = weigh(0.5, SCORES, torch.tensor([0, 2]))
-    assert Decision.read(asdict(decision)) == decision
+    assert DecisionRule.read(asdict(decision)) == decision
 
 
 def test_the_bound_of_nearness_withholds_five_right_answers_in_a_hundred_at_most():
@@ -173,7 +174,7 @@ def test_the_bound_is_for_what_people_say_where_some_of_it_was_validated():
     both = Scores(
         *(torch.cat(parts, 1) for parts in ((SCORES.known, far.known), (SCORES.new, far.new)))
     )
-    targets = Decision().log_probabilities(both).argmax(-1)
+    targets = DecisionRule().log_probabilities(both).argmax(-1)
     bounds = [
         weigh(USUAL_NOVELTY, both, targets, torch.tensor(spoken)).least_nearness
         for spoken in ([True, True, False, False], [False, False, True, True], [False] * 4)
@@ -188,6 +189,6 @@ def test_few_right_answers_do_not_raise_the_bound():
 
 
 def test_a_decision_of_before_there_was_a_bound_has_the_usual_one():
-    written = asdict(Decision(0.5))
+    written = asdict(DecisionRule(0.5))
     del written["least_nearness"]
-    assert Decision.read(written) == Decision(0.5)
+    assert DecisionRule.read(written) == DecisionRule(0.5)

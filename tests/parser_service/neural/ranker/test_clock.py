@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from parser_service.neural.ranker.parser import FormRanker
-from parser_service.neural.ranker.training import cut, plan
-from parser_service.neural.training.clock import LEAST_TIMED, Clock
+from parser_service.neural.ranker.form_ranker import FormRanker
+from parser_service.neural.ranker.steps import cut, plan
+from parser_service.neural.training import LEAST_TIMED, Clock
 from parser_service.parsers.hyperparameters.ranker import RankerConfig
 from parser_service.parsers.interface import Cancelled
 from tests.parser_service.neural.conftest import Recorder

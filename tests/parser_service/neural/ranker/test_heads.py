@@ -3,8 +3,7 @@ import torch
 
 from parser_service.neural.pretrained import load_encoder
 from parser_service.neural.ranker.averaging import Average
-from parser_service.neural.ranker.gloss_head import GlossHead
-from parser_service.neural.ranker.prototype_head import PrototypeHead
+from parser_service.neural.ranker.model import GlossHead, PrototypeHead
 from parser_service.neural.sentence_encoder import SentenceEncoder
 from tests.parser_service.neural.tiny_encoder import write_tiny_encoder
 

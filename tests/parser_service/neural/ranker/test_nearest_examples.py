@@ -1,7 +1,6 @@
 import torch
 
-from parser_service.neural.ranker.nearest_examples import NearestExamples
-from parser_service.neural.ranker.prototype_head import SCALE
+from parser_service.neural.ranker.model import SCALE, NearestExamples
 from parser_service.parsers.interface import keep_going
 
 

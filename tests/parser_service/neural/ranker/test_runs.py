@@ -3,7 +3,7 @@
 import pytest
 
 from parser_service.neural.ranker.fitting import VALIDATIONS, is_due
-from parser_service.neural.ranker.parser import FormRanker
+from parser_service.neural.ranker.form_ranker import FormRanker
 from parser_service.neural.weights import load_tensors
 from parser_service.parsers.interface import Cancelled
 from tests.parser_service.neural.conftest import Recorder, StoppedOnce

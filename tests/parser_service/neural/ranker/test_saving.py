@@ -8,9 +8,10 @@ import pytest
 import torch
 from transformers import BertConfig, BertModel
 
-from parser_service.neural.ranker.parser import FORMS, SAVED, FormRanker
+from annotations.language.errors import Refusal
+from parser_service.neural.ranker.form_ranker import FORMS, SAVED, FormRanker
 from parser_service.neural.sentence_encoder import SentenceEncoder
-from parser_service.neural.sentence_encoder.linear import rounded
+from parser_service.neural.sentence_encoder.half_precision import rounded
 from parser_service.parsers.interface import Knowledge
 from parser_service.parsers.storage import read_json, seal, write_json
 from tests.parser_service.neural.conftest import Recorder
@@ -86,8 +87,9 @@ def test_a_parser_of_the_domain_is_loaded_with_an_ontology(config, pairs, tmp_pa
     parser = FormRanker(replace(config, steps=4), 0, domain())
     parser.fit(pairs)
     parser.save(tmp_path)
-    with pytest.raises(ValueError, match="Load it with the ontology of its world"):
+    with pytest.raises(Refusal) as refused:
         FormRanker.load(tmp_path)
+    assert refused.value.code == "ontology_missing"
     asked = ["bring the apple", "find the <name> in the kitchen"]
     assert FormRanker.load(tmp_path, domain()).predict(asked) == parser.predict(asked)
 
@@ -95,15 +97,17 @@ def test_a_parser_of_the_domain_is_loaded_with_an_ontology(config, pairs, tmp_pa
 def test_an_altered_file_is_refused(learned, tmp_path):
     learned.save(tmp_path)
     alter_weights(tmp_path)
-    with pytest.raises(ValueError, match=r"model\.safetensors is not the file that was saved"):
+    with pytest.raises(Refusal) as refused:
         FormRanker.load(tmp_path)
+    assert refused.value.code == "saved_file_altered"
 
 
 def test_a_pickle_under_a_safe_name_is_refused_even_with_its_hash(learned, tmp_path):
     learned.save(tmp_path)
     pickle_weights(tmp_path, weights(learned))
-    with pytest.raises(ValueError, match="is not a safetensors file, and no other kind is read"):
+    with pytest.raises(Refusal) as refused:
         FormRanker.load(tmp_path)
+    assert refused.value.code == "saved_parser_unreadable"
 
 
 def test_nothing_is_pickled(config, pairs, tmp_path):
@@ -129,7 +133,7 @@ def test_saved_with_the_network_of_transformers_it_is_the_same_files(learned, tm
 def test_a_loaded_ranker_answers_without_importing_transformers(learned, tmp_path):
     learned.save(tmp_path)
     code = (
-        "import pathlib, sys; from parser_service.neural.ranker.parser import FormRanker;"
+        "import pathlib, sys; from parser_service.neural.ranker.form_ranker import FormRanker;"
         f"FormRanker.load(pathlib.Path({str(tmp_path)!r})).predict(['bring the apple']);"
         "print(*{'transformers', 'torch._dynamo', 'pandas'} & {*sys.modules})"
     )

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from parser_service.neural.ranker import gloss_head, ranked_forms
-from parser_service.neural.ranker.parser import FormRanker
-from parser_service.neural.ranker.training import plan
+from parser_service.neural.ranker import ranked_forms
+from parser_service.neural.ranker.form_ranker import FormRanker
+from parser_service.neural.ranker.steps import plan
 from parser_service.parsers.interface import Cancelled, Observer, Pair
 from tests.parser_service.neural.conftest import Recorder
 from tests.parser_service.neural.ranker.sample_domain import utterances
@@ -66,7 +66,7 @@ def test_a_pass_that_is_too_long_is_cut_and_the_log_says_so(config, pairs, tmp_p
 
 
 def test_of_very_many_glosses_some_are_encoded_again_each_time(learned, monkeypatch):
-    monkeypatch.setattr(gloss_head, "AT_ONCE", 4)
+    monkeypatch.setattr("parser_service.neural.ranker.model.GLOSSES_AT_ONCE", 4)
     model = learned._model
     model.glosses.encode(model.encoder)
     whole = model.glosses.vectors.clone()

@@ -5,11 +5,12 @@ from dataclasses import replace
 import pytest
 import torch
 
+from annotations.language.errors import Refusal
 from annotations.language.ontology import Entity, Ontology
 from parser_service.neural.pretrained import load_encoder
-from parser_service.neural.ranker.parser import FormRanker
-from parser_service.neural.ranker.training import RankerTraining
-from parser_service.neural.sentence_encoder.linear import rounded
+from parser_service.neural.ranker.form_ranker import FormRanker
+from parser_service.neural.ranker.steps import RankerTraining
+from parser_service.neural.sentence_encoder.half_precision import rounded
 from parser_service.parsers.interface import Knowledge, Pair
 from tests.parser_service.neural.ranker.sample_domain import (
     domain,
@@ -90,22 +91,27 @@ def test_strictly_it_reads_them_as_they_are(config, pairs, monkeypatch):
 
 
 def test_without_training_pairs_it_refuses(config):
-    with pytest.raises(ValueError, match="no training pair"):
+    with pytest.raises(Refusal) as refused:
         FormRanker(config).fit([])
+    assert refused.value.code == "no_training_pairs"
 
 
 def test_a_missing_encoder_is_said_before_training(config, pairs, tmp_path, monkeypatch):
     monkeypatch.setattr("parser_service.neural.ranker.fitting.encoders_folder", lambda: tmp_path)
     with pytest.raises(
-        ValueError, match=rf"no weights of absent.*Put its .* into {tmp_path}/absent"
-    ):
+        Refusal, match=f"no weights of absent.*Put its .* into {tmp_path}/absent"
+    ) as refused:
         FormRanker(replace(config, encoder="absent")).fit(pairs)
+    assert refused.value.code == "pretrained_weights_missing"
 
 
 def test_a_learning_rate_that_diverges_is_said(config, pairs, monkeypatch):
     monkeypatch.setattr(RankerTraining, "_train_on", lambda *_: float("nan"))
-    with pytest.raises(ValueError, match=r"Training diverged in epoch 1.*learning rate below"):
+    with pytest.raises(
+        Refusal, match=r"Training diverged in epoch 1.*learning rate below"
+    ) as refused:
         FormRanker(config).fit(pairs)
+    assert refused.value.code == "training_diverged"
 
 
 def test_the_encoder_goes_back_to_the_pretrained_one_as_far_as_the_protocol_says(config, pairs):

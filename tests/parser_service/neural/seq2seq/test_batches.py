@@ -1,9 +1,9 @@
 import torch
 
-from parser_service.neural.seq2seq.batches import Example, collate, in_order, shuffle
+from parser_service.neural.seq2seq.batches import NumberedPair, collate, in_order, shuffle
 from parser_service.neural.seq2seq.vocabulary import END, PADDING, START
 
-EXAMPLES = [Example([5] * (n % 4), [6 + n] * (n % 9 + 1)) for n in range(150)]
+EXAMPLES = [NumberedPair([5] * (n % 4), [6 + n] * (n % 9 + 1)) for n in range(150)]
 
 
 def seen(batches):
@@ -12,7 +12,7 @@ def seen(batches):
 
 
 def test_pairs_are_padded_and_closed():
-    batch = collate([Example([4, 5], [7]), Example([], [8, 9])])
+    batch = collate([NumberedPair([4, 5], [7]), NumberedPair([], [8, 9])])
     assert batch.source.tolist() == [[4, 5, END], [END, PADDING, PADDING]]
     assert batch.lengths.tolist() == [3, 1]
     assert batch.inputs.tolist() == [[START, 7, PADDING], [START, 8, 9]]

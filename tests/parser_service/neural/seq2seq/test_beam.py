@@ -7,7 +7,7 @@ import torch
 
 from parser_service.neural.seq2seq.batches import sources
 from parser_service.neural.seq2seq.beam import search
-from parser_service.neural.seq2seq.model import Seq2SeqModel
+from parser_service.neural.seq2seq.lstm import Seq2SeqModel
 from parser_service.neural.seq2seq.vocabulary import END, START
 from parser_service.parsers.interface import Cancelled
 from tests.parser_service.neural.conftest import SMALL

@@ -5,11 +5,12 @@ from dataclasses import asdict
 import pytest
 import torch
 
+from annotations.language.errors import Refusal
 from parser_service.neural.seq2seq.rows import Seq2SeqGlove, Seq2SeqGloveElmo, Seq2SeqMiniLm
 from parser_service.neural.word_vectors.vector_cache import VectorCache
+from parser_service.parsers import pretrained_files
 from parser_service.parsers.interface import Cancelled, Pair
 from parser_service.parsers.registry import PARSERS
-from parser_service.parsers.weights import encoder_places
 from parser_service.parsers.words import words
 from tests.parser_service.neural.conftest import PRETRAINED, Recorder, StoppedOnce, parser_of
 from tests.parser_service.neural.tampering import alter_weights
@@ -122,16 +123,18 @@ def test_a_word_is_read_in_its_context(pairs):
 )
 def test_missing_weights_are_said_and_nothing_is_trained(name, changes, sentence, pairs, tmp_path):
     observe = Recorder(tmp_path)
-    with pytest.raises(ValueError, match=sentence):
+    with pytest.raises(Refusal, match=sentence) as refused:
         parser_of(name, **changes).fit(pairs, (), observe)
+    assert refused.value.code == "requirement_missing"
     assert not observe.epochs
 
 
 def test_weights_that_are_pickled_are_refused_before_training(pairs, encoders, tmp_path):
     folder = write_bert(tmp_path / "pickled")
     torch.save({"weights": torch.zeros(3)}, folder / "model.safetensors")
-    with pytest.raises(ValueError, match="holds no encoder that can be read"):
+    with pytest.raises(Refusal, match="holds no encoder that can be read") as refused:
         parser_of("seq2seq-minilm", encoder=str(folder)).fit(pairs)
+    assert refused.value.code == "pretrained_weights_unreadable"
 
 
 def test_another_encoder_under_the_same_name_is_refused(pairs, tmp_path, monkeypatch):
@@ -139,16 +142,17 @@ def test_another_encoder_under_the_same_name_is_refused(pairs, tmp_path, monkeyp
     parser.fit(pairs[:9])
     parser.save(tmp_path / "saved")
     write_bert(tmp_path / "others" / "bert", seed=5)
-    monkeypatch.setattr(encoder_places, "_encoders", tmp_path / "others")
-    with pytest.raises(ValueError, match="was trained on an encoder with the SHA-256"):
+    monkeypatch.setattr(pretrained_files, "_encoders", tmp_path / "others")
+    with pytest.raises(Refusal, match="was trained on an encoder with the SHA-256") as refused:
         Seq2SeqMiniLm.load(tmp_path / "saved")
+    assert refused.value.code == "other_encoder"
 
 
 def test_a_run_does_not_go_on_with_another_encoder(pairs, tmp_path, monkeypatch):
     observe = Recorder(tmp_path / "run")
     parser_of("seq2seq-minilm").fit(pairs[:9], (), observe)
     write_bert(tmp_path / "others" / "bert", seed=5)
-    monkeypatch.setattr(encoder_places, "_encoders", tmp_path / "others")
+    monkeypatch.setattr(pretrained_files, "_encoders", tmp_path / "others")
     parser_of("seq2seq-minilm").fit(pairs[:9], (), observe)
     assert any("starts from the beginning" in line for line in observe.lines)
 
@@ -158,15 +162,16 @@ def test_a_saved_parser_whose_weights_were_altered_is_refused(pairs, tmp_path):
     parser.fit(pairs[:9])
     parser.save(tmp_path)
     alter_weights(tmp_path)
-    with pytest.raises(ValueError, match=r"model\.safetensors is not the file that was saved"):
+    with pytest.raises(Refusal) as refused:
         Seq2SeqGloveElmo.load(tmp_path)
+    assert refused.value.code == "saved_file_altered"
 
 
 def test_a_parser_with_glove_is_loaded_without_gloves_file(pairs, tmp_path, monkeypatch):
     parser = parser_of("seq2seq-glove")
     parser.fit(pairs[:9])
     parser.save(tmp_path / "saved")
-    monkeypatch.setattr(encoder_places, "_encoders", tmp_path)
+    monkeypatch.setattr(pretrained_files, "_encoders", tmp_path)
     loaded = Seq2SeqGlove.load(tmp_path / "saved")
     assert loaded.predict(["bring it"]) == parser.predict(["bring it"])
 
@@ -182,8 +187,9 @@ def test_equal_seeds_give_equal_weights(pairs):
 @pytest.mark.parametrize("name", PRETRAINED)
 def test_a_row_is_never_without_its_vectors(name):
     for field in {"glove", "elmo", "encoder"} & asdict(parser_of(name).config).keys():
-        with pytest.raises(ValueError, match=f"{field} is empty, but this parser needs it"):
+        with pytest.raises(Refusal, match=f"{field} is empty, but this parser needs it") as refused:
             parser_of(name, **{field: " "})
+        assert refused.value.code == "hyperparameter_missing"
 
 
 def test_commands_without_words_are_trained_on(pairs):

@@ -6,9 +6,9 @@ import pytest
 
 from annotations.language.forms import read_form
 from annotations.language.predicates import infer_signatures
-from parser_service.neural.t5.parser import T5
+from parser_service.neural.t5.t5_parser import T5
+from parser_service.parsers import pretrained_files
 from parser_service.parsers.hyperparameters.t5 import EncoderDecoderConfig
-from parser_service.parsers.weights import encoder_places
 from tests.parser_service.neural.conftest import toy_pairs
 from tests.parser_service.neural.tiny_encoder_decoder import write_bart, write_t5
 
@@ -45,14 +45,14 @@ def writers(tmp_path_factory):
 
 @pytest.fixture
 def kept_there(writers, monkeypatch):
-    monkeypatch.setattr(encoder_places, "_encoders", writers)
+    monkeypatch.setattr(pretrained_files, "_encoders", writers)
 
 
 @pytest.fixture(scope="session", params=["t5", "bart"])
 def learned(request, writers):
     """A parser of each kind of network that has seen 20 pairs often."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(encoder_places, "_encoders", writers)
+        patch.setattr(pretrained_files, "_encoders", writers)
         parser = parser_of(encoder=request.param, steps=70)
         parser.fit(TWENTY)
     return parser

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from annotations.language.forms import read_form
 from annotations.language.predicates import check_form, infer_signatures
 from parser_service.parsers.interface import Knowledge
-from parser_service.parsers.logical_forms import canonical
+from parser_service.parsers.written_forms import canonical
 from tests.parser_service.neural.t5.conftest import DECLARED, ODD, TWENTY, UTTERANCES, parser_of
 from tests.parser_service.neural.t5.weights import make_random
 
@@ -26,7 +26,7 @@ def untrained(writers):
         return parser
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("parser_service.parsers.weights.encoder_places._encoders", writers)
+        patch.setattr("parser_service.parsers.pretrained_files._encoders", writers)
         domain = Knowledge(predicates=DECLARED)
         return {
             "free": after_a_step("free"),

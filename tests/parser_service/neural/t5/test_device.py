@@ -2,7 +2,7 @@
 
 import pytest
 
-from parser_service.neural.t5.parser import T5
+from parser_service.neural.t5.t5_parser import T5
 from parser_service.parsers.interface import Cancelled
 from tests.parser_service.neural.conftest import StoppedOnce
 from tests.parser_service.neural.fake_device import CPU, FAKE, computing_on

@@ -6,8 +6,9 @@ import pytest
 import torch
 from safetensors.torch import load_file, save_file
 
+from annotations.language.errors import Refusal
 from parser_service.neural.t5.network import shared_weights
-from parser_service.neural.t5.parser import T5
+from parser_service.neural.t5.t5_parser import T5
 from tests.parser_service.neural.conftest import Recorder
 from tests.parser_service.neural.t5.conftest import TWENTY, parser_of
 from tests.parser_service.neural.t5.weights import same_weights
@@ -21,11 +22,15 @@ def test_pickled_weights_are_refused_before_training(tmp_path):
     folder = write_t5(tmp_path / "pickled")
     state = {"weights": torch.zeros(3)}
     torch.save(state, folder / "model.safetensors")
-    with pytest.raises(ValueError, match="holds no encoder–decoder that can be read"):
+    with pytest.raises(Refusal, match="holds no encoder–decoder that can be read") as refused:
         parser_of(encoder=str(folder)).fit(TWENTY)
+    assert refused.value.code == "pretrained_weights_unreadable"
     (folder / "model.safetensors").rename(folder / "pytorch_model.bin")
-    with pytest.raises(ValueError, match="holds only pickled weights, which are never read"):
+    with pytest.raises(
+        Refusal, match="holds only pickled weights, which are never read"
+    ) as refused:
         parser_of(encoder=str(folder)).fit(TWENTY)
+    assert refused.value.code == "requirement_missing"
 
 
 def test_code_that_comes_with_weights_is_not_run(tmp_path):
@@ -34,8 +39,9 @@ def test_code_that_comes_with_weights_is_not_run(tmp_path):
     maps = {"AutoConfig": "code.Config", "AutoModelForSeq2SeqLM": "code.Model"}
     (folder / "config.json").write_text(json.dumps({**config, "model_type": "x", "auto_map": maps}))
     (folder / "code.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')")
-    with pytest.raises(ValueError, match="holds no encoder–decoder that can be read"):
+    with pytest.raises(Refusal, match="holds no encoder–decoder that can be read") as refused:
         parser_of(encoder=str(folder)).fit(TWENTY)
+    assert refused.value.code == "pretrained_weights_unreadable"
     assert not (tmp_path / "ran").exists()
 
 
@@ -51,8 +57,9 @@ def test_code_that_comes_with_weights_is_not_run(tmp_path):
 def test_files_that_do_not_make_an_encoder_decoder_are_refused(change, sentence, tmp_path):
     folder = write_t5(tmp_path / "wrong")
     change(folder)
-    with pytest.raises(ValueError, match=sentence):
+    with pytest.raises(Refusal, match=sentence) as refused:
         parser_of(encoder=str(folder)).fit(TWENTY)
+    assert refused.value.code in ("requirement_missing", "pretrained_weights_unreadable")
 
 
 def _forget(folder, name):
@@ -69,8 +76,9 @@ def _shrink(folder):
 
 def test_missing_weights_are_said_and_nothing_is_trained(tmp_path):
     observe = Recorder(tmp_path)
-    with pytest.raises(ValueError, match=r"no weights of a/t5.* hf download a/t5"):
+    with pytest.raises(Refusal, match=r"no weights of a/t5.* hf download a/t5") as refused:
         parser_of(encoder="a/t5").fit(TWENTY, (), observe)
+    assert refused.value.code == "requirement_missing"
     assert not observe.epochs
 
 
@@ -110,8 +118,11 @@ def test_a_file_without_all_weights_is_refused(tmp_path):
     some = load_file(folder / "model.safetensors")
     del some["encoder.final_layer_norm.weight"]
     save_file(some, folder / "model.safetensors", {"format": "pt"})
-    with pytest.raises(ValueError, match=r"lacks 1 weights of the network.*final_layer_norm"):
+    with pytest.raises(
+        Refusal, match=r"lacks 1 weights of the network.*final_layer_norm"
+    ) as refused:
         parser_of(encoder=str(folder)).fit(TWENTY)
+    assert refused.value.code == "pretrained_weights_unreadable"
 
 
 def test_atoms_start_from_the_vectors_of_their_words(writers):

@@ -4,7 +4,7 @@ from hypothesis import given
 from annotations.language.corpus import read_pairs
 from annotations.language.forms import read_form
 from parser_service.neural.t5.spelling import read, spell, try_to_spell, words_of
-from tests.parser_service.parsers.candidates.test_short import FORMS
+from tests.parser_service.parsers.new_forms.test_short import FORMS
 
 
 def test_a_leaf_application_is_its_predicate_and_its_arguments():

@@ -4,8 +4,8 @@ import pytest
 import torch
 from transformers import AutoModel, AutoTokenizer
 
-from parser_service.neural.word_vectors.contextual import TransformerWords
-from parser_service.neural.word_vectors.word_pooling import mean_by_word
+from annotations.language.errors import Refusal
+from parser_service.neural.word_vectors.contextual import TransformerWords, mean_by_word
 from tests.parser_service.neural.tiny_weights import write_bert, write_gpt
 
 SENTENCE = ("bring", "me", "the", "<object>", "kitchenette's", "☃", "room")
@@ -77,15 +77,19 @@ def test_reading_an_encoder_draws_no_global_random_numbers(tmp_path):
 def test_a_pickle_under_a_safe_name_is_refused(tmp_path, write):
     folder = write(tmp_path / "encoder")
     torch.save({"weights": torch.zeros(3)}, folder / "model.safetensors")
-    with pytest.raises(ValueError, match="holds no encoder that can be read"):
+    with pytest.raises(Refusal, match="holds no encoder that can be read") as refused:
         TransformerWords.named(str(folder))
+    assert refused.value.code == "pretrained_weights_unreadable"
 
 
 def test_weights_of_another_network_are_not_made_up(tmp_path):
     folder, other = write_bert(tmp_path / "bert"), write_gpt(tmp_path / "gpt")
     (other / "model.safetensors").replace(folder / "model.safetensors")
-    with pytest.raises(ValueError, match=r"lacks \d+ weights of the network that its config.json"):
+    with pytest.raises(
+        Refusal, match=r"lacks \d+ weights of the network that its config.json"
+    ) as refused:
         TransformerWords.named(str(folder))
+    assert refused.value.code == "pretrained_weights_unreadable"
 
 
 def test_code_beside_the_weights_is_not_run(tmp_path):
@@ -94,8 +98,9 @@ def test_code_beside_the_weights_is_not_run(tmp_path):
     config |= {"model_type": "home_made", "auto_map": {"AutoModel": "code.Model"}}
     (folder / "config.json").write_text(json.dumps(config))
     (folder / "code.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')")
-    with pytest.raises(ValueError, match="holds no encoder that can be read"):
+    with pytest.raises(Refusal, match="holds no encoder that can be read") as refused:
         TransformerWords.named(str(folder))
+    assert refused.value.code == "pretrained_weights_unreadable"
     assert not (tmp_path / "ran").exists()
 
 

@@ -5,9 +5,10 @@ import numpy
 import pytest
 import torch
 
+from annotations.language.errors import Refusal
 from parser_service.neural.word_vectors.elmo import Elmo
-from parser_service.neural.word_vectors.elmo_characters import spell
-from parser_service.neural.word_vectors.elmo_options import read_elmo_options
+from parser_service.neural.word_vectors.elmo_files import read_elmo_options
+from parser_service.neural.word_vectors.elmo_layers import spell
 from parser_service.neural.word_vectors.scalar_mix import ContextShape, ScalarMix
 from tests.parser_service.neural.tiny_weights import ELMO, write_elmo
 
@@ -138,32 +139,41 @@ def test_the_identity_follows_weights_and_options(folder, tmp_path):
 def test_a_file_that_lacks_weights_is_refused_with_their_name(folder):
     with h5py.File(folder / WEIGHTS, "a") as file:
         del file["CNN_high_1/b_carry"]
-    with pytest.raises(ValueError, match=r"CNN_high_1/b_carry should have shape \[15\] but is not"):
+    with pytest.raises(
+        Refusal, match=r"CNN_high_1/b_carry should have shape \[15\] but is not"
+    ) as refused:
         load(folder)
+    assert refused.value.code == "pretrained_weights_unreadable"
 
 
 def test_weights_that_do_not_fit_their_options_are_refused(folder):
     changed = {**ELMO, "lstm": {**ELMO["lstm"], "dim": 11}}
     (folder / OPTIONS).write_text(json.dumps(changed))
-    with pytest.raises(ValueError, match=r"W_0 should have shape \[12, 44\] but has \[12, 40\]"):
+    with pytest.raises(
+        Refusal, match=r"W_0 should have shape \[12, 44\] but has \[12, 40\]"
+    ) as refused:
         load(folder)
+    assert refused.value.code == "pretrained_weights_unreadable"
 
 
 def test_a_file_that_is_no_hdf5_is_refused(folder):
     torch.save({}, folder / WEIGHTS)
-    with pytest.raises(ValueError, match="is not an HDF5 file"):
+    with pytest.raises(Refusal, match="is not an HDF5 file") as refused:
         load(folder)
+    assert refused.value.code == "pretrained_weights_unreadable"
 
 
 @pytest.mark.parametrize("text", ["{}", "no json", '{"char_cnn": {}, "lstm": {}}', "[]"])
 def test_options_of_something_else_are_refused(folder, text):
     (folder / OPTIONS).write_text(text)
-    with pytest.raises(ValueError, match="does not describe an ELMo"):
+    with pytest.raises(Refusal, match="does not describe an ELMo") as refused:
         read_elmo_options(folder / OPTIONS)
+    assert refused.value.code == "pretrained_weights_unreadable"
 
 
 def test_an_unknown_activation_is_refused(folder):
     changed = {**ELMO, "char_cnn": {**ELMO["char_cnn"], "activation": "swish"}}
     (folder / OPTIONS).write_text(json.dumps(changed))
-    with pytest.raises(ValueError, match=r"activation 'swish'.*only relu and tanh"):
+    with pytest.raises(Refusal, match=r"activation 'swish'.*only relu and tanh") as refused:
         read_elmo_options(folder / OPTIONS)
+    assert refused.value.code == "pretrained_weights_unreadable"

@@ -2,6 +2,7 @@ from dataclasses import dataclass
 
 import pytest
 
+from annotations.language.errors import Refusal
 from parser_service.parsers.hyperparameters.fields import (
     describe,
     hyperparameter,
@@ -39,8 +40,11 @@ def test_fields_are_described_in_their_order():
     ],
 )
 def test_a_value_out_of_bounds_is_refused_with_a_sentence(values, sentence):
-    with pytest.raises(ValueError, match=sentence):
+    with pytest.raises(Refusal, match=sentence) as refused:
         read_config(Config, values)
+    is_unknown = values.keys() - {"width", "rate", "kind"}
+    code = "unknown_hyperparameter" if is_unknown else "hyperparameter_out_of_range"
+    assert refused.value.code == code
 
 
 def test_a_whole_number_stands_for_a_fraction():

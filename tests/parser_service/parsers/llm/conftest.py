@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from parser_service.parsers.llm.places import Server
+from parser_service.parsers.llm.server_address import ModelServer
 from tests.parser_service.llm_server import KEY, QUICK, installed, tiny_server
 
 
@@ -16,6 +16,6 @@ def tiny():
 @pytest.fixture
 def place(tiny, tmp_path):
     """It is the server of this installation, which keeps answers."""
-    place = Server(tiny.url, KEY, patience=QUICK, answers=tmp_path / "llm")
+    place = ModelServer(tiny.url, KEY, patience=QUICK, answers=tmp_path / "llm")
     with installed(place):
         yield place

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from parser_service.parsers.llm.asking import Asker
-from parser_service.parsers.llm.places import Server
+from parser_service.parsers.llm.asker import Asker
 from parser_service.parsers.llm.protocol import Question
+from parser_service.parsers.llm.server_address import ModelServer
 from tests.parser_service.llm_server import MODEL
 
 SCHEMA = {"type": "object", "properties": {"form": {"enum": ["a", "UNKNOWN"]}}}
@@ -16,5 +16,5 @@ def question(text: str = "hello", schema=SCHEMA) -> Question:
     return Question(MODEL, messages, schema, 0, 100)
 
 
-def ask(place: Server, *questions: Question, check=lambda: None, at_once: int = 4):
+def ask(place: ModelServer, *questions: Question, check=lambda: None, at_once: int = 4):
     return [each.text for each in Asker(place, at_once).ask(questions, check)]

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from parser_service.parsers.llm.asking import Asker
+from annotations.language.errors import Refusal
+from parser_service.parsers.llm.asker import Asker
 from tests.parser_service.llm_server import fails, says
 from tests.parser_service.parsers.llm.questions import ask, question
 
@@ -32,8 +33,11 @@ def test_a_server_that_knows_no_schema_is_asked_without_and_the_log_says_so(plac
 
 def test_a_question_that_is_refused_with_and_without_its_schema_is_refused(place, tiny):
     tiny.always = fails(400, "the prompt is longer than the context")
-    with pytest.raises(ValueError, match=r"refuses the question .status 400, the prompt is longer"):
+    with pytest.raises(
+        Refusal, match=r"refuses the question .status 400, the prompt is longer"
+    ) as refused:
         ask(place, question())
+    assert refused.value.code == "language_model_refused"
     assert len(tiny.asked) == 2
 
 
@@ -68,12 +72,14 @@ def test_a_model_without_system_messages_is_told_the_task_by_the_person(place, t
 def test_a_model_that_thinks_until_its_tokens_are_used_is_told_from_a_silent_one(place, tiny):
     tiny.faults = [says("", finish_reason="length")]
     with pytest.raises(
-        ValueError, match=r"had used all its tokens before it answered. Raise max_to"
-    ):
+        Refusal, match=r"had used all its tokens before it answered. Raise max_to"
+    ) as refused:
         ask(place, question())
+    assert refused.value.code == "language_model_refused"
     tiny.faults = [says(None, finish_reason="length", message={"reasoning_content": "Hmm"})]
-    with pytest.raises(ValueError, match=r"had used all its tokens"):
+    with pytest.raises(Refusal, match=r"had used all its tokens") as refused:
         ask(place, question())
+    assert refused.value.code == "language_model_refused"
     tiny.faults = [says(None, message={"refusal": "I cannot help with that."})]
     assert ask(place, question()) == [""]
 

@@ -10,8 +10,9 @@ from email.utils import format_datetime
 
 import pytest
 
+from annotations.language.errors import Refusal
 from parser_service.parsers.interface import Cancelled
-from parser_service.parsers.llm.places import Server
+from parser_service.parsers.llm.server_address import ModelServer
 from tests.parser_service.llm_server import (
     QUICK,
     cuts_the_body,
@@ -28,6 +29,7 @@ PASSING = {
     "busy for a moment": fails(429, Retry_After="0"),
     "broken": fails(500, "CUDA error"),
     "starting": fails(503, "Loading model", Retry_After="0"),
+    "busy until a year without end": fails(503, Retry_After=f"Mon, 01 Jan {'9' * 20} 00:00:00 GMT"),
     "hangs up": hangs_up,
     "cut": cuts_the_body,
     "no JSON": sends(b"<html>Bad gateway</html>"),
@@ -61,10 +63,9 @@ def test_what_passes_is_asked_again(place, tiny, fault):
 )
 def test_what_does_not_pass_ends_in_a_sentence(place, tiny, fault, words):
     tiny.always = PASSING[fault]
-    with pytest.raises(
-        ValueError, match=f"does not answer: {words}.* It was asked 3 times"
-    ) as caught:
+    with pytest.raises(Refusal, match=f"does not answer: {words}.* It was asked 3 times") as caught:
         ask(place, question())
+    assert caught.value.code == "language_model_refused"
     assert "Answers that came are kept" in str(caught.value)
     assert len(tiny.asked) == 3
 
@@ -80,8 +81,9 @@ def test_what_does_not_pass_ends_in_a_sentence(place, tiny, fault, words):
 )
 def test_what_cannot_pass_is_not_asked_again(place, tiny, status, sentence):
     tiny.always = fails(status, "no")
-    with pytest.raises(ValueError, match=sentence):
+    with pytest.raises(Refusal, match=sentence) as refused:
         ask(place, question())
+    assert refused.value.code == "language_model_refused"
     assert len(tiny.asked) == 1
 
 
@@ -89,9 +91,12 @@ def test_a_server_that_is_away_is_said_to_be_so(tmp_path):
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    place = Server(f"http://127.0.0.1:{port}", patience=QUICK)
-    with pytest.raises(ValueError, match=f"127.0.0.1:{port} does not answer: connection refused"):
+    place = ModelServer(f"http://127.0.0.1:{port}", patience=QUICK)
+    with pytest.raises(
+        Refusal, match=f"127.0.0.1:{port} does not answer: connection refused"
+    ) as refused:
         ask(place, question())
+    assert refused.value.code == "language_model_refused"
 
 
 def test_an_answer_that_takes_too_long_is_waited_for_no_longer(place, tiny):
@@ -99,8 +104,9 @@ def test_an_answer_that_takes_too_long_is_waited_for_no_longer(place, tiny):
     for fault in (drips, lambda handler: time.sleep(5)):
         tiny.always = fault
         began = time.monotonic()
-        with pytest.raises(ValueError, match=r"does not answer: it took longer than 0.3 s"):
+        with pytest.raises(Refusal, match=r"does not answer: it took longer than 0.3 s") as refused:
             ask(place, question())
+        assert refused.value.code == "language_model_refused"
         assert time.monotonic() - began < 3
 
 
@@ -114,9 +120,10 @@ def test_a_wait_that_the_server_asks_for_is_kept_but_not_a_long_one(place, tiny)
     for wanted in ("3600", in_an_hour):
         tiny.always = fails(429, "quota", Retry_After=wanted)
         with pytest.raises(
-            ValueError, match=r"asked again in 3,(600|59\d) s only \(status 429, quota"
-        ):
+            Refusal, match=r"asked again in 3,(600|59\d) s only \(status 429, quota"
+        ) as refused:
             ask(place, question(wanted))
+        assert refused.value.code == "language_model_refused"
     assert len(tiny.asked) == 4
 
 
@@ -142,8 +149,9 @@ def test_stopping_takes_no_longer_than_the_check(place, tiny, fault):
 def test_what_came_before_a_failure_is_not_asked_again(place, tiny):
     asked = [question(str(number)) for number in range(6)]
     tiny.faults = [*4 * [says("b")], *9 * [fails(500)]]
-    with pytest.raises(ValueError, match=r"does not answer"):
+    with pytest.raises(Refusal, match=r"does not answer") as refused:
         ask(place, *asked, at_once=1)
+    assert refused.value.code == "language_model_refused"
     tiny.faults.clear()
     before = len(tiny.asked)
     assert ask(place, *asked, at_once=1) == [*4 * ["b"], *2 * ["a"]]
@@ -175,6 +183,7 @@ def test_a_huge_answer_is_not_read_to_its_end(place, tiny):
             handler.wfile.write(b"10000\r\n" + piece + b"\r\n")
 
     tiny.always = endless
-    with pytest.raises(ValueError, match=r"answers with more than 1,048,576 bytes"):
+    with pytest.raises(Refusal, match="answers with more than 1,048,576 bytes") as refused:
         ask(place, question())
+    assert refused.value.code == "language_model_refused"
     assert len(tiny.asked) == 1

@@ -12,9 +12,10 @@ from shutil import which
 
 import pytest
 
+from annotations.language.errors import Refusal
 from parser_service.parsers.llm import exchange
-from parser_service.parsers.llm.asking import Asker
-from parser_service.parsers.llm.places import Server
+from parser_service.parsers.llm.asker import Asker
+from parser_service.parsers.llm.server_address import ModelServer
 from tests.parser_service.llm_server import KEY, QUICK, fails, says, sends, tiny_server
 from tests.parser_service.parsers.llm.questions import ask, question
 
@@ -24,13 +25,15 @@ def test_nothing_is_sent_where_a_redirect_leads(place, tiny, status):
     with tiny_server() as other:
         to = other.url.replace("127.0.0.1", "localhost")
         tiny.always = sends(b"", status, Location=f"{to}/chat/completions?secret=x")
-        with pytest.raises(ValueError, match=r"sends the question to the host localhost") as caught:
+        with pytest.raises(Refusal, match=r"sends the question to the host localhost") as caught:
             ask(place, question())
+        assert caught.value.code == "language_model_refused"
         assert other.asked == other.headers == []
     assert "secret" not in str(caught.value)
     tiny.always = sends(b"", status, Location="/v1/chat/completions/")
-    with pytest.raises(ValueError, match=r"elsewhere on its own host"):
+    with pytest.raises(Refusal, match=r"elsewhere on its own host") as refused:
         ask(place, question())
+    assert refused.value.code == "language_model_refused"
 
 
 def test_no_proxy_of_the_environment_is_used(place, tiny, monkeypatch):
@@ -50,8 +53,9 @@ def test_the_key_is_sent_and_stands_nowhere_else(place, tiny, caplog, tmp_path):
         sends(b"", 307, Location=f"http://{KEY}/"),
     ):
         tiny.always = body
-        with pytest.raises(ValueError) as caught:
+        with pytest.raises(Refusal) as caught:
             ask(place, question())
+        assert caught.value.code == "language_model_refused"
         told.append(f"{caught.value!r} {caught.value.__cause__!r}")
     tiny.always, tiny.reports = says(f"your key is {KEY}"), KEY
     answers = Asker(place, 1).ask([question()], lambda: None)
@@ -83,12 +87,18 @@ def certified(tiny, tmp_path):
 def test_a_certificate_is_looked_at_and_its_name_too(place, tiny, certified, monkeypatch):
     port = tiny.server_address[1]
     by_name = replace(place, url=f"https://localhost:{port}/v1")
-    with pytest.raises(ValueError, match=r"certificate of localhost:\d+ is not to be trusted"):
+    with pytest.raises(
+        Refusal, match=r"certificate of localhost:\d+ is not to be trusted"
+    ) as refused:
         ask(by_name, question())
+    assert refused.value.code == "language_model_refused"
     monkeypatch.setenv("SSL_CERT_FILE", str(certified))
     assert ask(by_name, question()) == ["a"]
-    with pytest.raises(ValueError, match=r"certificate of 127.0.0.1:\d+ is not to be trusted"):
+    with pytest.raises(
+        Refusal, match=r"certificate of 127.0.0.1:\d+ is not to be trusted"
+    ) as refused:
         ask(replace(place, url=f"https://127.0.0.1:{port}/v1"), question("another"))
+    assert refused.value.code == "language_model_refused"
     assert len(tiny.asked) == 1
 
 
@@ -100,9 +110,13 @@ def test_a_name_that_leads_elsewhere_is_refused_after_it_is_looked_up(monkeypatc
         ]
 
     monkeypatch.setattr(exchange.socket, "getaddrinfo", look_up)
-    place = Server("http://models.example.org/v1", patience=QUICK)
-    with pytest.raises(ValueError, match=r"is another machine.*Set GPSR_LLM_REMOTE=1"):
+    place = ModelServer("http://models.example.org/v1", patience=QUICK)
+    with pytest.raises(Refusal, match=r"is another machine.*Set GPSR_LLM_REMOTE=1") as refused:
         ask(place, question())
+    assert refused.value.code == "language_model_refused"
     open_line = replace(place, key=KEY, may_be_remote=True)
-    with pytest.raises(ValueError, match=r"GPSR_LLM_KEY would travel to models.example.org"):
+    with pytest.raises(
+        Refusal, match=r"GPSR_LLM_KEY would travel to models.example.org"
+    ) as refused:
         ask(open_line, question())
+    assert refused.value.code == "language_model_refused"

@@ -8,11 +8,11 @@ import pytest
 
 from annotations.models import Split
 from parser_service.models import TrainingRun
-from parser_service.runs.carrying_out.examples import pairs_of, training_pairs
-from parser_service.runs.requests import requesting
+from parser_service.runs.requests import run_requests
 from parser_service.runs.requests.learning_curve import SHARES, request_learning_curve
+from parser_service.runs.training.split_pairs import pairs_of, training_pairs
 from tests.parser_service.made_up import make_split
-from tests.parser_service.runs.carrying_out.test_training import trained
+from tests.parser_service.runs.training.test_train_run import trained
 
 
 @pytest.mark.parametrize("criterion", ["command", "source_command", "logical_form"])
@@ -51,8 +51,8 @@ def test_a_run_learns_from_its_share_and_says_from_how_many_pairs(world, transac
 
 
 def test_one_request_starts_what_is_missing_and_no_more(split):
-    whole, _ = requesting.request(split.world, split, "knn", seed=5, send=False)
-    requesting.request(split.world, split, "knn", seed=5, send=False, train_share=0.25)
+    whole, _ = run_requests.request(split.world, split, "knn", seed=5, send=False)
+    run_requests.request(split.world, split, "knn", seed=5, send=False, train_share=0.25)
     new = request_learning_curve(whole, send=False)
     assert [run.train_share for run in new] == [0.1, 0.5]
     assert {(run.seed, run.queue) for run in new} == {(5, "quick")}
@@ -61,6 +61,6 @@ def test_one_request_starts_what_is_missing_and_no_more(split):
 
 
 def test_a_run_on_a_share_is_no_seed_of_the_whole_one(split):
-    whole, _ = requesting.request(split.world, split, "knn", seed=1, send=False)
-    requesting.request(split.world, split, "knn", seed=2, send=False, train_share=0.5)
+    whole, _ = run_requests.request(split.world, split, "knn", seed=1, send=False)
+    run_requests.request(split.world, split, "knn", seed=2, send=False, train_share=0.5)
     assert list(TrainingRun.objects.all().seeds_of(whole)) == [whole]

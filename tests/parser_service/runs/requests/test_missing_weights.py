@@ -11,11 +11,12 @@ from django.conf import settings
 from django.core.management import CommandError, call_command
 
 from annotations.language.corpus import by_length, write_pairs
+from annotations.language.errors import Refusal
 from parser_service.models import TrainingRun
+from parser_service.parsers import pretrained_files
+from parser_service.parsers.pretrained_files import missing_weights
 from parser_service.parsers.registry import config_fields, make_config
-from parser_service.parsers.weights import encoder_places
-from parser_service.parsers.weights.files import missing_weights
-from parser_service.runs.requests import requesting
+from parser_service.runs.requests import run_requests
 from tests.parser_service.made_up import made_up_pairs
 from tests.sample_world import fill_world
 
@@ -26,15 +27,15 @@ NEEDED = ("glove.6B.100d.txt", "elmo_2x4096_512_2048cnn_2xhighway_weights.hdf5")
 @pytest.fixture
 def sentence(tmp_path, monkeypatch) -> str:
     """What the parser lacks where the folder of encoders is empty: everything."""
-    monkeypatch.setattr(encoder_places, "_encoders", tmp_path / "encoders")
+    monkeypatch.setattr(pretrained_files, "_encoders", tmp_path / "encoders")
     sentence = missing_weights(make_config(PARSER))
     assert all(name in sentence for name in (*NEEDED, str(tmp_path / "encoders")))
     return sentence
 
 
 def test_the_installation_says_where_its_encoders_are():
-    assert encoder_places.encoders_folder() == settings.ENCODERS_DIR
-    assert encoder_places.vectors_folder() == settings.VAR_DIR / "vectors"
+    assert pretrained_files.encoders_folder() == settings.ENCODERS_DIR
+    assert pretrained_files.vectors_folder() == settings.VAR_DIR / "vectors"
 
 
 def test_the_page_says_it_before_anything_is_filled_in(world, adam, sentence):
@@ -58,13 +59,15 @@ def test_the_page_refuses_the_run_with_it(world, adam, sentence):
 )
 def test_a_name_that_no_file_can_have_is_missing_and_none_at_all_is_refused(parser, field):
     assert field in missing_weights(make_config(parser, {field: 1000 * "x"}))
-    with pytest.raises(ValueError, match=f"{field} is empty"):
+    with pytest.raises(Refusal, match=f"{field} is empty") as refused:
         make_config(parser, {field: " "})
+    assert refused.value.code == "hyperparameter_missing"
 
 
 def test_a_run_is_not_queued(world, split, sentence):
-    with pytest.raises(ValueError) as refused:
-        requesting.request(world, split, PARSER)
+    with pytest.raises(Refusal) as refused:
+        run_requests.request(world, split, PARSER)
+    assert refused.value.code == "requirement_missing"
     assert str(refused.value) == sentence
 
 
@@ -72,8 +75,9 @@ def test_a_run_is_not_queued(world, split, sentence):
 def test_neither_page_nor_request_tells_of_files_elsewhere(world, adam, split, tmp_path, there):
     (tmp_path / there).touch()
     sentence = f"encoder is {str(tmp_path)!r}, but a request may only name what is in"
-    with pytest.raises(ValueError, match=re.escape(sentence)):
-        requesting.request(world, split, "ranker", {"encoder": str(tmp_path)})
+    with pytest.raises(Refusal, match=re.escape(sentence)) as refused:
+        run_requests.request(world, split, "ranker", {"encoder": str(tmp_path)})
+    assert refused.value.code == "requirement_missing"
     values = {f"config-{each.name}": each.default for each in config_fields("ranker")}
     asked = {"split": split.pk, "train_sources": "gen", "protocol": "strict", "seed": 0, "seeds": 1}
     posted = {**values, **asked, "config-encoder": str(tmp_path)}
@@ -85,7 +89,7 @@ def test_neither_page_nor_request_tells_of_files_elsewhere(world, adam, split, t
 def test_the_command_line_may_name_any_path(world, split, tmp_path):
     (tmp_path / "words.txt").touch()
     config = {"glove": str(tmp_path / "words.txt")}
-    run, _ = requesting.request(world, split, "seq2seq-glove", config, send=False, anywhere=True)
+    run, _ = run_requests.request(world, split, "seq2seq-glove", config, send=False, anywhere=True)
     assert run.config["glove"] == config["glove"]
 
 

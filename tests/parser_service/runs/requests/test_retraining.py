@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from annotations.language.errors import Refusal
 from annotations.models import Split
 from parser_service.models import TrainingRun
 from parser_service.models.runs import Status
-from parser_service.runs.requests.requesting import request, retrain
 from parser_service.runs.requests.retraining import retrainable, retrained
+from parser_service.runs.requests.run_requests import request, retrain
 from tests.parser_service.made_up import make_split
 
 
@@ -52,8 +53,9 @@ def test_it_is_trained_once(run, newer):
 
 
 def test_a_split_of_another_world_is_refused(run, other_world):
-    with pytest.raises(ValueError, match="another world"):
+    with pytest.raises(Refusal) as refused:
         retrain(run, make_split(other_world))
+    assert refused.value.code == "split_of_another_world"
 
 
 def test_the_newest_run_of_each_configuration_can_be_retrained(run, newer):

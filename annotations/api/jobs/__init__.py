@@ -1,1 +1,0 @@
-"""What takes long or takes files: jobs, imports, generation, downloads."""

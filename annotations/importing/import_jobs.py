@@ -1,0 +1,107 @@
+"""Starts imports for pages: at once where they are quick, otherwise as jobs, which a worker carries out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from annotations.importing.generator_import import import_generator
+from annotations.importing.import_reports import ImportReport, PairsReport
+from annotations.importing.pair_import import import_pairs
+from annotations.importing.uploaded_files import (
+    UploadedFile,
+    files_of,
+    unpacked_pairs,
+    unpacked_size,
+)
+from annotations.jobs.files import kept_uploads
+from annotations.jobs.requesting import keep_question, request_job
+from annotations.jobs.watching import JobProgress
+from annotations.jobs.weight import MOST_BYTES, MOST_COMMANDS
+from annotations.language.errors import LanguageError
+from annotations.language.templates import generation_size, read_generator_files
+from annotations.models import Job, JobKind, User, World
+
+
+def start_generator_import(
+    world: World,
+    uploads: Sequence[Any],
+    by: User,
+    brings_back: bool = False,
+    encoding: str = "",
+) -> Job | ImportReport:
+    """Import now, or queue a job. An import that would remove something becomes a job that asks.
+
+    Raises:
+        LanguageError: the uploads cannot be read.
+    """
+    kind = JobKind.IMPORT_GENERATOR
+    choices = {"brings_back": brings_back, "encoding": encoding}
+    if unpacked_size(uploads) > MOST_BYTES:
+        return request_job(kind, world.name, by, choices, uploads)
+    files = files_of(uploads, encoding)
+    if is_heavy_generator(files.files):
+        return request_job(kind, world.name, by, choices, uploads)
+    report = import_generator(world.name, files, by, may_remove=False, brings_back=brings_back)
+    if report.is_waiting:
+        return keep_question(kind, world.name, by, choices, uploads, report.as_json())
+    return report
+
+
+def is_heavy_generator(files: Mapping[str, bytes]) -> bool:
+    """Return whether importing these files takes long: they are large, or their templates make many commands."""
+    if sum(map(len, files.values())) > MOST_BYTES:
+        return True
+    texts = read_generator_files(files)
+    if texts.has_errors:
+        return False
+    try:
+        return generation_size(texts.categories()) > MOST_COMMANDS
+    except LanguageError:
+        return False
+
+
+def import_generator_of(job: Job, progress: JobProgress) -> dict[str, Any]:
+    with kept_uploads(job) as uploads:
+        files = files_of(uploads, job.arguments.get("encoding", ""))
+    report = import_generator(
+        *(job.world_name, files, job.created_by, progress),
+        may_remove=bool(job.arguments.get("may_remove")),
+        brings_back=bool(job.arguments.get("brings_back")),
+    )
+    return report.as_json()
+
+
+def start_pairs_import(
+    world: World,
+    name: str,
+    archive: UploadedFile,
+    by: User,
+    brings_back: bool = False,
+    encoding: str = "",
+    notation: str = "",
+) -> Job | PairsReport:
+    """Raises LanguageError where the archive cannot be read."""
+    if unpacked_size([archive]) > MOST_BYTES:
+        choices = {"brings_back": brings_back, "encoding": encoding, "notation": notation}
+        arguments = {"name": name, **choices}
+        return request_job(JobKind.IMPORT_PAIRS, world.name, by, arguments, uploads=[archive])
+    with unpacked_pairs(archive, notation) as folder:
+        return import_pairs(
+            *(world.name, name, folder, by),
+            brings_back=brings_back,
+            encoding=encoding,
+            notation=notation,
+        )
+
+
+def import_pairs_of(job: Job, progress: JobProgress) -> dict[str, Any]:
+    encoding, notation = (job.arguments.get(name, "") for name in ("encoding", "notation"))
+    with kept_uploads(job) as (archive,), unpacked_pairs(archive, notation) as folder:
+        report = import_pairs(
+            *(job.world_name, job.arguments["name"], folder, job.created_by, progress),
+            brings_back=bool(job.arguments.get("brings_back")),
+            encoding=encoding,
+            notation=notation,
+        )
+        return report.as_json()

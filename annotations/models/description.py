@@ -1,0 +1,333 @@
+"""What describes a world: ontology, predicates, grammar, templates, and what the checker says of them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from django.db import models
+from django.db.models.fields.json import KeyTextTransform
+from django.db.models.functions import Coalesce, Left, Lower
+
+from annotations.language.symbols import ENTITY_CLASSES
+from annotations.models.editing import Editable
+from annotations.models.people import User
+from annotations.models.worlds import World
+
+MOST_CHARACTERS_OF_GUIDELINES = 20_000
+
+
+def entity_class_choices() -> list[tuple[str, str]]:
+    return [(name, name) for name in ENTITY_CLASSES]
+
+
+class Ontology(models.Model):
+    world = models.OneToOneField(World, on_delete=models.CASCADE, related_name="ontology")
+
+    def __str__(self) -> str:
+        return f"ontology of {self.world}"
+
+
+class EntityQuerySet(models.QuerySet["Entity"]):
+    def count_by_class(self) -> dict[str, int]:
+        """Return how many entities each class has, in the order of the classes; those that have none are left out."""
+        counted = self.order_by().values_list("entity_class").annotate(models.Count("pk"))
+        counts = dict(counted)
+        return {name: counts[name] for name in ENTITY_CLASSES if name in counts}
+
+
+# Of an attribute that tells entities of one text apart; an index of PostgreSQL has a longest row.
+COMPARED_CHARACTERS = 60
+
+
+def compared(attribute: str) -> Left:
+    """Return the beginning of an attribute, without regard to case, as the database compares it."""
+    value = Coalesce(KeyTextTransform(attribute, "attributes"), models.Value(""))
+    return Left(Lower(value), COMPARED_CHARACTERS)
+
+
+class Entity(Editable):
+    """One row of an ontology file. Rows may repeat a text (a name of either gender, a sink in two rooms).
+
+    Those of files may repeat all the rest too, as the files do; those that people write may not.
+    """
+
+    world_path = "ontology__world"
+    edited_fields = ("entity_class", "text", "aliases", "attributes")
+
+    ontology = models.ForeignKey(Ontology, on_delete=models.CASCADE, related_name="entities")
+    entity_class = models.CharField(max_length=20, choices=entity_class_choices)
+    text = models.TextField()
+    aliases = models.JSONField(default=list, blank=True)
+    attributes = models.JSONField(default=dict, blank=True)
+    source = models.CharField(max_length=200, blank=True)
+    line = models.PositiveIntegerField(default=0)
+    position = models.PositiveIntegerField()
+
+    objects = EntityQuerySet.as_manager()
+
+    class Meta:
+        ordering = ["position"]
+        constraints = [
+            models.UniqueConstraint(fields=["ontology", "position"], name="entity_position"),
+            models.UniqueConstraint(
+                "ontology",
+                "entity_class",
+                Lower("text"),
+                compared("room"),
+                compared("gender"),
+                condition=models.Q(source=""),
+                name="entity_once",
+                violation_error_message="This entity is there already.",
+            ),
+        ]
+        indexes = [models.Index(fields=["ontology", "entity_class", "text"])]
+
+    def __str__(self) -> str:
+        return f"{self.text} ({self.entity_class})"
+
+
+def predicate_kind_choices() -> list[tuple[str, str]]:
+    return [("action", "action"), ("sequence", "sequence"), ("description", "description")]
+
+
+class Predicate(Editable):
+    """A name with its signatures (a list of lists of argument kinds) and its English gloss.
+
+    ``is_edited`` says that a person has changed it: from then on an import leaves it alone.
+    """
+
+    edited_fields = ("name", "kind", "signatures", "gloss")
+    bears_on_commands = True  # templates are checked against it
+
+    world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="predicates")
+    name = models.CharField(max_length=80)
+    kind = models.CharField(max_length=20, choices=predicate_kind_choices)
+    signatures = models.JSONField(default=list)
+    gloss = models.CharField(max_length=200, blank=True)
+    is_edited = models.BooleanField(default=False)
+
+    class Meta:
+        ordering = ["name"]
+        constraints = [models.UniqueConstraint(fields=["world", "name"], name="predicate_name")]
+
+    def __str__(self) -> str:
+        return self.name
+
+    def note_editor(self, by: User) -> None:
+        self.is_edited = True
+
+
+class Grammar(models.Model):
+    world = models.OneToOneField(World, on_delete=models.CASCADE, related_name="grammar")
+
+    def __str__(self) -> str:
+        return f"grammar of {self.world}"
+
+
+class TaskCategory(models.Model):
+    """A difficulty class of commands, with the rule and template sets it is generated from, in order.
+
+    ``rule_sources`` and ``template_sources`` are lists of ``Production.source`` and
+    ``SemanticTemplate.source``; where two templates give one command different forms, the later wins.
+
+    ``commands_in_grammar`` counts the distinct commands of its grammar and ``commands_with_form``
+    those among them that have a logical form, as of the last import or generation. Both are None
+    where nothing was counted, or the grammar is too large to count (``annotations.generation.coverage``).
+    """
+
+    grammar = models.ForeignKey(Grammar, on_delete=models.CASCADE, related_name="task_categories")
+    name = models.CharField(max_length=60)
+    position = models.PositiveIntegerField()
+    rule_sources = models.JSONField(default=list)
+    template_sources = models.JSONField(default=list)
+    commands_in_grammar = models.PositiveIntegerField(null=True, editable=False)
+    commands_with_form = models.PositiveIntegerField(null=True, editable=False)
+
+    class Meta:
+        ordering = ["position"]
+        constraints = [
+            models.UniqueConstraint(fields=["grammar", "name"], name="task_category_name")
+        ]
+        verbose_name_plural = "task categories"
+
+    def __str__(self) -> str:
+        return self.name
+
+    @property
+    def is_counted(self) -> bool:
+        """Whether the commands of its grammar have been counted."""
+        return self.commands_in_grammar is not None and self.commands_with_form is not None
+
+    @property
+    def commands_without_form(self) -> int:
+        """How many commands of the grammar no template gives a form; 0 where nothing was counted."""
+        return (self.commands_in_grammar or 0) - (self.commands_with_form or 0)
+
+    @property
+    def covered_percent(self) -> float | None:
+        """The share of the grammar's commands that have a form, in percent; None if unknown."""
+        if self.commands_with_form is None or not self.commands_in_grammar:
+            return None
+        return 100 * self.commands_with_form / self.commands_in_grammar
+
+
+class Production(Editable):
+    """One production line: ``$nonterminal = expansion``. ``source`` is its file name."""
+
+    world_path = "grammar__world"
+    edited_fields = ("source", "task_category", "nonterminal", "expansion")
+    bears_on_commands = True
+
+    grammar = models.ForeignKey(Grammar, on_delete=models.CASCADE, related_name="productions")
+    source = models.CharField(max_length=200)
+    line = models.PositiveIntegerField(default=0)
+    nonterminal = models.CharField(max_length=120)
+    expansion = models.TextField()
+    task_category = models.CharField(max_length=60, blank=True)
+    position = models.PositiveIntegerField()
+
+    class Meta:
+        ordering = ["position"]
+        constraints = [
+            models.UniqueConstraint(fields=["grammar", "position"], name="production_position")
+        ]
+        indexes = [models.Index(fields=["grammar", "nonterminal"])]
+
+    def __str__(self) -> str:
+        return f"${self.nonterminal} = {self.expansion}"
+
+
+class TemplateStatus(models.TextChoices):
+    DRAFT = "draft"
+    READY = "ready"
+    DISPUTED = "disputed"
+
+
+def template_status_choices() -> list[tuple[str, str]]:
+    return TemplateStatus.choices
+
+
+class SemanticTemplateQuerySet(models.QuerySet["SemanticTemplate"]):
+    def with_problems(self) -> SemanticTemplateQuerySet:
+        """Return the templates that the checker had something to say about when they were last stored."""
+        return self.exclude(problems=[])
+
+
+class SemanticTemplate(Editable):
+    """``pattern = form``: a partial expansion of the grammar and the logical form of its commands.
+
+    ``source`` is the file or set it belongs to; ``task_category`` the category that set was written for.
+    ``imported_text`` is the line that it was imported as, by which a later import knows it whatever
+    people have made of it since; empty for one that a person wrote here. ``problems`` are what the
+    checker said when it was last stored, as ``annotations.rows.stored_problems`` writes them.
+    """
+
+    world_path = "grammar__world"
+    edited_fields = ("task_category", "source", "pattern", "form", "status")
+    fields_beside = ("problems",)
+    bears_on_commands = True
+
+    grammar = models.ForeignKey(Grammar, on_delete=models.CASCADE, related_name="templates")
+    source = models.CharField(max_length=200)
+    line = models.PositiveIntegerField(default=0)
+    task_category = models.CharField(max_length=60, blank=True)
+    pattern = models.TextField()
+    form = models.TextField()
+    imported_text = models.TextField(blank=True)
+    status = models.CharField(
+        max_length=20, choices=template_status_choices, default=TemplateStatus.READY
+    )
+    author = models.ForeignKey(User, null=True, blank=True, on_delete=models.SET_NULL)
+    position = models.PositiveIntegerField()
+    problems = models.JSONField(default=list, blank=True)
+
+    objects = SemanticTemplateQuerySet.as_manager()
+
+    class Meta:
+        ordering = ["position"]
+        constraints = [
+            models.UniqueConstraint(fields=["grammar", "position"], name="template_position")
+        ]
+
+    def __str__(self) -> str:
+        return f"{self.pattern} = {self.form}"
+
+    @classmethod
+    def for_category(cls, category: TaskCategory, **values: Any) -> SemanticTemplate:
+        """Return an unsaved template with ``values`` in the set that ``category`` calls its own."""
+        return cls(grammar=category.grammar, **cls.set_of(category), **values)
+
+    @staticmethod
+    def set_of(category: TaskCategory) -> dict[str, str]:
+        """Return the fields that put a template into the set that ``category`` calls its own."""
+        return {"source": category.template_sources[-1], "task_category": category.name}
+
+    def moved_to(self, category: TaskCategory | None) -> dict[str, str]:
+        """Return the fields that change when the template moves to ``category``.
+
+        None do where it is there already, or in a set that belongs to no task category.
+        """
+        if category is None or self.task_category in ("", category.name):
+            return {}
+        return self.set_of(category)
+
+    @property
+    def makes_commands(self) -> bool:
+        return self.status == TemplateStatus.READY
+
+    def note_editor(self, by: User) -> None:
+        self.author = by
+
+
+class Guidelines(Editable):
+    """The guidelines for the annotators of a world, in Markdown. A world has one row at most."""
+
+    edited_fields = ("text",)
+
+    world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="guidelines")
+    text = models.TextField(blank=True, max_length=MOST_CHARACTERS_OF_GUIDELINES)
+
+    class Meta:
+        verbose_name_plural = "guidelines"
+        constraints = [
+            models.UniqueConstraint(
+                fields=["world"],
+                name="one_guidelines_each",
+                violation_error_message="Somebody has just written guidelines. Reload the page.",
+            )
+        ]
+
+    def __str__(self) -> str:
+        return "Guidelines"
+
+
+class ProblemSubject(models.TextChoices):
+    ONTOLOGY = "ontology"
+    GRAMMAR = "grammar"
+    TEMPLATES = "templates"
+    COMMANDS = "commands"
+    PAIRS = "pairs"
+
+
+def subject_choices() -> list[tuple[str, str]]:
+    return ProblemSubject.choices
+
+
+class StoredProblem(models.Model):
+    """A warning: ``source:line:column: message (hint)``, about one part of a world."""
+
+    world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="problems")
+    subject = models.CharField(max_length=20, choices=subject_choices)
+    source = models.CharField(max_length=200, blank=True)
+    line = models.PositiveIntegerField(default=1)
+    column = models.PositiveIntegerField(default=1)
+    severity = models.CharField(max_length=10)
+    message = models.TextField()
+    hint = models.TextField(blank=True)
+
+    class Meta:
+        ordering = ["source", "line", "column", "id"]
+        indexes = [models.Index(fields=["world", "subject"])]
+
+    def __str__(self) -> str:
+        return f"{self.source}:{self.line}:{self.column}: {self.message}"

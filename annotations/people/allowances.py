@@ -1,0 +1,63 @@
+"""What a view may ask of the server beyond the usual: files, and time.
+
+A view says so itself, with ``@takes_files`` or ``@may_take_long``. The web server and the middleware
+look it up by the address of a request, before they read any of its body.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from django.urls import Resolver404, resolve
+
+from annotations.models import Duty, Scope
+
+View = TypeVar("View", bound=Any)
+
+
+def takes_files(view: View) -> View:
+    """Declare that a view, or the class of a route, reads files that people send. Reading may take long."""
+    view.takes_files = True
+    return may_take_long(view)
+
+
+def may_take_long(view: View) -> View:
+    """Declare that a view, or the class of a route, makes or packs many rows."""
+    view.may_take_long = True
+    return view
+
+
+@dataclass(frozen=True)
+class Allowance:
+    """What the view at an address takes.
+
+    Files come from people with ``duty`` in the world called ``world``; outside of any world, from the
+    administrators of the site. ``only_reads`` says that a POST stores nothing.
+    """
+
+    takes_files: bool = False
+    may_take_long: bool = False
+    only_reads: bool = False
+    world: str | None = None
+    duty: Duty | None = None
+
+
+USUAL = Allowance()
+
+
+def allowance_at(path: str) -> Allowance:
+    """Return what the view at ``path`` takes; the usual where there is none."""
+    try:
+        match = resolve(path)
+    except Resolver404:
+        return USUAL
+    view: Any = getattr(match.func, "view_class", match.func)
+    duties = getattr(view, "duties", {})
+    return Allowance(
+        takes_files=getattr(view, "takes_files", False),
+        may_take_long=getattr(view, "may_take_long", False),
+        only_reads=getattr(view, "scopes", {}).get("POST") == Scope.READ,
+        world=match.kwargs.get("world"),
+        duty=duties.get("POST"),
+    )

@@ -1,0 +1,162 @@
+"""What the worker does for somebody."""
+
+from __future__ import annotations
+
+from http import HTTPStatus
+
+import django_filters
+from django.db.models import QuerySet
+from django.http import FileResponse
+from drf_spectacular.types import OpenApiTypes
+from drf_spectacular.utils import extend_schema
+from rest_framework import serializers
+from rest_framework.exceptions import NotFound
+from rest_framework.request import Request
+from rest_framework.response import Response
+
+from annotations.jobs import answer_job, cancel_job
+from annotations.jobs.files import result_of
+from annotations.models import Duty, Job, World
+from annotations.people.allowances import may_take_long
+from annotations.web.rest.negotiation import AnyType
+from annotations.web.rest.problem_details import Conflict
+from annotations.web.rest.routes import RowRoute, RowsRoute, SingleRow
+from annotations.web.rest.streaming import JSON_LINES
+
+
+class JobSerializer(serializers.ModelSerializer):
+    """An import, a generation, an analysis. ``report`` is what came of it, null until it has ended.
+
+    One that ``is_waiting_for_answer`` would remove something: POST to ``answer/`` lets it, ``cancel/``
+    drops it.
+    """
+
+    report = serializers.DictField(allow_null=True)
+    created_by = serializers.CharField(source="created_by.username", default=None)
+    is_waiting_for_answer = serializers.BooleanField()
+
+    class Meta:
+        model = Job
+        fields = [
+            *("id", "kind", "status", "progress", "activity", "failure", "report"),
+            *("is_waiting_for_answer", "cancel_requested", "created_by"),
+            *("queued_at", "started_at", "finished_at"),
+        ]
+
+
+def address_of_job(request: Request, job: Job) -> str:
+    """Return the address at which the caller follows a job: below its world, where there is one."""
+    world = job.world if job.world and job.world.deletion_requested_at is None else None
+    below = f"worlds/{world.name}/jobs" if world else "jobs"
+    return request.build_absolute_uri(f"/api/v1/{below}/{job.pk}/")
+
+
+class JobQuery(django_filters.FilterSet):
+    class Meta:
+        model = Job
+        fields = ["kind", "status"]
+
+
+class JobNoun:
+    model = Job
+    serializer_class = JobSerializer
+
+    def rows(self) -> QuerySet[Job]:
+        return self.world.jobs.select_related("created_by")
+
+
+class Jobs(JobNoun, RowsRoute):
+    """Lists the jobs of a world, the newest first."""
+
+    filterset_class = JobQuery
+    sorts = {"newest": "-id", "status": "status"}
+
+
+class OneJob(JobNoun, RowRoute):
+    """Shows a job: how far it is, or what came of it."""
+
+
+@may_take_long
+class ResultOfJob(JobNoun, RowRoute):
+    """Downloads the file that a job has made. It is kept for seven days."""
+
+    content_negotiation_class = AnyType
+
+    @extend_schema(responses={(200, JSON_LINES): OpenApiTypes.STR})
+    def get(self, request: Request, **kwargs: object) -> FileResponse:
+        job = self.get_object()
+        try:
+            file = result_of(job).open("rb")
+        except FileNotFoundError as error:
+            raise NotFound(
+                "This job has made no file, or has made it more than a week ago."
+            ) from error
+        name = f"{self.world.name}-job-{job.pk}.jsonl"
+        return FileResponse(file, as_attachment=True, filename=name, content_type=JSON_LINES)
+
+
+class JobVerb(JobNoun, RowRoute):
+    http_method_names = ["post", "options"]
+
+    @property
+    def duty(self) -> Duty:
+        """What asking for the job needed."""
+        keys = {"world__name": self.kwargs["world"], "pk": self.kwargs["pk"]}
+        job = Job.objects.filter(**keys).first()
+        return job.duty if job else Duty.VIEW
+
+
+class Cancelling:
+    """Stops a job, or says why it cannot be stopped."""
+
+    http_method_names = ["post", "options"]
+
+    @extend_schema(request=None, responses={200: JobSerializer})
+    def post(self, request: Request, **kwargs: object) -> Response:
+        try:
+            cancel_job(self.get_object())
+        except ValueError as error:
+            raise Conflict(str(error)) from error
+        return self.show(self.get_object())
+
+
+class CancelJob(Cancelling, JobVerb):
+    """Stops a job within seconds, or drops an import that asks."""
+
+
+class AnswerJob(JobVerb):
+    """Imports the kept files after all, and removes what they do not have."""
+
+    @extend_schema(request=None, responses={202: JobSerializer})
+    def post(self, request: Request, **kwargs: object) -> Response:
+        try:
+            job = answer_job(self.get_object(), request.user)
+        except ValueError as error:
+            raise Conflict(str(error)) from error
+        return self.show(job, HTTPStatus.ACCEPTED)
+
+
+class SiteJobNoun(SingleRow):
+    """Jobs without a world that anybody sees: its import has not ended, or its deletion has begun."""
+
+    model = Job
+    serializer_class = JobSerializer
+
+    def rows(self) -> QuerySet[Job]:
+        user = self.request.user
+        rows = Job.objects.visible_to(user).select_related("created_by", "world")
+        seen = World.objects.visible_to(user)
+        return rows.exclude(world__in=World.objects.present().exclude(pk__in=seen.values("pk")))
+
+
+class OneSiteJob(SiteJobNoun):
+    """Shows a job, also of a world that is not there yet, or no longer."""
+
+
+class CancelSiteJob(Cancelling, SiteJobNoun):
+    """Stops the import of a world within seconds."""
+
+    duty = Duty.MANAGE
+
+    def rows(self) -> QuerySet[Job]:
+        return super().rows().exclude(world__in=World.objects.present())

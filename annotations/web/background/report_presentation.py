@@ -1,0 +1,101 @@
+"""What a verb reports, as pages show it: the same right after a request and on the page of a job."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from django.urls import reverse
+from django.utils.http import urlencode
+
+from annotations.models import Entity, JobKind, Production, SemanticTemplate, World
+
+MOST_PROBLEMS = 500
+MOST_NAMES = 200
+
+SINGULAR = {
+    "templates": "template",
+    "productions": "production",
+    "entities": "entity",
+    "predicates": "predicate",
+    "paraphrases": "paraphrase",
+}
+TEMPLATES = {
+    JobKind.IMPORT_GENERATOR: "annotations/background/_import_result.html",
+    JobKind.IMPORT_PAIRS: "annotations/background/_pairs_result.html",
+    JobKind.IMPORT_WORLD: "annotations/background/_world_result.html",
+    JobKind.GENERATE: "annotations/background/_generation_result.html",
+    JobKind.PROPOSE: "annotations/background/_proposals_result.html",
+    JobKind.AUDIT: "annotations/background/_audit_result.html",
+    JobKind.ANALYSE: "annotations/background/_analysis_result.html",
+    JobKind.ANSWER: "annotations/background/_answers_result.html",
+    JobKind.PARSE: "annotations/background/_parse_result.html",
+    JobKind.DELETE_WORLD: "annotations/background/_deletion_result.html",
+}
+
+
+def shown_report(
+    kind: str, report: Mapping[str, Any], world: World | None = None
+) -> dict[str, Any]:
+    """Return the context of ``_report.html``: the report, its template, and its problems, the errors first.
+
+    Problems of an import into ``world`` have an ``url``: that of the row on their line, or of its list. Those
+    of a refused one have none: the rows that are there are not those of its files.
+    """
+    problems = [{**each, "source": each["file"]} for each in report.get("problems", ())]
+    problems.sort(key=lambda each: each["severity"] != "error")
+    n_errors = sum(each["severity"] == "error" for each in problems)
+    if world is not None and not n_errors:
+        _link_to_rows(world, problems[:MOST_PROBLEMS])
+    return {
+        "report": report,
+        "report_template": TEMPLATES[JobKind(kind)],
+        "problems": problems[:MOST_PROBLEMS],
+        "n_problems_left_out": max(0, len(problems) - MOST_PROBLEMS),
+        "n_errors": n_errors,
+        "is_refused": n_errors > 0,
+        "removals": _shown_texts(report.get("removals") or {}),
+        "left_out": _shown_texts(report.get("left_out") or {}),
+    }
+
+
+def _link_to_rows(world: World, problems: list[dict[str, Any]]) -> None:
+    """Give each problem the address of the row that stands on its line, or of the list of its file."""
+    files = {each["file"] for each in problems if each.get("file")}
+    named = files | {file.lower() for file in files}  # as the rows of an ontology have it
+    rows: dict[tuple[str, int], tuple[str, int]] = {}
+    lists: dict[str, str] = {}
+    for model, path, name, list_name in (
+        (Entity, "ontology__world", "entity", "ontology"),
+        (Production, "grammar__world", "production", "grammar"),
+        (SemanticTemplate, "grammar__world", "template", "templates"),
+    ):
+        of_files = model._default_manager.filter(source__in=named, **{path: world})
+        for source, line, key in of_files.order_by("pk").values_list("source", "line", "pk"):
+            rows[source, line] = name, key
+            lists[source] = list_name
+    for each in problems:
+        file, line = each.get("file", ""), each.get("line", 0)
+        source = file if file in lists else file.lower()
+        if (source, line) in rows:
+            name, key = rows[source, line]
+            each["url"] = reverse(name, kwargs={"world": world.name, "pk": key})
+        elif source in lists:
+            query = "" if lists[source] == "ontology" else f"?{urlencode({'source': source})}"
+            each["url"] = reverse(lists[source], kwargs={"world": world.name}) + query
+
+
+def _shown_texts(rows: Mapping[str, list[str]]) -> list[dict[str, Any]]:
+    """Return rows by what they are: how many, and the first of them. ``kind`` is a name in rows.kinds."""
+    return [
+        {
+            "count": len(texts),
+            "kind": SINGULAR[name],
+            "plural": name,
+            "noun": SINGULAR[name] if len(texts) == 1 else name,
+            "texts": texts[:MOST_NAMES],
+            "left_out": max(0, len(texts) - MOST_NAMES),
+        }
+        for name, texts in rows.items()
+        if texts
+    ]

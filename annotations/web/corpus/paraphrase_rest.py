@@ -1,0 +1,78 @@
+"""How people say the commands."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from django.db.models import QuerySet
+from rest_framework import serializers
+from rest_framework.exceptions import PermissionDenied
+from rest_framework.request import Request
+from rest_framework.response import Response
+
+from annotations.editing.edits import delete
+from annotations.label_audit.label_decisions import correct_label
+from annotations.language.limits import MAX_FORM
+from annotations.models import Duty, Paraphrase
+from annotations.queueing.giving import NotForThem
+from annotations.web.corpus.corpus_filters import ParaphraseFilters
+from annotations.web.rest.fields import Fields
+from annotations.web.rest.routes import RowRoute, RowsRoute
+
+
+class ParaphraseSerializer(serializers.ModelSerializer):
+    """How somebody said a prompt. Distances are to the prompt; ``command`` is the one behind it."""
+
+    command = serializers.IntegerField(source="command_id", allow_null=True)
+
+    class Meta:
+        model = Paraphrase
+        fields = [
+            *("id", "prompt", "utterance", "grounded_form", "logical_form", "status", "command"),
+            *("edit_distance", "jaccard_distance", "position", "version"),
+        ]
+
+
+class LabelChange(Fields):
+    """The right label, in any notation. Whoever the work queue asks about labels may correct one."""
+
+    logical_form = serializers.CharField(max_length=MAX_FORM)
+
+
+class ParaphraseNoun:
+    model = Paraphrase
+    serializer_class = ParaphraseSerializer
+
+    def rows(self) -> QuerySet[Paraphrase]:
+        return self.world.paraphrases.all()
+
+
+class Paraphrases(ParaphraseNoun, RowsRoute):
+    """Lists the paraphrases."""
+
+    filterset_class = ParaphraseFilters
+    sorts = {
+        **{"position": "position", "utterance": "utterance", "prompt": "prompt"},
+        **{"edit_distance": "edit_distance", "jaccard_distance": "jaccard_distance"},
+    }
+
+
+class OneParaphrase(ParaphraseNoun, RowRoute):
+    """Shows a paraphrase, corrects its label, deletes it."""
+
+    change_serializer = LabelChange
+    duties: ClassVar[dict[str, Duty]] = {"DELETE": Duty.ANNOTATE}
+    conditional_methods = ("PATCH", "DELETE")
+
+    def patch(self, request: Request, **kwargs: object) -> Response:
+        row = self.matched()
+        form = self.read(LabelChange)["logical_form"]
+        try:
+            return self.show(correct_label(row, form, request.user, row.version))
+        except NotForThem as error:
+            raise PermissionDenied(str(error)) from error
+
+    def delete(self, request: Request, **kwargs: object) -> Response:
+        row = self.matched()
+        delete(row, request.user, row.version)
+        return Response(status=204)

@@ -1,0 +1,196 @@
+"""Utterances: what their list shows, and more of them taken in."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from django.db.models import QuerySet
+from django.http import StreamingHttpResponse
+from drf_spectacular.types import OpenApiTypes
+from drf_spectacular.utils import extend_schema
+from rest_framework import serializers, status
+from rest_framework.request import Request
+from rest_framework.response import Response
+
+from annotations.exporting.split_export import SplitFormat
+from annotations.labelling.collecting import MOST_AT_ONCE, collect
+from annotations.language.errors import LanguageError
+from annotations.models import Duty, Origin, Upload, Utterance
+from annotations.models.corpus import origin_choices
+from annotations.people.allowances import may_take_long
+from annotations.rows.stored_problems import as_json
+from annotations.utterances.label_export import FIELDS, LabelFormat, export_labels
+from annotations.utterances.upload_reading import UploadFormat as UploadFormat
+from annotations.utterances.utterance_deletion import delete_utterance
+from annotations.utterances.utterance_uploads import structure_of
+from annotations.web.corpus.corpus_filters import UtteranceFilters
+from annotations.web.rest.fields import Fields
+from annotations.web.rest.idempotency import once
+from annotations.web.rest.negotiation import CONTENT_TYPES, AnyType
+from annotations.web.rest.problem_details import Refused, refusal_of_text
+from annotations.web.rest.routes import RowRoute, RowsRoute, WorldRoute
+
+
+class UtteranceSerializer(serializers.ModelSerializer):
+    """An utterance with its form, which is empty while nobody has given it one.
+
+    ``spans`` are rows of start, end, class and entity.
+    """
+
+    spans = serializers.ListField(child=serializers.ListField())
+    created_by = serializers.CharField(source="created_by.username", default=None)
+
+    class Meta:
+        model = Utterance
+        fields = [
+            *("id", "text", "anonymized_text", "spans", "origin", "status", "logical_form"),
+            *("version", "upload", "created_by", "created_at"),
+        ]
+
+
+class NewUtterances(Fields):
+    """Texts that people said. With an error in one of them nothing is stored."""
+
+    texts = serializers.ListField(
+        child=serializers.CharField(trim_whitespace=False, allow_blank=True, max_length=5_000),
+        max_length=MOST_AT_ONCE,
+    )
+    origin = serializers.ChoiceField(choices=origin_choices(), default=Origin.UPLOADED)
+
+
+class CollectedSerializer(serializers.Serializer):
+    """What was stored. ``uploads/ID/undo/`` with the id in ``upload``, null where nothing was new, takes it away."""
+
+    added = serializers.IntegerField()
+    duplicates = serializers.ListField(child=serializers.CharField())
+    upload = serializers.IntegerField(allow_null=True)
+
+
+def _require_texts(texts: list[str]) -> None:
+    """Raise Refused where the texts are the lines of a file, such as JSON or a table with a head."""
+    try:
+        format = structure_of(texts)
+    except LanguageError as error:
+        raise refusal_of_text(error, "texts") from error
+    if format:
+        sentence = (
+            f"The texts are the lines of a {format} file, not what people say. Send the file to uploads/, "
+            f"which reads it; with format=text there, each line is an utterance."
+        )
+        raise Refused(sentence, [{"field": "texts", "message": sentence}])
+
+
+class UtteranceNoun:
+    model = Utterance
+    serializer_class = UtteranceSerializer
+
+    def rows(self) -> QuerySet[Utterance]:
+        return self.world.utterances.select_related("created_by")
+
+
+class Utterances(UtteranceNoun, RowsRoute):
+    """Lists utterances, the oldest first, and takes new ones in."""
+
+    filterset_class = UtteranceFilters
+    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.ANNOTATE}
+    sorts = {"id": "pk", "text": "text", "status": "status"}
+
+    @extend_schema(request=NewUtterances, responses={201: CollectedSerializer})
+    @once
+    def post(self, request: Request, **kwargs: object) -> Response:
+        sent = self.read(NewUtterances)
+        _require_texts(sent["texts"])
+        by = request.user
+        upload = Upload(world=self.world, created_by=by, format=UploadFormat.TEXT)
+        collected = collect(self.world, sent["texts"], sent["origin"], by, upload)
+        if collected.problems:
+            problems = [{"field": "texts", **as_json(each)} for each in collected.problems]
+            raise Refused(str(collected.problems[0]), problems)
+        values = {
+            "added": collected.added,
+            "duplicates": list(collected.duplicates),
+            "upload": upload.pk,
+        }
+        return Response(values, status=status.HTTP_201_CREATED)
+
+
+class ExportedLabelSerializer(serializers.Serializer):
+    """An answer that was accepted."""
+
+    annotator = serializers.CharField()
+    verdict = serializers.CharField()
+    form = serializers.CharField()
+    reason = serializers.CharField()
+    at = serializers.DateTimeField()
+    seconds = serializers.FloatField(allow_null=True)
+
+
+class ExportedUtteranceSerializer(serializers.ModelSerializer):
+    """One line of a JSON Lines export. ``labels`` are the accepted answers; the last one decides, and
+    ``annotator``, ``labelled_at`` and ``seconds`` are its own."""
+
+    spans = serializers.ListField(child=serializers.ListField())
+    file_name = serializers.CharField()
+    created_by = serializers.CharField()
+    labels = ExportedLabelSerializer(many=True)
+    annotator = serializers.CharField()
+    labelled_at = serializers.CharField()
+    seconds = serializers.FloatField(allow_null=True)
+
+    class Meta:
+        model = Utterance
+        fields = FIELDS
+
+
+class LabelExportQuery(serializers.Serializer):
+    """The format of an export."""
+
+    def get_fields(self) -> dict[str, serializers.Field]:
+        # "as" is a word of Python and cannot be a class attribute.
+        return {"as": serializers.ChoiceField(choices=[*LabelFormat], default=LabelFormat.JSONL)}
+
+
+@may_take_long
+class ExportUtterances(UtteranceNoun, WorldRoute):
+    """Streams the utterances that the filters leave with their labels, as JSON Lines, CSV or Parquet.
+
+    Answers that wait to be compared with another person's are in no export.
+    """
+
+    filterset_class = UtteranceFilters
+    content_negotiation_class = AnyType
+
+    @extend_schema(
+        operation_id="utterances_export",
+        filters=True,
+        parameters=[LabelExportQuery],
+        responses={
+            (200, "application/jsonl"): ExportedUtteranceSerializer(many=True),
+            (200, "text/csv"): OpenApiTypes.STR,
+            (200, "application/vnd.apache.parquet"): OpenApiTypes.BINARY,
+        },
+    )
+    def get(self, request: Request, **kwargs: object) -> StreamingHttpResponse:
+        query = LabelExportQuery(data=request.query_params)
+        query.is_valid(raise_exception=True)
+        as_ = query.validated_data["as"]
+        pieces = export_labels(self.world, self.filter_queryset(self.get_queryset()), as_)
+        response = StreamingHttpResponse(pieces, content_type=CONTENT_TYPES[SplitFormat(as_)])
+        name = f"{self.world.name}-utterances.{as_}"
+        response["Content-Disposition"] = f'attachment; filename="{name}"'
+        return response
+
+
+class OneUtterance(UtteranceNoun, RowRoute):
+    """Shows one utterance, and deletes it; it gets its form from the work queue.
+
+    A deleted one keeps its answers: ``history/utterance/ID/`` restores it with them.
+    """
+
+    duties: ClassVar[dict[str, Duty]] = {"DELETE": Duty.ANNOTATE}
+    conditional_methods = ("DELETE",)
+
+    def delete(self, request: Request, **kwargs: object) -> Response:
+        row = self.matched()
+        delete_utterance(row, request.user, row.version)
+        return Response(status=status.HTTP_204_NO_CONTENT)

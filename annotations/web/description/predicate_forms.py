@@ -1,0 +1,96 @@
+"""The form of a predicate."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from django import forms
+
+from annotations.editing.once_keys import new_key
+from annotations.language.errors import LanguageError
+from annotations.language.limits import MAX_GLOSS, MAX_PREDICATE
+from annotations.language.names import require_predicate
+from annotations.language.predicates import (
+    ArgumentKind,
+    Predicate,
+    PredicateKind,
+    Signature,
+    print_signatures,
+    read_signatures,
+)
+from annotations.models import Editable, World
+from annotations.models import Predicate as StoredPredicate
+from annotations.models.description import predicate_kind_choices
+from annotations.rows.from_rows import predicate_of
+from annotations.web.forms import sentence_of
+
+
+class PredicateForm(forms.Form):
+    """A predicate. The name of a stored one changes only by renaming."""
+
+    name = forms.CharField(max_length=MAX_PREDICATE, help_text="Such as is_near.")
+    kind = forms.ChoiceField(
+        choices=predicate_kind_choices,
+        help_text="An action is something to do; a description says something about a variable.",
+    )
+    signatures = forms.CharField(
+        label="Arguments",
+        max_length=5_000,
+        widget=forms.Textarea(attrs={"rows": 3, "placeholder": "(object, room?)"}),
+        help_text="One way to use it a line; ? marks arguments at the end that may be missing. "
+        f"Kinds: {', '.join(ArgumentKind)}.",
+    )
+    gloss = forms.CharField(
+        label="English",
+        max_length=MAX_GLOSS,
+        required=False,
+        help_text="{1} is the first argument, _ what a description describes; | separates "
+        "alternatives. Empty: made from the name.",
+    )
+    version = forms.IntegerField(widget=forms.HiddenInput, required=False)
+    once = forms.CharField(widget=forms.HiddenInput, required=False, max_length=60, initial=new_key)
+
+    def __init__(self, world: World, row: StoredPredicate | None, *args: Any, **kwargs: Any):
+        super().__init__(*args, **kwargs)
+        self.world = world
+        self.row = row
+        self.fields["name"].disabled = row is not None
+
+    def clean_name(self) -> str:
+        name = str(self.cleaned_data["name"])
+        if self.row is None:
+            try:
+                require_predicate(name)
+            except LanguageError as error:
+                raise forms.ValidationError(sentence_of(error)) from error
+        return name
+
+    def clean_signatures(self) -> tuple[Signature, ...]:
+        try:
+            return read_signatures(self.cleaned_data["signatures"])
+        except LanguageError as error:
+            raise forms.ValidationError(sentence_of(error)) from error
+
+    @property
+    def predicate(self) -> Predicate:
+        """The predicate as it is typed, once the form is valid."""
+        sent = self.cleaned_data
+        kind = PredicateKind(sent["kind"])
+        return Predicate(sent["name"], kind, sent["signatures"], sent["gloss"])
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """The values to store beside the name."""
+        typed = self.predicate
+        signatures = [list(map(str, each.arguments)) for each in typed.signatures]
+        return {"kind": str(typed.kind), "signatures": signatures, "gloss": typed.gloss}
+
+
+def initial_values(row: Editable) -> dict[str, Any]:
+    """Return what the fields of the form show for ``row``."""
+    value = predicate_of(row)
+    names = ("name", "kind", "gloss", "version")
+    return {
+        **{name: getattr(row, name) for name in names},
+        "signatures": print_signatures(value.signatures),
+    }

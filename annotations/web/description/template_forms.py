@@ -1,0 +1,129 @@
+"""The form of a semantic template, and what saving it would do."""
+
+from __future__ import annotations
+
+import copy
+from typing import Any
+
+from django import forms
+
+from annotations.checking.template_check import CheckedTemplate, check_template
+from annotations.editing.once_keys import new_key
+from annotations.generation.world_consequences import (
+    TemplateChange,
+    WorldConsequences,
+    consequences,
+)
+from annotations.language.limits import MAX_FORM, MAX_PATTERN
+from annotations.models import Production, SemanticTemplate, TaskCategory, World
+from annotations.models.description import TemplateStatus, template_status_choices
+
+
+class TemplateForm(forms.Form):
+    """A pattern and its logical form. An error of the checker keeps a template from being ready.
+
+    ``checked`` is what the checker says, once the form has been validated and holds both sides.
+    """
+
+    task_category = forms.ModelChoiceField(queryset=None, empty_label=None)
+    pattern = forms.CharField(
+        max_length=MAX_PATTERN,
+        widget=forms.Textarea(attrs={"rows": 2, "data-editor": "pattern"}),
+    )
+    form = forms.CharField(
+        label="Logical form",
+        max_length=MAX_FORM,
+        widget=forms.Textarea(attrs={"rows": 4, "data-editor": "form"}),
+    )
+    status = forms.ChoiceField(
+        choices=template_status_choices,
+        initial=TemplateStatus.READY,
+        help_text="Only ready templates make commands.",
+    )
+    version = forms.IntegerField(widget=forms.HiddenInput, required=False)
+    once = forms.CharField(widget=forms.HiddenInput, required=False, max_length=60, initial=new_key)
+
+    def __init__(self, world: World, *args: Any, **kwargs: Any):
+        super().__init__(*args, **kwargs)
+        self.world = world
+        self.checked: CheckedTemplate | None = None
+        self.fields["task_category"].queryset = TaskCategory.objects.filter(grammar__world=world)
+        for name, example in example_template(world).items():
+            self.fields[name].widget.attrs["placeholder"] = example
+
+    def clean(self) -> dict[str, Any]:
+        cleaned = super().clean()
+        if self.errors:
+            return cleaned
+        self.checked = check_template(
+            self.world, self.chosen_category, cleaned["pattern"], cleaned["form"]
+        )
+        errors = [problem for problem in self.checked.problems if problem.is_error]
+        for problem in errors if cleaned["status"] != TemplateStatus.DRAFT else ():
+            side = "form" if problem.position.source == "form" else "pattern"
+            hint = f" ({problem.hint})" if problem.hint else ""
+            self.add_error(side, f"{problem.message}{hint}")
+        return cleaned
+
+    @property
+    def chosen_category(self) -> TaskCategory | None:
+        """The chosen task category, or else that of the template, or else the last one."""
+        field = self.fields["task_category"]
+        try:
+            chosen = field.clean(self["task_category"].value())
+        except forms.ValidationError:
+            chosen = None
+        return chosen or self.initial.get("task_category") or field.queryset.last()
+
+
+def example_template(world: World) -> dict[str, str]:
+    """Return a pattern and a form of this world to show in the empty fields of a new template."""
+    template = SemanticTemplate.objects.filter(
+        grammar__world=world, status=TemplateStatus.READY
+    ).first()
+    if template:
+        return {"pattern": template.pattern, "form": template.form}
+    production = Production.objects.filter(grammar__world=world).order_by("position").first()
+    return {"pattern": production.expansion} if production else {}
+
+
+def initial_of(world: World, row: SemanticTemplate) -> dict[str, object]:
+    category = TaskCategory.objects.filter(grammar__world=world, name=row.task_category).first()
+    names = ("pattern", "form", "status", "version")
+    return {"task_category": category, **{name: getattr(row, name) for name in names}}
+
+
+def values_of(form: TemplateForm) -> dict[str, object]:
+    """Return the values to store, with the problems that the checker found."""
+    values = {name: form.cleaned_data[name] for name in ("pattern", "form", "status")}
+    return {**values, "problems": form.checked.stored_problems if form.checked else []}
+
+
+def consequences_of_form(
+    world: World, form: TemplateForm, row: SemanticTemplate | None
+) -> WorldConsequences | None:
+    """Return what saving the form over ``row`` would change. Without a row it is a new template.
+
+    None while a side is empty. ``trouble`` is set if an error keeps the template from being saved.
+    """
+    form.fields["task_category"].required = row is None
+    form.is_valid()  # the template may be a draft, and then an error does not stop it
+    values = {name: form[name].value() or "" for name in ("pattern", "form", "status")}
+    category = form.chosen_category
+    if not values["pattern"].strip() or not values["form"].strip() or category is None:
+        return None
+    if form.errors:
+        return WorldConsequences(trouble="correct the errors first")
+    if row:
+        values |= row.moved_to(category)
+    return consequences(world, change_to(row, category, values))
+
+
+def change_to(
+    row: SemanticTemplate | None, category: TaskCategory, values: dict[str, Any]
+) -> TemplateChange:
+    """Return the change that saving ``values`` over ``row`` makes. Without a row it is a new template."""
+    after = copy.copy(row) if row else SemanticTemplate.for_category(category)
+    for name, value in values.items():
+        setattr(after, name, value)
+    return TemplateChange(row, after)

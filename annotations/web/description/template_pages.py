@@ -1,0 +1,316 @@
+"""Semantic templates: listed, suggested for a command, checked as one types, saved version by version."""
+
+from __future__ import annotations
+
+from functools import partial
+from hashlib import sha256
+from typing import Any
+
+from django.contrib import messages
+from django.db.models import Count, Q
+from django.db.models.functions import Length
+from django.http import HttpRequest, HttpResponse, JsonResponse
+from django.shortcuts import get_object_or_404, redirect, render
+from django.urls import reverse
+from django.utils.cache import patch_cache_control
+from django.utils.html import format_html, format_html_join
+from django.views.decorators.http import condition
+
+from annotations.checking.assistance import assist, completion_tag, completions_of
+from annotations.checking.template_check import (
+    CheckedTemplate,
+    check_template,
+    recall_check,
+    samples_of,
+)
+from annotations.editing.edits import Overtaken, add
+from annotations.form_presentation import form_of
+from annotations.generation.world_consequences import WorldConsequences, consequences
+from annotations.language.english import say_count
+from annotations.language.forms import head_predicate
+from annotations.language.symbols import places_in_form, places_in_pattern
+from annotations.lists.listing import Listing, Sort, render_list
+from annotations.lists.paging import number_in
+from annotations.models import Duty, SemanticTemplate, StoredProblem, TaskCategory, User, World
+from annotations.models.description import ProblemSubject, TemplateStatus
+from annotations.people.access import READ_AND_WRITE, WRITE, world_view
+from annotations.rows.row_kinds import KINDS
+from annotations.suggesting import (
+    MOST_COMMAND,
+    duplicate_of,
+    suggest_forms,
+    suggest_nearest,
+    suggest_pattern,
+)
+from annotations.web.description.description_filters import TemplateFilters
+from annotations.web.description.template_forms import (
+    TemplateForm,
+    change_to,
+    consequences_of_form,
+    initial_of,
+    values_of,
+)
+from annotations.web.editing.consequence_presentation import groups_of
+from annotations.web.editing.merge_pages import merge_page, save_edit
+from annotations.web.forms import posted
+
+SORTS = {
+    "position": Sort("Task category", "position"),
+    "pattern": Sort("Pattern", "pattern"),
+    "commands": Sort("Commands", "n_commands", is_number=True),
+    "status": Sort("Status", "status"),
+}
+
+
+# Shown above an empty editor, and looked at for them.
+EXAMPLES, MOST_EXAMPLES = 3, 100
+
+
+@world_view(Duty.VIEW)
+def templates(request: HttpRequest, world: World) -> HttpResponse:
+    """List all templates with what the checker says of each."""
+    rows = SemanticTemplate.objects.filter(grammar__world=world)
+    listing = Listing(request, TemplateFilters, rows.annotate(n_commands=Count("commands")), SORTS)
+    context = {
+        "listing": listing,
+        "has_grammar": listing.total or has_grammar(world),
+        "problems": problems_beside_rows(world),
+    }
+    return render_list(request, "annotations/description/templates.html", context)
+
+
+def problems_beside_rows(world: World) -> list[StoredProblem]:
+    """Return the problems of template files that belong to no template.
+
+    The list shows the others in the rows of their templates.
+    """
+    rows = SemanticTemplate.objects.filter(grammar__world=world)
+    places = set(rows.values_list("source", "line"))
+    problems = world.problems.filter(subject=ProblemSubject.TEMPLATES)
+    return [each for each in problems if (each.source, each.line) not in places]
+
+
+def has_written(world: World, user: User) -> bool:
+    """Return whether ``user`` is the last author of a template here."""
+    return SemanticTemplate.objects.filter(grammar__world=world, author=user).exists()
+
+
+def example_templates(world: World) -> list[SemanticTemplate]:
+    """Return a few short templates with different predicates, as examples for a beginner.
+
+    Templates that name one slot on both sides come first. None has ``UNKNOWN`` in its form.
+    """
+    rows = SemanticTemplate.objects.filter(
+        grammar__world=world, status=TemplateStatus.READY, problems=[]
+    )
+    known = rows.exclude(form__contains="UNKNOWN").order_by(Length("form"), "position")
+    by_predicate: dict[str, SemanticTemplate] = {}
+    for row in sorted(known[:MOST_EXAMPLES], key=lambda row: not has_shared_slot(row)):
+        form = form_of(row.form)
+        if form is not None:
+            by_predicate.setdefault(head_predicate(form), row)
+    return list(by_predicate.values())[:EXAMPLES]
+
+
+def has_shared_slot(row: SemanticTemplate) -> bool:
+    """Return whether the pattern and the form name one slot that stands for the same value."""
+    sides = (places_in_pattern(row.pattern), places_in_form(row.form))
+    in_pattern, in_form = ({place.key for place in side} - {None} for side in sides)
+    return bool(in_pattern & in_form)
+
+
+def has_grammar(world: World) -> bool:
+    """Return whether the world has task categories that a template could belong to."""
+    return TaskCategory.objects.filter(grammar__world=world).exists()
+
+
+@world_view(Duty.ANNOTATE, READ_AND_WRITE)
+def template_new(request: HttpRequest, world: World) -> HttpResponse:
+    """Write a new template."""
+    if not has_grammar(world):
+        return render(request, "annotations/description/template_needs_grammar.html")
+    suggested = suggestions_for_command(request, world)
+    form = TemplateForm(world, posted(request), initial=suggested.get("initial"))
+    if request.method == "POST" and form.is_valid():
+        category = form.cleaned_data["task_category"]
+        values = values_of(form)
+        expected = consequences(world, change_to(None, category, values))
+        unsaved = SemanticTemplate.for_category(category, **values)
+        row = add(unsaved, request.user, form.cleaned_data["once"])
+        tell_saved(request, row, "Saved.", expected)
+        return redirect("template", world=world.name, pk=row.pk)
+    checked = form.checked or checked_of(world, form)
+    context = {
+        "form": form,
+        "checked": checked,
+        "samples": checked and samples_of(world, checked),
+        "examples": example_templates(world),
+        "is_first_template": not has_written(world, request.user),
+        **suggested,
+    }
+    return render(request, "annotations/description/template.html", context)
+
+
+@world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.ANNOTATE)
+def template(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """Show one template: what it means, its commands and its problems. Annotators change it."""
+    row, is_there = KINDS["template"].row_or_last_known(world, pk)
+    if not is_there and request.method != "POST":
+        return redirect("history", world=world.name, kind="template", pk=pk)
+    form = TemplateForm(world, posted(request), initial=initial_of(world, row))
+    form.fields["task_category"].required = False  # it stays where it is
+    form.fields["task_category"].help_text = "Choose another one to move the template there."
+    context = {"row": row, "form": form, "n_commands": row.commands.count()}
+    context["duplicate"] = None if form.is_bound else duplicate_of(world, row)
+    if request.method == "POST" and form.is_valid():
+        values = values_of(form) | row.moved_to(form.cleaned_data["task_category"])
+        expected = consequences(world, change_to(row, form.cleaned_data["task_category"], values))
+        try:
+            row = save_edit(request, row, form, values)
+        except Overtaken as clash:
+            urls = {
+                "check_url": reverse("template_check", args=[world.name]),
+                "completion_url": reverse("template_completion", args=[world.name, 0]),
+            }
+            shown = partial(initial_of, world)
+            return merge_page(request, row, form, clash, shown, **urls)
+        tell_saved(request, row, f"Saved as version {row.version}.", expected)
+        return redirect("template", world=world.name, pk=pk)
+    if request.GET.get("nearest") and Duty.ANNOTATE in request.duties:
+        context["nearest"] = suggest_nearest(world, row)
+    if (
+        not form.is_bound and row.status == TemplateStatus.DRAFT
+    ):  # a draft may make too much to look at
+        context["checked"] = recall_check(world, row)
+    else:
+        context["checked"] = checked = form.checked or checked_of(world, form)
+        context["samples"] = checked and samples_of(world, checked)
+    return render(request, "annotations/description/template.html", context)
+
+
+def tell_saved(
+    request: HttpRequest, row: SemanticTemplate, sentence: str, expected: WorldConsequences
+) -> None:
+    """Tell the reader that the template was saved, what changed, and how many problems it has."""
+    parts = [format_html("{} {}", sentence, what_came_of_it(row, expected))]
+    count = len(row.problems)
+    if count:
+        parts.append(f"The checker sees {say_count(count, 'problem')} in it, listed below.")
+    level = messages.WARNING if count else messages.SUCCESS
+    messages.add_message(request, level, format_html_join(" ", "{}", ((part,) for part in parts)))
+
+
+def what_came_of_it(row: SemanticTemplate, expected: WorldConsequences) -> str:
+    """Say how the commands changed, with a link to them, or to the job that updates them."""
+    world = World.objects.get(grammar=row.grammar_id)
+    if world.commands_are_stale:
+        jobs = reverse("jobs", kwargs={"world": world.name})
+        return format_html('The commands follow in a <a href="{}">job</a>.', jobs)
+    if expected.trouble or not row.commands.exists():
+        return "" if expected.trouble else expected.sentence
+    commands = reverse("commands", kwargs={"world": world.name})
+    link = format_html('<a href="{}?template={}">See its commands</a>', commands, row.pk)
+    return format_html("{} {}.", expected.sentence, link)
+
+
+def checked_of(world: World, form: TemplateForm) -> CheckedTemplate | None:
+    """Check the form's present content. Return None while a side is empty."""
+    typed = typed_in(form)
+    return check_template(world, *typed) if typed else None
+
+
+def typed_in(form: TemplateForm) -> tuple[TaskCategory | None, str, str] | None:
+    """Return the task category, the pattern and the logical form as typed; None while one is empty."""
+    pattern, logical_form = form["pattern"].value(), form["form"].value()
+    if not pattern or not logical_form:
+        return None
+    # Browsers send the line breaks of a field as two characters, and count them as one.
+    return form.chosen_category, *(text.replace("\r\n", "\n") for text in (pattern, logical_form))
+
+
+@world_view(Duty.ANNOTATE, WRITE)
+def template_check(request: HttpRequest, world: World) -> JsonResponse:
+    """Check what is typed, for the editor."""
+    typed = typed_in(TemplateForm(world, request.POST))
+    return JsonResponse(assist(world, *typed) if typed else {"problems": []})
+
+
+@world_view(Duty.ANNOTATE)
+def template_completion(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """Return the completions for templates of a task category. A browser may send the tag that it has."""
+    category = get_object_or_404(TaskCategory, grammar__world=world, pk=pk)
+
+    @condition(etag_func=lambda request: f'"{completion_tag(category)}"')
+    def answer(request: HttpRequest) -> HttpResponse:
+        return JsonResponse(completions_of(category))
+
+    response = answer(request)
+    patch_cache_control(response, private=True, no_cache=True)
+    return response
+
+
+@world_view(Duty.ANNOTATE, WRITE)
+def template_preview(request: HttpRequest, world: World) -> HttpResponse:
+    """Preview what the typed template means, with samples of its commands."""
+    checked = checked_of(world, TemplateForm(world, request.POST))
+    seed = number_in(request.POST.get("seed", ""))
+    context = {"checked": checked, "samples": checked and samples_of(world, checked, seed)}
+    return render(request, "annotations/description/_template_preview.html", context)
+
+
+@world_view(Duty.ANNOTATE, WRITE)
+def template_consequences(request: HttpRequest, world: World) -> HttpResponse:
+    """Preview what saving the typed template would change. ``template`` names the stored one."""
+    key = request.GET.get("template", "")
+    rows = SemanticTemplate.objects.filter(grammar__world=world)
+    row = get_object_or_404(rows, pk=number_in(key)) if key else None
+    expected = consequences_of_form(world, TemplateForm(world, request.POST), row)
+    context = {"expected": expected, "groups": groups_of(expected) if expected else []}
+    return render(request, "annotations/_change_consequences.html", context)
+
+
+@world_view(Duty.ANNOTATE, WRITE)
+def template_duplicate(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """Copy a template as a draft, to be changed into another one."""
+    row = get_object_or_404(SemanticTemplate, grammar__world=world, pk=pk)
+    names = ("grammar", "source", "task_category", "pattern", "form", "problems")
+    values = {name: getattr(row, name) for name in names}
+    copy = add(SemanticTemplate(status=TemplateStatus.DRAFT, **values), request.user)
+    messages.success(request, "This is a copy. It makes no commands until its status is Ready.")
+    return redirect("template", world=world.name, pk=copy.pk)
+
+
+def suggestions_for_command(request: HttpRequest, world: World) -> dict[str, Any]:
+    """Return the context of the page of a new template for the command in its URL; empty without one.
+
+    ``initial`` are the values that its fields begin with. The form is left to the writer where it would be a
+    guess; one that is filled in is a draft until somebody takes it. ``draft`` names the place of the draft of
+    what is typed, so that one of another command is not filled in.
+    """
+    command = " ".join(request.GET.get("command", "").replace("\0", "").split())[:MOST_COMMAND]
+    if not command:
+        return {}
+    about = {
+        "command": command,
+        "covering": covering_template(world, command),
+        "draft": sha256(command.encode()).hexdigest()[:12],
+    }
+    if request.method == "POST":
+        return about
+    categories = TaskCategory.objects.filter(grammar__world=world)
+    named = categories.filter(name=request.GET.get("task_category", "").replace("\0", ""))
+    category = named.first() or categories.last()
+    pattern = suggest_pattern(world, category, command)
+    suggestions = suggest_forms(world, category, pattern)
+    likely = [each.text for each in suggestions if not each.is_guess]
+    first = likely[0] if likely else ""
+    status = TemplateStatus.DRAFT if first else TemplateStatus.READY
+    initial = {"task_category": category, "pattern": pattern, "form": first, "status": status}
+    shown = {"suggestions": suggestions, "chosen": first, "is_first": True}
+    return {**about, **shown, "initial": initial}
+
+
+def covering_template(world: World, command: str) -> SemanticTemplate | None:
+    """Return a template that makes ``command`` or has it as its pattern; None if there is none."""
+    rows = SemanticTemplate.objects.filter(grammar__world=world)
+    return rows.filter(Q(commands__anonymized_text=command) | Q(pattern=command)).first()

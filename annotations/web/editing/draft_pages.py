@@ -1,0 +1,76 @@
+"""What somebody types, kept while they type: asked for and sent by ``static/src/drafts.js``."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from django.http import Http404, HttpRequest, JsonResponse
+from django.views.decorators.cache import never_cache
+
+from annotations.editing.drafts import MOST_BYTES, discard_draft, read_draft, save_draft
+from annotations.lists.paging import number_in
+from annotations.models import Draft, Duty, World
+from annotations.models.editing import NEW
+from annotations.people.access import READ_AND_WRITE, world_view
+from annotations.web.editing.kinds_of_rows import kind_named
+from annotations.web.sent_texts import NotText, sent_texts_of
+
+LONGEST_SUBJECT = Draft._meta.get_field("subject").max_length
+
+
+@never_cache
+@world_view(Duty.ANNOTATE, READ_AND_WRITE)
+def draft(request: HttpRequest, world: World, kind: str, subject: str) -> JsonResponse:
+    """Return the reader's own draft about a row. A POST keeps or discards it.
+
+    A POST brings JSON: ``of`` (the account that the page was made for), then either
+    ``{"discard": true}`` or ``fields``, ``version`` and ``device``.
+    """
+    of_kind = kind_named(kind)
+    if len(subject) > LONGEST_SUBJECT:
+        raise Http404("There is no such draft.")
+    about = subject.partition("-")[0]
+    if about != NEW:
+        of_kind.row_or_last_known(world, number_in(about))
+    if request.method == "POST":
+        return _post(request, world, kind, subject)
+    key = {"user": request.user, "world": world, "kind": kind, "subject": subject}
+    return JsonResponse({"draft": _as_json(Draft.objects.filter(**key).first())})
+
+
+def _post(request: HttpRequest, world: World, kind: str, subject: str) -> JsonResponse:
+    if request.content_type != "application/json":  # the body of a form has been read already
+        return JsonResponse({"error": "Send a draft as application/json."}, status=400)
+    if len(request.body) > MOST_BYTES:
+        sentence = (
+            f"A draft has at most {MOST_BYTES // 1024} kB. This text is in your browser only."
+        )
+        return JsonResponse({"error": sentence}, status=413)
+    try:
+        sent = sent_texts_of(request).read_json(json.loads(request.body))
+        is_discarded = isinstance(sent, dict) and sent.get("discard") is True
+        values = {} if is_discarded else read_draft(sent)
+    except (ValueError, RecursionError) as error:
+        is_sentence = type(error) in (ValueError, NotText)
+        sentence = str(error) if is_sentence else "This is not JSON."
+        return JsonResponse({"error": sentence}, status=400)
+    if sent.get("of") != request.user.pk:
+        sentence = "You have logged in as somebody else since. The draft is in your browser only."
+        return JsonResponse({"error": sentence}, status=409)
+    if not values:
+        discard_draft(request.user, world, kind, subject)
+        return JsonResponse({"draft": None})
+    saved = save_draft(request.user, world, kind, subject, values)
+    return JsonResponse({"saved_at": saved and saved.saved_at.isoformat()})
+
+
+def _as_json(stored: Draft | None) -> dict[str, Any] | None:
+    if stored is None:
+        return None
+    return {
+        "fields": stored.fields,
+        "version": stored.base_version,
+        "device": stored.device,
+        "saved_at": stored.saved_at.isoformat(),
+    }

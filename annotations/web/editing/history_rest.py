@@ -1,0 +1,182 @@
+"""What became of the rows that people edit: versions, restored ones, other names."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from django.db.models import QuerySet
+from django.http import Http404
+from django.shortcuts import get_object_or_404
+from django.utils.module_loading import import_string
+from drf_spectacular.utils import extend_schema
+from rest_framework import serializers
+from rest_framework.request import Request
+from rest_framework.response import Response
+
+from annotations.editing.edits import restore
+from annotations.labelling.label_answers import NoLongerYours
+from annotations.language.limits import MAX_ENTITY
+from annotations.models import Duty, SemanticTemplate
+from annotations.renaming.rename_plans import PLANS
+from annotations.renaming.world_rename import rename
+from annotations.rows.history import DELETED, history_of, what_happened
+from annotations.rows.row_kinds import KINDS, EditableKind
+from annotations.web.editing.kinds_of_rows import RESTORING, kind_named
+from annotations.web.editing.rename_forms import RenameForm
+from annotations.web.rest.fields import Fields, LineField
+from annotations.web.rest.idempotency import once
+from annotations.web.rest.problem_details import Conflict, refusal_of_form
+from annotations.web.rest.routes import RowRoute, RowsRoute
+
+# Kind of row → the serializer of its own routes. By path: the rooms of the rows import this one.
+SERIALIZERS = {
+    "template": "annotations.web.description.template_rest.TemplateSerializer",
+    "production": "annotations.web.description.production_rest.ProductionSerializer",
+    "entity": "annotations.web.description.entity_rest.EntitySerializer",
+    "predicate": "annotations.web.description.predicate_rest.PredicateSerializer",
+    "guidelines": "annotations.web.description.guidelines_rest.GuidelinesSerializer",
+    "paraphrase": "annotations.web.corpus.paraphrase_rest.ParaphraseSerializer",
+    "utterance": "annotations.web.corpus.utterance_rest.UtteranceSerializer",
+}
+
+
+def serializer_of(kind: EditableKind) -> type[serializers.ModelSerializer]:
+    """Return the class that shows rows of ``kind`` at their own address."""
+    serializer: type[serializers.ModelSerializer] = import_string(SERIALIZERS[kind.name])
+    return serializer
+
+
+class VersionSerializer(serializers.Serializer):
+    """What a row was: ``values`` as people edit them, who made it so, and when."""
+
+    entry = serializers.IntegerField(source="history_id")
+    id = serializers.IntegerField()
+    version = serializers.IntegerField()
+    what = serializers.SerializerMethodField()
+    by = serializers.CharField(source="history_user.username", default=None, allow_null=True)
+    at = serializers.DateTimeField(source="history_date")
+    is_deletion = serializers.SerializerMethodField()
+    values = serializers.SerializerMethodField()
+
+    def get_what(self, entry: Any) -> str:
+        return what_happened(entry)
+
+    def get_is_deletion(self, entry: Any) -> bool:
+        return entry.history_type == DELETED
+
+    def get_values(self, entry: Any) -> dict[str, Any]:
+        return {name: getattr(entry, name) for name in self.context["kind"].model.edited_fields}
+
+
+class OfKind:
+    """Routes whose address names a kind of row, such as ``template``."""
+
+    def kind(self) -> EditableKind:
+        """Return the kind of the address. Raises Http404."""
+        return kind_named(self.kwargs["kind"])
+
+
+class Versions(OfKind, RowsRoute):
+    model = history_of(SemanticTemplate).model  # any of them, for the schema
+    serializer_class = VersionSerializer
+    sorts = {"newest": "-history_id"}
+
+    def get_serializer_context(self) -> dict[str, Any]:
+        context = super().get_serializer_context()
+        is_described = getattr(self, "swagger_fake_view", False)
+        return context if is_described else {**context, "kind": self.kind()}
+
+
+class RestoredEntry(Fields):
+    """The entry of the history that the row becomes again."""
+
+    entry = serializers.IntegerField(min_value=1, max_value=2**63 - 1)
+
+
+class RestoredSerializer(serializers.Serializer):
+    """The row as it is now: ``row`` is what its own address shows."""
+
+    kind = serializers.CharField()
+    row = serializers.DictField()
+
+
+class HistoryOfRow(Versions):
+    """Lists the versions of a row, the newest first, and restores one; a deleted row comes back."""
+
+    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.ANNOTATE}
+
+    @property
+    def duty(self) -> Duty:
+        """What the method of the request needs; to restore a row, what writing one of its kind needs."""
+        kind = KINDS.get(self.kwargs.get("kind", ""))
+        return kind.write_duty if kind and self.request.method == "POST" else super().duty
+
+    def rows(self) -> QuerySet[Any]:
+        kind, key = self.kind(), self.kwargs["pk"]
+        entries = kind.entries_of(self.world).filter(id=key)
+        if not entries.exists() and not kind.rows_of(self.world).filter(pk=key).exists():
+            raise Http404("There is no such row.")
+        return entries
+
+    @extend_schema(request=RestoredEntry, responses={200: RestoredSerializer})
+    @once
+    def post(self, request: Request, **kwargs: object) -> Response:
+        kind, entries = self.kind(), self.rows()
+        entry = get_object_or_404(entries, history_id=self.read(RestoredEntry)["entry"])
+        try:
+            row = RESTORING.get(kind.model, restore)(entry, request.user)
+        except NoLongerYours as error:
+            raise Conflict(str(error)) from error
+        return Response({"kind": kind.name, "row": serializer_of(kind)(row).data})
+
+
+class Deleted(Versions):
+    """Lists the rows of a kind that were deleted, the latest first."""
+
+    def rows(self) -> QuerySet[Any]:
+        return self.kind().deletions_in(self.world)
+
+
+class NewName(Fields):
+    """``old`` says which name, where the row has several: an entity and its aliases."""
+
+    new = LineField(max_length=MAX_ENTITY)
+    old = LineField(max_length=MAX_ENTITY, required=False)
+
+
+class RenamedSerializer(serializers.Serializer):
+    """The row, and how many rows of each kind changed with its name."""
+
+    kind = serializers.CharField()
+    row = serializers.DictField()
+    changed = serializers.DictField(child=serializers.IntegerField())
+
+
+class Rename(OfKind, RowRoute):
+    """Gives an entity, a predicate or the nonterminal of a production another name, wherever it stands."""
+
+    model = SemanticTemplate
+    http_method_names = ["post", "options"]
+    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.ANNOTATE}
+    conditional_methods = ("POST",)
+
+    def get_serializer_class(self) -> Any:
+        return serializer_of(self.kind())
+
+    def rows(self) -> QuerySet[Any]:
+        if self.kind().model not in PLANS:
+            raise Http404("Rows of this kind have no name.")
+        return self.kind().rows_of(self.world)
+
+    @extend_schema(request=NewName, responses={200: RenamedSerializer})
+    def post(self, request: Request, **kwargs: object) -> Response:
+        row, sent = self.matched(), self.read(NewName)
+        form = RenameForm(row, {"version": row.version, **sent})
+        form.data.setdefault("old", form.initial["old"])
+        if not form.is_valid():
+            raise refusal_of_form(form)
+        names = form.cleaned_data["old"], form.cleaned_data["new"]
+        touched = rename(row, *names, request.user, row.version)
+        shown = self.get_serializer(self.get_object()).data
+        changed = {each.noun: len(each) for each in touched}
+        return Response({"kind": self.kind().name, "row": shown, "changed": changed})

@@ -1,0 +1,21 @@
+"""The kinds of rows by the names in URLs, and the verbs that some kinds have of their own."""
+
+from __future__ import annotations
+
+from django.http import Http404
+
+from annotations.models import Utterance
+from annotations.rows.row_kinds import KINDS, EditableKind
+from annotations.utterances.utterance_deletion import delete_utterance
+from annotations.utterances.utterance_deletion import restore as restore_with_answers
+
+RESTORING = {Utterance: restore_with_answers}  # what more than the row itself is restored with
+
+DELETING = {Utterance: delete_utterance}  # what keeps more than its history
+
+
+def kind_named(name: str) -> EditableKind:
+    """Return the kind of that name. Raises Http404."""
+    if name not in KINDS:
+        raise Http404("There is no such kind of row.")
+    return KINDS[name]

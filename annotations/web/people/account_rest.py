@@ -1,0 +1,140 @@
+"""All accounts of the site, and the audit log, for those who look after them."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from django.db.models import QuerySet
+from django.shortcuts import get_object_or_404
+from drf_spectacular.utils import extend_schema
+from rest_framework import serializers
+from rest_framework.request import Request
+from rest_framework.response import Response
+
+from annotations.models import AuditEntry, Duty, Membership, Scope, User
+from annotations.people.accounts import OwnAccount, password_path, set_open
+from annotations.people.audit_log import note
+from annotations.web.people.member_rest import UNCACHED
+from annotations.web.people.people_filters import AccountFilters, AuditEntryFilters
+from annotations.web.rest.fields import Fields
+from annotations.web.rest.permissions import ForSiteAdmins
+from annotations.web.rest.problem_details import Conflict
+from annotations.web.rest.routes import ManyRows, RowsRoute, SingleRow
+
+
+class RoleInWorld(serializers.ModelSerializer):
+    world = serializers.CharField(source="world.name")
+
+    class Meta:
+        model = Membership
+        fields = ["world", "role"]
+
+
+class AccountSerializer(serializers.ModelSerializer):
+    """An account with its roles in all worlds. Nobody logs in to one that is not active."""
+
+    name = serializers.CharField(source="username")
+    roles = RoleInWorld(source="memberships", many=True)
+
+    class Meta:
+        model = User
+        fields = ["id", "name", "is_active", "is_superuser", "date_joined", "roles"]
+
+
+class AccountChange(Fields):
+    """Closing an account logs it out everywhere and stops its tokens."""
+
+    is_active = serializers.BooleanField()
+
+
+class AccountNoun:
+    model = User
+    serializer_class = AccountSerializer
+    permission_classes: ClassVar[list[type]] = [ForSiteAdmins]
+    duty = Duty.MANAGE
+    scopes: ClassVar[dict[str, Scope]] = {"GET": Scope.READ}
+
+    def rows(self) -> QuerySet[User]:
+        return User.objects.prefetch_related("memberships__world")
+
+
+class Accounts(AccountNoun, ManyRows):
+    """Lists all accounts. People join by invitations; ``manage.py`` makes the first one."""
+
+    filterset_class = AccountFilters
+    sorts = {"name": "username", "joined": "date_joined"}
+
+
+class OneAccount(AccountNoun, SingleRow):
+    """Shows an account, closes it or opens it."""
+
+    conditional_methods = ("PATCH",)
+
+    @extend_schema(request=AccountChange, responses={200: AccountSerializer})
+    def patch(self, request: Request, **kwargs: object) -> Response:
+        is_open = self.read(AccountChange)["is_active"]
+        with self.matching() as row:
+            try:
+                set_open(row, is_open, by=request.user)
+            except OwnAccount as error:
+                raise Conflict(str(error)) from error
+        note(request, f"{row}: {'open' if is_open else 'closed'}")
+        return self.show(self.get_object())
+
+
+class PasswordLink(serializers.Serializer):
+    """Whoever opens the page sets a new password, once, within three days."""
+
+    link = serializers.CharField()
+
+
+class AccountLink(AccountNoun, SingleRow):
+    """Makes a link for somebody who has lost their password."""
+
+    http_method_names = ["post", "options"]
+
+    @extend_schema(request=None, responses={200: PasswordLink})
+    def post(self, request: Request, **kwargs: object) -> Response:
+        row = get_object_or_404(self.rows().filter(is_active=True), pk=self.kwargs["pk"])
+        note(request, str(row))
+        link = request.build_absolute_uri(password_path(row))
+        return Response({"link": link}, headers=UNCACHED)
+
+
+class AuditEntrySerializer(serializers.ModelSerializer):
+    """What somebody did, and to what; ``through`` names the token of a program. It outlives both."""
+
+    who = serializers.CharField(source="who_name")
+    world = serializers.CharField(source="world_name")
+
+    class Meta:
+        model = AuditEntry
+        fields = ["id", "at", "who", "through", "what", "subject", "world"]
+
+
+class AuditEntryNoun:
+    model = AuditEntry
+    serializer_class = AuditEntrySerializer
+    filterset_class = AuditEntryFilters
+    sorts: ClassVar[dict[str, str]] = {"newest": "-pk"}
+
+
+class AuditLogOfWorld(AuditEntryNoun, RowsRoute):
+    """Lists who did what in a world, the newest first."""
+
+    duties: ClassVar[dict[str, Duty]] = {"GET": Duty.MANAGE}
+    scopes: ClassVar[dict[str, Scope]] = {"GET": Scope.READ}
+
+    def rows(self) -> QuerySet[AuditEntry]:
+        return AuditEntry.objects.filter(world=self.world)
+
+
+class SiteLog(AuditEntryNoun, ManyRows):
+    """Lists who did what anywhere, the newest first."""
+
+    permission_classes: ClassVar[list[type]] = [ForSiteAdmins]
+    duty = Duty.MANAGE
+    scopes: ClassVar[dict[str, Scope]] = {"GET": Scope.READ}
+
+    def rows(self) -> QuerySet[AuditEntry]:
+        return AuditEntry.objects.all()

@@ -1,0 +1,149 @@
+"""The findings of label audits: the rows that the page shows, and what people decide about them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import django_filters
+from django.shortcuts import get_object_or_404
+from drf_spectacular.utils import extend_schema, extend_schema_field
+from rest_framework import serializers
+from rest_framework.exceptions import PermissionDenied
+from rest_framework.request import Request
+from rest_framework.response import Response
+
+from annotations.label_audit.label_decisions import DecidedMeanwhile, decide, take_back
+from annotations.labelling.label_answers import AnsweredMeanwhile, NoLongerYours
+from annotations.language.errors import LanguageError
+from annotations.language.limits import MAX_FORM
+from annotations.models import AuditDecision, AuditFinding, AuditReason
+from annotations.models.corpus import MOST_CHARACTERS
+from annotations.models.queueing import (
+    AuditFindingQuerySet,
+    audit_reason_choices,
+    decision_choices,
+    finding_status_choices,
+)
+from annotations.queueing.giving import NotForThem
+from annotations.web.rest.fields import Fields
+from annotations.web.rest.problem_details import Conflict, Refused, refusal_of_text
+from annotations.web.rest.routes import RowRoute, RowsRoute
+
+
+class AuditReasonSerializer(serializers.ModelSerializer):
+    class Meta:
+        model = AuditReason
+        fields = ["reason", "sentence", "suggested_form", "score"]
+
+
+class AuditDecisionSerializer(serializers.ModelSerializer):
+    decided_by = serializers.CharField(source="decided_by.username", default=None)
+
+    class Meta:
+        model = AuditDecision
+        fields = ["id", "decision", "form", "reason", "decided_by", "decided_at", "taken_back_at"]
+
+
+class FindingSubjectSerializer(serializers.Serializer):
+    kind = serializers.ChoiceField(choices=["utterance", "paraphrase"])
+    id = serializers.IntegerField()
+
+
+class AuditFindingSerializer(serializers.ModelSerializer):
+    """A label that may be wrong, what speaks against it, and every decision about it."""
+
+    subject = serializers.SerializerMethodField()
+    reasons = AuditReasonSerializer(many=True)
+    decisions = AuditDecisionSerializer(many=True)
+
+    class Meta:
+        model = AuditFinding
+        fields = [
+            *("id", "subject", "rank", "score", "status", "text", "anonymized_text"),
+            *("source_command", "form", "suggested_form", "decided_form", "found_at"),
+            *("reasons", "decisions"),
+        ]
+
+    @extend_schema_field(FindingSubjectSerializer)
+    def get_subject(self, finding: AuditFinding) -> dict[str, Any]:
+        if finding.utterance_id:
+            return {"kind": "utterance", "id": finding.utterance_id}
+        return {"kind": "paraphrase", "id": finding.paraphrase_id}
+
+
+class AuditFindingQuery(django_filters.FilterSet):
+    """Which findings to list; all of them where nothing is asked."""
+
+    status = django_filters.ChoiceFilter(choices=finding_status_choices(), method="by_status")
+    reason = django_filters.ChoiceFilter(choices=audit_reason_choices(), method="by_reason")
+
+    def by_status(self, rows: AuditFindingQuerySet, name: str, value: str) -> AuditFindingQuerySet:
+        return rows.with_status(value)
+
+    def by_reason(self, rows: AuditFindingQuerySet, name: str, value: str) -> AuditFindingQuerySet:
+        return rows.with_reason(value)
+
+
+class NewDecision(Fields):
+    """What to do with the label: ``kept``, ``corrected`` by a form (the suggested one where it is empty), or
+    ``excluded`` from new splits."""
+
+    decision = serializers.ChoiceField(choices=decision_choices())
+    form = serializers.CharField(max_length=MAX_FORM, allow_blank=True, default="")
+    reason = serializers.CharField(max_length=MOST_CHARACTERS, allow_blank=True, default="")
+
+
+class AuditFindingNoun:
+    model = AuditFinding
+    serializer_class = AuditFindingSerializer
+
+    def rows(self) -> AuditFindingQuerySet:
+        return self.world.audit_findings.prefetch_related("reasons", "decisions__decided_by")
+
+
+class AuditFindings(AuditFindingNoun, RowsRoute):
+    """Lists the labels that audits have found to be in doubt, the most suspect first."""
+
+    filterset_class = AuditFindingQuery
+    sorts = {"rank": "rank", "id": "pk"}
+
+
+class OneAuditFinding(AuditFindingNoun, RowRoute):
+    """Shows one finding."""
+
+
+class DecideAuditFinding(AuditFindingNoun, RowRoute):
+    """Decides about a label in doubt, once. The work queue knows who may."""
+
+    http_method_names = ["post", "options"]
+
+    @extend_schema(request=NewDecision, responses={200: AuditFindingSerializer})
+    def post(self, request: Request, **kwargs: object) -> Response:
+        row, sent = self.get_object(), self.read(NewDecision)
+        try:
+            decide(row, sent["decision"], request.user, sent["form"], sent["reason"])
+        except NotForThem as error:
+            raise PermissionDenied(str(error)) from error
+        except (AnsweredMeanwhile, DecidedMeanwhile, NoLongerYours) as error:
+            raise Conflict(str(error)) from error
+        except LanguageError as error:
+            raise refusal_of_text(error, "form") from error
+        except ValueError as error:
+            raise Refused(str(error)) from error
+        return self.show(self.get_object())
+
+
+class TakeBackDecision(AuditFindingNoun, RowRoute):
+    """Undoes a decision of the caller; its label is in doubt again."""
+
+    http_method_names = ["post", "options"]
+
+    @extend_schema(request=None, responses={200: AuditFindingSerializer})
+    def post(self, request: Request, **kwargs: object) -> Response:
+        rows = AuditDecision.objects.filter(finding__world=self.world)
+        made = get_object_or_404(rows, pk=self.kwargs["pk"])
+        try:
+            finding = take_back(made, request.user)
+        except ValueError as error:
+            raise Conflict(str(error)) from error
+        return self.show(self.rows().get(pk=finding.pk))

@@ -1,0 +1,67 @@
+"""What reviewers read, sent back to annotators."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, ClassVar
+
+from django.db.models import QuerySet
+from drf_spectacular.utils import extend_schema
+from rest_framework import serializers
+from rest_framework.filters import BaseFilterBackend
+from rest_framework.request import Request
+from rest_framework.response import Response
+
+from annotations.models import Duty, Example
+from annotations.queueing.sent_examples import send_examples
+from annotations.web.queueing.work_item_forms import LONGEST_QUESTION
+from annotations.web.rest.fields import Fields, LineField
+from annotations.web.rest.idempotency import once
+from annotations.web.rest.problem_details import Refused
+from annotations.web.rest.routes import WorldRoute
+
+
+class WhatToLookAt(Fields):
+    """What annotators are to look at, as they read it in the queue."""
+
+    reason = LineField(max_length=LONGEST_QUESTION)
+
+
+class SentSerializer(serializers.Serializer):
+    """What became of the examples: different texts, the rows behind them, and how many are in the queue now."""
+
+    utterances = serializers.IntegerField()
+    subjects = serializers.IntegerField()
+    queued = serializers.IntegerField()
+    left_out = serializers.IntegerField()
+
+
+class Sending(WorldRoute):
+    """Sends what is behind examples to the work queue."""
+
+    http_method_names = ["post", "options"]
+    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.REVIEW}
+
+    def send(self, examples: Iterable[Example]) -> Response:
+        """Send examples for the reason in the body. Raises Refused where they are too many."""
+        reason = self.read(WhatToLookAt)["reason"]
+        try:
+            sent = send_examples(self.world, examples, reason, self.request.user)
+        except ValueError as error:
+            raise Refused(str(error)) from error
+        return Response(SentSerializer(sent).data)
+
+
+class SendExample(Sending):
+    """Sends what is behind an example of a split to the work queue."""
+
+    model = Example
+    filter_backends: ClassVar[list[type[BaseFilterBackend]]] = []
+
+    def rows(self) -> QuerySet[Example]:
+        return Example.objects.filter(split__world=self.world, split=self.kwargs["split"])
+
+    @extend_schema(request=WhatToLookAt, responses={200: SentSerializer})
+    @once
+    def post(self, request: Request, **kwargs: Any) -> Response:
+        return self.send([self.get_object()])

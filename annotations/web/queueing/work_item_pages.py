@@ -1,0 +1,254 @@
+"""The work queue: what to do next and why, who does what, and what an admin decides about it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from django.contrib import messages
+from django.db.models import Prefetch
+from django.http import Http404, HttpRequest, HttpResponse
+from django.shortcuts import get_object_or_404, redirect, render
+from django.urls import reverse
+from django.views.decorators.cache import never_cache
+
+from annotations.label_audit.label_decisions import end_item
+from annotations.labelling.label_answers import AnsweredMeanwhile, NoLongerYours
+from annotations.language.english import say_count
+from annotations.lists.listing import Listing, Sort, render_list
+from annotations.models import Assignment, Duty, WorkItem, WorkKind, World
+from annotations.models.queueing import OCCUPYING
+from annotations.people.access import READ_AND_WRITE, WRITE, demand, world_view
+from annotations.queueing.enqueuing import ASKABLE, ask_about, set_share, shares_of
+from annotations.queueing.finishing import finish, give_back, skip
+from annotations.queueing.giving import (
+    NotForThem,
+    assign,
+    assign_first,
+    held_item,
+    next_item,
+    take,
+    withdraw,
+)
+from annotations.queueing.item_answers import answer, labels_to_compare
+from annotations.queueing.queue_progress import open_by_kind
+from annotations.web.forms import posted
+from annotations.web.queueing.queueing_filters import WorkItemFilters
+from annotations.web.queueing.work_item_forms import (
+    MOST_ASSIGNED,
+    AskForm,
+    AssignForm,
+    AssignManyForm,
+    SettleForm,
+    SharesForm,
+)
+
+SORTS = {
+    "urgency": Sort("Why", "-priority"),
+    "title": Sort("What", "title"),
+    "created": Sort("Added", "id"),
+}
+
+
+def shown_parts() -> Prefetch:
+    """Return the people who have an item or have done it, for lists."""
+    parts = Assignment.objects.filter(outcome__in=OCCUPYING)
+    return Prefetch("assignments", parts.select_related("person"), "parts")
+
+
+@never_cache
+@world_view(Duty.VIEW)
+def queue(request: HttpRequest, world: World) -> HttpResponse:
+    """Show the reader's current item and the list of all items."""
+    listing = Listing(
+        request, WorkItemFilters, world.work_items.present().prefetch_related(shown_parts()), SORTS
+    )
+    held = held_item(request.user, world)
+    context = {
+        "listing": listing,
+        "held": held,
+        "page": page_of(held.item) if held else "",
+        "waiting": open_by_kind(world),
+        "assign_form": AssignManyForm(world, auto_id="assign_%s"),  # a filter is called person too
+    }
+    return render_list(request, "annotations/queueing/queue.html", context)
+
+
+@world_view(Duty.VIEW, WRITE)
+def queue_next(request: HttpRequest, world: World) -> HttpResponse:
+    """Assign the next item to the reader, and open its page."""
+    assignment = next_item(request.user, world)
+    if assignment is None:
+        messages.info(request, "There is nothing that you can do now. Look again later.")
+        return redirect("queue", world=world.name)
+    return redirect(page_of(assignment.item))
+
+
+@never_cache
+@world_view(Duty.VIEW)
+def queue_item(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """Show one item: why it is there, who does it, and two labels beside each other if they differ."""
+    return _item_page(request, _item_of(world, pk))
+
+
+def _item_of(world: World, pk: int) -> WorkItem:
+    return get_object_or_404(
+        world.work_items.present().select_related("utterance", "follows"), pk=pk
+    )
+
+
+def _item_page(
+    request: HttpRequest, item: WorkItem, form: SettleForm | None = None, status: int = 200
+) -> HttpResponse:
+    parts = item.assignments.select_related("person", "label")
+    mine = parts.held().filter(person=request.user).first()
+    labels = labels_to_compare(item, request.user)
+    context = {
+        "item": item,
+        "parts": parts,
+        "mine": mine,
+        "page": page_of(item),
+        "labels": labels,
+        "form": form or (SettleForm(labels) if mine and labels else None),
+        "assign_form": AssignForm(item.world),
+    }
+    return render(request, "annotations/queueing/queue_item.html", context, status=status)
+
+
+def page_of(item: WorkItem) -> str:
+    """Return the URL of the page on which an item is done."""
+    world = item.world.name
+    if finding := item.open_finding:
+        return reverse("audit", args=[world]) + f"?finding={finding.pk}"
+    if item.kind == WorkKind.ADJUDICATION or item.subject is None:
+        return reverse("queue_item", args=[world, item.pk])
+    if item.utterance_id:
+        return reverse("label", args=[world]) + f"?utterance={item.utterance_id}"
+    if item.template_id:
+        return reverse("template", args=[world, item.template_id])
+    return reverse("paraphrase", args=[world, item.paraphrase_id])
+
+
+@world_view(Duty.VIEW, WRITE)
+def queue_settle(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """Decide between two labels, with one of them or with another answer."""
+    item = _item_of(world, pk)
+    form = SettleForm(labels_to_compare(item, request.user), request.POST)
+    if not item.assignments.held().filter(person=request.user).exists():
+        messages.error(request, "Take this item first; somebody else may be at it.")
+        return redirect("queue_item", world=world.name, pk=pk)
+    if not form.is_valid():
+        return _item_page(request, item, form, status=422)
+    try:
+        answer(item.utterance, by=request.user, version=item.utterance.version, **form.decision)
+    except (AnsweredMeanwhile, ValueError) as error:
+        messages.error(request, str(error))
+        return redirect("queue_item", world=world.name, pk=pk)
+    messages.success(request, f"Settled: {item.title[:80]}")
+    return redirect("queue", world=world.name)
+
+
+def _finish(part: Assignment) -> None:
+    """Finish an item. A label in doubt is kept as it is; an utterance is finished only by labelling it."""
+    if end_item(part):
+        return
+    if part.item.utterance_id:
+        raise NotForThem("Label the utterance; that ends this item.")
+    finish(part)
+
+
+@world_view(Duty.REVIEW, WRITE)
+def queue_ask(request: HttpRequest, world: World, kind: str, pk: int) -> HttpResponse:
+    """Ask for a look at an utterance, a template or a paraphrase, with a reason."""
+    if kind not in ASKABLE:
+        raise Http404("Nobody can be asked about that.")
+    subject = get_object_or_404(ASKABLE[kind](world), pk=pk)
+    form = AskForm(request.POST)
+    if not form.is_valid():
+        messages.error(request, "Say in a few words what is to be looked at.")
+    elif ask_about(world, subject, form.cleaned_data["reason"], request.user):
+        messages.success(request, "In the queue: the next annotator who is free gets it.")
+    else:
+        messages.info(request, "Somebody is asked about this already.")
+    return redirect(kind, world=world.name, pk=pk)
+
+
+# What the person who holds an item does with it, and what is said then.
+STEPS: dict[str, tuple[Callable[[Assignment], object], str]] = {
+    "give_back": (give_back, "Given back. Others can take it now."),
+    "skip": (skip, "Skipped. Others can take it now; you do not get it again."),
+    "done": (_finish, "Done."),
+}
+
+
+@world_view(Duty.VIEW, WRITE)
+def queue_act(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """Take an item, give it back, skip it or end it; admins give it to somebody or withdraw it."""
+    item = _item_of(world, pk)
+    step = request.POST.get("step", "")
+    try:
+        if step == "take":
+            take(request.user, item)
+            return redirect(page_of(item))
+        messages.success(request, _act(request, item, step))
+    except (NotForThem, NoLongerYours) as error:
+        messages.error(request, str(error))
+    return redirect("queue_item", world=world.name, pk=pk)
+
+
+def _act(request: HttpRequest, item: WorkItem, step: str) -> str:
+    """Carry out a step of an admin, or of the person who holds the item. Return a sentence about it."""
+    if step in ("assign", "withdraw"):
+        demand(request, Duty.MANAGE)
+        if step == "assign":
+            return _assign(request, item)
+        for part in item.assignments.held():
+            withdraw(part)
+        return "Withdrawn. Others can take it now."
+    part = item.assignments.held().filter(person=request.user).first()
+    if part is None or step not in STEPS:
+        raise NoLongerYours("This is not yours now. Take it first.")
+    verb, sentence = STEPS[step]
+    verb(part)
+    return sentence
+
+
+def _assign(request: HttpRequest, item: WorkItem) -> str:
+    form = AssignForm(item.world, request.POST)
+    if not form.is_valid():
+        raise NotForThem("Choose a person of this world.")
+    person = form.cleaned_data["person"]
+    assign(item, person, by=request.user)
+    return f"{person} has this now."
+
+
+@world_view(Duty.MANAGE, WRITE)
+def queue_assign(request: HttpRequest, world: World) -> HttpResponse:
+    """Give somebody the first free items of the list that the filters of the URL leave."""
+    form = AssignManyForm(world, request.POST)
+    if not form.is_valid():
+        messages.error(request, f"Choose a person and 1 to {MOST_ASSIGNED} items.")
+        return _back_to_list(request, world)
+    person, count = form.cleaned_data["person"], form.cleaned_data["count"]
+    rows = WorkItemFilters(request.GET, queryset=world.work_items.present(), request=request).qs
+    given = assign_first(rows, person, count, request.user)
+    messages.success(request, f"{person} has {say_count(given, 'more item')} now.")
+    return _back_to_list(request, world)
+
+
+def _back_to_list(request: HttpRequest, world: World) -> HttpResponse:
+    response = redirect("queue", world=world.name)
+    if query := request.GET.urlencode():
+        response["Location"] += f"?{query}"
+    return response
+
+
+@world_view(Duty.MANAGE, READ_AND_WRITE)
+def queue_settings(request: HttpRequest, world: World) -> HttpResponse:
+    """Set the share of items, by kind, that two people do independently."""
+    form = SharesForm(posted(request), initial=shares_of(world))
+    if request.method == "POST" and form.is_valid():
+        for kind, percent in form.cleaned_data.items():
+            set_share(world, WorkKind(kind), percent)
+        messages.success(request, "Saved. Items that nobody has taken yet follow it too.")
+        return redirect("queue_settings", world=world.name)
+    return render(request, "annotations/queueing/queue_settings.html", {"form": form})

@@ -1,0 +1,50 @@
+"""Which version of a row a request is about: ``ETag`` and ``If-Match`` (RFC 9110, section 13)."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from django.core.serializers.json import DjangoJSONEncoder
+from django.utils.http import parse_etags
+from rest_framework.request import Request
+
+from annotations.editing.edits import Overtaken
+from annotations.models import Editable
+from annotations.web.rest.problem_details import PreconditionRequired
+
+ANY = "*"
+
+
+def etag_of(row: Any, shown: Mapping[str, Any]) -> str:
+    """Return the tag of a row: its version where it counts them, else a hash of what is shown of it."""
+    if isinstance(row, Editable):
+        return f'"{row.version}"'
+    text = json.dumps(shown, sort_keys=True, cls=DjangoJSONEncoder)
+    return f'"{hashlib.sha256(text.encode()).hexdigest()[:20]}"'
+
+
+def require_match(request: Request, row: Any, shown: Mapping[str, Any]) -> None:
+    """Refuse a write to a version of ``row`` that is not the present one; ``*`` stands for any.
+
+    Raises PreconditionRequired without a version, and Overtaken for another one.
+    """
+    asked = request.headers.get("If-Match")
+    if not asked:
+        raise PreconditionRequired
+    # An answer that was compressed on its way has the same tag, marked as weak.
+    tags = [tag.removeprefix("W/") for tag in parse_etags(asked)]
+    if tags != [ANY] and etag_of(row, shown) not in tags:
+        raise Changed(row)
+
+
+class Changed(Overtaken):
+    """The row is at another version than the request says."""
+
+    def __init__(self, row: Any) -> None:
+        self.sentence = "This is not the version that you read."
+        Exception.__init__(self, f"{self.sentence} Compare yours with the present one below.")
+        self.current = row
+        self.base = self.last = None

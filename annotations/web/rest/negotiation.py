@@ -1,0 +1,31 @@
+"""In which type a route answers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rest_framework.negotiation import BaseContentNegotiation
+from rest_framework.renderers import BaseRenderer
+from rest_framework.request import Request
+
+from annotations.exporting.split_export import SplitFormat
+
+CONTENT_TYPES = {
+    SplitFormat.TXT: "text/plain; charset=utf-8",
+    SplitFormat.JSONL: "application/jsonl; charset=utf-8",
+    SplitFormat.CSV: "text/csv; charset=utf-8",
+    SplitFormat.PARQUET: "application/vnd.apache.parquet",
+    SplitFormat.ZIP: "application/zip",
+}
+
+
+class AnyType(BaseContentNegotiation):
+    """For routes that answer with files, whose type the address names: any header ``Accept`` will do."""
+
+    def select_renderer(
+        self, request: Request, renderers: list[BaseRenderer], format_suffix: str | None = None
+    ) -> tuple[BaseRenderer, str]:
+        return renderers[0], renderers[0].media_type
+
+    def select_parser(self, request: Request, parsers: list[Any]) -> Any:
+        return parsers[0]

@@ -1,0 +1,172 @@
+"""What the API answers instead of what was asked for: ``application/problem+json`` (RFC 9457)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from http import HTTPStatus
+from typing import Any
+
+from django import forms
+from django.core.exceptions import ValidationError as RowRefused
+from django.db import IntegrityError
+from django.http import Http404
+from rest_framework import exceptions, serializers
+from rest_framework.response import Response
+
+from annotations.editing.edits import Overtaken
+from annotations.language.errors import LanguageError, Problem, Refusal
+from annotations.rows.clashes import MADE_MEANWHILE, is_clash
+from annotations.rows.stored_problems import as_json
+from annotations.web.not_found import say_missing, where_to_look
+
+CONTENT_TYPE = "application/problem+json"
+
+
+class ProblemItemSerializer(serializers.Serializer):
+    """One thing that is wrong: in which field, or where in which file, and what to do about it."""
+
+    field = serializers.CharField(required=False)
+    file = serializers.CharField(required=False)
+    line = serializers.IntegerField(required=False)
+    column = serializers.IntegerField(required=False)
+    severity = serializers.CharField(required=False)
+    message = serializers.CharField()
+    hint = serializers.CharField(required=False)
+
+
+class ProblemSerializer(serializers.Serializer):
+    """Why a request was refused. ``current`` is the row as it is now where it has changed since."""
+
+    type = serializers.CharField()
+    title = serializers.CharField()
+    status = serializers.IntegerField()
+    detail = serializers.CharField()
+    problems = ProblemItemSerializer(many=True, required=False)
+    current = serializers.DictField(required=False)
+
+
+class Conflict(exceptions.APIException):
+    """The request does not fit what is stored by now."""
+
+    status_code = HTTPStatus.CONFLICT
+    default_code = "conflict"
+
+
+class PreconditionRequired(exceptions.APIException):
+    """A write does not say which version it changes."""
+
+    status_code = HTTPStatus.PRECONDITION_REQUIRED
+    default_detail = (
+        "Send the header If-Match with the ETag of the row as you read it, so that nobody's work is "
+        "overwritten unseen."
+    )
+
+
+class Refused(exceptions.APIException):
+    """What was sent has problems: each one with its field, or with its place in a file."""
+
+    def __init__(
+        self,
+        detail: str,
+        problems: Iterable[dict[str, Any]] = (),
+        status: int = HTTPStatus.BAD_REQUEST,
+    ) -> None:
+        super().__init__(detail)
+        self.status_code = status
+        self.problems = list(problems)
+
+
+def refusal_of_form(form: forms.Form) -> Refused:
+    """Return what is wrong with a form of the pages, with the places that its checker knows."""
+    checked = getattr(form, "checked", None)
+    found = [each for each in checked.problems if each.is_error] if checked else []
+    placed = [_with_field(problem, form) for problem in found]
+    problems = placed or list(_problems_in(form.errors))
+    return Refused(problems[0]["message"], problems)
+
+
+def refusal_of_text(error: LanguageError, field: str = "") -> Refused:
+    """Return what is wrong with a text, and where in it."""
+    item = as_json(error.problem)
+    parts = [part for part in (error.message, error.hint) if part]
+    sentence = f"{'; '.join(parts)}."
+    item = {"field": field, **item} if field else item
+    return Refused(f"{sentence[:1].upper()}{sentence[1:]}", [item])
+
+
+def handle(error: Exception, context: dict[str, Any]) -> Response | None:
+    """Turn an error of a route into a problem. Return None for a fault of the server."""
+    # Its module reads the settings, and they name parsers of bodies that raise what is defined here.
+    from rest_framework.views import exception_handler
+
+    match error:
+        case Overtaken():
+            return _answer(HTTPStatus.PRECONDITION_FAILED, str(error), **_current(error, context))
+        case LanguageError():
+            error = refusal_of_text(error)
+        case Refusal():
+            more = {"problems": list(error.problems)} if error.problems else {}
+            answer = _answer(error.status, error.message, **more)
+            if error.wait:
+                answer["Retry-After"] = str(error.wait)
+            return answer
+        case RowRefused():
+            return _answer(HTTPStatus.CONFLICT, " ".join(error.messages))
+        case IntegrityError() if is_clash(error):
+            return _answer(HTTPStatus.CONFLICT, MADE_MEANWHILE)
+    response = exception_handler(error, context)
+    if response is None:
+        return None
+    problems = getattr(error, "problems", None)
+    if problems is None and isinstance(error, exceptions.ValidationError):
+        problems = list(_problems_in(error.detail))
+    if isinstance(error, Refused):
+        detail = str(error.detail)
+    elif problems:
+        detail = problems[0]["message"]
+    else:
+        said = response.data
+        detail = str(said.get("detail", "") if isinstance(said, dict) else said)
+    if isinstance(error, Http404):
+        path = context["request"].path
+        where = where_to_look(error, path)
+        detail = f"{say_missing(error, path)}{f' {where} shows what is there.' if where else ''}"
+    more = {"problems": problems} if problems else {}
+    answer = _answer(response.status_code, detail, **more)
+    for name, value in response.headers.items():
+        if name.lower() in ("www-authenticate", "retry-after", "allow"):
+            answer[name] = value
+    return answer
+
+
+def _answer(status: int, detail: str, **more: Any) -> Response:
+    title = HTTPStatus(status).phrase
+    problem = {"type": "about:blank", "title": title, "status": int(status), "detail": detail}
+    return Response({**problem, **more}, status=status, content_type=CONTENT_TYPE)
+
+
+def _current(error: Overtaken, context: dict[str, Any]) -> dict[str, Any]:
+    """Return the row as it is now, as its route shows it; nothing where it was deleted."""
+    if error.current is None:
+        return {}
+    return {"current": context["view"].get_serializer(error.current).data}
+
+
+def _problems_in(errors: Any, field: str = "") -> Iterator[dict[str, Any]]:
+    """Flatten the errors of a serializer or form: nested names are joined by dots."""
+    if isinstance(errors, dict):
+        for name, inner in errors.items():
+            is_whole = name in ("non_field_errors", "__all__")
+            yield from _problems_in(inner, field if is_whole else f"{field}.{name}".strip("."))
+    elif isinstance(errors, list | tuple):
+        for place, inner in enumerate(errors):
+            is_nested = isinstance(inner, dict | list)
+            if inner:
+                yield from _problems_in(inner, f"{field}.{place}" if is_nested else field)
+    else:
+        yield {"field": field, "message": str(errors)} if field else {"message": str(errors)}
+
+
+def _with_field(problem: Problem, form: forms.Form) -> dict[str, Any]:
+    item = as_json(problem)
+    return {"field": item["file"], **item} if item["file"] in form.fields else item

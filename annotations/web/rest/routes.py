@@ -1,0 +1,221 @@
+"""What routes of the API are made of: lists of rows, and single rows that people may edit.
+
+The verbs behind writes are those of the pages: a form of theirs says what is wrong, and
+``annotations.editing`` stores what is right, with its history and all that follows from it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from http import HTTPStatus
+from typing import Any, ClassVar
+
+from django import forms
+from django.db import transaction
+from django.db.models import Model, QuerySet
+from django.http import Http404
+from rest_framework.filters import BaseFilterBackend
+from rest_framework.generics import GenericAPIView
+from rest_framework.mixins import ListModelMixin
+from rest_framework.request import Request
+from rest_framework.response import Response
+from rest_framework.serializers import BaseSerializer
+
+from annotations.editing.edits import add, change, delete
+from annotations.language.errors import Problem
+from annotations.models import Duty, Editable, World
+from annotations.rows.stored_problems import as_json
+from annotations.web.rest.idempotency import once, slot_of
+from annotations.web.rest.matching import etag_of, require_match
+from annotations.web.rest.pagination import Keyset
+from annotations.web.rest.parsing import BoundedJSONParser
+from annotations.web.rest.permissions import HasDuty, HasScope
+from annotations.web.rest.problem_details import refusal_of_form
+
+
+class Route(GenericAPIView):
+    """A route outside of any world. ``duty`` says which scope a token needs, as it does below a world."""
+
+    permission_classes = [HasScope]
+    parser_classes = [BoundedJSONParser]
+    conditional_methods: ClassVar[tuple[str, ...]] = ()
+    model: ClassVar[type[Model]]
+
+    def rows(self) -> QuerySet[Any]:
+        """Return the rows that the route is about, as far as the caller sees them."""
+        raise NotImplementedError
+
+    def get_queryset(self) -> QuerySet[Any]:
+        is_described = getattr(self, "swagger_fake_view", False)
+        return self.model._default_manager.none() if is_described else self.rows()
+
+    def read(self, serializer: type[BaseSerializer[Any]], **options: Any) -> dict[str, Any]:
+        """Read the body with ``serializer``. Raises ValidationError."""
+        sent = serializer(data=self.request.data, **options)
+        sent.is_valid(raise_exception=True)
+        return dict(sent.validated_data)
+
+
+class WorldRoute(Route):
+    """A route below a world. ``duties`` says what each method needs; reading needs ``Duty.VIEW``."""
+
+    permission_classes = [HasDuty]
+    duties: ClassVar[Mapping[str, Duty]] = {}
+    world: World
+
+    @property
+    def duty(self) -> Duty:
+        """What the method of the request needs."""
+        method = "GET" if self.request.method == "HEAD" else self.request.method
+        return self.duties.get(method, Duty.VIEW)
+
+    def initial(self, request: Request, *args: Any, **kwargs: Any) -> None:
+        super().initial(request, *args, **kwargs)
+        request.world = self.world  # filters look there for the choices of the world
+
+    def hold_world(self) -> None:
+        """Read and lock the world until the end of the transaction. Raises Http404 if it is gone."""
+        held = World.objects.present().select_for_update().filter(pk=self.world.pk).first()
+        if held is None:
+            raise Http404("There is no such world.")
+        self.world = held
+
+
+class ManyRows(ListModelMixin, Route):
+    """A list, filtered, sorted and paged by its address."""
+
+    pagination_class = Keyset
+    sorts: ClassVar[dict[str, str]] = {"id": "pk"}
+
+    def get(self, request: Request, **kwargs: Any) -> Response:
+        return self.list(request)
+
+
+class SingleRow(Route):
+    """One row, with the tag of its version."""
+
+    filter_backends: ClassVar[list[type[BaseFilterBackend]]] = []
+
+    def get(self, request: Request, **kwargs: Any) -> Response:
+        return self.show(self.get_object())
+
+    def show(self, row: Any, status: int = HTTPStatus.OK) -> Response:
+        shown = self.get_serializer(row).data
+        return Response(shown, status=status, headers={"ETag": etag_of(row, shown)})
+
+    def matched(self) -> Any:
+        """Return the row, if it is at the version that the request names. Raises Overtaken otherwise.
+
+        For verbs that take the version of the row and compare it again while they hold the row. Others
+        write inside ``matching``.
+        """
+        row = self.get_object()
+        require_match(self.request, row, self.get_serializer(row).data)
+        return row
+
+    @contextmanager
+    def matching(self) -> Iterator[Any]:
+        """Lock the row for the block that writes to it, if it is at the version that the request names.
+
+        Raises Overtaken otherwise. The row is locked before it is compared, until the end of the block:
+        of several writers who have read one version, only one writes.
+        """
+        with transaction.atomic():
+            self.hold()
+            yield self.matched()
+
+    def hold(self) -> None:
+        """Lock the row until the end of the transaction.
+
+        A route whose row is made of several, or is not stored yet, holds what these belong to.
+        """
+        rows = self.model._default_manager.select_for_update(no_key=True)
+        rows.filter(pk=self.kwargs["pk"]).first()
+
+
+class RowsRoute(ManyRows, WorldRoute):
+    """A list of rows of a world."""
+
+
+class RowRoute(SingleRow, WorldRoute):
+    """One row of a world."""
+
+
+class Noun:
+    """What a kind of editable row says of itself: how it is read from a request and stored.
+
+    ``new_serializer`` reads a new row and ``change_serializer`` what may be changed of one.
+    """
+
+    new_serializer: ClassVar[type[BaseSerializer[Any]]]
+    change_serializer: ClassVar[type[BaseSerializer[Any]]]
+    world: World
+
+    def form_of(self, row: Any | None, sent: Mapping[str, Any]) -> forms.Form:
+        """Return the form of the page, bound to what was sent over the values of ``row``."""
+        raise NotImplementedError
+
+    def unsaved(self, form: Any) -> Editable:
+        """Return the row that a valid form describes."""
+        raise NotImplementedError
+
+    def values_of(self, form: Any, row: Any) -> Mapping[str, Any]:
+        """Return the values of ``row`` that a valid form changes."""
+        raise NotImplementedError
+
+    def problems_of(self, form: Any) -> Iterable[Problem]:
+        """Return the checker's remarks on a row that was stored."""
+        return ()
+
+    def valid_form(self, row: Any | None, sent: Mapping[str, Any]) -> forms.Form:
+        form = self.form_of(row, sent)
+        if not form.is_valid():
+            raise refusal_of_form(form)
+        return form
+
+    def written(self, row: Editable, form: Any, status: int = HTTPStatus.OK) -> Response:
+        """Respond with the stored row and the checker's remarks on it."""
+        problems = [as_json(each) for each in self.problems_of(form)]
+        shown = {"problems": problems, **self.get_serializer(row).data}
+        return Response(shown, status=status, headers={"ETag": etag_of(row, shown)})
+
+
+class EditableRows(Noun, RowsRoute):
+    """A list to which annotators add rows."""
+
+    duties: ClassVar[Mapping[str, Duty]] = {"POST": Duty.ANNOTATE}
+
+    @once
+    def post(self, request: Request, **kwargs: Any) -> Response:
+        form = self.valid_form(None, self.read(self.new_serializer))
+        row = add(self.unsaved(form), request.user, slot_of(request))
+        response = self.written(row, form, HTTPStatus.CREATED)
+        response["Location"] = request.build_absolute_uri(f"{request.path}{row.pk}/")
+        return response
+
+
+class EditableRow(Noun, RowRoute):
+    """One row that annotators change and delete; its history keeps what it was."""
+
+    duties: ClassVar[Mapping[str, Duty]] = {"PATCH": Duty.ANNOTATE, "DELETE": Duty.ANNOTATE}
+    conditional_methods = ("PATCH", "DELETE")
+
+    def patch(self, request: Request, **kwargs: Any) -> Response:
+        row = self.matched()
+        form = self.valid_form(row, self.read(self.change_serializer, partial=True))
+        values = self.values_of(form, row)
+        saved = change(row, values, request.user, row.version, again=False)
+        return self.written(saved, form)
+
+    def delete(self, request: Request, **kwargs: Any) -> Response:
+        row = self.matched()
+        delete(row, request.user, row.version)
+        return Response(status=HTTPStatus.NO_CONTENT)
+
+
+class Figures(WorldRoute):
+    """Figures of a whole world, worked out when they are asked for."""
+
+    filter_backends: ClassVar[list[type[BaseFilterBackend]]] = []
+    pagination_class = None

@@ -1,0 +1,245 @@
+"""Frozen splits and their examples, what leaks between their parts, and what has changed since."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict
+from http import HTTPStatus
+from typing import Any, ClassVar
+
+from django.db.models import QuerySet
+from django.shortcuts import get_object_or_404
+from drf_spectacular.utils import extend_schema, extend_schema_field
+from rest_framework import serializers
+from rest_framework.request import Request
+from rest_framework.response import Response
+
+from annotations.language.corpus import DEFAULT_PROPORTIONS, Criterion
+from annotations.models import Duty, Example, Split
+from annotations.models.splits import criterion_choices
+from annotations.people.allowances import may_take_long
+from annotations.splits.freezing import freeze_split
+from annotations.splits.renewing import changes_since, freeze_anew
+from annotations.splits.split_statistics import counts_of, near_duplicates_of
+from annotations.web.rest.fields import Fields
+from annotations.web.rest.idempotency import once
+from annotations.web.rest.problem_details import refusal_of_form
+from annotations.web.rest.routes import Figures, RowRoute, RowsRoute
+from annotations.web.splits.split_filters import (
+    MOST_CHANGES,
+    MOST_SHOWN,
+    ExampleFilters,
+    SplitFilters,
+)
+from annotations.web.splits.split_forms import SplitForm
+
+
+class PartCountSerializer(serializers.Serializer):
+    """How many pairs of a source each part has, and how many different forms all of them."""
+
+    source = serializers.CharField()
+    train = serializers.IntegerField()
+    validation = serializers.IntegerField()
+    test = serializers.IntegerField()
+    forms = serializers.IntegerField()
+
+
+class SplitSerializer(serializers.ModelSerializer):
+    """A copy of texts that nothing changes. ``content_hash`` is the SHA-256 of all its examples."""
+
+    counts = serializers.SerializerMethodField()
+    proportions = serializers.ListField(child=serializers.FloatField())
+    follows = serializers.IntegerField(source="follows_id", allow_null=True)
+    created_by = serializers.CharField(source="created_by.username", default=None)
+
+    class Meta:
+        model = Split
+        fields = [
+            *("id", "name", "criterion", "seed", "proportions", "counts", "content_hash"),
+            *("follows", "created_by", "created_at"),
+        ]
+
+    def get_counts(self, row: Split) -> PartCountSerializer(many=True):
+        counts = self.context["counts"][row.pk]
+        return PartCountSerializer(counts, many=True).data
+
+
+class NewSplit(Fields):
+    """``proportions`` are the shares of train, validation and test, which sum to 1."""
+
+    name = serializers.SlugField(max_length=80)
+    criterion = serializers.ChoiceField(choices=criterion_choices(), default=Criterion.COMMAND)
+    seed = serializers.IntegerField(min_value=0, max_value=2**32 - 1, default=0)
+    proportions = serializers.ListField(
+        child=serializers.FloatField(min_value=0, max_value=1),
+        min_length=3,
+        max_length=3,
+        default=list(DEFAULT_PROPORTIONS),
+    )
+
+
+class SplitNoun:
+    model = Split
+    serializer_class = SplitSerializer
+
+    def rows(self) -> QuerySet[Split]:
+        return self.world.splits.select_related("created_by", "world")
+
+    def get_serializer(self, rows: Any = None, **options: Any) -> serializers.BaseSerializer[Any]:
+        serializer = super().get_serializer(rows, **options)
+        if rows is not None:
+            serializer.context["counts"] = counts_of(rows if options.get("many") else [rows])
+        return serializer
+
+
+@may_take_long
+class Splits(SplitNoun, RowsRoute):
+    """Lists the splits, and freezes one from the corpus of today."""
+
+    filterset_class = SplitFilters
+    sorts = {"created": "-created_at", "name": "name", "id": "pk"}
+    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.ANNOTATE}
+
+    @extend_schema(request=NewSplit)
+    @once
+    def post(self, request: Request, **kwargs: object) -> Response:
+        sent = self.read(NewSplit)
+        shares = dict(zip(SplitForm.SHARES, sent.pop("proportions"), strict=True))
+        form = SplitForm({**sent, **{part: 100 * share for part, share in shares.items()}})
+        if not form.is_valid():
+            raise refusal_of_form(form)
+        chosen = {**form.choice, "must_be_new": True}
+        frozen = freeze_split(self.world, sent["name"], by=request.user, **chosen)
+        return frozen_response(self, frozen)
+
+
+class OneSplit(SplitNoun, RowRoute):
+    """Shows a split."""
+
+
+@may_take_long
+class RenewSplit(SplitNoun, RowRoute):
+    """Freezes a split anew from the corpus of today; the old one stays as it was."""
+
+    http_method_names = ["post", "options"]
+    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.ANNOTATE}
+
+    @extend_schema(request=None, responses={201: SplitSerializer})
+    @once
+    def post(self, request: Request, **kwargs: object) -> Response:
+        return frozen_response(self, freeze_anew(self.get_object(), request.user))
+
+
+def frozen_response(view: Any, split: Split) -> Response:
+    """Answer with a split that was just frozen, and where it is."""
+    response = Response(view.get_serializer(split).data, status=HTTPStatus.CREATED)
+    path = f"/api/v1/worlds/{view.world.name}/splits/{split.pk}/"
+    response["Location"] = view.request.build_absolute_uri(path)
+    return response
+
+
+class ExampleSerializer(serializers.ModelSerializer):
+    """An utterance with its form, as it was when the split was frozen."""
+
+    class Meta:
+        model = Example
+        fields = [
+            *("id", "position", "part", "source", "utterance", "source_command"),
+            *("task_category", "logical_form", "grounded_form"),
+        ]
+
+
+class ExamplesOfSplit(RowsRoute):
+    """Lists the examples of a split."""
+
+    model = Example
+    serializer_class = ExampleSerializer
+    filterset_class = ExampleFilters
+    sorts = {"id": "pk", "utterance": "utterance"}
+
+    def rows(self) -> QuerySet[Example]:
+        split = get_object_or_404(Split, world=self.world, pk=self.kwargs["pk"])
+        return split.examples.all()
+
+
+class FiguresOfSplit(Figures):
+    model = Split
+
+    def rows(self) -> QuerySet[Split]:
+        return self.world.splits.select_related("world", "follows")
+
+    def figures(self, make: Callable[[Split], Any]) -> Any:
+        """Return figures of the split. LanguageError, where they cannot be made, is a 400."""
+        return make(get_object_or_404(self.rows(), pk=self.kwargs["pk"]))
+
+
+class NearDuplicateSerializer(serializers.Serializer):
+    """An utterance and the closest one of training; ``similarity`` is a fraction of 1."""
+
+    utterance = serializers.CharField()
+    training = serializers.CharField()
+    similarity = serializers.FloatField()
+
+
+class NearDuplicatesSerializer(serializers.Serializer):
+    """Of a part: ``shared`` of its ``pairs`` training nearly has; the most similar ones are in ``examples``."""
+
+    part = serializers.CharField(source="leak.part")
+    pairs = serializers.IntegerField(source="leak.pairs")
+    shared = serializers.IntegerField(source="leak.shared")
+    examples = serializers.SerializerMethodField()
+
+    @extend_schema_field(NearDuplicateSerializer(many=True))
+    def get_examples(self, each: Any) -> list[dict[str, Any]]:
+        return [asdict(one) for one in each.duplicates[:MOST_SHOWN]]
+
+
+class NearDuplicatesTable(serializers.Serializer):
+    results = NearDuplicatesSerializer(many=True)
+
+
+class NearDuplicatesOfSplit(FiguresOfSplit):
+    """Lists utterances of validation and test that training nearly has."""
+
+    @extend_schema(operation_id="near_duplicates", responses={200: NearDuplicatesTable})
+    def get(self, request: Request, **kwargs: object) -> Response:
+        found = self.figures(near_duplicates_of)
+        return Response(NearDuplicatesTable({"results": found}).data)
+
+
+class PartChangesSerializer(serializers.Serializer):
+    """Examples of one part; ``moved`` ones come from another part."""
+
+    part = serializers.CharField()
+    added = serializers.IntegerField()
+    removed = serializers.IntegerField()
+    relabelled = serializers.IntegerField()
+    moved = serializers.IntegerField()
+
+
+class RelabelledSerializer(serializers.Serializer):
+    """An utterance with its label in the split and that of today."""
+
+    utterance = serializers.CharField()
+    part = serializers.CharField()
+    before = serializers.CharField()
+    now = serializers.CharField()
+
+
+class SplitChangesSerializer(serializers.Serializer):
+    """What ``renew/`` would change; some of the labels that differ are in ``relabelled``."""
+
+    parts = PartChangesSerializer(many=True)
+    relabelled = serializers.SerializerMethodField()
+
+    @extend_schema_field(RelabelledSerializer(many=True))
+    def get_relabelled(self, changes: Any) -> list[dict[str, Any]]:
+        return [asdict(each) for each in changes.relabelled[:MOST_CHANGES]]
+
+
+class ChangesOfSplit(FiguresOfSplit):
+    """Says what freezing a split anew would change."""
+
+    @extend_schema(operation_id="split_changes", responses={200: SplitChangesSerializer})
+    def get(self, request: Request, **kwargs: object) -> Response:
+        return Response(SplitChangesSerializer(self.figures(changes_since)).data)

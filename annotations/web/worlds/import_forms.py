@@ -1,0 +1,129 @@
+"""The forms of the pages that take files."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from django import forms
+from django.core.files.uploadedfile import SimpleUploadedFile
+
+from annotations.exporting.generator_export import complete
+from annotations.importing.pair_files import Notation
+from annotations.importing.uploaded_files import files_of
+from annotations.language.decoding import ENCODINGS, UTF8
+from annotations.language.errors import LanguageError
+from annotations.models import World
+
+
+class ManyFiles(forms.ClearableFileInput):
+    allow_multiple_selected = True
+
+
+class FilesField(forms.FileField):
+    """A field for several files; its value is a list of them."""
+
+    widget = ManyFiles
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options, allow_empty_file=True)  # the import names the file
+
+    def clean(self, data: Any, initial: Any = None) -> list[Any]:
+        files = (data if isinstance(data, list | tuple) else [data]) or [None]
+        return [super(FilesField, self).clean(file, initial) for file in files]
+
+
+class BringsBackField(forms.BooleanField):
+    """Whether an import restores what people have deleted."""
+
+    def __init__(self) -> None:
+        super().__init__(
+            label="Bring back what was deleted here",
+            required=False,
+            help_text="Without it, what people have deleted stays away, and the report says what that is.",
+        )
+
+
+class EncodingField(forms.ChoiceField):
+    """The encoding of files that are not UTF-8."""
+
+    def __init__(self) -> None:
+        others = {
+            name: f"{each}, where not UTF-8" for name, each in ENCODINGS.items() if name != UTF8
+        }
+        super().__init__(
+            label="Encoding",
+            required=False,
+            choices=[("", "UTF-8"), *others.items()],
+            help_text="A file that is not UTF-8 is refused unless you say what it is. The report shows what "
+            "each encoding would read. XML is read as it declares.",
+        )
+
+
+class PairsForm(forms.Form):
+    """The pair files of a published corpus, in one archive."""
+
+    name = forms.SlugField(
+        max_length=60, help_text="The splits are named after it: name-command, name-logical_form."
+    )
+    archive = forms.FileField(
+        allow_empty_file=True,
+        help_text="A zip archive with any of the folders gen, para, gen_logical and para_logical "
+        "(train.txt, val.txt, test.txt in each), paraphrasings.txt and tables of results (.csv).",
+    )
+    notation = forms.ChoiceField(
+        required=False,
+        choices=[
+            (Notation.OURS, "As published here: ( find ( lambda $1 e …"),
+            (
+                Notation.LAMBDA,
+                "λ-calculus of other corpora: (lambda $0 e (flight $0)), (argmax $0 …",
+            ),
+        ],
+        help_text="For another corpus the archive holds train, dev and test as .txt or .tsv. Forms that cannot be "
+        "read are left out, and the report counts them by reason.",
+    )
+    encoding = EncodingField()
+    brings_back = BringsBackField()
+
+
+class WorldArchiveForm(forms.Form):
+    """The archive of a world, and what the new world is called."""
+
+    name = forms.CharField(
+        max_length=60,
+        help_text="Of the new world: lower-case letters, digits, _ and -. Used in URLs and commands.",
+    )
+    archive = forms.FileField(
+        allow_empty_file=True,
+        help_text="The zip archive from “Download” on a world's import page.",
+    )
+
+
+class ImportForm(forms.Form):
+    """The files of a generator, as they are or in one zip archive."""
+
+    files = FilesField(
+        label="Files",
+        help_text="The grammar, template and ontology files of one generator: choose all of them, "
+        "or one zip archive with them.",
+    )
+    keeps_others = forms.BooleanField(
+        label="Keep what these files do not have",
+        required=False,
+        help_text="Only files of the same name are replaced: a grammar, objects.xml, predicates.json.",
+    )
+    encoding = EncodingField()
+    brings_back = BringsBackField()
+
+
+def uploads_of(world: World, form: ImportForm) -> list[Any]:
+    """Return the files to import: those that were sent and, if asked for, the world's other files."""
+    sent = form.cleaned_data["files"]
+    if not form.cleaned_data["keeps_others"]:
+        return sent
+    gathered = files_of(sent, form.cleaned_data["encoding"])
+    for problem in gathered.problems:
+        if problem.is_error:
+            raise LanguageError(problem.message, problem.position, problem.hint)
+    files = complete(world, gathered.files)
+    return [SimpleUploadedFile(name, data) for name, data in files.items()]

@@ -1,0 +1,103 @@
+"""Taking files in, and expanding what they say: at once, or as a job where it takes long."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from django.contrib import messages
+from django.http import HttpRequest, HttpResponse
+from django.shortcuts import redirect, render
+
+from annotations.generation.generating import start_generation
+from annotations.importing.import_jobs import start_generator_import, start_pairs_import
+from annotations.jobs.requesting import keep_report
+from annotations.language.errors import LanguageError
+from annotations.models import Duty, Job, JobKind, World
+from annotations.people.access import READ_AND_WRITE, WRITE, world_view
+from annotations.people.allowances import may_take_long, takes_files
+from annotations.web.background.report_presentation import shown_report
+from annotations.web.forms import posted
+from annotations.web.worlds.import_forms import ImportForm, PairsForm, uploads_of
+
+
+@takes_files
+@world_view(Duty.MANAGE, READ_AND_WRITE)
+def import_files(request: HttpRequest, world: World) -> HttpResponse:
+    """Import the uploaded files of a generator, all of them or nothing."""
+    initial = {"keeps_others": "part" in request.GET}
+    form = ImportForm(posted(request), request.FILES or None, initial=initial)
+    report = None
+    if form.is_bound and form.is_valid():
+        try:
+            files = uploads_of(world, form)
+            choices = form.cleaned_data["brings_back"], form.cleaned_data["encoding"]
+            started = start_generator_import(world, files, request.user, *choices)
+        except LanguageError as error:
+            form.add_error("files", str(error))
+        else:
+            if isinstance(started, Job):
+                return redirect("job", pk=started.pk)
+            if not started.is_refused:
+                return _done(request, world, JobKind.IMPORT_GENERATOR, started.as_json())
+            report = shown_report(JobKind.IMPORT_GENERATOR, started.as_json(), world)
+    return _page(request, "annotations/worlds/import.html", form, report)
+
+
+@takes_files
+@world_view(Duty.MANAGE, READ_AND_WRITE)
+def import_pair_files(request: HttpRequest, world: World) -> HttpResponse:
+    """Import the uploaded pairs of a published corpus as frozen splits and paraphrases."""
+    form = PairsForm(posted(request), request.FILES or None)
+    report = None
+    if form.is_bound and form.is_valid():
+        values = form.cleaned_data
+        choices = values["brings_back"], values["encoding"], values["notation"]
+        try:
+            started = start_pairs_import(
+                world, values["name"], values["archive"], request.user, *choices
+            )
+        except LanguageError as error:
+            form.add_error("archive", str(error))
+        else:
+            if isinstance(started, Job):
+                return redirect("job", pk=started.pk)
+            if not started.is_refused:
+                return _done(request, world, JobKind.IMPORT_PAIRS, started.as_json())
+            report = shown_report(JobKind.IMPORT_PAIRS, started.as_json(), world)
+    return _page(request, "annotations/worlds/import_pairs.html", form, report)
+
+
+def _done(
+    request: HttpRequest, world: World, kind: JobKind, report: dict[str, Any]
+) -> HttpResponse:
+    """Show the report of an import as that of a job, so that it can be reloaded and found again."""
+    return redirect("job", pk=keep_report(kind, world.name, request.user, {}, report).pk)
+
+
+def _page(
+    request: HttpRequest, template: str, form: Any, report: dict[str, Any] | None
+) -> HttpResponse:
+    is_refused = bool(form.errors) or bool(report and report["is_refused"])
+    context = {"form": form, **(report or {})}
+    return render(request, template, context, status=422 if is_refused else 200)
+
+
+@may_take_long
+@world_view(Duty.ANNOTATE, WRITE)
+def generate(request: HttpRequest, world: World) -> HttpResponse:
+    """Expand all templates into commands and forms."""
+    try:
+        started = start_generation(world, request.user)
+    except LanguageError as error:
+        messages.error(request, f"Nothing was generated: {error}")
+        return redirect("templates", world=world.name)
+    if isinstance(started, Job):
+        return redirect("job", pk=started.pk)
+    made, changes = started.columns[-1], started.changes
+    messages.success(
+        request,
+        f"{made.commands:,} commands with {made.forms:,} logical forms: "
+        f"{changes.added:,} rows added, {changes.changed:,} changed, {changes.removed:,} removed, "
+        f"{changes.moved:,} only moved.",
+    )
+    return redirect("commands", world=world.name)

@@ -1,0 +1,204 @@
+"""Files taken in and given out, and commands made of templates: at once, or as a job where it takes long."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from http import HTTPStatus
+from typing import Any, ClassVar
+
+from django import forms
+from django.http import HttpResponse, StreamingHttpResponse
+from drf_spectacular.types import OpenApiTypes
+from drf_spectacular.utils import OpenApiParameter, extend_schema
+from rest_framework import serializers
+from rest_framework.request import Request
+from rest_framework.response import Response
+
+from annotations.exporting.generator_export import GeneratorPart
+from annotations.generation.generating import start_generation
+from annotations.importing.import_jobs import start_generator_import, start_pairs_import
+from annotations.importing.pair_files import Notation
+from annotations.language.decoding import ENCODINGS
+from annotations.language.english import say_count
+from annotations.models import Duty, Job
+from annotations.people.allowances import may_take_long, takes_files
+from annotations.web.background.job_rest import JobSerializer, address_of_job
+from annotations.web.rest.idempotency import once
+from annotations.web.rest.negotiation import AnyType
+from annotations.web.rest.parsing import FilesParser
+from annotations.web.rest.permissions import ForSiteAdmins
+from annotations.web.rest.problem_details import Refused, refusal_of_form
+from annotations.web.rest.routes import Route, WorldRoute
+from annotations.web.worlds.downloads import archive_of, file_of
+from annotations.web.worlds.import_forms import ImportForm, PairsForm, WorldArchiveForm, uploads_of
+from annotations.world_archive.import_job import start_world_import
+
+
+class DoneSerializer(serializers.Serializer):
+    """What came of it, or the job that will say so: one of both is null."""
+
+    job = JobSerializer(allow_null=True)
+    report = serializers.DictField(allow_null=True)
+
+
+class EncodingChoice(serializers.ChoiceField):
+    def __init__(self) -> None:
+        super().__init__(
+            choices=ENCODINGS, required=False, help_text="Of files that are not UTF-8."
+        )
+
+
+class ImportedFiles(serializers.Serializer):
+    """The files of a generator, as they are or in one zip archive."""
+
+    files = serializers.ListField(child=serializers.FileField(allow_empty_file=True), min_length=1)
+    keeps_others = serializers.BooleanField(default=False)
+    encoding = EncodingChoice()
+    brings_back = serializers.BooleanField(default=False)
+
+
+class ImportedPairs(serializers.Serializer):
+    """The pair files of a published corpus in one zip archive; splits are named after ``name``."""
+
+    name = serializers.SlugField(max_length=60)
+    archive = serializers.FileField()
+    notation = serializers.ChoiceField(
+        choices=[Notation.LAMBDA], required=False, help_text="Of another corpus."
+    )
+    encoding = EncodingChoice()
+    brings_back = serializers.BooleanField(default=False)
+
+
+class ImportedWorldFile(serializers.Serializer):
+    """The archive that ``download/`` of a world gives, and what the world is to be called here."""
+
+    name = serializers.CharField(max_length=60)
+    archive = serializers.FileField()
+
+
+class Doing(Route):
+    """Work that is done at once where it is quick; otherwise the answer is a job (202)."""
+
+    model = Job
+    http_method_names = ["post", "options"]
+
+    def answer(self, start: Callable[[], Any]) -> Response:
+        """Start the work and say what came of it. Raises Refused, with every problem and its place."""
+        started = start()
+        if isinstance(started, Job):
+            done = {"job": JobSerializer(started).data, "report": None}
+            location = {"Location": address_of_job(self.request, started)}
+            return Response(done, status=HTTPStatus.ACCEPTED, headers=location)
+        report = started.as_json()
+        problems = report.get("problems", [])
+        errors = sum(each["severity"] == "error" for each in problems)
+        if errors:
+            sentence = f"Nothing was imported: {say_count(errors, 'error')}."
+            raise Refused(sentence, problems, HTTPStatus.UNPROCESSABLE_ENTITY)
+        return Response({"job": None, "report": report})
+
+    def valid(self, form: forms.Form) -> forms.Form:
+        if not form.is_valid():
+            raise refusal_of_form(form)
+        return form
+
+
+@takes_files
+class ImportWorld(Doing):
+    """Makes a world of the archive of another one. For administrators of the site."""
+
+    permission_classes = [ForSiteAdmins]
+    parser_classes = [FilesParser]
+    duty = Duty.MANAGE
+
+    @extend_schema(
+        request={"multipart/form-data": ImportedWorldFile},
+        responses={200: DoneSerializer, 202: DoneSerializer},
+    )
+    @once
+    def post(self, request: Request) -> Response:
+        sent = self.valid(WorldArchiveForm(request.data, request.FILES)).cleaned_data
+        return self.answer(lambda: start_world_import(sent["name"], sent["archive"], request.user))
+
+
+@takes_files
+class ImportGenerator(Doing, WorldRoute):
+    """Imports the files of a generator, all of them or nothing."""
+
+    parser_classes = [FilesParser]
+    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.MANAGE}
+
+    @extend_schema(
+        request={"multipart/form-data": ImportedFiles},
+        responses={200: DoneSerializer, 202: DoneSerializer},
+    )
+    @once
+    def post(self, request: Request, **kwargs: object) -> Response:
+        form = self.valid(ImportForm(request.data, request.FILES))
+        files = uploads_of(self.world, form)
+        choices = form.cleaned_data["brings_back"], form.cleaned_data["encoding"]
+        return self.answer(
+            lambda: start_generator_import(self.world, files, request.user, *choices)
+        )
+
+
+@takes_files
+class ImportPairs(Doing, WorldRoute):
+    """Imports the pairs of a published corpus as frozen splits and paraphrases."""
+
+    parser_classes = [FilesParser]
+    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.MANAGE}
+
+    @extend_schema(
+        request={"multipart/form-data": ImportedPairs},
+        responses={200: DoneSerializer, 202: DoneSerializer},
+    )
+    @once
+    def post(self, request: Request, **kwargs: object) -> Response:
+        sent = self.valid(PairsForm(request.data, request.FILES)).cleaned_data
+        choices = sent["brings_back"], sent["encoding"], sent["notation"]
+        values = sent["name"], sent["archive"], request.user, *choices
+        return self.answer(lambda: start_pairs_import(self.world, *values))
+
+
+@may_take_long
+class Generate(Doing, WorldRoute):
+    """Expands all templates into commands and forms."""
+
+    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.ANNOTATE}
+
+    @extend_schema(request=None, responses={200: DoneSerializer, 202: DoneSerializer})
+    @once
+    def post(self, request: Request, **kwargs: object) -> Response:
+        return self.answer(lambda: start_generation(self.world, request.user))
+
+
+@may_take_long
+class Archive(WorldRoute):
+    """Downloads the whole world as one zip archive, packed while it is sent."""
+
+    model = Job
+    content_negotiation_class = AnyType
+
+    @extend_schema(responses={(200, "application/zip"): OpenApiTypes.BINARY})
+    def get(self, request: Request, **kwargs: object) -> StreamingHttpResponse:
+        return archive_of(self.world, request.user)
+
+
+@may_take_long
+class ArchivePart(WorldRoute):
+    """Downloads one part of a world, as a generator has it: a file, or a zip archive of several."""
+
+    model = Job
+    content_negotiation_class = AnyType
+
+    @extend_schema(
+        operation_id="download_part",
+        parameters=[OpenApiParameter("part", OpenApiTypes.STR, "path", enum=GeneratorPart.values)],
+        responses={
+            (200, "application/zip"): OpenApiTypes.BINARY,
+            (200, "text/plain"): OpenApiTypes.STR,
+        },
+    )
+    def get(self, request: Request, **kwargs: str) -> HttpResponse:
+        return file_of(self.world, kwargs["part"])

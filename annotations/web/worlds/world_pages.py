@@ -1,0 +1,105 @@
+"""Create a world, empty or from an archive; download one, whole or a part; delete one."""
+
+from __future__ import annotations
+
+from django import forms
+from django.contrib import messages
+from django.core.exceptions import ValidationError
+from django.http import HttpRequest, HttpResponse, StreamingHttpResponse
+from django.shortcuts import redirect, render
+
+from annotations.language.errors import LanguageError
+from annotations.models import Duty, Job, World
+from annotations.people.access import READ_AND_WRITE, demand_site_admin, site_view, world_view
+from annotations.people.allowances import may_take_long, takes_files
+from annotations.web.forms import posted
+from annotations.web.sent_texts import MOST_NAMED
+from annotations.web.worlds.downloads import archive_of, file_of
+from annotations.web.worlds.import_forms import WorldArchiveForm
+from annotations.web.worlds.world_forms import WorldForm
+from annotations.world_archive.import_job import start_world_import
+from annotations.worlds.world_deletion import count_below, start_deletion
+
+
+class NameForm(forms.Form):
+    """The name of the world, typed once more."""
+
+    name = forms.CharField(
+        label="Name of the world",
+        max_length=60,
+        widget=forms.TextInput(attrs={"autocomplete": "off", "autocapitalize": "none"}),
+    )
+
+    def __init__(self, world: World, *args: object) -> None:
+        super().__init__(*args)
+        self.world = world
+
+    def clean_name(self) -> str:
+        name = self.cleaned_data["name"]
+        if name != self.world.name:
+            raise ValidationError(f"Type {self.world.name} to delete it.")
+        return name
+
+
+@site_view(READ_AND_WRITE)
+def world_new(request: HttpRequest) -> HttpResponse:
+    """Create an empty world; its files are imported next."""
+    form = WorldForm(posted(request))
+    if form.is_bound and form.is_valid() and (created := form.create()):
+        return redirect("import", world=created.name)
+    return render(request, "annotations/worlds/world_new.html", {"form": form})
+
+
+@takes_files
+@site_view(READ_AND_WRITE)
+def world_import(request: HttpRequest) -> HttpResponse:
+    """Create a world from the archive of another one."""
+    form = WorldArchiveForm(posted(request), request.FILES or None)
+    if form.is_bound and form.is_valid():
+        name = form.cleaned_data["name"]
+        try:
+            started = start_world_import(name, form.cleaned_data["archive"], request.user)
+        except LanguageError as error:
+            form.add_error("archive", str(error))
+        else:
+            if isinstance(started, Job):
+                return redirect("job", pk=started.pk)
+            rows = sum(started.rows.values())
+            messages.success(request, f"Imported {name} with {rows:,} rows.")
+            if started.problems:
+                messages.warning(request, "; ".join(map(str, started.problems[:MOST_NAMED])))
+            return redirect("world", world=name)
+    status = 422 if form.errors else 200
+    return render(request, "annotations/worlds/world_import.html", {"form": form}, status=status)
+
+
+@may_take_long
+@world_view(Duty.VIEW)
+def download(request: HttpRequest, world: World) -> StreamingHttpResponse:
+    """Download the whole world as one archive, packed while it is sent."""
+    return archive_of(world, request.user)
+
+
+@may_take_long
+@world_view(Duty.VIEW)
+def download_part(request: HttpRequest, world: World, part: str) -> HttpResponse:
+    """Download a part of a world."""
+    return file_of(world, part)
+
+
+@world_view(Duty.MANAGE, READ_AND_WRITE)
+def world_delete(request: HttpRequest, world: World) -> HttpResponse:
+    """Preview the deletion of a world, and delete it when its name has been typed."""
+    demand_site_admin(request)
+    form = NameForm(world, request.POST if request.method == "POST" else None)
+    if form.is_bound and form.is_valid():
+        name, started = world.name, start_deletion(world, request.user)
+        if isinstance(started, Job):
+            return redirect("job", pk=started.pk)
+        messages.success(request, f"Deleted {name} with {started:,} rows.")
+        return redirect("home")
+    counts = [
+        (model._meta.verbose_name_plural, count) for model, count in count_below(world).items()
+    ]
+    context = {"form": form, "counts": sorted(counts, key=lambda each: -each[1])}
+    return render(request, "annotations/worlds/world_delete.html", context)

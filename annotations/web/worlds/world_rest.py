@@ -1,0 +1,127 @@
+"""The worlds that the caller sees: made, described and deleted as on the pages."""
+
+from __future__ import annotations
+
+from http import HTTPStatus
+
+from django.db.models import QuerySet
+from drf_spectacular.utils import extend_schema
+from rest_framework import serializers
+from rest_framework.exceptions import PermissionDenied
+from rest_framework.request import Request
+from rest_framework.response import Response
+
+from annotations.models import Duty, Job, World
+from annotations.web.background.job_rest import JobSerializer, address_of_job
+from annotations.web.rest.fields import Fields
+from annotations.web.rest.idempotency import once
+from annotations.web.rest.permissions import ChangedBySiteAdmins, ForSiteAdmins
+from annotations.web.rest.problem_details import refusal_of_form
+from annotations.web.rest.routes import ManyRows, RowRoute
+from annotations.web.worlds.world_forms import WorldForm
+from annotations.worlds.world_deletion import request_deletion, start_deletion
+
+
+class WorldSerializer(serializers.ModelSerializer):
+    """A world, and what the caller may do in it."""
+
+    duties = serializers.SerializerMethodField()
+    commands_are_stale = serializers.BooleanField()
+
+    class Meta:
+        model = World
+        fields = ["name", "description", "created_at", "commands_are_stale", "duties"]
+
+    def get_duties(self, world: World) -> list[str]:
+        by_world = self.context["duties"]
+        return sorted(by_world.get(world.pk, ()))
+
+
+class WorldChange(Fields):
+    """The name of a world is in addresses and never changes."""
+
+    description = serializers.CharField(max_length=10_000, allow_blank=True)
+
+
+class NewWorld(Fields):
+    """An empty world; its files are imported next."""
+
+    name = serializers.CharField(max_length=60)
+    description = serializers.CharField(max_length=10_000, allow_blank=True, default="")
+
+
+class WorldNoun:
+    model = World
+    serializer_class = WorldSerializer
+
+    def get_serializer_context(self) -> dict[str, object]:
+        context = super().get_serializer_context()
+        if getattr(self, "swagger_fake_view", False):
+            return context
+        duties = World.objects.visible_to(self.request.user).duties_by_world(self.request.user)
+        return {**context, "duties": duties}
+
+
+class Worlds(WorldNoun, ManyRows):
+    """Lists the worlds that the caller is a member of; administrators of the site make another one."""
+
+    permission_classes = [ChangedBySiteAdmins]
+    filter_backends = []
+    sorts = {"name": "name"}
+
+    @property
+    def duty(self) -> Duty:
+        return Duty.MANAGE if self.request.method == "POST" else Duty.VIEW
+
+    def rows(self) -> QuerySet[World]:
+        return World.objects.visible_to(self.request.user)
+
+    @extend_schema(request=NewWorld, responses={201: WorldSerializer})
+    @once
+    def post(self, request: Request) -> Response:
+        form = WorldForm(self.read(NewWorld))
+        created = form.create() if form.is_valid() else None
+        if created is None:
+            raise refusal_of_form(form)
+        response = RowRoute.show(self, created, HTTPStatus.CREATED)
+        response["Location"] = request.build_absolute_uri(f"{request.path}{created.name}/")
+        return response
+
+
+class OneWorld(WorldNoun, RowRoute):
+    """Shows a world; its admins describe it, administrators of the site delete it."""
+
+    duties = {"PATCH": Duty.MANAGE, "DELETE": Duty.MANAGE}
+    conditional_methods = ("PATCH", "DELETE")
+
+    def get_object(self) -> World:
+        return self.world
+
+    @extend_schema(request=WorldChange, responses={200: WorldSerializer})
+    def patch(self, request: Request, **kwargs: object) -> Response:
+        with self.matching() as row:
+            sent = self.read(WorldChange, partial=True)
+            form = WorldForm(
+                {"name": row.name, "description": row.description, **sent}, instance=row
+            )
+            if not form.is_valid():
+                raise refusal_of_form(form)
+            form.save()
+        return self.show(row)
+
+    @extend_schema(request=None, responses={202: JobSerializer, 204: None})
+    def delete(self, request: Request, **kwargs: object) -> Response:
+        """Delete the world with all that is in it: at once where it is small, otherwise by a job."""
+        if not request.user.is_superuser:
+            raise PermissionDenied(ForSiteAdmins.message)
+        with self.matching() as row:
+            request_deletion(row)  # whoever was as quick finds no world
+        started = start_deletion(row, request.user)
+        if not isinstance(started, Job):
+            return Response(status=HTTPStatus.NO_CONTENT)
+        location = {"Location": address_of_job(request, started)}
+        shown = JobSerializer(started).data
+        return Response(shown, status=HTTPStatus.ACCEPTED, headers=location)
+
+    def hold(self) -> None:
+        self.hold_world()

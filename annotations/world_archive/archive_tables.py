@@ -1,0 +1,197 @@
+"""Which rows make up a world, and how a row becomes a line of JSON and a row again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cache, cached_property
+from typing import Any
+
+from django.db import models
+from django.utils.module_loading import import_string
+
+from annotations.models import (
+    Assignment,
+    AuditDecision,
+    AuditFinding,
+    AuditReason,
+    Command,
+    Comment,
+    EarlierText,
+    Entity,
+    Example,
+    Guidelines,
+    Label,
+    LogicalForm,
+    Paraphrase,
+    Predicate,
+    Production,
+    SemanticTemplate,
+    Split,
+    StoredProblem,
+    TaskCategory,
+    Utterance,
+    WorkItem,
+    WorkShare,
+    World,
+)
+from annotations.worlds.parts import registered_parts
+
+FORMAT, VERSION = "gpsr-workbench-world", 1
+WORLD_FIELDS = ("description", "revision", "generated_revision")
+
+
+@dataclass(frozen=True)
+class ArchiveTable:
+    """The rows of one model in one world, as the file ``rows/NAME.jsonl``.
+
+    Attributes:
+        owner: the field that leads to the world, through the grammar or ontology where it is one of these;
+            it is not written. Empty where the first reference leads there.
+        references: field → table of the rows that it refers to, by line number from 0; those of its own
+            table are earlier.
+        people: the fields that refer to accounts, by user name.
+        subjects: kind of a row → table of the row that its field ``subject`` refers to, if to any.
+        shapes: JSON column of another application's table → whether a value may stand there.
+        utterance: the lookup that leads to an utterance. Deleted ones, and what hangs on them, are not written.
+        left_out: columns that are not written either.
+        keeps_texts: whether an import leaves the texts as they are, without normalising them.
+    """
+
+    name: str
+    model: type[models.Model]
+    owner: str = ""
+    references: Mapping[str, str] = field(default_factory=dict)
+    people: tuple[str, ...] = ()
+    subjects: Mapping[str, str] = field(default_factory=dict)
+    shapes: Mapping[str, Callable[[Any], bool]] = field(default_factory=dict)
+    utterance: str = ""
+    left_out: tuple[str, ...] = ()
+    keeps_texts: bool = False
+
+    @property
+    def path(self) -> str:
+        return f"rows/{self.name}.jsonl"
+
+    @cached_property
+    def columns(self) -> tuple[models.Field[Any, Any], ...]:
+        """The fields that are written as they are; derived ones follow from them."""
+        apart = {"id", self.owner, *self.references, *self.people, *self.left_out}
+        apart |= {"subject"} if self.subjects else set()
+        return tuple(
+            column
+            for column in self.model._meta.concrete_fields
+            if column.name not in apart
+            and not getattr(column, "auto_now_add", False)
+            and not getattr(column, "is_derived", False)
+        )
+
+    def rows_of(self, world: World) -> models.QuerySet[Any]:
+        """Return the rows that the archive of ``world`` has."""
+        chosen: dict[str, Any] = {self.world_path: world}
+        if self.utterance:
+            chosen[f"{self.utterance}__deleted_at__isnull"] = True
+        return self.model._default_manager.filter(**chosen)
+
+    @cached_property
+    def world_path(self) -> str:
+        """The lookup that leads from a row to its world."""
+        if not self.owner:
+            return f"{next(iter(self.references))}__world"
+        is_direct = self.model._meta.get_field(self.owner).related_model is World
+        return self.owner if is_direct else f"{self.owner}__world"
+
+
+# Rows stand behind those that they refer to.
+OUR_TABLES = (
+    ArchiveTable("entities", Entity, "ontology"),
+    ArchiveTable("task_categories", TaskCategory, "grammar"),
+    ArchiveTable("productions", Production, "grammar"),
+    ArchiveTable("predicates", Predicate, "world"),
+    ArchiveTable("templates", SemanticTemplate, "grammar", people=("author",)),
+    ArchiveTable("guidelines", Guidelines, "world"),
+    ArchiveTable("forms", LogicalForm, "world"),
+    ArchiveTable("commands", Command, "world", {"template": "templates", "logical_form": "forms"}),
+    ArchiveTable("paraphrases", Paraphrase, "world", {"command": "commands"}),
+    ArchiveTable(
+        "utterances",
+        Utterance,
+        "world",
+        people=("created_by",),
+        left_out=("upload", "deleted_at"),
+    ),
+    ArchiveTable(
+        "labels",
+        Label,
+        references={"utterance": "utterances"},
+        people=("annotator",),
+        utterance="utterance",
+    ),
+    ArchiveTable(
+        "audit_findings",
+        AuditFinding,
+        "world",
+        {"paraphrase": "paraphrases", "utterance": "utterances"},
+        utterance="utterance",
+    ),
+    ArchiveTable(
+        "audit_reasons",
+        AuditReason,
+        references={"finding": "audit_findings"},
+        utterance="finding__utterance",
+    ),
+    ArchiveTable(
+        "audit_decisions",
+        AuditDecision,
+        references={"finding": "audit_findings", "label": "labels"},
+        people=("decided_by",),
+        utterance="finding__utterance",
+    ),
+    ArchiveTable(
+        "work_items",
+        WorkItem,
+        "world",
+        {
+            "utterance": "utterances",
+            "template": "templates",
+            "paraphrase": "paraphrases",
+            "follows": "work_items",
+        },
+        people=("created_by",),
+        utterance="utterance",
+    ),
+    ArchiveTable(
+        "assignments",
+        Assignment,
+        references={"item": "work_items", "label": "labels"},
+        people=("person", "assigned_by"),
+        utterance="item__utterance",
+    ),
+    ArchiveTable("work_shares", WorkShare, "world"),
+    ArchiveTable("splits", Split, "world", {"follows": "splits"}, people=("created_by",)),
+    ArchiveTable("examples", Example, references={"split": "splits"}, keeps_texts=True),
+    ArchiveTable("problems", StoredProblem, "world"),
+    ArchiveTable(
+        "comments",
+        Comment,
+        "world",
+        people=("author", "deleted_by"),
+        subjects={
+            "template": "templates",
+            "production": "productions",
+            "entity": "entities",
+            "predicate": "predicates",
+            "paraphrase": "paraphrases",
+            "form": "forms",
+            "utterance": "utterances",
+            "guidelines": "guidelines",
+        },
+    ),
+    ArchiveTable("earlier_texts", EarlierText, references={"comment": "comments"}),
+)
+
+
+@cache
+def tables() -> tuple[ArchiveTable, ...]:
+    """Return all tables of an archive: ours, then those that other applications have registered."""
+    return (*OUR_TABLES, *map(import_string, registered_parts()))

@@ -1,0 +1,182 @@
+"""What a row of an archive must be before it is stored: archives come from anywhere."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from typing import Any
+
+from django.core.exceptions import ValidationError
+from django.db import models
+
+from annotations.language.errors import LanguageError, Position
+from annotations.language.forms import read_form
+from annotations.language.predicates import ArgumentKind
+from annotations.rows.stored_problems import is_stored_problems
+from annotations.world_archive.archive_tables import ArchiveTable
+
+Shapes = Mapping[str, Callable[[Any], bool]]
+
+# Columns that name a file, by table; and those that hold a logical form.
+FILE_NAMES = {
+    "entities": ("source",),
+    "productions": ("source",),
+    "templates": ("source",),
+}
+FORMS = {
+    "forms": ("text",),
+    "paraphrases": ("logical_form", "grounded_form"),
+    "utterances": ("logical_form",),
+    "labels": ("form",),
+    "audit_findings": ("form", "suggested_form", "decided_form"),
+    "audit_reasons": ("suggested_form",),
+    "audit_decisions": ("form",),
+    "examples": ("logical_form", "grounded_form"),
+}
+# References that archives of earlier releases do not have, by table.
+ADDED_REFERENCES = {"splits": {"follows"}}
+TYPES: tuple[tuple[type[models.Field[Any, Any]], type | tuple[type, ...], str], ...] = (
+    (models.CharField, str, "a text"),
+    (models.TextField, str, "a text"),
+    (models.BooleanField, bool, "true or false"),
+    (models.FloatField, (int, float), "a number"),
+    (models.IntegerField, int, "a whole number"),
+    (models.DateTimeField, str, "a time"),
+)
+
+
+def parse_object(line: bytes, place: Position) -> dict[str, Any]:
+    """Return the JSON object in ``line``. Raises LanguageError where it holds none, or text that no database takes."""
+    try:
+        values = json.loads(line.decode("utf-8"))
+        text = json.dumps(values, ensure_ascii=False, allow_nan=False)
+        text.encode("utf-8")
+    except (ValueError, RecursionError) as error:
+        raise LanguageError("this is not a line of JSON in UTF-8", place) from error
+    if not isinstance(values, dict):
+        raise LanguageError("this is not a JSON object", place)
+    # Without the escaped backslashes: after one, "u0000" is text.
+    if "\\u0000" in text.replace("\\\\", ""):
+        raise LanguageError("the text has a NUL character", place)
+    return values
+
+
+def check_row(table: ArchiveTable, values: Mapping[str, Any], place: Position) -> None:
+    """Raise LanguageError if a column is missing, unknown or of the wrong type.
+
+    A column with a default may be missing: archives of earlier releases do not have it.
+    """
+    wanted = {each.name for each in table.columns} | {*table.references, *table.people}
+    wanted |= {"subject"} if table.subjects else set()
+    people = [table.model._meta.get_field(name) for name in table.people]
+    optional = {
+        each.name
+        for each in (*table.columns, *people)
+        if isinstance(each, models.Field) and each.has_default()
+    }
+    optional |= ADDED_REFERENCES.get(table.name, set())
+    if wrong := (values.keys() - wanted) | (wanted - optional - values.keys()):
+        names = ", ".join(sorted(wrong))
+        raise LanguageError(f"these columns are missing or unknown: {names}", place)
+    for column in table.columns:
+        if column.name not in values:
+            continue
+        check_value(column, values[column.name], place, table.shapes or SHAPES)
+    for name in table.people:
+        if not isinstance(values.get(name), str | None):
+            raise LanguageError(f"{name} is not the name of an account", place)
+    if table.subjects and values["kind"] not in table.subjects:
+        raise LanguageError(f"kind cannot be “{values['kind'][:40]}”", place)
+    for name in FILE_NAMES.get(table.name, ()):
+        _check_file_name(values[name], place)
+    for name in FORMS.get(table.name, ()):
+        if values[name] and not _is_form(values[name]):
+            raise LanguageError(f"{name} is not a logical form", place)
+
+
+def check_value(
+    column: models.Field[Any, Any], value: Any, place: Position, shapes: Shapes | None = None
+) -> None:
+    """Raise LanguageError if ``column`` may not hold ``value``.
+
+    ``shapes`` says what JSON columns may hold; by default, that of our own tables.
+    """
+    if value is None and column.null:
+        return
+    if isinstance(column, models.JSONField):
+        if not (shapes or SHAPES)[column.name](value):
+            raise LanguageError(f"{column.name} has the wrong shape", place)
+        is_list_of_files = column.name in ("rule_sources", "template_sources")
+        for name in value if is_list_of_files else ():
+            _check_file_name(name, place)
+        return
+    of_type, kind = next((types, kind) for field, types, kind in TYPES if isinstance(column, field))
+    is_mistaken_bool = isinstance(value, bool) and of_type is not bool
+    if is_mistaken_bool or not isinstance(value, of_type):
+        raise LanguageError(f"{column.name} is not {kind}", place)
+    if column.choices and value not in {choice for choice, _ in column.flatchoices}:
+        raise LanguageError(f"{column.name} cannot be “{str(value)[:40]}”", place)
+    try:
+        column.run_validators(column.to_python(value))
+    except ValidationError as error:
+        raise LanguageError(f"{column.name}: {' '.join(error.messages)}", place) from error
+
+
+def _check_file_name(name: str, place: Position) -> None:
+    if "/" in name or "\\" in name or name.startswith("."):
+        raise LanguageError(f"“{name[:40]}” is a path or a hidden file, not a file name", place)
+
+
+@lru_cache(maxsize=50_000)
+def _is_form(text: str) -> bool:
+    try:
+        read_form(text)
+    except LanguageError:
+        return False
+    return True
+
+
+def _is_texts(value: Any) -> bool:
+    return isinstance(value, list) and all(isinstance(each, str) for each in value)
+
+
+def _is_some_texts(value: Any) -> bool:
+    return bool(value) and _is_texts(value)
+
+
+def _is_text_by_text(value: Any) -> bool:
+    return isinstance(value, dict) and _is_texts(list(value.values()))
+
+
+def _is_signatures(value: Any) -> bool:
+    kinds = set(ArgumentKind)
+    return isinstance(value, list) and all(
+        _is_texts(row) and kinds.issuperset(row) for row in value
+    )
+
+
+def _is_spans(value: Any) -> bool:
+    """Return whether these are rows of [start, end, class, entity]."""
+    return isinstance(value, list) and all(
+        isinstance(row, list) and [type(each) for each in row] == [int, int, str, str]
+        for row in value
+    )
+
+
+def _is_shares(value: Any) -> bool:
+    """Return whether these are no shares, or three fractions of 1."""
+    is_numbers = isinstance(value, list) and all(type(each) in (int, float) for each in value)
+    return is_numbers and len(value) in (0, 3) and all(0 <= each <= 1 for each in value)
+
+
+SHAPES: Shapes = {
+    "aliases": _is_texts,
+    "attributes": _is_text_by_text,
+    "rule_sources": _is_some_texts,
+    "template_sources": _is_some_texts,
+    "signatures": _is_signatures,
+    "problems": is_stored_problems,
+    "spans": _is_spans,
+    "proportions": _is_shares,
+}

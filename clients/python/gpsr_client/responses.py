@@ -1,0 +1,117 @@
+"""The answers of a workbench as typed values. ``raw`` holds the whole answer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Step:
+    """One action of a plan; ``arguments`` maps names to values as docs/reference/plans.md describes them."""
+
+    number: int
+    action: str
+    predicate: str
+    text: str
+    arguments: dict[str, dict[str, Any]]
+    gives_result: bool
+
+
+@dataclass(frozen=True)
+class PlanProblem:
+    """What stands in the way of a plan; ``step`` 0 is the whole plan."""
+
+    code: str
+    step: int
+    message: str
+    hint: str
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The steps of a command. An executable plan needs no further answer from a person."""
+
+    is_executable: bool
+    steps: tuple[Step, ...]
+    problems: tuple[PlanProblem, ...]
+
+    @classmethod
+    def from_json(cls, value: dict[str, Any]) -> Plan:
+        return cls(
+            value["is_executable"],
+            tuple(Step(**step) for step in value["steps"]),
+            tuple(PlanProblem(**problem) for problem in value["problems"]),
+        )
+
+
+@dataclass(frozen=True)
+class OpenSlot:
+    """Something that the utterance leaves open: the question, and what there is to choose from."""
+
+    entity_class: str
+    question: str
+    choices: tuple[str, ...]
+    likely: str | None
+    phrases: tuple[str, ...]
+
+    @classmethod
+    def from_json(cls, value: dict[str, Any]) -> OpenSlot:
+        return cls(
+            value["entity_class"],
+            value["question"],
+            tuple(value["choices"]),
+            value["likely"],
+            tuple(value["phrases"]),
+        )
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One form: with class tokens, and ``grounded`` with the entities of the utterance."""
+
+    form: str
+    grounded: str
+    score: float
+    english: str
+    open_slots: tuple[OpenSlot, ...]
+    plan: Plan | None
+    raw: dict[str, Any] = field(repr=False, compare=False)
+
+    @classmethod
+    def from_json(cls, value: dict[str, Any]) -> Candidate:
+        return cls(
+            value["form"],
+            value["grounded"],
+            value["score"],
+            value["english"],
+            tuple(map(OpenSlot.from_json, value["open_slots"])),
+            Plan.from_json(value["plan"]) if value["plan"] else None,
+            value,
+        )
+
+
+@dataclass(frozen=True)
+class Parse:
+    """The candidates for an utterance, the best first; ``is_unknown`` where there is nothing to act on."""
+
+    utterance: str
+    anonymized: str
+    is_unknown: bool
+    candidates: tuple[Candidate, ...]
+    raw: dict[str, Any] = field(repr=False, compare=False)
+
+    @property
+    def best(self) -> Candidate | None:
+        """The best candidate; None where the parser abstains."""
+        return None if self.is_unknown or not self.candidates else self.candidates[0]
+
+    @classmethod
+    def from_json(cls, value: dict[str, Any]) -> Parse:
+        return cls(
+            value["utterance"],
+            value["anonymized"],
+            value["is_unknown"],
+            tuple(map(Candidate.from_json, value["candidates"])),
+            value,
+        )

@@ -1,0 +1,122 @@
+"""``manifest.json`` of a backup: which version wrote it, and what has to be in it."""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field
+from datetime import datetime
+from typing import Any
+
+from django.db import connections
+from django.db.migrations.loader import MigrationLoader
+
+from gpsr_site.backup.backup_tables import APPS
+
+NAME = "manifest.json"
+FORMAT, VERSION = "gpsr-workbench-backup", 1
+MOST_BYTES = 100_000_000  # of the manifest itself, which names each file
+
+
+def _is_text(value: Any) -> bool:
+    return isinstance(value, str)
+
+
+def _is_moment(value: Any) -> bool:
+    try:
+        return bool(datetime.fromisoformat(value))
+    except (TypeError, ValueError):
+        return False
+
+
+def _is_count(value: Any) -> bool:
+    return type(value) is int and value >= 0
+
+
+# What each value of the manifest has to be, and of each part in it.
+SHAPE: Mapping[str, Callable[[Any], bool]] = {
+    "created_at": _is_moment,
+    "database": _is_text,
+    "migrations": lambda value: isinstance(value, dict) and all(map(_is_text, value.values())),
+    "tables": lambda value: isinstance(value, dict),
+    "files": lambda value: isinstance(value, dict),
+    "missing": lambda value: isinstance(value, list) and all(map(_is_text, value)),
+}
+SHAPE_OF_TABLE = {"bytes": _is_count, "sha256": _is_text, "rows": _is_count}
+SHAPE_OF_FILE = {**SHAPE_OF_TABLE, "rows": lambda value: value is None}
+
+
+@dataclass
+class BackupPart:
+    """A table or file: its rows (of a table), its bytes, and the SHA-256 of what it holds."""
+
+    bytes: int
+    sha256: str
+    rows: int | None = None
+
+
+@dataclass
+class BackupManifest:
+    """``migrations`` names the newest of each application; ``missing`` files vanished while they were read."""
+
+    created_at: str
+    database: str
+    migrations: dict[str, str]
+    tables: dict[str, BackupPart] = field(default_factory=dict)
+    files: dict[str, BackupPart] = field(default_factory=dict)
+    missing: list[str] = field(default_factory=list)
+
+    def as_json(self) -> str:
+        values = {"format": FORMAT, "version": VERSION, **asdict(self)}
+        return json.dumps(values, indent=1, sort_keys=True)
+
+
+def read_manifest(archive: zipfile.ZipFile) -> BackupManifest:
+    """Return the manifest of a backup.
+
+    Raises:
+        ValueError: the archive is no backup, or one of another version.
+    """
+    try:
+        if archive.getinfo(NAME).file_size > MOST_BYTES:
+            raise ValueError(f"{NAME} is too large")
+        values = json.loads(archive.read(NAME))
+        form, version = values.pop("format"), values.pop("version")
+    except (KeyError, ValueError, AttributeError, TypeError, RecursionError) as error:
+        raise ValueError("This is no backup: “manage.py backup FILE” writes one.") from error
+    if (form, version) != (FORMAT, VERSION):
+        what = f"{str(form)[:40]} {str(version)[:40]}"
+        raise ValueError(f"This is {what}; this version reads {FORMAT} {VERSION}.")
+    _require_shape("", values, SHAPE)
+    for name, shape in (("tables", SHAPE_OF_TABLE), ("files", SHAPE_OF_FILE)):
+        for key, part in values[name].items():
+            _require_shape(f"{name} → {key[:80]} → ", part, shape)
+        values[name] = {key: BackupPart(**part) for key, part in values[name].items()}
+    return BackupManifest(**values)
+
+
+def _require_shape(where: str, values: Any, shape: Mapping[str, Callable[[Any], bool]]) -> None:
+    """Raise ValueError, a sentence, where ``values`` has other keys than ``shape``, or other values."""
+    given = values.keys() if isinstance(values, dict) else set()
+    wrong = (set(given) ^ set(shape)) or {
+        name for name, is_right in shape.items() if not is_right(values[name])
+    }
+    if wrong:
+        names = ", ".join(f"{where}{name[:80]}" for name in sorted(wrong)[:5])
+        raise ValueError(
+            f"{NAME} of this backup is not as it was written: see {names}. Nothing was restored."
+        )
+
+
+def newest_migrations() -> dict[str, str]:
+    """Return the newest migration of each application that the database has.
+
+    Raises:
+        ValueError: the database lacks a migration of this version.
+    """
+    loader = MigrationLoader(connections["default"])
+    ours = {key for key in loader.disk_migrations if key[0] in APPS}
+    if ours - set(loader.applied_migrations):
+        raise ValueError("The database is not that of this version. Run: manage.py migrate")
+    return {app: max(name for label, name in ours if label == app) for app in APPS}

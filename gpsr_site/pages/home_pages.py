@@ -1,0 +1,77 @@
+"""The pages that look at both apps: the list of worlds, the overview of one, banner and health."""
+
+from __future__ import annotations
+
+from django.contrib.auth.decorators import login_not_required
+from django.db import connection
+from django.http import HttpRequest, HttpResponse, JsonResponse
+from django.shortcuts import render
+from django.views.decorators.cache import never_cache
+from django.views.decorators.http import require_safe
+
+from annotations.models import Duty, TaskCategory, World
+from annotations.people.access import PageRequest, WorldRequest, world_view
+from gpsr_site.overview.best_runs import best_runs
+from gpsr_site.overview.counts import Counts, counts_of, counts_of_all
+from gpsr_site.overview.first_steps import first_steps
+from gpsr_site.overview.flow import stages
+from gpsr_site.overview.work_list import WorkList
+from gpsr_site.overview.workers import workers_now
+
+MOST_SHOWN = 3  # things that wait, for each world of the list
+MOST_JOBS = 5  # in the work list; the page of jobs has them all
+
+
+class OverviewRequest(WorldRequest):
+    """For signatures: what the page has counted, for the rail."""
+
+    counts: Counts
+
+
+@require_safe
+def home(request: PageRequest) -> HttpResponse:
+    """Show the worlds that the reader may see, with what waits in each."""
+    worlds = World.objects.visible_to(request.user)
+    counts = counts_of_all(worlds)
+    duties = worlds.duties_by_world(request.user)
+    workers = workers_now()
+    listed = []
+    for world in worlds:
+        work = WorkList(world, counts[world.pk], duties[world.pk], workers)
+        listed.append((world, counts[world.pk], work.items[:MOST_SHOWN]))
+    return render(request, "gpsr_site/home.html", {"listed": listed})
+
+
+@world_view(Duty.VIEW)
+def world(request: OverviewRequest, world: World) -> HttpResponse:
+    """Show what there is in a world, what waits, and how well its parsers do."""
+    counts = request.counts = counts_of(world)  # the rail takes them from there
+    best = best_runs(world)
+    jobs = world.jobs.needing_attention()[:MOST_JOBS]
+    work = WorkList(world, counts, request.duties, workers_now(), best, jobs)
+    context = {
+        "stages": stages(counts),
+        "work_groups": work.groups,
+        "first_steps": first_steps(counts, request.duties),
+        "coverage": TaskCategory.objects.filter(grammar__world=world),
+        "best": best,
+        "recent_runs": world.runs.for_table()[:6],
+    }
+    return render(request, "gpsr_site/world.html", context)
+
+
+@never_cache
+@require_safe
+def banner(request: HttpRequest) -> HttpResponse:
+    """Show the worker's state, which every page asks for every two seconds."""
+    return render(request, "gpsr_site/_banner.html")
+
+
+@never_cache
+@login_not_required
+@require_safe
+def healthz(request: HttpRequest) -> HttpResponse:
+    """Answer 200 where the database answers: for whoever supervises the process."""
+    with connection.cursor() as cursor:
+        cursor.execute("SELECT 1")
+    return JsonResponse({"status": "ok"})

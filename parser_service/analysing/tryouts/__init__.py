@@ -1,1 +1,0 @@
-"""Texts that people try on runs: one asks, a worker answers."""

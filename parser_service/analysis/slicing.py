@@ -1,0 +1,194 @@
+"""Accuracy of runs on slices of a test part, and the values of an example that slices are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Iterable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, TypeVar
+
+import numpy as np
+
+from annotations.language.forms import Form, depth, head_predicate
+from parser_service.analysis.answer_forms import NO_FORM, read_or_none
+from parser_service.analysis.arrays import Bools, Floats, Ints
+from parser_service.analysis.clustered import accuracies_in_samples, p_values
+from parser_service.analysis.comparing import LEVEL, holm
+from parser_service.analysis.encoded_labels import EncodedLabels, encode
+from parser_service.analysis.intervals import wilson_intervals
+
+SLICE_SAMPLES = 1_000  # a page has hundreds of intervals of slices
+# Lengths at which a bin begins, in words; the published paraphrases have 2 to 34, the median is 9.
+BIN_STARTS = (1, 5, 9, 13, 17)
+Value = TypeVar("Value")
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class SliceAccuracies:
+    """Slice ``values[s]`` has ``counts[s]`` examples, of which run r has ``correct[r, s]`` right.
+
+    ``low`` and ``high`` are the ends of the 95 % interval of the accuracy, [runs, slices]: percentiles where whole
+    clusters are drawn, or, where samples do not differ, Wilson's over the clusters. An empty slice has NaN
+    for all three. ``is_best`` [runs, slices] marks the run that is better than each other one beyond chance,
+    by a paired bootstrap of the same samples with Holm's correction.
+    """
+
+    values: tuple[Hashable, ...]
+    counts: Ints  # [slices]
+    correct: Ints  # [runs, slices]
+    low: Floats
+    high: Floats
+    is_best: Bools
+
+    @property
+    def accuracies(self) -> Floats:
+        """Fractions of 1, [runs, slices]."""
+        with np.errstate(invalid="ignore"):
+            return self.correct / self.counts
+
+
+def accuracy_by(
+    correct: Bools,
+    labels: Sequence[Hashable],
+    clusters: Ints,
+    values: Sequence[Hashable] = (),
+) -> SliceAccuracies:
+    """Return the accuracy of each run in each slice.
+
+    Args:
+        correct: whether each run is right on each example, [runs, examples].
+        labels: the slice of each example, [examples].
+        clusters: the cluster of each example, as small whole numbers from 0 (``outcomes.encode_clusters``).
+        values: slices to list first, in this order, even where empty; the others follow in the
+            order of their first appearance.
+
+    Raises:
+        ValueError: there are not as many labels or clusters as examples.
+    """
+    return accuracy_of_labels(correct, encode(labels, values), clusters)
+
+
+def accuracy_of_labels(
+    correct: Bools, labels: EncodedLabels[Any], clusters: Ints, samples: int = SLICE_SAMPLES
+) -> SliceAccuracies:
+    """Return the same for labels that are encoded already; a code of no value is in no slice. Raises likewise."""
+    _require_same_length(correct, len(labels.codes))
+    _require_same_length(correct, len(clusters))
+    shape = len(labels.values), int(clusters.max(initial=0)) + 1
+    size = shape[0] * shape[1]
+    places = labels.codes * shape[1] + clusters
+    count, *right = (
+        np.bincount(some, minlength=size)[:size]
+        for some in (places, *(places[run] for run in correct))
+    )
+    rights = np.array(right).reshape(-1, *shape)
+    return _summarize(labels.values, count.reshape(shape), rights, samples)
+
+
+def accuracy_where(
+    correct: Bools, mask: Bools, clusters: Ints, samples: int = SLICE_SAMPLES
+) -> SliceAccuracies:
+    """Return the accuracy of each run on the examples of a mask, [examples]: one slice, called True.
+
+    Raises:
+        ValueError: the mask or the clusters do not have the length of the examples.
+    """
+    _require_same_length(correct, len(mask))
+    _require_same_length(correct, len(clusters))
+    labels = EncodedLabels((True,), (~mask).astype(np.int64))
+    return accuracy_of_labels(correct, labels, clusters, samples)
+
+
+def _require_same_length(correct: Bools, length: int) -> None:
+    if correct.shape[1] != length:
+        raise ValueError(f"{length} labels do not fit {correct.shape[1]} examples.")
+
+
+def _summarize(
+    values: tuple[Hashable, ...], count: Ints, right: Ints, samples: int
+) -> SliceAccuracies:
+    """Summarize counts of examples, [slices, clusters], and of right answers, [runs, slices, clusters]."""
+    counts, correct = count.sum(-1), right.sum(-1)
+    clusters = np.count_nonzero(count, axis=-1)  # [slices]
+    low, high = np.full((2, *correct.shape), np.nan)
+    is_best = np.zeros(correct.shape, dtype=bool)
+    there = np.flatnonzero(counts)
+    if len(there) and len(right):
+        drawn = accuracies_in_samples(right[:, there], count[there], samples)
+        is_best[:, there] = _are_best(drawn, right[:, there])
+        ends = np.percentile(drawn, [2.5, 97.5], axis=-1, overwrite_input=True)
+        low[:, there], high[:, there] = ends
+    is_flat = (counts > 0) & ((correct == 0) | (correct == counts) | (clusters == 1))
+    share = correct / np.maximum(counts, 1)
+    flat_low, flat_high = wilson_intervals(share * clusters, np.broadcast_to(clusters, share.shape))
+    low, high = np.where(is_flat, flat_low, low), np.where(is_flat, flat_high, high)
+    return SliceAccuracies(values, counts, correct, low, high, is_best)
+
+
+def _are_best(samples: Floats, right: Ints) -> Bools:
+    """Return which run is better than each other one beyond chance, [runs, slices].
+
+    Args:
+        samples: accuracies, [runs, slices, samples].
+        right: numbers of right answers, [runs, slices, clusters].
+    """
+    are_best = np.zeros(right.shape[:-1], dtype=bool)
+    if len(right) < 2:
+        return are_best
+    best = right.sum(-1).argmax(0)  # [slices]
+    slices = np.arange(right.shape[1])
+    differing = (right[best, slices] != right).sum(-1)  # [runs, slices]
+    p = p_values(samples[best, slices] - samples, differing)
+    for place in slices:
+        others = np.delete(p[:, place], best[place])
+        are_best[best[place], place] = bool((holm(others) <= LEVEL).all())
+    return are_best
+
+
+def head_predicates(forms: Sequence[str]) -> list[str]:
+    """Return the head predicate of each form; ``UNKNOWN`` for one without."""
+    return _of_distinct(forms, head_predicate, NO_FORM)
+
+
+def form_depths(forms: Sequence[str]) -> list[int | str]:
+    """Return how deep λs and applications nest in each form, from 0 for ``UNKNOWN``."""
+    return _of_distinct(forms, depth, NO_FORM)
+
+
+def count_words(utterances: Sequence[str]) -> list[int]:
+    """Return the number of words of each utterance; words are what spaces separate."""
+    return [len(text.split()) for text in utterances]
+
+
+def length_bins(utterances: Sequence[str], starts: Sequence[int] = BIN_STARTS) -> list[str]:
+    """Return for each utterance the bin of its number of words, such as ``5–8 words``.
+
+    Args:
+        utterances: texts.
+        starts: the smallest number of words of each bin, ascending. An utterance below the first
+            is in the first bin.
+    """
+    names = bin_names(starts)
+    places = np.digitize(count_words(utterances), starts[1:])
+    return [names[place] for place in places.tolist()]
+
+
+def bin_names(starts: Sequence[int] = BIN_STARTS) -> tuple[str, ...]:
+    """Return the names of the bins of ``length_bins``, shortest first."""
+    inner = (f"{low}–{high - 1} words" for low, high in pairwise(starts))
+    return (*inner, f"{starts[-1]} words or more")
+
+
+def are_seen(forms: Sequence[str], training_forms: Iterable[str]) -> Bools:
+    """Return whether each form, canonical text, is among those of the training pairs: [examples]."""
+    known = frozenset(training_forms)
+    return np.fromiter((form in known for form in forms), dtype=bool, count=len(forms))
+
+
+def _of_distinct(
+    forms: Sequence[str], value_of: Callable[[Form], Value], otherwise: str
+) -> list[Value | str]:
+    encoded = encode(forms)
+    read = (read_or_none(text) for text in encoded.values)
+    values = [otherwise if form is None else value_of(form) for form in read]
+    return [values[code] for code in encoded.codes.tolist()]

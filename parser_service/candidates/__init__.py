@@ -1,9 +1,0 @@
-"""Forms to choose from for an utterance: of the grammar, of its nearest neighbours, of the best parser.
-
-The grammar and the neighbours answer in the web process, which never loads torch; what a trained
-parser answers was computed by a worker (``proposing``) and stands in ``Proposal`` rows.
-"""
-
-from parser_service.candidates.composing import candidates_for
-
-__all__ = ["candidates_for"]

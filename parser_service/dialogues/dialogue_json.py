@@ -1,0 +1,61 @@
+"""A dialogue as plain data: what REST answers, and what the page beside the chat shows."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+from annotations.language.dialogue import DialogueState
+from annotations.language.forms import to_corpus, to_reading
+from annotations.language.grounding import choices_of
+from annotations.language.plans import Plan, make_plan
+from annotations.language.predicates import gloss
+from parser_service.dialogues.conversation import state_of
+from parser_service.models import Dialogue
+from parser_service.serving.preparing import WorldLanguage
+
+MOST_CHOICES = 20
+
+
+def plan_of(state: DialogueState, language: WorldLanguage) -> Plan:
+    """Return the plan of a dialogue as far as it has come."""
+    return make_plan(
+        state.form, language.ontology, language.predicates, language.action_names, state.slots
+    )
+
+
+def as_json(row: Dialogue) -> dict[str, Any]:
+    """Return a dialogue with what it asks, its form so far and its plan."""
+    state, language = state_of(row), WorldLanguage.of(row.world)
+    return {
+        "id": row.pk,
+        "utterance": row.utterance,
+        "phase": row.phase,
+        "is_over": row.is_over,
+        "prompt": state.prompt,
+        "asked": asked_of(state),
+        "form": to_corpus(state.parsed),
+        "grounded": to_corpus(state.form),
+        "reading": to_reading(state.form),
+        "english": gloss(state.form, language.predicates),
+        "plan": plan_of(state, language).as_json(),
+        "offers": [asdict(offer) for offer in state.offers],
+        "transcript": row.transcript,
+        "run": row.run_id,
+        "kept_as": row.kept_as_id,
+        "started_at": row.started_at,
+        "version": row.version,
+    }
+
+
+def asked_of(state: DialogueState) -> dict[str, Any] | None:
+    """Return what the dialogue asks for: the class and the choices; None where it asks for no slot."""
+    slot = state.asked
+    if slot is None:
+        return None
+    return {
+        "entity_class": slot.entity_class,
+        "choices": list(choices_of(slot))[:MOST_CHOICES],
+        "likely": slot.likely,
+        "phrases": list(slot.phrases),
+    }

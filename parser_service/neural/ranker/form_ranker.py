@@ -1,0 +1,201 @@
+"""The form ranker: chooses the form that an utterance means from many."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from copy import copy
+from dataclasses import asdict, replace
+from http import HTTPStatus
+from math import inf, log
+from pathlib import Path
+from typing import Self
+
+from annotations.language.errors import Refusal
+from parser_service.neural.device import threads
+from parser_service.neural.ranker.calibration import TERMS, DecisionRule, Scores
+from parser_service.neural.ranker.fitting import Fitting, make_model
+from parser_service.neural.ranker.model import RankerModel
+from parser_service.neural.ranker.ranked_forms import RankedForms
+from parser_service.neural.ranker.steps import FILES
+from parser_service.neural.ranker.weighing import weigh_by
+from parser_service.neural.sentence_encoder import ENCODER, TOKENIZER, SentenceEncoder
+from parser_service.neural.weights import WEIGHTS, load_weights, save_weights
+from parser_service.parsers.conditions import Protocol
+from parser_service.parsers.hyperparameters.ranker import RankerConfig
+from parser_service.parsers.interface import (
+    Candidate,
+    Check,
+    Knowledge,
+    Observer,
+    Pair,
+    Parser,
+    ScoreKind,
+    keep_going,
+    refuse,
+)
+from parser_service.parsers.storage import open_sealed, read_json, seal, write_json
+
+FORMS = "forms.json"
+SAVED = (FORMS, ENCODER, TOKENIZER, WEIGHTS)
+PREDICTION_BATCH = 64
+
+
+class FormRanker(Parser):
+    """Chooses from whole forms by one fine-tuned sentence encoder.
+
+    A form with examples is scored by the nearest of them and by its English gloss, a new one by its
+    gloss alone; where the ontology is known, slots that no entity of the utterance fills lower the
+    score. New forms are made from those of the training pairs (``candidates``) or taken from the
+    grammar. Scores are log-probabilities. By how much a new form has to fit better is learned from forms
+    that are held out of the first part of the training, never from the validation pairs: those only
+    weigh the experts.
+    """
+
+    name = "ranker"
+    version = 11
+    reads = (10,)
+    protocols = (Protocol.STRICT, Protocol.DOMAIN, Protocol.GRAMMAR)
+    score_kind = ScoreKind.LOG_PROBABILITY
+    Config = RankerConfig
+
+    def __init__(
+        self,
+        config: RankerConfig | None = None,
+        seed: int = 0,
+        knowledge: Knowledge | None = None,
+    ):
+        super().__init__(config, seed, knowledge)
+        self._decision = DecisionRule()
+        self._ranked = RankedForms((), (), 0, (), ())
+        self._model: RankerModel | None = None
+        self._is_hesitant = False
+
+    def fit(
+        self,
+        train: Sequence[Pair],
+        validation: Sequence[Pair] = (),
+        observe: Observer | None = None,
+    ) -> None:
+        observe = observe or Observer()
+        if not train:
+            raise Refusal(
+                "There is no training pair, so there is nothing to learn from.", "no_training_pairs"
+            )
+        fitting = Fitting(self.config, self.seed, self.knowledge, validation, observe)
+        with threads(self.config.threads):
+            fitting.run(
+                train,
+                check_sealed=lambda folder: open_sealed(folder, type(self), FILES),
+                seal=lambda folder: seal(folder, self, FILES),
+            )
+        self._ranked, self._model = fitting.ranked, fitting.model
+        self._decision = fitting.decision
+        self._model.encoder.pack()
+
+    def predict(
+        self, utterances: Sequence[str], beam_width: int = 1, check: Check = keep_going
+    ) -> list[list[Candidate]]:
+        """Return the most probable forms; scores are log-probabilities in nats.
+
+        Their parts are the ``TERMS`` that are not 0; the forms of an utterance that is longer than the
+        encoder reads say so. Where the best is below ``unknown_below``, the
+        first answer is UNKNOWN, scored with that bound.
+        """
+        bound = self.config.unknown_below
+        least = log(bound) if bound else -inf
+        answers: list[list[Candidate]] = []
+        for begin in range(0, len(utterances), PREDICTION_BATCH):
+            asked = utterances[begin : begin + PREDICTION_BATCH]
+            model = self._model_or_refuse()
+            scores = model.scores(asked, check)
+            is_cut = model.encoder.cut(asked)
+            ranked_forms = self._rank(scores, beam_width)
+            near = scores.nearness.tolist()
+            for text, ranked, nearness, is_long in zip(
+                asked, ranked_forms, near, is_cut, strict=True
+            ):
+                is_unlike = not text.strip() or nearness < self._decision.least_nearness
+                if self._is_hesitant and is_unlike:
+                    ranked = refuse(ranked, ranked[0].score)
+                if ranked[0].score < least:
+                    ranked = refuse(ranked, least)
+                if is_long:
+                    ranked = [replace(candidate, is_cut=True) for candidate in ranked]
+                answers.append(ranked[:beam_width])
+        return answers
+
+    def hesitant(self) -> Self:
+        other = copy(self)
+        other._is_hesitant = True
+        return other
+
+    def calibrated(self, pairs: Sequence[Pair]) -> Self:
+        other = copy(self)  # of the same model, which answering does not change
+        novelty = self._decision.novelty
+        other._decision, _ = weigh_by(
+            pairs, novelty, self._ranked, self._model_or_refuse(), keep_going
+        )
+        return other
+
+    def _rank(self, scores: Scores, beam_width: int) -> Iterator[list[Candidate]]:
+        """Yield the most probable forms of each utterance."""
+        logs = self._decision.log_probabilities(scores)
+        best = logs.topk(min(beam_width, logs.shape[1]), dim=-1)
+        terms = self._decision.terms(scores, best.indices).permute(1, 2, 0)
+        rows = zip(best.indices.tolist(), best.values.tolist(), terms.tolist(), strict=True)
+        for numbers, probabilities, parts in rows:
+            yield [
+                Candidate(
+                    self._ranked.forms[number],
+                    score,
+                    self._ranked.origin(number),
+                    {name: value for name, value in zip(TERMS, part, strict=True) if value},
+                )
+                for number, score, part in zip(numbers, probabilities, parts, strict=True)
+            ]
+
+    def save(self, folder: Path) -> None:
+        model = self._model_or_refuse()
+        folder.mkdir(parents=True, exist_ok=True)
+        about = {
+            "ranked": self._ranked.to_json(),
+            "decision": asdict(self._decision),
+            "has_slots": model.slots is not None,
+        }
+        write_json(folder / FORMS, about)
+        model.encoder.describe(folder)
+        save_weights(folder / WEIGHTS, model)
+        seal(folder, self, SAVED)
+
+    @classmethod
+    def load(cls, folder: Path, knowledge: Knowledge | None = None) -> Self:
+        """Load the parser that ``save`` wrote; under *domain* it finds entities in the current ontology.
+
+        Raises Refusal as every parser does, and where that ontology is not given.
+        """
+        saved = open_sealed(folder, cls, SAVED)
+        parser = cls(saved.config, saved.seed, knowledge)
+        about = read_json(folder / FORMS)
+        if about["has_slots"] and parser.knowledge.ontology is None:
+            raise Refusal(
+                f"{folder} holds a parser that knows an ontology. Load it with the ontology of its "
+                "world, under the protocol that it was trained with.",
+                "ontology_missing",
+                HTTPStatus.CONFLICT,
+            )
+        parser._ranked = RankedForms.read(about["ranked"])
+        parser._decision = DecisionRule.read(about["decision"])
+        encoder = SentenceEncoder.described_in(folder)
+        parser._model = make_model(encoder, parser._ranked, parser.knowledge)
+        load_weights(folder / WEIGHTS, parser._model)
+        parser._model.eval()
+        parser._model.encoder.pack()
+        return parser
+
+    def parameters(self) -> int:
+        return sum(weights.numel() for weights in self._model.parameters()) if self._model else 0
+
+    def _model_or_refuse(self) -> RankerModel:
+        if self._model is None:
+            raise ValueError("This parser has learned nothing yet: fit it, or load a fitted one.")
+        return self._model

@@ -1,0 +1,101 @@
+"""The slots of forms: how well entities of an utterance fit them, and entities in place of class tokens."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Sequence
+from functools import lru_cache
+from random import Random
+from re import Match
+
+import torch
+from torch import Tensor
+
+from annotations.language.english import ANY_OBJECT, OPEN_CATEGORIES
+from annotations.language.forms import CLASS_TOKEN
+from annotations.language.grounding import QUESTION_WORD, Anonymizer
+from annotations.language.ontology import Ontology
+from annotations.language.symbols import ENTITY_CLASSES
+
+_PLACE = {name: place for place, name in enumerate(ENTITY_CLASSES)}
+_MOST_READINGS = 8
+# These words mean a category that is left open (``{category?}`` says "objects") or things of no
+# category, so they may count as one or not.
+_OPEN_CATEGORY = re.compile(rf"\b(?:{'|'.join(map(re.escape, OPEN_CATEGORIES))})\b", re.IGNORECASE)
+_OBFUSCATED = 0.15  # share of object slots said by their category, as ``{object?}`` says them
+Counts = tuple[int, ...]  # by ENTITY_CLASSES
+
+
+class SlotTerm:
+    """Minus the number of slots too many or too few, by entity class.
+
+    The ontology finds the entities; class tokens count as entities of their class. A word that may be
+    of two classes ("drink" is any object of a category, or the category) counts as what fits better.
+    """
+
+    def __init__(self, forms: Sequence[str], ontology: Ontology):
+        counts = torch.tensor([_count_tokens(form) for form in forms])  # [forms, classes]
+        # Many forms have the same slots. [kinds of form, classes] and [forms]
+        self._kinds, self._kind_of = torch.unique(counts, dim=0, return_inverse=True)
+        self._anonymizer = Anonymizer(ontology)
+        self._readings = lru_cache(maxsize=100_000)(self._read)
+
+    def scores(self, utterances: Sequence[str]) -> Tensor:
+        """Return scores [utterances, forms]; 0 where all slots fit."""
+        rows = []
+        for utterance in utterances:
+            readings = torch.tensor(self._readings(utterance))  # [readings, classes]
+            misfit = (self._kinds[None] - readings[:, None]).abs().sum(-1)  # [readings, kinds]
+            rows.append(-misfit.min(0).values)
+        return torch.stack(rows).float()[:, self._kind_of]
+
+    def _read(self, utterance: str) -> tuple[Counts, ...]:
+        """Count the entities by class, once for each way to understand the words."""
+        readings = [_count_tokens(utterance)]
+        for span in self._anonymizer.anonymize(utterance).spans:
+            entities = (span.entity, *span.others)
+            names = dict.fromkeys([span.entity_class, *(each.entity_class for each in entities)])
+            classes = [name for name in names if name in _PLACE]  # that its words may be of
+            grown = [_with_one(counts, name) for counts in readings for name in classes]
+            readings = list(dict.fromkeys(grown))[:_MOST_READINGS]
+        for _ in _OPEN_CATEGORY.findall(utterance):
+            readings += [_with_one(each, "category") for each in readings]
+        return tuple(dict.fromkeys(readings))[:_MOST_READINGS]
+
+
+def _count_tokens(text: str) -> Counts:
+    counts = Counter(name.rstrip("0123456789") for name in CLASS_TOKEN.findall(text))
+    return tuple(counts[name] for name in ENTITY_CLASSES)
+
+
+def _with_one(counts: Counts, name: str) -> Counts:
+    at = _PLACE[name]
+    return (*counts[:at], counts[at] + 1, *counts[at + 1 :])
+
+
+class SlotFiller:
+    """Draws an entity of the right class for each class token of a text."""
+
+    def __init__(self, ontology: Ontology):
+        self._ontology = ontology
+        self._singulars = tuple(ontology.singulars.values())
+
+    def fill(self, text: str, random: Random) -> str:
+        """Return ``text`` with entities: ``bring me the <object>`` with an object. A class without entities
+        keeps its token."""
+        return CLASS_TOKEN.sub(lambda token: self._draw(token, random), text)
+
+    def _draw(self, token: Match[str], random: Random) -> str:
+        entity_class = token[1].rstrip("0123456789")
+        if entity_class == "question":
+            return QUESTION_WORD
+        if entity_class == "object" and self._singulars and random.random() < _OBFUSCATED:
+            return random.choice(self._singulars)
+        entities = self._ontology.of_class(entity_class)
+        if not entities:
+            return token[0]
+        text = random.choice(entities).text
+        if entity_class == "category":
+            return random.choice((ANY_OBJECT, text, self._ontology.singular(text)))
+        return text

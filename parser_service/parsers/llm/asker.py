@@ -1,0 +1,179 @@
+"""Ask a server many questions at once, patiently, and only those that it has not answered yet."""
+
+from __future__ import annotations
+
+import logging
+import random
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from datetime import UTC, datetime
+from email.utils import parsedate_to_datetime
+from functools import partial
+from http import HTTPStatus
+from typing import TypeVar
+
+from parser_service.parsers.interface import Check
+from parser_service.parsers.llm.crew import Crew
+from parser_service.parsers.llm.exchange import NoReply, Reply, ServerRefusal
+from parser_service.parsers.llm.kept_answers import KeptAnswers, hash_of
+from parser_service.parsers.llm.protocol import (
+    CHAT,
+    MODELS,
+    Dialect,
+    ModelAnswer,
+    Question,
+    detail_of,
+    is_model_of,
+    read_answer,
+    read_models,
+)
+from parser_service.parsers.llm.server_address import ModelServer, problem_of
+
+logger = logging.getLogger(__name__)
+
+BUSY = (408, 409, 425, 429)  # statuses below 500 that pass
+NOT_UNDERSTOOD = (400, 415, 422, 501)  # how servers refuse a field that they do not know
+NO_LIST = (404, 405, 501)  # of models
+JITTER = 0.5  # a pause is up to this share shorter: several askers do not come back together
+MOST_LISTED = 10  # names of models in a sentence
+T = TypeVar("T")
+
+
+class Asker:
+    """Asks one server. Each answer is kept as soon as it came, and never asked for again."""
+
+    def __init__(self, server: ModelServer, at_once: int) -> None:
+        self.server = server
+        self.dialect = Dialect()
+        self._answers = KeptAnswers(server.answers)
+        self._at_once = at_once
+        self._known_models: set[str] = set()
+
+    def ask(self, questions: Sequence[Question], check: Check) -> list[ModelAnswer]:
+        """Return the answer to each question, all or none.
+
+        Raises ServerRefusal, a sentence, where one of them cannot be had, and what ``check`` raises, which is
+        called several times a second.
+        """
+        check()
+        by_hash = {hash_of(each): each for each in questions}
+        answers = {name: self._answers.find(each) for name, each in by_hash.items()}
+        missing = {name: by_hash[name] for name, answer in answers.items() if answer is None}
+        if missing:
+            self._require_model(questions[0].model, check)
+            crew = Crew[ModelAnswer](self.server, self._at_once, check)
+            jobs = [partial(self._ask, question) for question in missing.values()]
+            answers |= zip(missing, crew.run(jobs), strict=True)
+        return [answer for each in questions if (answer := answers[hash_of(each)]) is not None]
+
+    def _ask(self, question: Question, crew: Crew[ModelAnswer]) -> ModelAnswer:
+        def attempt() -> ModelAnswer:
+            reply = self._send(question, crew)
+            self._require_success(reply)
+            return read_answer(reply, self.server.key)
+
+        answer = self._patiently(attempt, crew)
+        named = answer if answer.model else replace(answer, model=question.model)
+        self._answers.keep(question, named)
+        return named
+
+    def _send(self, question: Question, crew: Crew[ModelAnswer]) -> Reply:
+        """Send a question, in other words where the server does not understand the first ones."""
+        sent = self.dialect.write(question)
+        reply = crew.send("POST", CHAT, sent)
+        if reply.status not in NOT_UNDERSTOOD:
+            return reply
+        detail = detail_of(reply, self.server.key)
+        self.dialect.learn(detail)
+        if (again := self.dialect.write(question)) != sent:
+            reply = crew.send("POST", CHAT, again)
+        if reply.status in NOT_UNDERSTOOD and question.schema is not None:
+            plainly = replace(self.dialect, takes_schema=False)
+            without = crew.send("POST", CHAT, plainly.write(question))
+            if without.status == HTTPStatus.OK:
+                known = len(self.dialect.learned)
+                self.dialect.forget_schema(detail)
+                for sentence in self.dialect.learned[known:]:
+                    logger.warning("%s", sentence)
+                return without
+        return reply
+
+    def _require_model(self, name: str, check: Check) -> None:
+        """Raise ServerRefusal where there is no server, or it lists its models and has none of this name: some
+        answer with another one instead."""
+        if name in self._known_models:
+            return
+        if problem := problem_of(self.server):
+            raise ServerRefusal(problem)
+        crew = Crew["list[str] | None"](self.server, 1, check)
+        (listed,) = crew.run([self._list_models])
+        if listed is not None and not is_model_of(name, listed):
+            known = ", ".join(listed[:MOST_LISTED]) or "none"
+            raise ServerRefusal(
+                f"The server at {self.server.name} has no model {name!r}; it has: {known}."
+            )
+        self._known_models.add(name)
+
+    def _list_models(self, crew: Crew[list[str] | None]) -> list[str] | None:
+        def attempt() -> list[str] | None:
+            reply = crew.send("GET", MODELS)
+            if reply.status not in NO_LIST:
+                self._require_success(reply)
+            return read_models(reply, self.server.key)
+
+        return self._patiently(attempt, crew)
+
+    def _patiently(self, attempt: Callable[[], T], crew: Crew[T]) -> T:
+        """Return what an attempt returns; after NoReply try again, later and later. Raises ServerRefusal."""
+        patience, name = self.server.patience, self.server.name
+        words = ""
+        for number in range(patience.tries):
+            try:
+                return attempt()
+            except NoReply as error:
+                words, wanted = str(error), error.after
+            if wanted is not None and wanted > patience.longest_pause:
+                raise ServerRefusal(
+                    f"The language model's server at {name} wants to be asked again in {wanted:,.0f} s only "
+                    f"({words}). Answers that came are kept: ask again then."
+                )
+            if number + 1 < patience.tries:
+                doubled = min(patience.first_pause * 2**number, patience.longest_pause)
+                crew.pause(doubled * (1 - JITTER * random.random()) if wanted is None else wanted)
+        raise ServerRefusal(
+            f"The language model's server at {name} does not answer: {words}. It was asked "
+            f"{patience.tries} times. Answers that came are kept: ask again when it is well."
+        )
+
+    def _require_success(self, reply: Reply) -> None:
+        """Raise NoReply for a status that may pass, and ServerRefusal for one that will not."""
+        if reply.status == HTTPStatus.OK:
+            return
+        detail = detail_of(reply, self.server.key)
+        said = f"status {reply.status}{detail and f', {detail}'}"
+        if reply.status in BUSY or reply.status >= 500:
+            raise NoReply(said, _retry_after(reply))
+        server = f"The language model's server at {self.server.name}"
+        if reply.status in (401, 403):
+            raise ServerRefusal(
+                f"{server} does not let us in ({said}). Set GPSR_LLM_KEY to its key."
+            )
+        if reply.status == 404:
+            raise ServerRefusal(
+                f"{server} has nothing at {self.server.path}{CHAT} ({said}). Look at GPSR_LLM_URL, which "
+                "often ends in /v1, and at the name of the model."
+            )
+        raise ServerRefusal(f"{server} refuses the question ({said}).")
+
+
+def _retry_after(reply: Reply) -> float | None:
+    """Return the seconds that a server wants to be left alone: a number or a date (RFC 9110, 10.2.3)."""
+    text = reply.headers.get("retry-after", "").strip()
+    if text.isdecimal():
+        return float(text)
+    try:
+        then = parsedate_to_datetime(text)
+    except (TypeError, ValueError, OverflowError):  # the last of a year that no calendar has
+        return None
+    left = (then if then.tzinfo else then.replace(tzinfo=UTC)) - datetime.now(UTC)
+    return max(0.0, left.total_seconds())

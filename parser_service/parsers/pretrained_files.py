@@ -1,0 +1,241 @@
+"""Where pretrained weights are: in a folder, an installed package or the local cache of a hub.
+
+Nothing is downloaded, no package is run and torch is not loaded: pages look here, too. Who has the
+command line may name any folder of the machine. Requests from pages and from the REST API may name
+what is in the installation's folder of encoders, and packages that the settings list: else their
+answers would tell which files a server has, and what is in them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from annotations.language.errors import Refusal
+from parser_service.parsers.llm.server_address import ADDRESS, problem_of, server
+
+CONFIG = "config.json"
+WEIGHTS = "model.safetensors"
+TOKENIZERS = ("tokenizer.json", "vocab.txt")
+
+_encoders: Path | None = None
+_vectors: Path | None = None
+_packages: frozenset[str] = frozenset()
+OPTIONS_ENDING = "options.json"
+WEIGHTS_ENDING = "weights.hdf5"
+ELMO_SOURCE = (
+    "elmo_2x4096_512_2048cnn_2xhighway_options.json and "
+    "elmo_2x4096_512_2048cnn_2xhighway_weights.hdf5 as AllenNLP published them"
+)
+
+
+def keep_encoders_in(
+    encoders: Path | None, vectors: Path | None = None, packages: Collection[str] = ()
+) -> None:
+    """Set where this installation keeps its encoders (GPSR_ENCODERS_DIR), where frozen ones may
+    leave the vectors of many utterances for the next training, and the packages that any request
+    may name (GPSR_ENCODER_PACKAGES)."""
+    global _encoders, _vectors, _packages
+    _encoders, _vectors, _packages = encoders, vectors, frozenset(packages)
+
+
+def encoders_folder() -> Path | None:
+    """Return where this installation keeps its encoders; None where nobody said."""
+    return _encoders
+
+
+def vectors_folder() -> Path | None:
+    """Return where computed vectors may be left; None where they stay in memory."""
+    return _vectors
+
+
+def refuse_path(field: str, name: str) -> None:
+    """Refuse a ``name`` that may lead out of the folder of encoders. Raises Refusal, a sentence
+    that is the same whether or not there is such a file."""
+    path = Path(name)
+    if path.is_absolute() or ".." in path.parts or "\0" in name:
+        raise Refusal(
+            f"{field} is {name!r}, but a request may only name what is in GPSR_ENCODERS_DIR. "
+            "Put the weights there and give their name without a path.",
+            "weights_outside_folder",
+        )
+
+
+def find_encoder(name: str, encoders: Path | None = None, anywhere: bool = True) -> Path:
+    """Return the folder that holds the transformer ``name`` in the files of Hugging Face.
+
+    Args:
+        name: a folder inside ``encoders``, any other folder, an importable package with the files
+            somewhere inside, or the name of a model in the local cache of the Hugging Face hub.
+        encoders: where an installation keeps its encoders.
+        anywhere: False to look in ``encoders`` and in the listed packages alone.
+
+    Raises:
+        Refusal: it is at none of these places, or incomplete; says what to put where.
+    """
+    for folder in _places(name, encoders) if anywhere else _open_places(name, encoders):
+        if (folder / CONFIG).is_file():
+            _refuse_incomplete(folder)
+            return folder
+    there = (encoders or Path("ENCODERS")) / name
+    download = f", for example with: hf download {name} --local-dir {there}" if "/" in name else ""
+    raise Refusal(
+        f"There are no weights of {name}: neither a folder{inside(encoders)} nor a package that may "
+        f"be named. Put its {CONFIG}, {WEIGHTS} and {TOKENIZERS[0]} into {there}{download}; or "
+        "install the package that holds them and list it in GPSR_ENCODER_PACKAGES.",
+        "pretrained_weights_missing",
+    )
+
+
+def inside(encoders: Path | None) -> str:
+    """Return where names of folders were looked for as well, as a part of a sentence."""
+    return f" in {encoders}" if encoders else ""
+
+
+def _open_places(name: str, encoders: Path | None) -> Iterator[Path]:
+    """Yield where a request may have the encoder looked for."""
+    if encoders is not None:
+        yield encoders / name
+    if name in _packages:
+        yield from _in_package(name)
+
+
+def _places(name: str, encoders: Path | None) -> Iterator[Path]:
+    """Yield where the encoder may be, in the order in which it is looked for. What a request may
+    name comes first, so that a training reads the files that its request was checked for."""
+    yield from _open_places(name, encoders)
+    yield Path(name)
+    yield from _in_package(name)
+    yield from _in_cache(name)
+
+
+def _in_package(name: str) -> Iterator[Path]:
+    """Yield the folders of an installed package that hold an encoder; the package is not run."""
+    spec = find_spec(name) if name.isidentifier() else None
+    for root in (spec.submodule_search_locations or ()) if spec else ():
+        for path in sorted(Path(root).rglob(CONFIG)):
+            if (path.parent / WEIGHTS).is_file():
+                yield path.parent
+
+
+def _in_cache(name: str) -> Iterator[Path]:
+    from huggingface_hub import snapshot_download
+    from huggingface_hub.errors import HFValidationError, LocalEntryNotFoundError
+
+    try:
+        yield Path(snapshot_download(name, local_files_only=True))
+    except (LocalEntryNotFoundError, HFValidationError, OSError):
+        return
+
+
+def _refuse_incomplete(folder: Path) -> None:
+    if not (folder / WEIGHTS).is_file():
+        pickled = any(folder.glob("*.bin")) or any(folder.glob("*.pt"))
+        reason = "only pickled weights, which are never read" if pickled else f"no {WEIGHTS}"
+        raise Refusal(
+            f"{folder} holds {reason}. Put the {WEIGHTS} of the same model there.",
+            "pretrained_weights_unreadable",
+        )
+    if not any((folder / name).is_file() for name in TOKENIZERS):
+        raise Refusal(
+            f"{folder} holds no {TOKENIZERS[0]}. Put the one of the same model there.",
+            "pretrained_weights_unreadable",
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class ElmoFiles:
+    """The two files of an ELMo."""
+
+    options: Path
+    weights: Path
+
+
+def find_glove(name: str, encoders: Path | None = None, anywhere: bool = True) -> Path:
+    """Return GloVe's text file ``name``, plain or gzipped: in the folder ``encoders`` or, ``anywhere``,
+    under any other path.
+
+    Raises Refusal, a sentence that says what to put where.
+    """
+    for folder in _folders(encoders, anywhere):
+        for path in (folder / name, folder / f"{name}.gz"):
+            if path.is_file():
+                return path
+    raise Refusal(
+        f"There are no GloVe vectors: {name} is no file{inside(encoders)}, nor is {name}.gz. Put "
+        f"glove.6B.100d.txt out of glove.6B.zip (nlp.stanford.edu/projects/glove) at "
+        f"{(encoders or Path('ENCODERS')) / name}, as it is or gzipped.",
+        "pretrained_weights_missing",
+    )
+
+
+def find_elmo(name: str, encoders: Path | None = None, anywhere: bool = True) -> ElmoFiles:
+    """Return the files of the ELMo in the folder ``name``: inside ``encoders`` or, ``anywhere``, under
+    any other path.
+
+    Raises Refusal, a sentence that says what to put where.
+    """
+    for folder in _folders(encoders, anywhere):
+        options = sorted((folder / name).glob(f"*{OPTIONS_ENDING}"))
+        weights = sorted((folder / name).glob(f"*{WEIGHTS_ENDING}"))
+        if len(options) == len(weights) == 1:
+            return ElmoFiles(options[0], weights[0])
+    raise Refusal(
+        f"There is no ELMo: {name} is no folder{inside(encoders)} with one file *{OPTIONS_ENDING} "
+        f"and one file *{WEIGHTS_ENDING}. Put {ELMO_SOURCE} into "
+        f"{(encoders or Path('ENCODERS')) / name}.",
+        "pretrained_weights_missing",
+    )
+
+
+def missing_weights(config: Any, encoders: Path | None = None, anywhere: bool = True) -> str | None:
+    """Return what a parser with this configuration lacks before it can be trained, and where to put it.
+
+    None where nothing is missing. ``encoders`` is the installation's folder of encoders unless
+    given; ``anywhere`` is False for requests from pages and the REST API, which look there and in
+    the listed packages alone. The fields ``glove``, ``elmo`` and ``encoder`` name weights; an empty
+    name needs none. A configuration with ``needs_server`` needs one that may be asked.
+    """
+    return " ".join(each.sentence for each in find_gaps(config, encoders, anywhere)) or None
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """Weights, or a server, that are not there: their name, and a sentence that says what to put where."""
+
+    name: str
+    sentence: str
+
+
+def find_gaps(config: Any, encoders: Path | None = None, anywhere: bool = True) -> list[Gap]:
+    """Return the weights that ``missing_weights`` tells of, one by one."""
+    encoders = encoders or encoders_folder()
+    gaps = []
+    if getattr(config, "needs_server", False) and (sentence := problem_of(server())):
+        gaps.append(Gap(ADDRESS, sentence))
+    for field, find in (("glove", find_glove), ("elmo", find_elmo), ("encoder", find_encoder)):
+        if name := getattr(config, field, ""):
+            try:
+                if not anywhere:
+                    refuse_path(field, name)
+                find(name, encoders, anywhere)
+            except Refusal as error:
+                gaps.append(Gap(name, error.message))
+            except OSError as error:  # a name longer than the system allows, say
+                sentence = f"{field} cannot be looked for: {error.strerror or error}."
+                gaps.append(Gap(name, sentence))
+    return gaps
+
+
+def refuse_missing_weights(config: Any, anywhere: bool = True) -> None:
+    """Raise Refusal with the sentence of ``missing_weights``, where it has one."""
+    if sentence := missing_weights(config, anywhere=anywhere):
+        raise Refusal(sentence, "requirement_missing")
+
+
+def _folders(encoders: Path | None, anywhere: bool) -> list[Path]:
+    """Return the folders that names start from; the installation's comes first."""
+    return [*([encoders] if encoders else []), *([Path()] if anywhere else [])]

@@ -1,0 +1,80 @@
+"""What speaks for a run: its scores on what people said."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from parser_service.models import Evaluation, TrainingRun
+from parser_service.models.evaluations import ShownScore, shown_scores
+
+SPOKEN = "para"  # the test source of paraphrases
+# What runs are compared on: the test part is looked at when the choice is made.
+COMPARED_ON = "validation"
+
+
+def spoken_low(run: TrainingRun) -> float | None:
+    """Return the lower end of the 95 % interval on validation paraphrases, a fraction of 1; None for a run that
+    was not asked any, or by form was asked for unseen forms alone."""
+    shown = shown_scores(run.evaluations.all(), run.split.criterion).get((COMPARED_ON, SPOKEN))
+    return None if shown is None or shown.alone else shown.interval[0]
+
+
+def is_right_on_paraphrases(run: TrainingRun) -> bool:
+    """Return whether the run was tested on paraphrases, and is right on some."""
+    return run.evaluations.filter(test_source=SPOKEN, correct__gt=0).exists()
+
+
+def spoken_score(run: TrainingRun) -> Evaluation | None:
+    """Return the score on validation paraphrases, None for a run that was not asked any."""
+    wanted = (SPOKEN, COMPARED_ON)
+    scores = run.evaluations.all()  # which may have been fetched already
+    return next((each for each in scores if (each.test_source, each.part) == wanted), None)
+
+
+@dataclass(frozen=True, slots=True)
+class ComparedScore:
+    """What a run reaches on one test source of one part, beside the run ``before`` it."""
+
+    test_source: str
+    part: str
+    score: ShownScore | None
+    before: ShownScore | None
+
+    @property
+    def change(self) -> float | None:
+        """Percentage points; None where only one of them was tested so, or one on unseen forms alone."""
+        if self.score is None or self.before is None or self.score.alone != self.before.alone:
+            return None
+        return self.score.percent - self.before.percent
+
+
+def compare_scores(run: TrainingRun, before: TrainingRun | None) -> list[ComparedScore]:
+    """Return the scores of ``run`` beside those of ``before``, paraphrases first."""
+    mine = shown_scores(run.evaluations.all(), run.split.criterion)
+    theirs = shown_scores(before.evaluations.all(), before.split.criterion) if before else {}
+    order = sorted({*mine, *theirs}, key=lambda key: (key[1] != SPOKEN, key[1], key[0] == "test"))
+    return [
+        ComparedScore(source, part, mine.get((part, source)), theirs.get((part, source)))
+        for part, source in order
+    ]
+
+
+def evidence_for(run: TrainingRun, before: TrainingRun | None) -> dict[str, Any]:
+    """Return the scores of ``run`` and of the run ``before`` it, as ``Promotion.evidence`` keeps them."""
+    compared = {"run": before.pk, "scores": _scores(before)} if before else None
+    return {"run": _scores(run), "before": compared}
+
+
+def _scores(run: TrainingRun) -> list[dict[str, Any]]:
+    return [
+        {
+            "test_source": score.test_source,
+            "part": score.part,
+            "count": score.count,
+            "accuracy": score.accuracy,
+            "low": score.interval_low,
+            "high": score.interval_high,
+        }
+        for score in run.evaluations.order_by("part", "test_source")
+    ]

@@ -1,0 +1,104 @@
+"""One cell of an accuracy table: the score of one run, or of several seeds."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
+
+from annotations.models.background import Status
+from parser_service.analysis.scores import OverSeeds, over_seeds
+from parser_service.models import Evaluation, TrainingRun
+from parser_service.results.seed_figures import AccuracyFigure
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A parser in a column: its scores, one per seed, newest first, or the runs that will have some.
+
+    ``figures`` are by the measures that the table shows; none before there is a score. ``published`` is
+    the paper's figure in percent, whether it is shown or not. ``answered_by`` names the models behind the
+    scores, as their servers report them.
+    """
+
+    scores: tuple[Evaluation, ...]
+    active: tuple[TrainingRun, ...]
+    published: float | None
+    url: str
+    figures: tuple[AccuracyFigure, ...] = ()
+    answered_by: str = ""
+
+    @property
+    def score(self) -> Evaluation | None:
+        """The newest score."""
+        return self.scores[0] if self.scores else None
+
+    @property
+    def over_seeds(self) -> OverSeeds | None:
+        """Mean and spread of exact match."""
+        return over_seeds([score.accuracy for score in self.scores]) if self.scores else None
+
+    @property
+    def n_seeds(self) -> int:
+        return len(self.scores)
+
+    @property
+    def percent(self) -> float | None:
+        return self.figures[0].percent if self.figures else None
+
+    @property
+    def spread(self) -> float | None:
+        return self.figures[0].spread if self.figures else None
+
+    @property
+    def low(self) -> float | None:
+        return self.figures[0].low if self.figures else None
+
+    @property
+    def high(self) -> float | None:
+        return self.figures[0].high if self.figures else None
+
+    @property
+    def is_best(self) -> bool:
+        """Whether the first of its figures is better than every other one of its column, beyond chance."""
+        return bool(self.figures) and self.figures[0].is_best
+
+    @property
+    def note(self) -> str:
+        """What the figures mean, for a tooltip."""
+        if not self.figures:
+            return ""
+        waiting = f"; {len(self.active)} more on the way" if self.active else ""
+        best = "; better than every other one of this column" if self.is_best else ""
+        model = f"; answered by {self.answered_by}" if self.answered_by else ""
+        return "; ".join(figure.note for figure in self.figures) + waiting + best + model
+
+    @property
+    def status(self) -> str:
+        """``running`` if one of the active runs is running, else ``queued``; empty without any."""
+        is_running = any(run.status == Status.RUNNING for run in self.active)
+        return Status.RUNNING if is_running else Status.QUEUED if self.active else ""
+
+    @property
+    def progress_percent(self) -> float:
+        """The mean progress of the active runs."""
+        done = sum(run.progress for run in self.active)
+        return 100 * done / len(self.active) if self.active else 0
+
+    def mark_best(self, measures: Collection[int]) -> Cell:
+        """Return the cell with the figures at these places marked as the best of their column."""
+        marked = tuple(
+            replace(figure, is_best=at in measures) for at, figure in enumerate(self.figures)
+        )
+        return replace(self, figures=marked)
+
+
+def newest_of_each_seed(runs: Sequence[TrainingRun]) -> list[TrainingRun]:
+    """Return the runs to take a mean over: for each seed the newest, of the newest run's parser version.
+
+    ``runs`` come newest first. (The world may have been edited since an older run of a seed.)
+    """
+    by_seed: dict[int, TrainingRun] = {}
+    for run in runs:
+        if run.parser_version == runs[0].parser_version:
+            by_seed.setdefault(run.seed, run)
+    return list(by_seed.values())

@@ -1,0 +1,161 @@
+"""Write answers as JSON, with the outlines of their forms."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from annotations.language.english import MOST_STAND_INS, stand_in
+from annotations.language.forms import Form, Unknown
+from annotations.language.grounding import (
+    Anonymized,
+    Deanonymized,
+    Slot,
+    UtteranceMentions,
+    fill_all,
+    resolve_slots,
+    say_with_blank,
+)
+from annotations.language.plans import doubts_about
+from parser_service.parsers.interface import Candidate
+from parser_service.serving.outlines import (
+    Outline,
+    Outlines,
+    Paths,
+    StandIn,
+    name_of_entity,
+)
+from parser_service.serving.parse_answers import (
+    ParsedCandidate,
+    ParsedUtterance,
+    answer_with,
+    as_json,
+    form_of,
+    is_cut_in,
+    prefer_grounded,
+    questions_of,
+    remarks_on,
+    score_of,
+    unknown_tokens,
+)
+from parser_service.serving.preparing import WorldLanguage
+
+Slots = tuple[Slot, ...]
+_SIGNS = tuple((stand_in(n), stand_in(n, is_plural=True)) for n in range(MOST_STAND_INS))
+
+
+class AnswerWriter:
+    """Writes what ``parse_answers.read_answers(…).as_json()`` says, character for character.
+
+    What depends on the form alone is made once for each form; an utterance puts its entities into it. Where an
+    outline cannot say an answer, the answer is made by itself. Several threads may write.
+    """
+
+    def __init__(self, language: WorldLanguage) -> None:
+        self.language = language
+        self._outlines = Outlines(language)
+
+    def write(
+        self,
+        about: Mapping[str, Any],
+        heard: Anonymized,
+        text: str,
+        candidates: Sequence[Candidate],
+    ) -> str:
+        """Return the answer to an utterance of which a parser was given ``text``, after what is ``about`` it: who
+        answers, and the ``score_kind`` of the candidates."""
+        remarks = unknown_tokens(heard.original, self.language.ontology)
+        parse = ParsedUtterance(heard, text, (), remarks, is_cut_in(candidates))
+        head = {**about, **parse.as_json()}
+        said = UtteranceMentions(heard, self.language.ontology)
+        candidates = prefer_grounded(
+            candidates, heard, about.get("score_kind"), lambda form: self._slots(form, said)
+        )
+        answers = [self._write(each, said) for each in candidates]
+        if candidates:
+            form = form_of(candidates[0].form)
+            head["is_unknown"] = form is None or isinstance(form, Unknown)
+        del head["candidates"]
+        return f'{as_json(head)[:-1]}, "candidates": [{", ".join(answers)}]}}'
+
+    def _write(self, candidate: Candidate, heard: UtteranceMentions) -> str:
+        form = form_of(candidate.form)
+        if form is None:
+            return as_json(ParsedCandidate(candidate.form, score_of(candidate)).as_json())
+        slots = self._slots(candidate.form, heard) or ()
+        written = self._fill(candidate, form, slots)
+        return self._write_anew(candidate, form, slots) if written is None else written
+
+    def _write_anew(self, candidate: Candidate, form: Form, slots: Slots) -> str:
+        given, language = fill_all(form, slots), self.language
+        return as_json(answer_with(candidate, given, language, language.lookup).as_json())
+
+    def _slots(self, text: str, heard: UtteranceMentions) -> Slots | None:
+        """Return the slots of a form with their entities; None for a text that is no form."""
+        if form_of(text) is None:
+            return None
+        slots = self._outlines.slots(text)
+        return resolve_slots(slots, heard, self.language.ontology, self.language.evidence)
+
+    def _fill(self, candidate: Candidate, form: Form, slots: Slots) -> str | None:
+        """Return the outline with its entities; None where it would say something else."""
+        put_in = [(slot.path, value) for slot in slots if (value := slot.filler) is not None]
+        paths = tuple(path for path, _ in put_in)
+        texts = [text for _, value in put_in if (text := self._outlines.text(value))]
+        asked = self._outlines.asked(candidate.form, paths)
+        if len(texts) < len(paths) or asked is None:
+            return None
+        found = [self._outlines.entity(texts[e.number].text, e.predicate, e.place) for e in asked]
+        entities = [each for each in found if each is not None]
+        if len(entities) < len(asked):
+            return None
+        classes = tuple(entity_class for entity_class, _ in entities)
+        outline = self._outlines.answer(candidate.form, paths, classes)
+        if outline is None or outline.is_right is False:
+            return None
+        written = outline.fill(
+            {name_of_entity(number): text for number, (_, text) in enumerate(entities)}
+            | {sign: text for n, each in enumerate(texts) for sign, text in _in_json(n, each)}
+            | self._own_values(outline, candidate, form, slots, paths, texts)
+        )
+        if outline.is_right is None:
+            outline.is_right = written == self._write_anew(candidate, form, slots)
+        return written if outline.is_right else None
+
+    def _own_values(
+        self,
+        outline: Outline,
+        candidate: Candidate,
+        form: Form,
+        slots: Slots,
+        paths: Paths,
+        texts: Sequence[StandIn],
+    ) -> dict[str, str]:
+        """Return the JSON of the values that differ between answers with one outline, by their names."""
+        plain = {sign: text for n, each in enumerate(texts) for sign, text in _as_text(n, each)}
+
+        def sentence_of(slot: Slot) -> str:
+            sentence = self._outlines.sentence(candidate.form, paths, slot.path)
+            if sentence is not None:
+                return sentence.fill(plain)
+            return say_with_blank(slot.path, fill_all(form, slots).form, self.language.predicates)
+
+        given = Deanonymized(form, slots)
+        doubts = [each.as_json() for each in doubts_about(slots)]
+        return {
+            "score": as_json(score_of(candidate)),
+            "open_slots": as_json(list(questions_of(given, self.language, sentence_of))),
+            "remarks": as_json(remarks_on(given, self.language.ontology)),
+            "is_executable": as_json(outline.is_executable and not doubts),
+            "problems": as_json([*doubts, *outline.problems]),
+        }
+
+
+def _in_json(number: int, text: StandIn) -> tuple[tuple[str, str], ...]:
+    one, many = _SIGNS[number]
+    return (one, text.in_json), (many, text.plural_in_json)
+
+
+def _as_text(number: int, text: StandIn) -> tuple[tuple[str, str], ...]:
+    one, many = _SIGNS[number]
+    return (one, text.text), (many, text.plural)

@@ -1,0 +1,32 @@
+"""Verb: let a worker parse a batch that is too large, or not urgent enough, for an answer at once."""
+
+from __future__ import annotations
+
+from http import HTTPStatus
+
+from django.core.files.base import ContentFile
+from django.db import transaction
+
+from annotations.jobs import request_job
+from annotations.language.errors import Refusal
+from annotations.models import Job, JobKind, User, World
+
+MOST_AT_ONCE = 3  # batches of one person that wait or run
+
+
+def request_batch(world: World, lines: bytes, beam: int, run: int | None, by: User) -> Job:
+    """Let a worker parse JSON lines, in ``beam`` ways each. ``run`` None asks the promoted parser.
+
+    Raises Refusal where ``MOST_AT_ONCE`` batches of the person wait or run.
+    """
+    upload = ContentFile(lines, name="lines.jsonl")
+    with transaction.atomic():
+        User.objects.select_for_update(no_key=True).get(pk=by.pk)  # one of two requests waits
+        active = Job.objects.active().filter(kind=JobKind.PARSE, created_by=by)
+        if active.count() >= MOST_AT_ONCE:
+            raise Refusal(
+                f"{MOST_AT_ONCE} of your batches wait or run already. Send this one when one of them has ended.",
+                "too_many_batches",
+                HTTPStatus.CONFLICT,
+            )
+        return request_job(JobKind.PARSE, world.name, by, {"beam": beam, "run": run}, [upload])

@@ -1,0 +1,151 @@
+"""Dialogues about commands over the API: start one, answer, look at it, keep what came of it."""
+
+from __future__ import annotations
+
+from http import HTTPStatus
+
+from django.db.models import QuerySet
+from drf_spectacular.utils import extend_schema
+from rest_framework import serializers
+from rest_framework.request import Request
+from rest_framework.response import Response
+
+from annotations.models import Duty
+from annotations.models.corpus import MOST_CHARACTERS
+from annotations.web.rest.fields import Fields
+from annotations.web.rest.idempotency import once
+from annotations.web.rest.routes import RowsRoute, WorldRoute
+from parser_service.dialogues.conversation import AnsweredMeanwhile, keep, reply, start
+from parser_service.dialogues.dialogue_json import as_json
+from parser_service.models import Dialogue
+
+
+class NewDialogue(Fields):
+    """What somebody tells the robot."""
+
+    utterance = serializers.CharField(max_length=MOST_CHARACTERS, trim_whitespace=False)
+
+
+class DialogueAnswer(Fields):
+    """What somebody answers: an entity, new words for one, yes, no, stop, or another utterance.
+
+    ``version``, if sent, is that of the dialogue as it was read; a 409 says that it has moved on.
+    """
+
+    answer = serializers.CharField(max_length=MOST_CHARACTERS, allow_blank=True)
+    version = serializers.IntegerField(min_value=1, required=False)
+
+
+class TurnSerializer(serializers.Serializer):
+    who = serializers.ChoiceField(choices=["person", "robot"])
+    text = serializers.CharField(allow_blank=True)
+
+
+class AskedSerializer(serializers.Serializer):
+    """The slot that the dialogue asks for. ``phrases`` are unknown words of the utterance."""
+
+    entity_class = serializers.CharField(allow_blank=True)
+    choices = serializers.ListField(child=serializers.CharField())
+    likely = serializers.CharField(allow_null=True)
+    phrases = serializers.ListField(child=serializers.CharField())
+
+
+class OfferSerializer(serializers.Serializer):
+    """An entity that the ontology may learn, or another word (``alias``) for one that it has."""
+
+    entity_class = serializers.CharField()
+    text = serializers.CharField()
+    alias = serializers.CharField(allow_blank=True)
+
+
+class DialogueSerializer(serializers.Serializer):
+    """A dialogue: ``prompt`` is what the robot says, ``phase`` what it waits for or how it ended."""
+
+    id = serializers.IntegerField()
+    utterance = serializers.CharField()
+    phase = serializers.CharField()
+    is_over = serializers.BooleanField()
+    prompt = serializers.CharField()
+    asked = AskedSerializer(allow_null=True)
+    form = serializers.CharField()
+    grounded = serializers.CharField()
+    reading = serializers.CharField()
+    english = serializers.CharField()
+    plan = serializers.DictField(help_text="As docs/reference/plans.md describes it.")
+    offers = OfferSerializer(many=True)
+    transcript = TurnSerializer(many=True)
+    run = serializers.IntegerField(allow_null=True)
+    kept_as = serializers.IntegerField(allow_null=True)
+    started_at = serializers.DateTimeField()
+    version = serializers.IntegerField()
+
+
+class DialogueRow(serializers.ModelSerializer):
+    """A dialogue in a list."""
+
+    class Meta:
+        model = Dialogue
+        fields = ["id", "utterance", "phase", "kept_as", "started_at", "version"]
+
+
+class DialogueNoun:
+    model = Dialogue
+    serializer_class = DialogueSerializer
+
+    def rows(self) -> QuerySet[Dialogue]:
+        return Dialogue.objects.filter(world=self.world)
+
+    def show(self, row: Dialogue, status: int = HTTPStatus.OK) -> Response:
+        return Response(DialogueSerializer(as_json(row)).data, status=status)
+
+
+class Dialogues(DialogueNoun, RowsRoute):
+    """Lists dialogues, and starts one about an utterance."""
+
+    serializer_class = DialogueRow
+    filter_backends = []
+
+    @extend_schema(request=NewDialogue, responses={201: DialogueSerializer})
+    @once
+    def post(self, request: Request, world: str) -> Response:
+        sent = self.read(NewDialogue)
+        row = start(self.world, sent["utterance"], request.user)
+        return self.show(row, HTTPStatus.CREATED)
+
+
+class OneDialogue(DialogueNoun, WorldRoute):
+    """Shows a dialogue."""
+
+    filter_backends = []
+
+    @extend_schema(responses=DialogueSerializer)
+    def get(self, request: Request, world: str, pk: int) -> Response:
+        return self.show(self.get_object())
+
+
+class AnswerDialogue(DialogueNoun, WorldRoute):
+    """Answers what a dialogue asks. One that is over stays as it is."""
+
+    filter_backends = []
+
+    @extend_schema(request=DialogueAnswer, responses=DialogueSerializer)
+    @once
+    def post(self, request: Request, world: str, pk: int) -> Response:
+        row = self.get_object()
+        sent = self.read(DialogueAnswer)
+        if sent.get("version", row.version) != row.version:
+            raise AnsweredMeanwhile
+        return self.show(reply(row, sent["answer"]))
+
+
+class KeepDialogue(DialogueNoun, WorldRoute):
+    """Makes a labelled utterance of a dialogue that ended with a form."""
+
+    filter_backends = []
+    duties = {"POST": Duty.ANNOTATE}
+
+    @extend_schema(request=None, responses=DialogueSerializer)
+    def post(self, request: Request, world: str, pk: int) -> Response:
+        row = self.get_object()
+        keep(row, request.user)
+        return self.show(row)

@@ -1,0 +1,183 @@
+"""The label audit: what speaks against labels, the most suspect first, and what people decide about each."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from django.contrib import messages
+from django.db.models import Q
+from django.http import HttpRequest, HttpResponse, JsonResponse
+from django.shortcuts import get_object_or_404, redirect, render
+from django.urls import reverse
+from django.views.decorators.cache import never_cache
+from django_htmx.http import reselect, reswap, retarget
+
+from annotations.label_audit.label_decisions import DecidedMeanwhile, decide, take_back
+from annotations.labelling.form_check import check_label
+from annotations.labelling.label_answers import AnsweredMeanwhile, NoLongerYours
+from annotations.lists.listing import Listing, Sort, render_list
+from annotations.lists.paging import number_in
+from annotations.models import (
+    AuditDecision,
+    AuditFinding,
+    Duty,
+    FindingStatus,
+    JobKind,
+    WorkKind,
+    World,
+)
+from annotations.people.access import WRITE, world_view
+from annotations.queueing.giving import NotForThem, kinds_for
+from annotations.rows.occurrences import examples_of_pair
+from annotations.web.queueing.queueing_filters import AuditFindingFilters
+from parser_service.label_audit.audit_job import request_audit
+from parser_service.label_audit.precision import precision_of
+from parser_service.web.labelling.audit_forms import AuditForm
+
+SORTS = {"rank": Sort("No.", "rank", is_number=True), "text": Sort("Utterance", "text")}
+LAST_SHOWN = 5
+MOST_SPLITS = 10
+KEYS = (
+    ("j k", "next label, previous label"),
+    ("a", "keep the label as it is"),
+    ("c", "correct it: take the offered form"),
+    ("e", "write another form"),
+    ("x", "exclude the pair from new splits"),
+    ("r", "give a reason"),
+    ("z", "take the last decision back"),
+)
+
+
+@never_cache
+@world_view(Duty.VIEW)
+def audit(request: HttpRequest, world: World) -> HttpResponse:
+    """List the labels in doubt, and show one of them: the first, or the one that the URL names."""
+    rows = world.audit_findings.prefetch_related("reasons")
+    listing = Listing(request, AuditFindingFilters, rows, SORTS)
+    finding = _find_asked(request, world, listing)
+    context = {
+        "listing": listing,
+        "last": _last_decisions(request, world),
+        "precision": precision_of(world),
+        "job": world.jobs.filter(kind=JobKind.AUDIT).first(),
+        "audit_form": AuditForm(),
+        "page_keys": KEYS,
+        **_context_of(request, finding),
+    }
+    return render_list(request, "parser_service/labelling/audit.html", context)
+
+
+@never_cache
+@world_view(Duty.VIEW)
+def audit_item(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """Return one finding alone, for the page that lists them; without a script, that page."""
+    finding = get_object_or_404(world.audit_findings, pk=pk)
+    if not request.htmx:
+        return _to(request, world, finding)
+    return render(
+        request, "parser_service/labelling/_audit_finding.html", _context_of(request, finding)
+    )
+
+
+@world_view(Duty.REVIEW, WRITE)
+def audit_start(request: HttpRequest, world: World) -> HttpResponse:
+    """Start an audit of the labels, or show the one that is queued or running."""
+    form = AuditForm(request.POST)
+    if not form.is_valid():
+        problems = " ".join(f"{name}: {' '.join(each)}" for name, each in form.errors.items())
+        messages.error(request, f"The audit was not started. {problems}")
+        return redirect("audit", world=world.name)
+    return redirect("job", pk=request_audit(world, request.user, form.cleaned_data).pk)
+
+
+@world_view(Duty.VIEW, WRITE)
+def audit_decide(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """Keep, correct or exclude, and go on to the next label of the list."""
+    finding = get_object_or_404(world.audit_findings, pk=pk)
+    sent = request.POST
+    form, reason = sent.get("form", ""), sent.get("reason", "")
+    try:
+        decide(finding, sent.get("decision", ""), request.user, form, reason)
+    except (AnsweredMeanwhile, DecidedMeanwhile, NoLongerYours, NotForThem) as error:
+        messages.error(request, str(error))
+        return _to(request, world, finding)
+    except ValueError as error:
+        return _refuse(request, world, finding, str(error))
+    listing = Listing(request, AuditFindingFilters, world.audit_findings.all(), SORTS)
+    rows = listing.matching.exclude(pk=pk).order_by("rank", "pk")
+    beyond = rows.filter(Q(rank__gt=finding.rank) | Q(rank=finding.rank, pk__gt=pk))
+    return _to(request, world, beyond.first() or rows.first())
+
+
+@world_view(Duty.VIEW, WRITE)
+def audit_take_back(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """Undo a decision of this person, and show its label again."""
+    made = get_object_or_404(AuditDecision.objects.filter(finding__world=world), pk=pk)
+    try:
+        take_back(made, request.user)
+    except ValueError as error:
+        messages.error(request, str(error))
+    return _to(request, world, made.finding)
+
+
+@world_view(Duty.VIEW, WRITE)
+def audit_check(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """Say what is wrong with a form while somebody writes it."""
+    finding = get_object_or_404(world.audit_findings, pk=pk)
+    text, form = finding.anonymized_text, request.POST.get("form", "")
+    return JsonResponse(check_label(world, text, form, may_be_unknown=True))
+
+
+def _find_asked(request: HttpRequest, world: World, listing: Listing) -> AuditFinding | None:
+    """Return the finding that the URL names, or the first of the list. Raises Http404 for one of another
+    world."""
+    if name := request.GET.get("finding", ""):
+        return get_object_or_404(world.audit_findings, pk=number_in(name))
+    return next(iter(listing.rows), None)
+
+
+def _context_of(request: HttpRequest, finding: AuditFinding | None) -> dict[str, Any]:
+    """Return the context of one finding; ``state`` holds the filters of the list, for its forms."""
+    state = request.GET.copy()
+    state.pop("finding", None)
+    may_decide = WorkKind.AUDIT in kinds_for(request.user, request.world)
+    context = {"finding": finding, "state": state.urlencode(), "may_decide": may_decide}
+    if finding is None:
+        return context
+    examples = examples_of_pair(finding.world_id, finding.text, finding.form)
+    is_open = AuditFinding.objects.open().filter(pk=finding.pk).exists()
+    return {
+        **context,
+        "reasons": finding.reasons.all(),
+        "examples": examples[:MOST_SPLITS],
+        "decision": finding.decision,
+        "may_decide": may_decide and is_open,
+        "is_outdated": finding.status == FindingStatus.OPEN and not is_open,
+    }
+
+
+def _last_decisions(request: HttpRequest, world: World) -> Any:
+    rows = AuditDecision.objects.valid().filter(finding__world=world, decided_by=request.user)
+    return rows.select_related("finding").order_by("-pk")[:LAST_SHOWN]
+
+
+def _refuse(
+    request: HttpRequest, world: World, finding: AuditFinding, sentence: str
+) -> HttpResponse:
+    """Show why a decision was refused. What the reviewer wrote stays on the page."""
+    if not request.htmx:
+        messages.error(request, sentence)
+        return _to(request, world, finding)
+    context = {"sentence": sentence}
+    response = render(request, "parser_service/labelling/_audit_problem.html", context, status=422)
+    return reswap(retarget(reselect(response, "#audit-problem"), "#audit-problem"), "outerHTML")
+
+
+def _to(request: HttpRequest, world: World, finding: AuditFinding | None) -> HttpResponse:
+    """Go to ``finding`` in the list that the filters of the URL leave."""
+    query = request.GET.copy()
+    query.pop("finding", None)
+    if finding is not None:
+        query["finding"] = str(finding.pk)
+    address = reverse("audit", kwargs={"world": world.name})
+    return redirect(f"{address}?{query.urlencode()}" if query else address)

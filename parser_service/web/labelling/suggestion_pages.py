@@ -1,0 +1,37 @@
+"""Forms suggested for the pattern that somebody types, those of parsers among them."""
+
+from __future__ import annotations
+
+from django.http import HttpRequest, HttpResponse
+from django.shortcuts import render
+
+from annotations.models import Duty, World
+from annotations.people.access import WRITE, world_view
+from annotations.suggesting import MOST_COMMAND
+from annotations.web.description.template_forms import TemplateForm
+from parser_service.labelling.pattern_suggestions import suggest_with_parsers
+
+
+@world_view(Duty.ANNOTATE, WRITE)
+def template_suggestions(request: HttpRequest, world: World) -> HttpResponse:
+    """Suggest forms for the typed pattern, which was written for ``command``.
+
+    A page that waits for a parser asks again with ``waiting``: it gets nothing new before the answer is
+    there, and nobody is asked about what was typed meanwhile.
+    """
+    form = TemplateForm(world, request.POST)
+    pattern = (form["pattern"].value() or "").strip()
+    command = request.GET.get("command", "").replace("\0", "")[:MOST_COMMAND]
+    is_waiting = "waiting" in request.GET
+    by = None if is_waiting else request.user
+    suggested = suggest_with_parsers(world, form.chosen_category, pattern, command, by)
+    if is_waiting and suggested.waits_for:
+        return HttpResponse(status=204)  # htmx leaves the page as it is
+    context = {
+        "suggested": suggested,
+        "suggestions": suggested.forms,
+        "command": command,
+        "chosen": form["form"].value(),
+        "has_pattern": bool(pattern),
+    }
+    return render(request, "annotations/description/_suggested_forms.html", context)

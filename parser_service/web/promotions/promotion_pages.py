@@ -1,0 +1,129 @@
+"""Which run answers in a world: the evidence for it, what may take its place, and the history."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from django.contrib import messages
+from django.http import HttpRequest, HttpResponse
+from django.shortcuts import get_object_or_404, redirect, render
+from django.views.decorators.cache import never_cache
+
+from annotations.language.errors import Refusal
+from annotations.lists.paging import number_in
+from annotations.models import Duty, World
+from annotations.people.access import WRITE, world_view
+from annotations.people.audit_log import note
+from parser_service.models import Promotion, TrainingRun
+from parser_service.promotions.promoting import (
+    MOST_REASON,
+    decline,
+    previous_run,
+    promote,
+    promoted_run,
+    roll_back,
+)
+from parser_service.promotions.score_evidence import compare_scores, spoken_score
+from parser_service.serving.parser_client import ParserAway, ParserRefused, client
+
+MOST_LISTED = 100  # runs that may be promoted, and decisions of the history
+
+
+@world_view(Duty.VIEW)
+def promotions(request: HttpRequest, world: World) -> HttpResponse:
+    """Show the promoted run, proposals, the runs that may take its place, and what was decided before."""
+    present = (
+        world.promotions.promoted()
+        .select_related("run__split", "decided_by")
+        .prefetch_related("run__evaluations")
+        .first()
+    )
+    run = present.run if present else None
+    chosen = (
+        world.runs.succeeded().for_table().filter(pk=number_in(request.GET.get("run", ""))).first()
+    )
+    proposals = (
+        world.promotions.proposed()
+        .select_related("run__split")
+        .prefetch_related("run__evaluations")
+    )
+    candidates = _candidates(world, run)
+    shown = [run, chosen, *(each.run for each in proposals), *candidates]
+    context = {
+        "shown": [each for each in shown if each],
+        "present": present,
+        "present_scores": compare_scores(run, None) if run else [],
+        "previous": previous_run(world),
+        "chosen": chosen if chosen != run else None,
+        "chosen_scores": compare_scores(chosen, run) if chosen else [],
+        "proposals": [(each, compare_scores(each.run, run)) for each in proposals],
+        "candidates": candidates,
+        "history": world.promotions.exclude(decided_at=None)
+        .select_related("run", "decided_by")
+        .order_by("-decided_at", "-pk")[:MOST_LISTED],
+        "most_reason": MOST_REASON,
+    }
+    return render(request, "parser_service/promotions/promotions.html", context)
+
+
+@world_view(Duty.MANAGE, WRITE)
+def promotion_promote(request: HttpRequest, world: World) -> HttpResponse:
+    """Promote a run."""
+    run = get_object_or_404(
+        TrainingRun.objects.select_related("world"),
+        world=world,
+        pk=number_in(request.POST.get("run", "")),
+    )
+    reason = request.POST.get("reason", "")
+    note(request, f"run {run.pk}")
+    return _decide(request, world, lambda: promote(run, request.user, reason))
+
+
+@world_view(Duty.MANAGE, WRITE)
+def promotion_roll_back(request: HttpRequest, world: World) -> HttpResponse:
+    """Roll back to the run that was promoted before the present one."""
+    reason, before = request.POST.get("reason", ""), previous_run(world)
+    note(request, f"run {before.pk}" if before else "")
+    return _decide(request, world, lambda: roll_back(world, request.user, reason))
+
+
+@world_view(Duty.MANAGE, WRITE)
+def promotion_decline(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """Decline a proposal; the present run goes on answering."""
+    proposal = get_object_or_404(Promotion, world=world, pk=pk)
+    return _decide(request, world, lambda: decline(world, proposal.pk, request.user))
+
+
+@never_cache
+@world_view(Duty.VIEW)
+def parser_state(request: HttpRequest, world: World) -> HttpResponse:
+    """Say which run the parse server answers with: a part of other pages, which ask for it by themselves."""
+    context = {"promoted": promoted_run(world)}
+    try:
+        held = {each["world"]: each for each in client().parsers()}
+        context["held"] = held.get(world.name, {})
+    except (ParserAway, ParserRefused) as error:
+        context["away"] = error.message
+    return render(request, "parser_service/promotions/_parser_state.html", context)
+
+
+def _decide(request: HttpRequest, world: World, verb: Callable[[], object]) -> HttpResponse:
+    try:
+        verb()
+    except Refusal as error:
+        messages.error(request, error.message)
+    return redirect("promotions", world=world.name)
+
+
+def _candidates(world: World, present: TrainingRun | None) -> list[TrainingRun]:
+    """Return the runs that may be promoted, those that are most often right on paraphrases first."""
+    runs = world.runs.succeeded().on_all_pairs().for_table()
+    if present:
+        runs = runs.exclude(pk=present.pk)
+    listed = list(runs.order_by("-pk")[:MOST_LISTED])
+    return sorted(listed, key=_accuracy, reverse=True)
+
+
+def _accuracy(run: TrainingRun) -> float:
+    score = spoken_score(run)
+    return score.accuracy if score else -1.0

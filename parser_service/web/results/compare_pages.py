@@ -1,0 +1,132 @@
+"""Compare runs: is the difference real, and where is it?"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from django.http import HttpRequest, HttpResponse
+from django.shortcuts import render
+
+from annotations.language.corpus import Criterion
+from annotations.lists.listing import FilteredList
+from annotations.models import Duty, World
+from annotations.people.access import world_view
+from parser_service.analyses.state import analysis_of
+from parser_service.models import Prediction, TrainingRun
+from parser_service.models.evaluations import ShownScore
+from parser_service.results.result_choices import default_part
+from parser_service.slices.addresses import Addresses
+from parser_service.slices.breakdown import accuracies_of, break_down, break_down_by_slices
+from parser_service.slices.compared import compare_on
+from parser_service.slices.comparison_tables import confusion_table, pair_rows, win_matrix
+from parser_service.slices.prediction_filters import PredictionFilters
+from parser_service.slices.run_choice import LETTERS, PARTS, RunChoice, choose_runs, named_keys
+from parser_service.slices.selecting import slice_query
+from parser_service.slices.slot_confusions import slot_rows
+
+OF_THE_PAGE = ("part", "versus", "versus_outcome", "slot")
+
+
+class ComparedFilters(FilteredList):
+    """The filters of a comparison; the part, which has buttons of its own, is none of them."""
+
+    further = PredictionFilters.further
+
+    def __init__(self, request: HttpRequest) -> None:
+        self.query = request.GET
+        self.filters = PredictionFilters(request.GET, Prediction.objects.none(), request=request)
+        self.form = self.filters.form
+
+    @property
+    def first_fields(self) -> list[Any]:
+        return [field for field in super().first_fields if field.name not in OF_THE_PAGE]
+
+    @property
+    def chips(self) -> list[Any]:
+        part = str(self.form.fields["part"].label)
+        return [chip for chip in super().chips if chip.label != part]
+
+    @property
+    def chosen(self) -> dict[str, str]:
+        """The filters that are set, as a URL has them."""
+        given = self.filters.given
+        return {name: str(value) for name, value in given.items() if name not in OF_THE_PAGE}
+
+    @property
+    def clear_url(self) -> str:
+        return self.url(**dict.fromkeys(self.chosen, ""))
+
+
+@world_view(Duty.VIEW)
+def compare(request: HttpRequest, world: World) -> HttpResponse:
+    """Compare the runs that the URL names on the slice that it chooses, or offer runs to choose from."""
+    part = request.GET.get("part", "")
+    part = part if part in PARTS else default_part(world, named_keys(request.GET))
+    choice = choose_runs(world, request.GET, part)
+    filters = ComparedFilters(request)
+    context = {
+        "choice": choice,
+        "parts": PARTS,
+        "filters": filters,
+        "lettered": list(zip(LETTERS, choice.runs, strict=False)),
+        "part_urls": [(each, filters.url(part=each)) for each in PARTS],
+        "suggestion_url": url_with_runs(request, choice.suggested),
+        "slice_query": slice_query(world, request.GET),
+    }
+    if len(choice.runs) > 1:
+        context |= comparison_of(request, world, choice, filters)
+    return render(request, "parser_service/results/compare.html", context)
+
+
+def comparison_of(
+    request: HttpRequest, world: World, choice: RunChoice, filters: ComparedFilters
+) -> dict[str, Any]:
+    """Return what the page says about the runs."""
+    compared = compare_on(world, choice.runs, choice.part, filters.filters)
+    addresses = Addresses(world, choice.runs, choice.part, filters.chosen)
+    if not compared.count:
+        return {"compared": compared}
+    place = confused_run(request, choice.runs)
+    slots = slot_rows(world, choice.runs[place], choice.part)
+    return {
+        "slots": slots,
+        "analysis": analysis_of(choice.runs[place]) if slots is None else None,
+        "compared": compared,
+        "accuracies": list(
+            zip(LETTERS, choice.runs, accuracies_of(compared, addresses), strict=False)
+        ),
+        "matrix": win_matrix(compared, addresses),
+        "pairs": pair_rows(compared, choice.names),
+        "by_form": scores_by_form(choice),
+        "breakdowns": break_down(compared, addresses),
+        "saved": break_down_by_slices(compared, addresses),
+        "heat": confusion_table(compared, place, addresses),
+        "confused": choice.runs[place],
+        "confusion_urls": [
+            (letter, run, filters.url(confusion=str(run.pk)))
+            for letter, run in zip(LETTERS, choice.runs, strict=False)
+        ],
+    }
+
+
+def scores_by_form(choice: RunChoice) -> list[tuple[str, TrainingRun, Sequence[ShownScore]]]:
+    """Return letter, run and the scores on the whole part of each compared run where the split is by form: the
+    examples that are compared have unseen forms alone. Nothing for other splits."""
+    if choice.split is None or choice.split.criterion != Criterion.LOGICAL_FORM:
+        return []
+    scores = {each.run: tuple(each.scores.values()) for each in choice.offered}
+    return [(letter, run, scores[run]) for letter, run in zip(LETTERS, choice.runs, strict=False)]
+
+
+def confused_run(request: HttpRequest, runs: Sequence[TrainingRun]) -> int:
+    """Return the place of the run whose confusions are shown."""
+    key = request.GET.get("confusion", "")
+    return next((place for place, run in enumerate(runs) if str(run.pk) == key), 0)
+
+
+def url_with_runs(request: HttpRequest, runs: Sequence[TrainingRun]) -> str:
+    """Return the address of this page with other runs."""
+    query = request.GET.copy()
+    query.setlist("run", [str(run.pk) for run in runs])
+    return f"?{query.urlencode()}"

@@ -1,0 +1,87 @@
+"""How often runs are right: each evaluation, and the tables of the results page."""
+
+from __future__ import annotations
+
+import django_filters
+from django.db.models import Case, OuterRef, Q, QuerySet, Subquery, When
+from drf_spectacular.types import OpenApiTypes
+from drf_spectacular.utils import extend_schema
+from rest_framework import serializers
+from rest_framework.request import Request
+from rest_framework.response import Response
+
+from annotations.language.corpus import KNOWN, harmonic_mean
+from annotations.lists.filtering import Key
+from annotations.models import Split
+from annotations.web.rest.routes import RowRoute, RowsRoute, WorldRoute
+from parser_service.models import Evaluation
+from parser_service.results.export import as_json
+from parser_service.results.result_choices import read_choices, scored_splits
+
+
+class EvaluationSerializer(serializers.ModelSerializer):
+    """Exact match of a run on one source of one part; fractions of 1, the interval at 95 %. Of a split by form
+    ``accuracy`` is that on unseen forms, except of the part ``known``; ``harmonic_mean`` is that of it and of
+    ``accuracy_known``. Both are null for other splits and where known forms were not held out."""
+
+    run = serializers.IntegerField(source="run_id")
+    accuracy_known = serializers.FloatField(allow_null=True)
+    harmonic_mean = serializers.SerializerMethodField()
+
+    class Meta:
+        model = Evaluation
+        fields = [
+            *("id", "run", "part", "test_source", "count", "correct", "accuracy"),
+            *("interval_low", "interval_high", "equivalent", "well_formed"),
+            *("accuracy_known", "harmonic_mean"),
+        ]
+
+    def get_harmonic_mean(self, score: Evaluation) -> float | None:
+        known = score.accuracy_known
+        return None if known is None else harmonic_mean(score.accuracy, known)
+
+
+class EvaluationQuery(django_filters.FilterSet):
+    run = Key("run_id")
+    split = Key("run__split_id")
+    parser = django_filters.CharFilter("run__parser")
+
+    class Meta:
+        model = Evaluation
+        fields = ["part", "test_source"]
+
+
+class EvaluationNoun:
+    model = Evaluation
+    serializer_class = EvaluationSerializer
+
+    def rows(self) -> QuerySet[Evaluation]:
+        known = Evaluation.objects.filter(
+            run=OuterRef("run"), test_source=OuterRef("test_source"), part=KNOWN
+        )
+        beside_known = When(~Q(part=KNOWN), then=Subquery(known.values("accuracy")))
+        return Evaluation.objects.filter(run__world=self.world).annotate(
+            accuracy_known=Case(beside_known, default=None)
+        )
+
+
+class Evaluations(EvaluationNoun, RowsRoute):
+    """Lists how often runs are right."""
+
+    filterset_class = EvaluationQuery
+    sorts = {"id": "pk", "accuracy": "accuracy"}
+
+
+class OneEvaluation(EvaluationNoun, RowRoute):
+    """Shows an evaluation."""
+
+
+class Results(WorldRoute):
+    """Shows what the results page shows, for the parameters of its address: one figure a row."""
+
+    model = Split
+
+    @extend_schema(responses={200: OpenApiTypes.OBJECT})
+    def get(self, request: Request, **kwargs: object) -> Response:
+        choices = read_choices(request.query_params, self.world, scored_splits(self.world))
+        return Response(as_json(self.world, choices, choices.tables(self.world)))

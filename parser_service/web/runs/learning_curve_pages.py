@@ -1,0 +1,134 @@
+"""Learning curves: how accuracy grows with the training pairs; admins start the runs for them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from django.contrib import messages
+from django.http import HttpRequest, HttpResponse, JsonResponse
+from django.shortcuts import get_object_or_404, redirect, render
+from django.views.decorators.cache import never_cache
+
+from annotations.language.english import say_count
+from annotations.language.errors import Refusal
+from annotations.models import Duty, Split, World
+from annotations.people.access import WRITE, world_view
+from parser_service.models import TrainingRun
+from parser_service.parsers.conditions import SETTINGS, Protocol, Setting
+from parser_service.results.learning_curves import LearningCurves, curves_url, learning_curves
+from parser_service.results.measures import Measure
+from parser_service.results.result_choices import PARTS, default_part, scored_splits
+from parser_service.runs.requests.learning_curve import MOST_SEEDS
+from parser_service.runs.requests.starting import start_learning_curve
+
+
+@dataclass(frozen=True, slots=True)
+class CurveChoices:
+    """What an address chooses, or the defaults: what was trained last."""
+
+    split: Split
+    setting: Setting
+    protocol: str
+    part: str
+    measure: Measure
+
+
+@world_view(Duty.VIEW)
+def learning_curves_page(request: HttpRequest, world: World) -> HttpResponse:
+    """Show the curves of one column of the accuracy table."""
+    return render(request, "parser_service/runs/learning_curves.html", context_of(request, world))
+
+
+@never_cache
+@world_view(Duty.VIEW)
+def learning_curves_table(request: HttpRequest, world: World) -> HttpResponse:
+    """Show the table alone; the page refreshes itself with it."""
+    context = context_of(request, world)
+    return render(request, "parser_service/runs/_learning_curves_table.html", context)
+
+
+@never_cache
+@world_view(Duty.VIEW)
+def learning_curves_data(request: HttpRequest, world: World) -> JsonResponse:
+    """Return the points as the chart reads them."""
+    shown = context_of(request, world)["shown"]
+    is_some = isinstance(shown, LearningCurves)
+    return JsonResponse(shown.chart if is_some else {"series": [], "done": True})
+
+
+@world_view(Duty.MANAGE, WRITE)
+def learning_curve_start(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """Start the missing runs of a run's learning curve, and show it."""
+    run = get_object_or_404(TrainingRun, world=world, pk=pk)
+    try:
+        new = start_learning_curve(run, request.user, n_seeds_of(request.POST.get("seeds", "")))
+    except Refusal as error:
+        messages.error(request, error.message)
+    else:
+        there = "All runs of this learning curve have been asked for already."
+        told = f"Started {say_count(len(new), 'run')} on shares of the training pairs."
+        messages.info(request, told if new else there)
+    test_source = request.POST.get("test", "")
+    test_source = test_source if test_source in tested_with(run) else ""
+    part = request.POST.get("part", "")
+    return redirect(curves_url(world, run, test_source, part if part in PARTS else ""))
+
+
+def n_seeds_of(text: str) -> int:
+    """Return how many seeds are asked for: one unless ``text`` is a number up to ``MOST_SEEDS``."""
+    return next((n for n in range(1, MOST_SEEDS + 1) if text == str(n)), 1)
+
+
+def tested_with(run: TrainingRun) -> list[str]:
+    """Return the test sources of the accuracy table for what ``run`` was trained on."""
+    return [each.test_source for each in SETTINGS if each.train_sources == run.train_sources]
+
+
+def context_of(request: HttpRequest, world: World) -> dict[str, object]:
+    """Return the curves that the address chooses, and what else may be chosen; no curves without runs."""
+    splits = scored_splits(world)
+    choices = read_choices(request, world, splits)
+    if choices is None:
+        return {"shown": None}
+    shown = learning_curves(
+        world,
+        choices.split,
+        choices.setting,
+        choices.protocol,
+        choices.part,
+        choices.measure,
+    )
+    return {
+        "shown": shown,
+        "choices": choices,
+        "splits": splits,
+        "settings": [
+            (str(each), f"{each.train_sources} → {each.test_source}") for each in SETTINGS
+        ],
+        "protocols": list(Protocol),
+        "parts": PARTS,
+        "measures": list(Measure),
+        "chart_title": f"{shown.measure.in_words.capitalize()} by training pairs, {choices.part} part",
+        "query": request.GET.urlencode(),
+    }
+
+
+def read_choices(request: HttpRequest, world: World, splits: list[Split]) -> CurveChoices | None:
+    """Read the address; what it leaves out or misspells is that of the newest run on the split."""
+    asked = request.GET
+    newest = world.runs.scored_or_active().order_by("-id").select_related("split")
+    named = [split for split in splits if split.name == asked.get("split")]
+    run = newest.filter(split__in=named).first() or newest.first()
+    if run is None:
+        return None
+    settings = {str(each): each for each in SETTINGS}
+    own = next(each for each in SETTINGS if each.train_sources == run.train_sources)
+    part, measure = asked.get("part", ""), asked.get("measure", "")
+    protocol = asked.get("protocol", "")
+    return CurveChoices(
+        split=run.split,
+        setting=settings.get(asked.get("setting", ""), own),
+        protocol=protocol if protocol in list(Protocol) else run.protocol,
+        part=part if part in PARTS else default_part(world, splits=[run.split]),
+        measure=Measure(measure) if measure in list(Measure) else Measure.EXACT,
+    )

@@ -1,0 +1,296 @@
+"""Starting runs, for admins: one form for every parser, which opens with the choices in its address."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from statistics import median
+from typing import Any
+
+from django.contrib import messages
+from django.http import HttpRequest, HttpResponse, QueryDict
+from django.shortcuts import get_object_or_404, redirect, render
+from django.utils.http import urlencode
+from django.views.decorators.cache import never_cache
+
+from annotations.language.corpus import KNOWN
+from annotations.language.errors import Refusal
+from annotations.lists.paging import number_in
+from annotations.models import Duty, Example, Split, World
+from annotations.models.splits import Part
+from annotations.people.access import READ_AND_WRITE, WRITE, world_view
+from annotations.web.forms import posted
+from parser_service.models import Evaluation, TrainingRun
+from parser_service.models.evaluations import ShownScore, shown_scores
+from parser_service.models.runs import Status
+from parser_service.parsers.conditions import PARAPHRASED, TrainSources
+from parser_service.parsers.pretrained_files import find_gaps
+from parser_service.parsers.registry import (
+    PARSERS,
+    Needs,
+    RegistryEntry,
+    config_fields,
+    make_config,
+)
+from parser_service.results.accuracy_tables import seeds_url
+from parser_service.runs.requests.retraining import retrainable
+from parser_service.runs.requests.starting import start_again, start_runs
+from parser_service.web.runs.run_forms import GENERAL, PREFIX, RunForm
+
+# What to train in a world, in this order: good within seconds, then the most accurate one.
+RECOMMENDED = ("linear", "ranker")
+
+MOST_RUNS = 200  # the newest that times are taken from
+TITLES = {
+    Needs.NOTHING: "Needs nothing",
+    Needs.CPU: "Minutes on a CPU",
+    Needs.GPU: "A GPU is recommended",
+    Needs.WEIGHTS: "Weights to bring",
+    Needs.SERVER: "A server to ask",
+}
+SOURCES = {"gen": "commands", "para": "paraphrases"}
+
+
+@world_view(Duty.MANAGE, READ_AND_WRITE)
+def run_new(request: HttpRequest, world: World) -> HttpResponse:
+    """Show the form that starts runs, and start them. If another parser than the one shown was chosen,
+    its form opens instead."""
+    choices = choices_in(request.GET, world)
+    wanted = request.POST.get("parser", choices.parser)
+    if wanted in PARSERS and (wanted != choices.parser or "choose" in request.POST):
+        return redirect(f"{request.path}?{query_of(request.POST, wanted, choices.parser)}")
+    form = RunForm(world, choices.parser, posted(request), initial=choices.initial)
+    if request.method == "POST" and form.is_valid():
+        started = start(request, world, form)
+        if len(started) == 1:
+            return redirect("run", world=world.name, pk=started[0].pk)
+        if started:
+            return redirect(seeds_url(world, started[0]))
+    return render(request, "parser_service/runs/run_new.html", context_of(world, form, choices))
+
+
+def context_of(world: World, form: RunForm, choices: RunChoices) -> dict[str, object]:
+    """Return what the page shows besides the form."""
+    splits = world.splits.all()
+    key = number_in(str(form["split"].value() or ""))
+    chosen = splits.filter(pk=key).first() if key else None
+    return {
+        "form": form,
+        "chosen": choices.parser,
+        "entry": PARSERS[choices.parser],
+        "note": choices.note,
+        "groups": parser_groups(world, chosen or splits.first()),
+        "has_splits": splits.exists(),
+    }
+
+
+def start(request: HttpRequest, world: World, form: RunForm) -> list[TrainingRun]:
+    """Start the runs of the form, one per seed, and return them, new or already there. Where
+    they are refused, return none and put the reason into the form."""
+    try:
+        answers = start_runs(world, request.user, **form.asked)
+    except Refusal as error:
+        form.add_error(None, error.message)
+        return []
+    if told := in_words(answers):
+        messages.info(request, told)
+    return [run for run, _ in answers]
+
+
+def in_words(answers: list[tuple[TrainingRun, bool]]) -> str:
+    """Say which runs are new and which were there; empty for one new run, whose page opens anyway."""
+    count, new = len(answers), sum(is_new for _, is_new in answers)
+    if count == 1:
+        return "" if new else "This has been trained already; here is that run."
+    if not new:
+        return f"All {count} seeds have been asked for already; here are their runs."
+    first, last = answers[0][0].seed, answers[-1][0].seed
+    started = f"Started {new} run{'s' if new > 1 else ''}, seeds {first} to {last}"
+    if new == count:
+        return f"{started}."
+    return f"{started}; {count - new} {'was' if count - new == 1 else 'were'} there already."
+
+
+@never_cache
+@world_view(Duty.MANAGE)
+def split_runs(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """List what was trained on the split before: a part of the page of a split that follows one."""
+    row = get_object_or_404(Split.objects.select_related("follows"), world=world, pk=pk)
+    context = {"split": row, "rows": retrainable(row)}
+    return render(request, "parser_service/runs/_split_runs.html", context)
+
+
+@world_view(Duty.MANAGE, WRITE)
+def run_retrain(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+    """Start the configuration of a run on the newest split that follows its own."""
+    run = get_object_or_404(
+        TrainingRun.objects.select_related("split", "world"), world=world, pk=pk
+    )
+    try:
+        answer = start_again(run, request.user)
+    except Refusal as error:
+        messages.warning(request, error.message)
+        return redirect("run", world=world.name, pk=pk)
+    if told := in_words([answer]):
+        messages.info(request, told)
+    return redirect("run", world=world.name, pk=answer[0].pk)
+
+
+@dataclass(frozen=True, slots=True)
+class RunChoices:
+    """The parser and the initial values of its form; ``note`` is a sentence about what
+    could not be kept, or empty."""
+
+    parser: str
+    initial: dict[str, Any] = field(default_factory=dict)
+    note: str = ""
+
+
+def choices_in(query: QueryDict, world: World) -> RunChoices:
+    """Read the choices from an address: ``like`` names a run to ask for again, everything else is
+    called as its field. What no field knows is left out."""
+    like = number_in(query.get("like", ""))
+    run = world.runs.filter(pk=like).first() if like else None
+    parser = query.get("parser", run.parser if run else recommended_parser(world))
+    if parser not in PARSERS:
+        return RunChoices(
+            recommended_parser(world), note=f"There is no parser called {parser!r} any more."
+        )
+    initial = values_of(run, parser) if run else _recommended_values(world)
+    names = [*GENERAL, *(PREFIX + each.name for each in config_fields(parser))]
+    initial.update({name: query[name] for name in names if name in query})
+    return RunChoices(parser, initial, _note(parser, initial))
+
+
+def recommended_parser(world: World) -> str:
+    """Return the first of ``RECOMMENDED`` that no run of ``world`` has trained or will; else the last one."""
+    there = set(world.runs.scored_or_active().on_all_pairs().values_list("parser", flat=True))
+    return next((name for name in RECOMMENDED if name not in there), RECOMMENDED[-1])
+
+
+def _recommended_values(world: World) -> dict[str, Any]:
+    """Return what a new run learns from: paraphrases too, where any split of ``world`` has some to train on."""
+    spoken = Example.objects.filter(split__world=world, part=Part.TRAIN, source=PARAPHRASED)
+    return {"train_sources": TrainSources.BOTH} if spoken.exists() else {}
+
+
+def values_of(run: TrainingRun, parser: str) -> dict[str, Any]:
+    """Return what the form for ``parser`` takes over from ``run``; hyperparameters from the same parser only."""
+    general = {
+        "split": run.split_id,
+        "train_sources": run.train_sources,
+        "protocol": run.protocol,
+        "seed": run.seed,
+        "share": float(f"{100 * run.train_share:g}"),
+    }
+    config = run.config if parser == run.parser else {}
+    return {**general, **{PREFIX + name: value for name, value in config.items()}}
+
+
+def query_of(posted: Mapping[str, str], parser: str, shown: str) -> str:
+    """Return the address of the form for ``parser`` with the choices that were made while the form for
+    ``shown`` was open."""
+    kept = {name: posted[name] for name in GENERAL if name in posted}
+    if parser == shown:
+        defaults = {PREFIX + each.name: str(each.default) for each in config_fields(parser)}
+        kept |= {
+            name: posted[name]
+            for name, default in defaults.items()
+            if posted.get(name, default) != default
+        }
+    return urlencode({"parser": parser, **kept})
+
+
+def _note(parser: str, initial: Mapping[str, Any]) -> str:
+    protocol, entry = initial.get("protocol"), PARSERS[parser]
+    if protocol in (None, "", *entry.protocols):
+        return ""
+    return f"{entry.title} has no {protocol} protocol; {entry.protocols[0]} is chosen instead."
+
+
+@dataclass(frozen=True, slots=True)
+class ParserOption:
+    """One parser. ``seconds`` is the median time of its finished runs here, None before the first;
+    ``scores`` its best accuracies on the validation part, by source; ``missing`` names
+    the weights, or the server, that are not there."""
+
+    name: str
+    entry: RegistryEntry
+    missing: tuple[str, ...] = ()
+    seconds: float | None = None
+    scores: tuple[tuple[str, ShownScore], ...] = ()
+
+    @property
+    def sentence(self) -> str:
+        return self.entry.in_short or self.entry.description
+
+
+@dataclass(frozen=True, slots=True)
+class ParserGroup:
+    title: str
+    options: tuple[ParserOption, ...]
+
+
+def parser_groups(world: World, split: Split | None) -> list[ParserGroup]:
+    """Return all parsers by what they need; accuracies are those on ``split``. Two queries."""
+    seconds, scores = _seconds(world), _scores(world, split)
+    options = [
+        ParserOption(
+            name,
+            entry,
+            tuple(gap.name for gap in find_gaps(make_config(name), anywhere=False)),
+            seconds.get(name),
+            tuple(scores.get(name, {}).items()),
+        )
+        for name, entry in PARSERS.items()
+    ]
+    return list(_group(options))
+
+
+def _group(options: list[ParserOption]) -> Iterator[ParserGroup]:
+    for needs, title in TITLES.items():
+        of_group = tuple(each for each in options if each.entry.needs == needs)
+        if of_group:
+            yield ParserGroup(title, of_group)
+
+
+def _seconds(world: World) -> dict[str, float]:
+    """Return the median seconds of training of the newest finished runs, by parser."""
+    times: dict[str, list[float]] = defaultdict(list)
+    runs = (
+        world.runs.succeeded()
+        .on_all_pairs()
+        .order_by("-id")
+        .values_list("parser", "seconds_trained")
+    )
+    for parser, seconds in runs[:MOST_RUNS]:
+        times[parser].append(seconds)
+    return {parser: median(each) for parser, each in times.items()}
+
+
+def _scores(world: World, split: Split | None) -> dict[str, dict[str, ShownScore]]:
+    """Return the best score by parser and source; by form that with the highest harmonic mean."""
+    best: dict[str, dict[str, ShownScore]] = defaultdict(dict)
+    if split is None:
+        return best
+
+    def rank(score: ShownScore) -> tuple[bool, float]:
+        return not score.alone, score.accuracy
+
+    rows = Evaluation.objects.filter(
+        run__world=world,
+        run__split=split,
+        run__status=Status.SUCCEEDED,
+        run__train_share=1,
+        part__in=["validation", KNOWN],
+        test_source__in=SOURCES,
+    )
+    of_runs: dict[tuple[str, int], list[Evaluation]] = defaultdict(list)
+    for row in rows.select_related("run").defer("outcomes").order_by("test_source"):
+        of_runs[row.run.parser, row.run_id].append(row)
+    for (parser, _), of_run in of_runs.items():
+        for (_, source), score in shown_scores(of_run, split.criterion).items():
+            name = SOURCES[source]
+            best[parser][name] = max(score, best[parser].get(name, score), key=rank)
+    return best

@@ -1,0 +1,190 @@
+"""The form that starts a run: its fields are the parser's hyperparameters."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from django import forms
+
+from annotations.language.errors import Refusal
+from annotations.models import World
+from parser_service.parsers.conditions import Protocol, TrainSources
+from parser_service.parsers.hyperparameters.fields import ConfigField
+from parser_service.parsers.pretrained_files import missing_weights
+from parser_service.parsers.registry import config_fields, entry, make_config
+from parser_service.runs.requests.run_requests import (
+    LARGEST_SEED,
+    LEAST_SHARE,
+    MOST_SEEDS,
+    seeds_from,
+)
+
+SOURCE_LABELS = {
+    TrainSources.GENERATED: "generated",
+    TrainSources.PARAPHRASED: "paraphrased",
+    TrainSources.BOTH: "generated and paraphrased",
+}
+PROTOCOL_LABELS = {
+    Protocol.STRICT: "strict: training pairs only",
+    Protocol.DOMAIN: "domain: also predicates and ontology",
+    Protocol.GRAMMAR: "grammar: also the annotated grammar",
+}
+# The fields of every parser.
+GENERAL = ("split", "train_sources", "protocol", "seed", "seeds", "share")
+PREFIX = "config-"  # before the names of hyperparameters
+LABELS = {"least_overlap": "Minimum overlap"}  # of hyperparameters whose name says less
+
+
+class RunForm(forms.Form):
+    """What to train, on what. ``config`` holds the hyperparameters, and ``asked_seeds`` the seeds,
+    once the form is valid."""
+
+    split = forms.ModelChoiceField(queryset=None, empty_label=None)
+    train_sources = forms.ChoiceField(label="Train on", choices=list(SOURCE_LABELS.items()))
+    protocol = forms.ChoiceField(help_text="What training may know besides its pairs.")
+    seed = forms.IntegerField(min_value=0, max_value=LARGEST_SEED, initial=0)
+    seeds = forms.IntegerField(
+        min_value=1,
+        max_value=MOST_SEEDS,
+        initial=1,
+        help_text="One run per seed, counting up. Results show mean and spread.",
+    )
+    share = forms.FloatField(
+        label="Share of the training pairs, %",
+        required=False,
+        min_value=100 * LEAST_SHARE,
+        max_value=100,
+        initial=100,
+        widget=forms.NumberInput(attrs={"step": "any"}),
+        help_text="Below 100 for learning curves; such runs are left out of the results table.",
+    )
+
+    def __init__(self, world: World, parser: str, *args: Any, **kwargs: Any):
+        super().__init__(*args, **kwargs)
+        self.parser = parser
+        self.fields["split"].queryset = world.splits.all()
+        self.fields["protocol"].choices = [
+            (name, PROTOCOL_LABELS[Protocol(name)]) for name in entry(parser).protocols
+        ]
+        self.fields["protocol"].initial = entry(parser).protocols[0]
+        self.fields["train_sources"].initial = TrainSources.GENERATED
+        for declared in config_fields(parser):
+            self.fields[PREFIX + declared.name] = field_for(declared)
+
+    @property
+    def general(self) -> list[forms.BoundField]:
+        """The fields that every parser has."""
+        return [self[name] for name in GENERAL]
+
+    @property
+    def named(self) -> list[forms.BoundField]:
+        """The hyperparameters that have no default and have to be given."""
+        return [self[PREFIX + each.name] for each in config_fields(self.parser) if each.is_required]
+
+    @property
+    def hyperparameters(self) -> list[forms.BoundField]:
+        """Those that may stay at their defaults."""
+        optional = [each for each in config_fields(self.parser) if not each.is_required]
+        return [self[PREFIX + each.name] for each in optional]
+
+    @property
+    def changed(self) -> list[str]:
+        """The labels of the hyperparameters that are not at their default as the form stands."""
+        declared = {PREFIX + each.name: each for each in config_fields(self.parser)}
+        return [
+            str(field.label)
+            for field in self.hyperparameters
+            if str(field.value() or "") != str(declared[field.name].default or "")
+        ]
+
+    @property
+    def has_faulty_hyperparameter(self) -> bool:
+        return any(name.startswith(PREFIX) for name in self.errors)
+
+    @property
+    def missing(self) -> str | None:
+        """Which pretrained weights, or server, the parser lacks as the form stands, and where to put them."""
+        names = {
+            each.name: named
+            for each in config_fields(self.parser)
+            if each.type is str and not each.choices
+            if (named := str(self[PREFIX + each.name].value() or "").strip())
+        }
+        return missing_weights(make_config(self.parser, names), anywhere=False)
+
+    @property
+    def asked(self) -> dict[str, Any]:
+        """The arguments of ``start_runs``, once the form is valid."""
+        names = ("split", "protocol", "train_sources")
+        return {
+            **{name: self.cleaned_data[name] for name in names},
+            "parser": self.parser,
+            "config": self.config,
+            "seeds": self.asked_seeds,
+            "train_share": self.cleaned_data["share"] / 100,
+        }
+
+    def clean_share(self) -> float:
+        """Return the percentage; all pairs where the field is empty."""
+        share = self.cleaned_data["share"]
+        return 100.0 if share is None else share
+
+    def clean(self) -> dict[str, Any]:
+        cleaned = super().clean()
+        self.config = {
+            name.removeprefix(PREFIX): value
+            for name, value in cleaned.items()
+            if name.startswith(PREFIX)
+        }
+        if not self.errors:
+            self._check_config()
+            self._count_seeds()
+        return cleaned
+
+    def _count_seeds(self) -> None:
+        try:
+            self.asked_seeds = seeds_from(self.cleaned_data["seed"], self.cleaned_data["seeds"])
+        except Refusal as error:
+            self.add_error("seeds", error.message)
+
+    def _check_config(self) -> None:
+        """Let the parser check its hyperparameters; a complaint that begins with the name of one is shown
+        beside its field."""
+        try:
+            make_config(self.parser, self.config)
+        except Refusal as error:
+            field = PREFIX + error.message.partition(" ")[0]
+            self.add_error(field if field in self.fields else None, error.message)
+
+
+def say_default(declared: ConfigField) -> str:
+    """Return the default of a hyperparameter as a sentence, such as ``Default 0.1.``; nothing where it has
+    to be given."""
+    if declared.is_required:
+        return ""
+    if declared.type is bool:
+        return f"Default {'on' if declared.default else 'off'}."
+    if declared.type is float:
+        return f"Default {declared.default:g}."
+    return f"Default {declared.default}." if declared.default != "" else "Default: none."
+
+
+def field_for(declared: ConfigField) -> forms.Field:
+    """Return a form field for one hyperparameter, with its default and its bounds."""
+    common = {
+        "label": LABELS.get(declared.name, declared.name.replace("_", " ").capitalize()),
+        "initial": declared.default,
+        "help_text": f"{declared.description} {say_default(declared)}".rstrip(),
+    }
+    if declared.type is bool:
+        return forms.BooleanField(required=False, **common)
+    if declared.choices:
+        return forms.ChoiceField(choices=[(name, name) for name in declared.choices], **common)
+    if declared.type is str:
+        # A text that names something by default is never left empty: it would name nothing.
+        required = bool(declared.default) or declared.is_required
+        return forms.CharField(required=required, max_length=declared.longest, **common)
+    bounds = {"min_value": declared.minimum, "max_value": declared.maximum}
+    if declared.type is int:
+        return forms.IntegerField(**common, **bounds)
+    return forms.FloatField(widget=forms.NumberInput(attrs={"step": "any"}), **common, **bounds)

@@ -1,0 +1,270 @@
+"""Training runs: started, watched, cancelled, trained again."""
+
+from __future__ import annotations
+
+from http import HTTPStatus
+from typing import Any, ClassVar
+
+from django.db.models import QuerySet
+from django.shortcuts import get_object_or_404
+from drf_spectacular.utils import extend_schema
+from rest_framework import serializers
+from rest_framework.request import Request
+from rest_framework.response import Response
+
+from annotations.language.errors import Refusal
+from annotations.models import Duty, Scope
+from annotations.web.background.job_rest import JobSerializer
+from annotations.web.rest.fields import Fields, FiniteField
+from annotations.web.rest.idempotency import once
+from annotations.web.rest.problem_details import Refused, refusal_of_form
+from annotations.web.rest.routes import RowRoute, RowsRoute
+from parser_service.analyses.state import analysis_of
+from parser_service.models import Checkpoint, EpochMetric, RunEvent, TrainingRun
+from parser_service.parsers.conditions import Protocol, TrainSources
+from parser_service.parsers.registry import PARSERS, config_fields
+from parser_service.runs import lifecycle
+from parser_service.runs.analysis_requests import request_analysis
+from parser_service.runs.requests.learning_curve import MOST_SEEDS as MOST_CURVE_SEEDS
+from parser_service.runs.requests.run_requests import LARGEST_SEED, LEAST_SHARE, MOST_SEEDS
+from parser_service.runs.requests.starting import (
+    start_again,
+    start_learning_curve,
+    start_runs,
+)
+from parser_service.web.runs.run_filters import RunFilters
+from parser_service.web.runs.run_forms import PREFIX, RunForm
+
+
+class RunSerializer(serializers.ModelSerializer):
+    """One parser trained once. ``config`` holds every hyperparameter."""
+
+    config = serializers.DictField()
+    split = serializers.IntegerField(source="split_id")
+    split_name = serializers.CharField(source="split.name")
+    created_by = serializers.CharField(source="created_by.username", default=None)
+
+    class Meta:
+        model = TrainingRun
+        fields = [
+            *("id", "parser", "parser_version", "config", "protocol", "train_sources"),
+            *("train_share", "train_pairs", "seed", "split", "split_name", "status", "progress"),
+            *("activity", "failure", "cancel_requested", "parameters", "seconds_trained"),
+            *("score_kind", "answered_by", "content_key", "created_by"),
+            *("queued_at", "started_at", "finished_at"),
+        ]
+
+
+class NewRuns(Fields):
+    """What to train, on what: one run per seed, counting up. What ``config`` leaves out is at its default."""
+
+    split = serializers.IntegerField(min_value=1, max_value=2**63 - 1)
+    parser = serializers.ChoiceField(choices=list(PARSERS))
+    config = serializers.DictField(child=serializers.JSONField(), default=dict)
+    protocol = serializers.ChoiceField(choices=[each.value for each in Protocol], required=False)
+    train_sources = serializers.ChoiceField(
+        choices=[each.value for each in TrainSources], default=TrainSources.GENERATED.value
+    )
+    train_share = serializers.FloatField(min_value=LEAST_SHARE, max_value=1, default=1)
+    seed = serializers.IntegerField(min_value=0, max_value=LARGEST_SEED, default=0)
+    seeds = serializers.IntegerField(min_value=1, max_value=MOST_SEEDS, default=1)
+
+
+class StartedRunsSerializer(serializers.Serializer):
+    """The runs of a request; ``new`` of them were not there before."""
+
+    new = serializers.IntegerField()
+    runs = RunSerializer(many=True)
+
+
+class RunNoun:
+    model = TrainingRun
+    serializer_class = RunSerializer
+    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.MANAGE}
+    scopes: ClassVar[dict[str, Scope]] = {"POST": Scope.TRAIN}
+
+    def rows(self) -> QuerySet[TrainingRun]:
+        return self.world.runs.select_related("split__world", "created_by", "world")
+
+    def answer_started(self, answers: list[tuple[TrainingRun, bool]]) -> Response:
+        """Answer with the runs; 200 where all of them were there before."""
+        new = sum(is_new for _, is_new in answers)
+        shown = RunSerializer([run for run, _ in answers], many=True).data
+        status = HTTPStatus.CREATED if new else HTTPStatus.OK
+        return Response({"new": new, "runs": shown}, status=status)
+
+
+class Runs(RunNoun, RowsRoute):
+    """Lists the runs, the newest first, and starts some."""
+
+    filterset_class = RunFilters
+    sorts = {
+        **{"newest": "-id", "parser": "parser", "status": "status"},
+        "seconds_trained": "seconds_trained",
+    }
+
+    @extend_schema(
+        request=NewRuns, responses={201: StartedRunsSerializer, 200: StartedRunsSerializer}
+    )
+    @once
+    def post(self, request: Request, **kwargs: object) -> Response:
+        form = self._form(self.read(NewRuns))
+        if not form.is_valid():
+            raise refusal_of_run(form)
+        return self.answer_started(start_runs(self.world, request.user, **form.asked))
+
+    def _form(self, sent: dict[str, Any]) -> RunForm:
+        """Return the form of the page with what was sent, and defaults for the rest."""
+        declared = {each.name: each.default for each in config_fields(sent["parser"])}
+        unknown = [name for name in sent["config"] if name not in declared]
+        if unknown:
+            known = ", ".join(declared) or "none"
+            said = f"{sent['parser']} has no hyperparameter {unknown[0][:80]}; there are: {known}."
+            problem = {"field": f"config.{unknown[0][:80]}", "message": said}
+            raise Refusal(said, "unknown_hyperparameter", problems=[problem])
+        config = {PREFIX + name: value for name, value in {**declared, **sent["config"]}.items()}
+        protocol = sent.get("protocol", PARSERS[sent["parser"]].protocols[0])
+        asked = {**sent, **config, "protocol": protocol, "share": 100 * sent["train_share"]}
+        return RunForm(self.world, sent["parser"], asked)
+
+
+class OneRun(RunNoun, RowRoute):
+    """Shows a run."""
+
+    http_method_names = ["get", "head", "options"]
+
+
+class RunVerb(RunNoun, RowRoute):
+    http_method_names = ["post", "options"]
+
+
+class CancelRun(RunVerb):
+    """Cancels a run that waits or runs; it stops within seconds."""
+
+    @extend_schema(request=None, responses={200: RunSerializer})
+    def post(self, request: Request, **kwargs: object) -> Response:
+        run = self.get_object()
+        lifecycle.cancel(run)
+        return self.show(self.get_object())
+
+
+class RetrainRun(RunVerb):
+    """Trains the same configuration on the split that follows the run's own."""
+
+    @extend_schema(request=None, responses={201: StartedRunsSerializer, 200: StartedRunsSerializer})
+    @once
+    def post(self, request: Request, **kwargs: object) -> Response:
+        run = self.get_object()
+        return self.answer_started([start_again(run, request.user)])
+
+
+class CurveSeeds(Fields):
+    """How many runs there are to be for each share, counting seeds up from that of the run."""
+
+    seeds = serializers.IntegerField(min_value=1, max_value=MOST_CURVE_SEEDS, default=1)
+
+
+class StartLearningCurve(RunVerb):
+    """Trains the run's configuration on shares of its training pairs, as far as that is not done."""
+
+    @extend_schema(
+        request=CurveSeeds, responses={201: StartedRunsSerializer, 200: StartedRunsSerializer}
+    )
+    @once
+    def post(self, request: Request, **kwargs: object) -> Response:
+        run, seeds = self.get_object(), self.read(CurveSeeds)["seeds"]
+        new = start_learning_curve(run, request.user, seeds)
+        return self.answer_started([(each, True) for each in new])
+
+
+class Analyse(RunVerb):
+    """Lets a worker analyse the errors of a run, again where that was done; the answer is its job."""
+
+    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.REVIEW}
+    scopes: ClassVar[dict[str, Scope]] = {}
+
+    @extend_schema(request=None, responses={202: JobSerializer})
+    def post(self, request: Request, **kwargs: object) -> Response:
+        analysis = analysis_of(self.get_object())
+        if not analysis.is_possible:
+            run = analysis.run
+            sentence = f"Run {run.pk} is {run.status}: only one that succeeded is analysed."
+            raise Refusal(sentence, "run_not_succeeded", HTTPStatus.CONFLICT)
+        job = request_analysis(analysis.run, request.user, again=analysis.is_complete)
+        return Response(JobSerializer(job).data, status=HTTPStatus.ACCEPTED)
+
+
+def refusal_of_run(form: RunForm) -> Refused:
+    """Return what is wrong with the form, its hyperparameters by their names in the body."""
+    refusal = refusal_of_form(form)
+    for problem in refusal.problems:
+        if problem.get("field", "").startswith(PREFIX):
+            problem["field"] = f"config.{problem['field'].removeprefix(PREFIX)}"
+    return refusal
+
+
+class OfRun(RowsRoute):
+    """Rows of one run."""
+
+    def run(self) -> TrainingRun:
+        """Return the run of the address. Raises Http404."""
+        return get_object_or_404(self.world.runs.all(), pk=self.kwargs["pk"])
+
+
+class RunEventSerializer(serializers.ModelSerializer):
+    """A line of a run's log."""
+
+    class Meta:
+        model = RunEvent
+        fields = ["id", "at", "attempt", "message"]
+
+
+class RunLog(OfRun):
+    """Lists the lines of a run's log."""
+
+    model = RunEvent
+    serializer_class = RunEventSerializer
+
+    def rows(self) -> QuerySet[RunEvent]:
+        return self.run().events.all()
+
+
+class EpochSerializer(serializers.ModelSerializer):
+    """A point of a run's curves. The unit of the losses is the parser's."""
+
+    train_loss = FiniteField()
+    validation_loss = FiniteField(allow_null=True)
+
+    class Meta:
+        model = EpochMetric
+        fields = ["epoch", "train_loss", "validation_loss", "validation_accuracy", "seconds"]
+
+
+class RunCurves(OfRun):
+    """Lists loss and accuracy of a run by epoch."""
+
+    model = EpochMetric
+    serializer_class = EpochSerializer
+    sorts = {"epoch": "epoch"}
+
+    def rows(self) -> QuerySet[EpochMetric]:
+        return self.run().epochs.all()
+
+
+class CheckpointSerializer(serializers.ModelSerializer):
+    """What a run keeps of its parser; ``sha256`` covers the files of the folder."""
+
+    class Meta:
+        model = Checkpoint
+        fields = ["id", "epoch", "sha256", "is_best", "created_at"]
+
+
+class RunCheckpoints(OfRun):
+    """Lists the checkpoints of a run: the last, and the best."""
+
+    model = Checkpoint
+    serializer_class = CheckpointSerializer
+    sorts = {"epoch": "epoch"}
+
+    def rows(self) -> QuerySet[Checkpoint]:
+        return self.run().checkpoints.all()

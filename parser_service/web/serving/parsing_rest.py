@@ -1,0 +1,230 @@
+"""Parsing over the API: the parse server answers, this route says who may ask."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from http import HTTPStatus
+from typing import Any, ClassVar
+
+from django.conf import settings
+from django.http import HttpResponseBase, StreamingHttpResponse
+from drf_spectacular.types import OpenApiTypes
+from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
+from rest_framework import serializers
+from rest_framework.exceptions import ValidationError
+from rest_framework.filters import BaseFilterBackend
+from rest_framework.negotiation import DefaultContentNegotiation
+from rest_framework.parsers import BaseParser
+from rest_framework.renderers import BaseRenderer
+from rest_framework.request import Request
+from rest_framework.response import Response
+from rest_framework.views import APIView
+
+from annotations.language.errors import Refusal
+from annotations.models import Duty, Job, Scope, World
+from annotations.models.corpus import MOST_CHARACTERS
+from annotations.web.background.job_rest import JobSerializer, address_of_job
+from annotations.web.rest.fields import Fields
+from annotations.web.rest.idempotency import once
+from annotations.web.rest.parsing import BoundedJSONParser
+from annotations.web.rest.permissions import HasDuty
+from annotations.web.rest.routes import WorldRoute
+from annotations.web.rest.streaming import JSON_LINES, BrokenOff
+from parser_service.serving.batch_requests import request_batch
+from parser_service.serving.parser_client import AWAY, ParserAway, client
+from parser_service.serving.preparing import MOST_CANDIDATES, numbered_lines
+
+MOST_LINES = 5_000  # of a batch that is answered at once
+SHARE_OF_TIME = 0.8  # of REQUEST_SECONDS; then a last line says that the batch breaks off
+MOST_KEY = 2**63 - 1
+
+
+class JsonLinesToo(DefaultContentNegotiation):
+    """Takes any header ``Accept``: what was sent decides whether JSON or JSON lines are answered."""
+
+    def select_renderer(
+        self, request: Request, renderers: list[BaseRenderer], format_suffix: str | None = None
+    ) -> tuple[BaseRenderer, str]:
+        return renderers[0], renderers[0].media_type
+
+
+class JsonLinesParser(BaseParser):
+    """Takes JSON lines as they are; the parse server reads them."""
+
+    media_type = JSON_LINES
+
+    def parse(self, stream: Any, media_type: Any = None, parser_context: Any = None) -> bytes:
+        return bytes(stream.read())
+
+
+class ParseQuery(Fields):
+    """What to parse, in at most ``beam`` ways; ``run`` asks another parser than the promoted one."""
+
+    utterance = serializers.CharField(max_length=MOST_CHARACTERS, trim_whitespace=False)
+    beam = serializers.IntegerField(default=5, min_value=1, max_value=MOST_CANDIDATES)
+    run = serializers.IntegerField(default=None, min_value=1, max_value=MOST_KEY, allow_null=True)
+
+
+class BatchQuery(serializers.Serializer):
+    """The same for JSON lines, in the address."""
+
+    beam = serializers.IntegerField(default=5, min_value=1, max_value=MOST_CANDIDATES)
+    run = serializers.IntegerField(default=None, min_value=1, max_value=MOST_KEY, allow_null=True)
+
+
+class SpanSerializer(serializers.Serializer):
+    """The characters ``start`` to ``end`` of the utterance name an entity."""
+
+    start = serializers.IntegerField()
+    end = serializers.IntegerField()
+    text = serializers.CharField()
+    token = serializers.CharField()
+    entity_class = serializers.CharField()
+    value = serializers.CharField()
+
+
+class OpenSlotSerializer(serializers.Serializer):
+    """A slot to ask about. ``choices`` are those that the utterance names (``is_named``), the likely one
+    first, or else entities of the class; ``phrases`` are unknown words that may be meant."""
+
+    path = serializers.ListField(child=serializers.IntegerField())
+    token = serializers.CharField()
+    entity_class = serializers.CharField()
+    question = serializers.CharField()
+    is_named = serializers.BooleanField()
+    likely = serializers.CharField(allow_null=True)
+    choices = serializers.ListField(child=serializers.CharField())
+    phrases = serializers.ListField(child=serializers.CharField())
+
+
+class CandidateSerializer(serializers.Serializer):
+    """A form, with class tokens and with the entities of the utterance (``grounded``)."""
+
+    form = serializers.CharField()
+    grounded = serializers.CharField()
+    score = serializers.FloatField()
+    is_well_formed = serializers.BooleanField()
+    reading = serializers.CharField()
+    english = serializers.CharField()
+    open_slots = OpenSlotSerializer(many=True)
+    remarks = serializers.ListField(child=serializers.CharField())
+    plan = serializers.DictField(
+        allow_null=True, help_text="As docs/reference/plans.md describes it."
+    )
+
+
+class ParseSerializer(serializers.Serializer):
+    """The answer to an utterance; candidates are ranked, the best first."""
+
+    world = serializers.CharField()
+    run = serializers.IntegerField()
+    parser = serializers.CharField()
+    score_kind = serializers.CharField()
+    utterance = serializers.CharField()
+    anonymized = serializers.CharField()
+    spans = SpanSerializer(many=True)
+    parsed_text = serializers.CharField()
+    is_unknown = serializers.BooleanField()
+    is_cut = serializers.BooleanField(help_text="The parser read only the beginning.")
+    remarks = serializers.ListField(child=serializers.CharField())
+    candidates = CandidateSerializer(many=True)
+
+
+class ParseRoute(APIView):
+    """Parses an utterance, or JSON lines with one each, with the promoted parser of the world."""
+
+    permission_classes = [HasDuty]
+    parser_classes = [BoundedJSONParser, JsonLinesParser]
+    content_negotiation_class = JsonLinesToo
+    duty = Duty.VIEW
+    scopes = {"POST": Scope.READ}  # it stores nothing
+    world: World
+
+    @extend_schema(
+        operation_id="parse",
+        parameters=[
+            OpenApiParameter(
+                "beam", OpenApiTypes.INT, description="Of JSON lines: candidates each."
+            ),
+            OpenApiParameter("run", OpenApiTypes.INT, description="Of JSON lines: the run to ask."),
+        ],
+        request={"application/json": ParseQuery, JSON_LINES: OpenApiTypes.STR},
+        responses={
+            (200, "application/json"): ParseSerializer,
+            (200, JSON_LINES): OpenApiTypes.STR,
+            413: OpenApiResponse(description="More lines than one request may bring."),
+            503: OpenApiResponse(
+                description="The parse server is away, or still loading; or two batches are at work."
+            ),
+        },
+    )
+    def post(self, request: Request, world: str) -> HttpResponseBase:
+        if isinstance(request.data, bytes):
+            return self._answer_lines(request, request.data)
+        query = ParseQuery(data=request.data)
+        query.is_valid(raise_exception=True)
+        return Response(client().parse(self.world.name, **query.validated_data))
+
+    def _answer_lines(self, request: Request, lines: bytes) -> HttpResponseBase:
+        query = BatchQuery(data=request.query_params)
+        query.is_valid(raise_exception=True)
+        count = len(numbered_lines(lines))
+        if count > MOST_LINES:
+            raise Refusal(
+                f"There are {count:,} lines; {MOST_LINES:,} are answered at once. Send them in several "
+                "batches, or have a worker parse them: POST them to parse/jobs/.",
+                "too_many_lines",
+                HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
+            )
+        seconds = SHARE_OF_TIME * settings.REQUEST_SECONDS
+        answers = client().parse_lines(
+            self.world.name, lines, **query.validated_data, most_seconds=seconds
+        )
+        return StreamingHttpResponse(
+            _all_of(answers, count), content_type=f"{JSON_LINES}; charset=utf-8"
+        )
+
+
+class ParseJobs(WorldRoute):
+    """Lets a worker parse JSON lines. The job says how far it is; ``jobs/ID/result/`` has the answers."""
+
+    parser_classes = [JsonLinesParser]
+    model = Job
+    filter_backends: ClassVar[list[type[BaseFilterBackend]]] = []
+    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.VIEW}
+    http_method_names = ["post", "options"]
+
+    @extend_schema(
+        operation_id="start_parse",
+        parameters=[BatchQuery],
+        request={JSON_LINES: OpenApiTypes.STR},
+        responses={202: JobSerializer},
+    )
+    @once
+    def post(self, request: Request, **kwargs: object) -> Response:
+        query = BatchQuery(data=request.query_params)
+        query.is_valid(raise_exception=True)
+        if not isinstance(request.data, bytes) or not request.data.strip():
+            raise ValidationError("There is no line to parse.")
+        job = request_batch(self.world, request.data, by=request.user, **query.validated_data)
+        location = {"Location": address_of_job(request, job)}
+        return Response(JobSerializer(job).data, status=HTTPStatus.ACCEPTED, headers=location)
+
+
+def _all_of(answers: Iterator[bytes], count: int) -> Iterator[bytes]:
+    """Yield the answers to ``count`` lines. Where they break off, a last line says so.
+
+    Raises BrokenOff after that line.
+    """
+    answered, reason = 0, AWAY
+    try:
+        for answer in answers:
+            yield answer
+            answered += 1
+    except ParserAway as error:
+        reason = error.message
+    if answered < count:
+        last = {"error": reason, "answered": answered, "of": count}
+        yield json.dumps(last).encode() + b"\n"
+        raise BrokenOff(f"{answered:,} of {count:,} lines were answered. {reason}")

@@ -1,0 +1,145 @@
+"""The playground: type an utterance, and see what the parser makes of it. The parse server answers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from django.http import HttpRequest, HttpResponse, QueryDict
+from django.shortcuts import render
+from django.urls import reverse
+from django.views.decorators.cache import never_cache
+from django_htmx.http import replace_url
+
+from annotations.language.errors import Refusal
+from annotations.lists.paging import number_in
+from annotations.models import Duty, World
+from annotations.models.corpus import MOST_CHARACTERS
+from annotations.people.access import WRITE, world_view
+from parser_service.analysis.probe_texts import PAPER_PROBES
+from parser_service.labelling.wrong_answer_reports import report_wrong, say_parser
+from parser_service.models import TrainingRun
+from parser_service.parsers.interface import ScoreKind
+from parser_service.promotions.promoting import promoted_run
+from parser_service.serving.default_runs import opening_run
+from parser_service.serving.parser_client import ParserAway, ParserRefused, client
+
+MOST_OFFERED = 50  # other runs
+KEYS = (("1–6", "take a text of the paper"),)
+
+
+@dataclass(frozen=True, slots=True)
+class SpannedText:
+    """An utterance with the words that name entities, as the filter ``grounded`` shows it."""
+
+    text: str
+    spans: tuple[tuple[int, int, str, str], ...]
+
+    @classmethod
+    def heard_in(cls, answer: Mapping[str, Any]) -> SpannedText:
+        """Return the utterance that the parse server has answered."""
+        names = ("start", "end", "entity_class", "value")
+        spans = (tuple(span[name] for name in names) for span in answer["spans"])
+        return cls(answer["utterance"], tuple(spans))
+
+
+@world_view(Duty.VIEW)
+def playground(request: HttpRequest, world: World) -> HttpResponse:
+    """Show the text and the run that the address names; the answer comes when the page has loaded."""
+    runs = world.runs.succeeded().select_related("split").order_by("-pk")
+    promoted = promoted_run(world)
+    opening = None if promoted else opening_run(world)
+    context = {
+        "text": _text_of(request.GET),
+        "promoted": promoted,
+        "chosen": number_in(request.GET.get("run", "")) or (opening.pk if opening else 0),
+        "others": [run for run in runs[:MOST_OFFERED] if run != promoted],
+        "paper_texts": [probe.text for probe in PAPER_PROBES],
+        "most_text": MOST_CHARACTERS,
+        "page_keys": KEYS,
+    }
+    return render(request, "parser_service/serving/playground.html", context)
+
+
+@never_cache
+@world_view(Duty.VIEW, WRITE)
+def playground_ask(request: HttpRequest, world: World) -> HttpResponse:
+    """Ask the parse server about the text, and show its answer."""
+    text, run = _text_of(request.POST), number_in(request.POST.get("run", ""))
+    context: dict[str, Any] = {"text": text, "run": run}
+    if text:
+        try:
+            answer = client().parse(world.name, text, run=run or None)
+            context |= {
+                "answer": answer,
+                "heard": SpannedText.heard_in(answer),
+                "bars": _bars(answer),
+            }
+        except ParserAway as error:
+            context["away"] = error.message
+        except ParserRefused as error:
+            context["refused"] = error.message
+    response = render(request, "parser_service/serving/_playground_answer.html", context)
+    return replace_url(response, _address(world, text, run))
+
+
+@world_view(Duty.VIEW, WRITE)
+def playground_wrong(request: HttpRequest, world: World) -> HttpResponse:
+    """Send an utterance that was answered wrongly to the work queue, with the right form if one is given."""
+    sent = request.POST
+    run = TrainingRun.objects.filter(world=world, pk=number_in(sent.get("run", ""))).first()
+    context: dict[str, Any] = {
+        "text": _text_of(sent),
+        "run": run.pk if run else "",
+        "right_form": sent.get("right_form", ""),
+        "answered": sent.get("answered", ""),
+        "reason": sent.get("reason", ""),
+    }
+    try:
+        context["sent"] = report_wrong(
+            world,
+            context["text"],
+            say_parser(run),
+            request.user,
+            _changed(sent),
+            context["reason"],
+        )
+    except Refusal as error:
+        context["refused"] = str(error)
+    status = 422 if "refused" in context else 200
+    return render(request, "parser_service/serving/_playground_wrong.html", context, status=status)
+
+
+def _changed(sent: QueryDict) -> str:
+    """Return the corrected form; empty if it is the wrong answer, unchanged."""
+    given = sent.get("right_form", "").replace("\0", "").strip()
+    return "" if given.split() == sent.get("answered", "").split() else given
+
+
+def _bars(answer: Mapping[str, Any]) -> list[tuple[Mapping[str, Any], float | None]]:
+    """Return each candidate with its score as a share of 1; None where scores only order them."""
+    kind = answer["score_kind"]
+    return [(each, _share(each["score"], kind)) for each in answer["candidates"]]
+
+
+def _share(score: float, kind: str) -> float | None:
+    if kind == ScoreKind.LOG_PROBABILITY:
+        return math.exp(min(score, 0.0))
+    return min(max(score, 0.0), 1.0) if kind else None
+
+
+def _address(world: World, text: str, run: int) -> str:
+    """Return the URL of the page with the text and the run."""
+    query = QueryDict(mutable=True)
+    if text:
+        query["text"] = text
+    if run:
+        query["run"] = str(run)
+    path = reverse("playground", kwargs={"world": world.name})
+    return f"{path}?{query.urlencode()}" if query else path
+
+
+def _text_of(query: QueryDict) -> str:
+    return " ".join(query.get("text", "").replace("\0", "").split())[:MOST_CHARACTERS]

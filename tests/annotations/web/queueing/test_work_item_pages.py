@@ -1,0 +1,221 @@
+"""The pages of the work queue, as an annotator, a third person and an admin use them."""
+
+from __future__ import annotations
+
+import pytest
+from django.urls import reverse
+
+from annotations.labelling.collecting import collect
+from annotations.models import Utterance, Verdict, WorkItem, WorkKind
+from annotations.models.worlds import Role
+from annotations.queueing.enqueuing import WantedItem, enqueue, refill, set_share
+from annotations.queueing.giving import next_item
+from annotations.queueing.item_answers import answer
+from tests.conftest import member
+from tests.sample_world import paraphrase_in
+
+BRING = '( bring ( lambda $1 e ( is_a $1 " <object> " ) ) )'
+GO = '( go " <room> " )'
+
+
+@pytest.fixture
+def utterances(tiny_world, annotator) -> list[Utterance]:
+    collect(tiny_world, ["bring me tea", "go to the kitchen"], by=annotator)
+    return list(tiny_world.utterances.order_by("pk"))
+
+
+@pytest.fixture
+def item(tiny_world, utterances) -> WorkItem:
+    refill(tiny_world)
+    return tiny_world.work_items.order_by("pk").first()
+
+
+@pytest.fixture
+def berta(tiny_world):
+    return member(tiny_world, "berta", Role.ANNOTATOR)
+
+
+@pytest.fixture
+def differing(tiny_world, utterances, annotator, berta) -> WorkItem:
+    """An item in which a third person compares the labels of two."""
+    set_share(tiny_world, WorkKind.UNLABELLED, 100)
+    for person, form in ((annotator, BRING), (berta, GO)):
+        part = next_item(person, tiny_world)
+        answer(part.item.utterance, Verdict.FORM, form, person, 1)
+    return part.item.followed_by
+
+
+def act(browser, item, step, **values):
+    path = reverse("queue_act", args=["home", item.pk])
+    return browser.post(path, {"step": step, **values}, follow=True)
+
+
+def test_the_next_item_leads_to_the_page_on_which_it_is_done(tiny_world, anna, item):
+    answer = anna.post(reverse("queue_next", args=["home"]))
+    assert answer["Location"] == f"/w/home/label/?utterance={item.utterance_id}"
+    page = anna.get("/w/home/queue/")
+    assert "Nobody has said yet what this means." in page.text
+    assert "Go on with it" in page.text
+
+
+def test_a_reviewer_without_work_is_told(tiny_world, rene, item):
+    answer = rene.post(reverse("queue_next", args=["home"]), follow=True)
+    assert "There is nothing that you can do now" in answer.text
+
+
+def test_an_item_is_taken_given_back_and_skipped(anna, item, annotator):
+    assert act(anna, item, "take").status_code == 200
+    assert "Given back" in act(anna, item, "give_back").text
+    act(anna, item, "take")
+    assert "Skipped" in act(anna, item, "skip").text
+    assert "has answered this already" in act(anna, item, "take").text
+    assert "not yours now" in act(anna, item, "skip").text
+
+
+def test_an_utterance_is_done_by_labelling_and_a_template_by_saying_so(tiny_world, anna, item):
+    act(anna, item, "take")
+    assert "Label the utterance" in act(anna, item, "done").text
+    template = tiny_world.grammar.templates.first()
+    enqueue(tiny_world, WorkKind.REQUESTED, [WantedItem(template, "Rene asks for a look.")])
+    asked = tiny_world.work_items.get(template=template)
+    act(anna, asked, "take")
+    act(anna, asked, "done")
+    asked.refresh_from_db()
+    assert not asked.is_open
+
+
+def test_an_admin_assigns_and_withdraws_and_nobody_else_does(adam, anna, item, berta):
+    assert act(anna, item, "assign", person=berta.pk).status_code == 403
+    assert "berta has this now" in act(adam, item, "assign", person=berta.pk).text
+    assert "Somebody is doing this now" in act(adam, item, "assign", person=berta.pk).text
+    assert "Withdrawn" in act(adam, item, "withdraw").text
+    assert "Choose a person" in act(adam, item, "assign", person=0).text
+
+
+def test_an_admin_assigns_the_first_items_of_a_list(tiny_world, adam, item, berta, reviewer):
+    assign = reverse("queue_assign", args=["home"])
+    sent = {"person": berta.pk, "count": 5}
+    assert "berta has 1 more item now" in adam.post(f"{assign}?q=kitchen", sent, follow=True).text
+    assert "berta has 1 more item now" in adam.post(assign, sent, follow=True).text
+    assert "berta has 0 more items now" in adam.post(assign, sent, follow=True).text
+    held = berta.assignments.held().order_by("pk")
+    assert [part.item.title for part in held] == ["go to the kitchen", "bring me tea"]
+    answer = adam.post(assign, {**sent, "count": 101}, follow=True)
+    assert "1 to 100 items" in answer.text
+
+
+def test_the_list_is_filtered(tiny_world, adam, item, berta):
+    act(adam, item, "assign", person=berta.pk)
+
+    def rows(query):
+        page = adam.get(f"/w/home/queue/?{query}")
+        return [row.pk for row in page.context["listing"].rows]
+
+    assert rows("state=taken") == rows(f"person={berta.pk}") == [item.pk]
+    assert item.pk not in rows("state=free")
+    assert rows("state=done") == []
+    assert len(rows("kind=unlabelled")) == 2
+
+
+def test_the_labels_of_others_are_not_shown_before_one_compares_them(tiny_world, anna, differing):
+    for pk in (differing.pk, differing.follows_id):
+        page = anna.get(f"/w/home/queue/{pk}/")
+        assert {each.annotator.username for each in page.context["labels"]} <= {"anna"}
+        assert "go(⟨room⟩)" not in page.text
+
+
+def test_a_third_person_compares_both_and_takes_one(tiny_world, rene, differing):
+    rene.post(reverse("queue_next", args=["home"]))
+    page = rene.get(f"/w/home/queue/{differing.pk}/")
+    assert "What anna says" in page.text
+    assert "What berta says" in page.text
+    choice = page.context["labels"][1].pk
+    settle = reverse("queue_settle", args=["home", differing.pk])
+    assert rene.post(settle, {"choice": choice}).status_code == 302
+    differing.utterance.refresh_from_db()
+    assert differing.utterance.logical_form == GO
+    assert "What anna says" not in rene.get(f"/w/home/queue/{differing.pk}/").text
+
+
+@pytest.mark.parametrize(
+    ("sent", "form"),
+    [
+        ({"choice": "unknown"}, ""),
+        ({"choice": "other", "form": '(go "<name>")'}, '( go " <name> " )'),
+    ],
+)
+def test_a_third_person_writes_another_answer(tiny_world, adam, differing, sent, form):
+    act(adam, differing, "take")
+    adam.post(reverse("queue_settle", args=["home", differing.pk]), sent)
+    differing.utterance.refresh_from_db()
+    assert differing.utterance.logical_form == form
+    assert differing.utterance.status != "unlabelled"
+
+
+@pytest.mark.parametrize(
+    "sent", [{}, {"choice": "other", "form": "(go"}, {"choice": "other"}, {"choice": "9999999"}]
+)
+def test_what_is_no_answer_is_refused_with_a_sentence(tiny_world, adam, differing, sent):
+    act(adam, differing, "take")
+    page = adam.post(reverse("queue_settle", args=["home", differing.pk]), sent)
+    assert page.status_code == 422
+    assert page.context["form"].errors
+
+
+def test_who_does_not_hold_it_settles_nothing(tiny_world, anna, differing):
+    settle = reverse("queue_settle", args=["home", differing.pk])
+    answer = anna.post(settle, {"choice": "unknown"}, follow=True)
+    assert "Take this item first" in answer.text
+    differing.utterance.refresh_from_db()
+    assert differing.utterance.status == "unlabelled"
+
+
+@pytest.mark.parametrize("kind", ["utterance", "template", "paraphrase"])
+def test_a_reviewer_asks_for_a_look(tiny_world, rene, anna, item, kind):
+    rows = {
+        "utterance": item.utterance,
+        "template": tiny_world.grammar.templates.first(),
+        "paraphrase": paraphrase_in(tiny_world),
+    }
+    path = reverse("queue_ask", args=["home", kind, rows[kind].pk])
+    assert "Ask an annotator" in rene.get(f"/w/home/{kind}s/{rows[kind].pk}/").text
+    assert "Ask an annotator" not in anna.get(f"/w/home/{kind}s/{rows[kind].pk}/").text
+    assert "In the queue" in rene.post(path, {"reason": "Which tea?"}, follow=True).text
+    assert "asked about this already" in rene.post(path, {"reason": "Again"}, follow=True).text
+    assert "in a few words" in rene.post(path, {}, follow=True).text
+    assert tiny_world.work_items.get(kind="requested").reason == "rene asks: Which tea?"
+    assert rene.post(reverse("queue_ask", args=["home", "world", 1])).status_code == 404
+
+
+def test_an_admin_sets_the_shares(tiny_world, adam, item):
+    sent = {"unlabelled": 100, "low_confidence": 5, "disagreement": 0, "requested": 0}
+    assert adam.post("/w/home/queue/settings/", sent).status_code == 302
+    item.refresh_from_db()
+    assert item.people == 2
+    page = adam.post("/w/home/queue/settings/", {**sent, "requested": 101})
+    assert "less than or equal to 100" in page.text
+
+
+def test_agreement_says_what_the_figures_mean(tiny_world, anna, adam, differing):
+    page = anna.get("/w/home/queue/agreement/")
+    assert "Two people give the same form to 0 % of 1 item." in page.text
+    report = page.context["report"]
+    assert (report.unsettled, report.disagreements) == (1, [])  # a third person is still asked
+    act(adam, differing, "take")
+    adam.post(reverse("queue_settle", args=["home", differing.pk]), {"choice": "unknown"})
+    report = anna.get("/w/home/queue/agreement/").context["report"]
+    assert (report.unsettled, report.disagreements[0].count) == (0, 1)
+
+
+def test_agreement_without_any_says_what_to_do(tiny_world, adam, anna):
+    assert "Set the share" in adam.get("/w/home/queue/agreement/").text
+    assert "Admins of this world set" in anna.get("/w/home/queue/agreement/").text
+
+
+def test_progress_counts_what_people_have_done_today(tiny_world, anna, differing):
+    page = anna.get("/w/home/queue/progress/")
+    assert [(row.person, row.total) for row in page.context["progress"].people] == [
+        ("anna", 1),
+        ("berta", 1),
+    ]
+    assert page.context["chart"]["series"][0] == {"name": "anna", "values": [1]}

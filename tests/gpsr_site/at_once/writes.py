@@ -1,0 +1,111 @@
+"""What many send at the same moment: to each route that changes a version, and to each that makes a name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeAlias
+
+from annotations.importing.generator_import import import_generator
+from annotations.models import ApiToken, User, World
+from annotations.models.people import LogInSession
+from annotations.people.accounts import sessions_of
+from annotations.world_archive.world_export import world_archive
+from tests.annotations.conftest import TINY, as_bytes
+from tests.conftest import client_of
+from tests.gpsr_site.routes.addresses import KEYS, RouteKeys
+from tests.sample_world import SampleWorld, comment_in, paraphrase_in
+
+# What the writer with this number sends in this round; every round differs from the one before.
+Body: TypeAlias = Callable[[int, int], dict[str, Any]]
+
+
+def nothing(writer: int, turn: int) -> dict[str, Any]:
+    return {}
+
+
+def different(writer: int, turn: int) -> str:
+    return f"of {writer} in {turn}"
+
+
+# Route and method → body. Whatever takes ``If-Match`` stands here.
+CHANGES: dict[tuple[str, str], Body] = {
+    ("api:entity", "PATCH"): lambda *each: {"aliases": [different(*each)]},
+    ("api:predicate", "PATCH"): lambda *each: {"gloss": different(*each)},
+    ("api:production", "PATCH"): lambda *each: {"expansion": f"go {different(*each)}"},
+    ("api:template", "PATCH"): lambda *each: {"pattern": f"find {different(*each)} $object"},
+    ("api:rename", "POST"): lambda writer, turn: {"new": f"name_{writer}_{turn}"},
+    ("api:paraphrase", "PATCH"): lambda *each: {"logical_form": f'( go " {different(*each)} " )'},
+    ("api:comment", "PATCH"): lambda *each: {"text": different(*each)},
+    ("api:world", "PATCH"): lambda *each: {"description": different(*each)},
+    ("api:guidelines", "PATCH"): lambda *each: {"text": different(*each)},
+    ("api:queue-settings", "PATCH"): lambda writer, turn: {"unlabelled": 1 + writer + 30 * turn},
+    ("api:account", "PATCH"): lambda writer, turn: {"is_active": bool(turn % 2)},
+    ("api:member", "PATCH"): lambda writer, turn: {"roles": ["annotator", "admin"][: 1 + turn % 2]},
+    ("api:answer-review", "PATCH"): lambda *each: {"note": different(*each)},
+    ("api:error-category", "PATCH"): lambda *each: {"name": different(*each)},
+    ("api:slice", "PATCH"): lambda *each: {"name": different(*each)},
+    **{
+        (f"api:{name}", "DELETE"): nothing
+        for name in (
+            *("entity", "predicate", "production", "template", "paraphrase", "comment", "world"),
+            "utterance",
+            *("token", "session", "member", "invitation", "error-category", "slice"),
+        )
+    },
+}
+# Routes that show no version, by those that do.
+SHOWN_BY = {"api:rename": "api:predicate"}
+
+# Routes that make something of a name that is there once.
+NAMES: dict[str, dict[str, Any]] = {
+    "api:entities": {"entity_class": "object", "text": "flurb"},
+    "api:predicates": {"name": "shines", "kind": "description", "signatures": [["object"]]},
+    "api:worlds": {"name": "attic"},
+    "api:import-world": {"name": "attic"},
+    "api:splits": {"name": "mine"},
+    "api:slices": {"name": "wrong ones", "query": "outcome=wrong"},
+    "api:error-categories": {"name": "Slip", "description": "", "slice": None},
+    "api:members": {"name": "someone in home", "roles": ["annotator"]},
+}
+# Routes that are posted to and make no name: several rows may say the same, what is made has no name,
+# or nothing is made. Actions that are done once have tests of their own beside their verbs.
+NAMELESS = {
+    *("productions", "templates", "comments", "utterances", "invitations", "tokens", "dialogues"),
+    *("runs", "learning-curve", "run-retrain", "run-analyse", "run-cancel", "audit", "work-items"),
+    *("promotions", "promotion-decline", "promotion-roll-back", "split-renew", "history", "rename"),
+    *("import", "import-pairs", "generate", "job-answer", "job-cancel", "site-job-cancel"),
+    *("check-form", "check-predicate", "check-production", "check-template", "suggestions"),
+    *("parse", "parse-wrong", "plan", "action-names", "dialogue-answer", "dialogue-keep"),
+    *("offered-entity-decide", "answer-doubt", "example-send", "predictions-send"),
+    *("audit-decide", "audit-take-back", "label-take-back", "utterance-label", "utterance-spans"),
+    *("work-item-assign", "work-item-finish", "work-item-give-back", "work-item-next"),
+    *("work-item-skip", "work-item-take", "work-item-withdraw", "work-items-assign"),
+    *("comment-restore", "error-category-move", "account-link", "join", "sessions-end"),
+    *("notice-read", "notices-read", "uploads", "upload-undo", "upload-redo", "parse-jobs"),
+}
+
+
+def keys_for(person: User, sample: SampleWorld) -> dict[str, RouteKeys]:
+    """Return the keys of routes about rows of ``sample``, and about what ``person`` alone has."""
+    token, _ = ApiToken.issue(person, "of another program")
+    client_of(person)
+    LogInSession.objects.filter(user=None).delete()
+    handle = sessions_of(person)[0].handle
+    comment = comment_in(sample.world)
+    comment.author = person
+    comment.save()
+    paraphrase = paraphrase_in(sample.world)
+    paraphrase.grounded_form, paraphrase.logical_form = "", '( go " kitchen " )'
+    paraphrase.save()
+    return {
+        **KEYS,
+        "api:token": lambda _: {"pk": token.pk},
+        "api:session": lambda _: {"handle": handle},
+    }
+
+
+def small_archive() -> bytes:
+    """Return the archive of a world with a grammar alone."""
+    world = World.objects.create(name="cellar")
+    assert not import_generator(world.name, as_bytes(TINY)).is_refused
+    return b"".join(world_archive(world))

@@ -1,0 +1,92 @@
+"""What a person did wrong is a Refusal, and no page, route or command shows another error's words."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from annotations.language.errors import Refusal
+
+APP = "parser_service"
+ROOT = Path(__file__).parents[2]
+MODULES = [
+    path.relative_to(ROOT / APP).as_posix()
+    for path in sorted((ROOT / APP).rglob("*.py"))
+    if "migrations" not in path.parts
+]
+# Modules that check what a programmer gives them.
+CHECK_ARGUMENTS = (
+    "analysis/",
+    "slices/selecting.py",
+    "parsers/linear.py",
+    "parsers/new_forms/short.py",
+    "neural/ranker/form_ranker.py",
+    "neural/t5/spelling.py",
+    "neural/t5/t5_parser.py",
+)
+SPEAK_TO_PEOPLE = ("web/", "management/", "serving/", "labelling/", "analyses/", "dialogues/")
+# Their verbs, of annotations, raise classes of their own.
+ANSWERS_ABOUT_LABELS = ("web/labelling/label_pages.py", "web/labelling/audit_pages.py")
+WORDS_OF = ("str", "repr", "format")
+
+
+def read(module: str) -> ast.Module:
+    return ast.parse((ROOT / APP / module).read_text(encoding="utf-8"))
+
+
+def raises_value_error(tree: ast.Module) -> list[int]:
+    """Return the lines that raise a bare ValueError."""
+    raised = [node for node in ast.walk(tree) if isinstance(node, ast.Raise) and node.exc]
+    return [node.lineno for node in raised if ast.unparse(node.exc).startswith("ValueError")]
+
+
+def shown_errors(tree: ast.Module) -> Iterator[ast.ExceptHandler]:
+    """Yield the handlers that make a text of the error that they catch."""
+    for handler in ast.walk(tree):
+        if not isinstance(handler, ast.ExceptHandler) or not handler.name:
+            continue
+        for node in ast.walk(handler):
+            texts: list[ast.expr] = []
+            if isinstance(node, ast.FormattedValue):
+                texts = [node.value]
+            elif isinstance(node, ast.Call) and ast.unparse(node.func) in WORDS_OF:
+                texts = node.args
+            if any(isinstance(text, ast.Name) and text.id == handler.name for text in texts):
+                yield handler
+                break
+
+
+def caught_by(handler: ast.ExceptHandler, module: str) -> tuple[type[BaseException], ...]:
+    """Return the classes that a handler catches."""
+    name = f"{APP}.{module.removesuffix('.py').replace('/', '.')}".removesuffix(".__init__")
+    caught = eval(ast.unparse(handler.type), vars(importlib.import_module(name)))
+    return caught if isinstance(caught, tuple) else (caught,)
+
+
+@pytest.mark.parametrize("module", [m for m in MODULES if not m.startswith(CHECK_ARGUMENTS)])
+def test_what_a_person_did_wrong_is_a_refusal(module):
+    assert raises_value_error(read(module)) == []
+
+
+@pytest.mark.parametrize("module", CHECK_ARGUMENTS)
+def test_modules_that_check_arguments_are_listed_while_they_do(module):
+    some = [each for each in MODULES if each.startswith(module)]
+    assert any(raises_value_error(read(each)) for each in some)
+
+
+@pytest.mark.parametrize(
+    "module",
+    [m for m in MODULES if m.startswith(SPEAK_TO_PEOPLE) and m not in ANSWERS_ABOUT_LABELS],
+)
+def test_only_a_refusal_is_shown_in_its_own_words(module):
+    shown = [
+        (handler.lineno, each.__name__)
+        for handler in shown_errors(read(module))
+        for each in caught_by(handler, module)
+        if not issubclass(each, Refusal)
+    ]
+    assert shown == []

@@ -1,0 +1,88 @@
+"""The pages of error categories: everybody reads them, admins change them."""
+
+from __future__ import annotations
+
+import pytest
+
+from annotations.background.progress import UNWATCHED
+from parser_service.models import Slice
+from parser_service.reviews.category_proposals import propose_for_run
+from parser_service.reviews.tagging import tag
+from parser_service.reviews.world_categories import ensure_categories
+
+PATH = "/w/home/error-categories/"
+
+
+@pytest.fixture
+def run(sample):
+    propose_for_run(sample.run, frozenset(), UNWATCHED)
+    return sample.run
+
+
+def category(run, code="wrong_predicate"):
+    return ensure_categories(run.world)[code]
+
+
+def test_a_new_world_has_the_eleven(world, anna):
+    page = anna.get(PATH)
+    assert len(page.context["counts"]) == 11
+    assert "Ill-formed" in page.content.decode()
+
+
+def test_counts_lead_to_the_errors_of_a_run(run, anna):
+    page = anna.get(PATH).content.decode()
+    address = f"/w/home/review/?run={run.pk}&amp;category=wrong_predicate&amp;category_by=machine"
+    assert f'href="{address}"' in page
+    assert anna.get(address.replace("&amp;", "&")).context["listing"].total == 9
+
+
+def test_agreement_is_shown_once_two_people_have_tagged(run, anna, reviewer, admin):
+    assert "No answer has been tagged by two people yet" in anna.get(PATH).content.decode()
+    for row in run.predictions.filter(is_exact_match=False):
+        for person in (reviewer, admin):
+            tag(run, row.example, category(run), person)
+    page = anna.get(PATH).content.decode()
+    assert "100 %" in page and "AC1" in page and "tagged by two people yet" not in page
+
+
+def test_others_see_no_forms(run, anna, rene):
+    for client in (anna, rene):
+        assert b"Add a category" not in client.get(PATH).content
+        page = client.get(f"{PATH}{category(run).pk}/").content.decode()
+        assert "Admins of this world change error categories." in page
+        assert "Delete this category" not in page
+
+
+def test_an_admin_adds_changes_and_orders(run, adam):
+    saved = Slice.objects.create(world=run.world, name="long", query="min_words=9")
+    adam.post(PATH, {"name": "Too long", "description": "", "slice": saved.pk})
+    added = run.world.error_categories.get(code="too_long")
+    assert added.slice == saved
+    assert adam.post(PATH, {"name": "too long"}).status_code == 422
+    adam.post(f"{PATH}{added.pk}/", {"name": "Long", "description": "Over nine words."})
+    added.refresh_from_db()
+    assert (added.name, added.description, added.slice) == ("Long", "Over nine words.", None)
+    adam.post(f"{PATH}{added.pk}/move/", {"step": "up"})
+    assert run.world.error_categories.reverse()[1] == added
+
+
+def test_a_slice_of_another_world_is_none(run, other_world, adam):
+    foreign = Slice.objects.create(world=other_world, name="long", query="min_words=9")
+    assert adam.post(PATH, {"name": "Long", "slice": foreign.pk}).status_code == 422
+
+
+def test_deletion_says_how_many_reviews_there_are_and_where_they_go(run, adam):
+    row = category(run)
+    page = adam.get(f"{PATH}{row.pk}/").content.decode()
+    assert "9 reviews of this category" in page
+    refused = adam.post(f"{PATH}{row.pk}/delete/")
+    assert refused.status_code == 422 and "Say which category" in refused.content.decode()
+    adam.post(f"{PATH}{row.pk}/delete/", {"move_to": category(run, "wrong_structure").pk})
+    assert category(run, "wrong_structure").reviews.count() == 9
+
+
+def test_what_an_admin_writes_is_escaped(run, adam, anna):
+    text = "<script>alert(1)</script>"
+    adam.post(PATH, {"name": text, "description": text})
+    for path in (PATH, f"{PATH}{run.world.error_categories.last().pk}/"):
+        assert text not in anna.get(path).content.decode()

@@ -1,0 +1,174 @@
+"""The form that starts a run: which parsers it offers, and which choices it keeps."""
+
+from __future__ import annotations
+
+import re
+from urllib.parse import parse_qs, urlsplit
+
+import pytest
+
+from parser_service.models import Evaluation, TrainingRun
+from parser_service.parsers import pretrained_files
+from parser_service.parsers.registry import PARSERS, Needs
+from parser_service.runs.requests import run_requests
+from parser_service.web.runs.new_run_pages import parser_groups
+from tests.parser_service.made_up import make_split
+from tests.parser_service.web.runs.forms_of_pages import PageForm
+
+NEW = "/w/home/runs/new/"
+
+
+def words_of(page) -> str:
+    """The text of a page as a browser shows it: with single spaces."""
+    return " ".join(page.content.decode().split())
+
+
+@pytest.fixture
+def second_split(sample):
+    return make_split(sample.world, "second")
+
+
+def options_of(world, split=None):
+    return {each.name: each for group in parser_groups(world, split) for each in group.options}
+
+
+def test_every_parser_is_offered_once_with_a_sentence(sample):
+    groups = parser_groups(sample.world, sample.split)
+    names = [option.name for group in groups for option in group.options]
+    assert sorted(names) == sorted(PARSERS)
+    assert groups[0].title == "Needs nothing"
+    assert [option.name for option in groups[0].options] == ["grammar-oracle", "knn", "linear"]
+    for entry in PARSERS.values():
+        assert entry.in_short.endswith("."), entry.title
+
+
+def test_a_parser_whose_weights_are_missing_names_them(sample, adam, tmp_path, monkeypatch):
+    monkeypatch.setattr(pretrained_files, "_encoders", tmp_path)
+    option = options_of(sample.world)["seq2seq-glove-elmo"]
+    assert option.missing == ("glove.6B.100d.txt", "elmo")
+    assert "Missing: glove.6B.100d.txt, elmo" in adam.get(NEW).content.decode()
+    assert option.entry.needs == Needs.WEIGHTS
+
+
+def test_a_parser_says_how_long_it_took_and_how_well_it_did_here(sample, other_sample, adam):
+    TrainingRun.objects.filter(pk=sample.run.pk).update(seconds_trained=90)
+    TrainingRun.objects.filter(pk=other_sample.run.pk).update(seconds_trained=5000)
+    Evaluation.objects.filter(run=other_sample.run).update(accuracy=1)
+    option = options_of(sample.world, sample.split)["knn"]
+    ((source, score),) = option.scores
+    assert (option.seconds, source, score.accuracy) == (90, "commands", 0.25)
+    page = words_of(adam.get(NEW))
+    assert re.search(r"about 1 min 30 s · validation (<[^>]+>)?commands 25\.0", page)
+    assert options_of(sample.world, sample.split)["seq2seq"].seconds is None
+
+
+def test_the_picker_costs_two_queries(sample, django_assert_num_queries):
+    with django_assert_num_queries(2):
+        parser_groups(sample.world, sample.split)
+
+
+def test_choices_survive_a_change_of_parser_without_scripts(sample, second_split, adam):
+    made = {
+        "parser": "ranker",
+        "split": second_split.pk,
+        "train_sources": "gen+para",
+        "protocol": "strict",
+        "seed": 42,
+        "seeds": 3,
+        "config-epochs": 7,
+    }
+    answer = adam.post(f"{NEW}?parser=seq2seq", made)
+    assert not TrainingRun.objects.filter(seed=42).exists()
+    asked = parse_qs(urlsplit(answer.url).query)
+    assert asked["parser"] == ["ranker"] and "config-epochs" not in asked
+    values = PageForm(adam.get(answer.url).content.decode()).values
+    for name in ("split", "train_sources", "protocol", "seed", "seeds"):
+        assert values[name] == str(made[name]), name
+
+
+def test_showing_the_settings_again_keeps_changed_hyperparameters(sample, adam):
+    made = {"parser": "seq2seq", "choose": "1", "config-epochs": 7, "config-dropout": "0.1"}
+    answer = adam.post(f"{NEW}?parser=seq2seq", made)
+    assert "config-epochs=7" in answer.url and "dropout" not in answer.url
+    page = adam.get(answer.url)
+    assert page.context["form"].changed == ["Epochs"]
+    assert '<details class="advanced" open>' in page.content.decode()
+
+
+def test_hyperparameters_are_folded_away_at_their_defaults(sample, adam):
+    page = words_of(adam.get(NEW, {"parser": "seq2seq"}))
+    assert '<details class="advanced">' in page
+    assert "11 hyperparameters" in page and "all at their defaults" in page
+    assert "Default 0.1." in page and "Default 150." in page
+
+
+def test_what_has_to_be_named_is_not_folded_away(sample, adam):
+    page = adam.get(NEW, {"parser": "llm"}).content.decode()
+    folded = page.partition('<details class="advanced">')[2].partition("</details>")[0]
+    assert 'name="config-decoding"' in folded and "5 hyperparameters" in " ".join(folded.split())
+    assert 'name="config-model"' in page and 'name="config-model"' not in folded
+    assert "Default: none" not in page
+
+
+def test_a_parser_that_asks_a_server_says_that_it_has_none(sample, adam):
+    page = adam.get(NEW, {"parser": "llm"}).content.decode()
+    assert "Missing: GPSR_LLM_URL" in page
+    assert "There is no language model to ask: GPSR_LLM_URL is not set." in page
+    made = {**PageForm(page).values, "config-model": "tiny"}
+    page = adam.post(f"{NEW}?parser=llm", made).content.decode()
+    assert "There is no language model to ask" in page
+    assert not TrainingRun.objects.filter(parser="llm").exists()
+
+
+@pytest.mark.parametrize("parser", PARSERS)
+def test_no_form_opens_with_changed_hyperparameters(parser, sample, adam):
+    assert adam.get(NEW, {"parser": parser}).context["form"].changed == []
+
+
+def test_a_wrong_hyperparameter_is_not_folded_away(sample, adam):
+    made = {"config-epochs": "0", "split": sample.split.pk}
+    page = adam.post(f"{NEW}?parser=seq2seq", made).content.decode()
+    assert '<details class="advanced" open>' in page
+
+
+def test_a_run_is_asked_for_again_with_its_own_values(sample, second_split, adam):
+    run, _ = run_requests.request(
+        sample.world,
+        second_split,
+        "ranker",
+        config={"steps": 12, "label_smoothing": 0.2},
+        protocol="domain",
+        train_sources="gen+para",
+        seed=9,
+        send=False,
+    )
+    TrainingRun.objects.filter(pk=run.pk).update(status="failed")
+    page = adam.get(f"/w/home/runs/{run.pk}/").content.decode()
+    assert f'href="{NEW}?like={run.pk}"' in page
+    page = adam.get(NEW, {"like": run.pk})
+    form, values = page.context["form"], PageForm(page.content.decode()).values
+    assert (form.parser, form.changed) == ("ranker", ["Steps", "Label smoothing"])
+    assert (values["split"], values["train_sources"]) == (str(second_split.pk), "gen+para")
+    assert (values["protocol"], values["seed"]) == ("domain", "9")
+
+
+def test_a_run_of_another_world_is_not_copied(sample, other_sample, adam):
+    form = adam.get(NEW, {"like": other_sample.run.pk}).context["form"]
+    assert "split" not in form.initial
+
+
+@pytest.mark.parametrize("like", ["x", "-1", "9" * 30, "²", ""])
+def test_a_wrong_number_of_a_run_is_ignored(like, sample, adam):
+    assert adam.get(NEW, {"like": like, "split": like}).status_code == 200
+
+
+def test_a_protocol_that_the_parser_lacks_is_told(sample, adam):
+    page = adam.get(NEW, {"parser": "seq2seq", "protocol": "domain"}).content.decode()
+    assert "has no domain protocol; strict is chosen instead." in page
+
+
+def test_words_of_the_form(sample, adam):
+    page = adam.get(NEW, {"parser": "knn"}).content.decode()
+    assert "Minimum overlap" in page
+    assert "One run per seed, counting up." in page
+    assert "Pairs per step." in adam.get(NEW, {"parser": "seq2seq"}).content.decode()

@@ -1,0 +1,154 @@
+"""Typing an utterance, and seeing what the parser makes of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from annotations.background.progress import UNWATCHED
+from annotations.models import Proposal, Utterance, WorkItem
+from parser_service.labelling.label_candidates import PERSON, candidates_for
+from parser_service.labelling.parser_proposals import propose
+from parser_service.parsers.knn import NearestNeighbour
+from parser_service.promotions.promoting import promote
+from tests.parser_service.live_server import parse_server  # noqa: F401
+from tests.parser_service.served import make_home, trained_run
+
+PAGE = "/w/home/parse/"
+FETCH = '( bring ( lambda $1 e ( is_a $1 " <object> " ) ) )'
+
+
+@pytest.fixture
+def run(world):
+    return trained_run(make_home(world), train_sources="gen")
+
+
+@pytest.fixture
+def answering(run, parse_server):  # noqa: F811
+    """A run that the parse server answers with."""
+    promote(run, None)
+    parse_server.update()
+    return run
+
+
+def asked(client, text: str, **more: object) -> str:
+    answer = client.post(f"{PAGE}ask/", {"text": text, **more})
+    assert answer.status_code == 200
+    return answer.content.decode()
+
+
+def test_spans_candidates_english_and_plan_are_shown(answering, anna):
+    page = asked(anna, "Bring me the red cup")
+    assert '<span class="value">red cup</span>object' in page
+    assert "utterance cut" not in page
+    assert "bring me the red cup" in page and "<meter" in page
+    assert "a robot can do this" in page and "data-tree" in page
+    assert f"run {answering.pk}" in page
+
+
+def test_that_the_parser_read_only_the_beginning_is_said(
+    run,
+    anna,
+    monkeypatch,
+    parse_server,  # noqa: F811
+):
+    read = NearestNeighbour.predict
+    monkeypatch.setattr(
+        NearestNeighbour,
+        "predict",
+        lambda *asked: [[replace(each, is_cut=True) for each in one] for one in read(*asked)],
+    )
+    promote(run, None)
+    parse_server.update()
+    page = asked(anna, "bring me the red cup")
+    assert "utterance cut" in page and "Its beginning was read" in page
+
+
+def test_what_is_open_is_asked(answering, anna):
+    page = asked(anna, "bring me the bowl the red cup")
+    assert "Bowl or red cup?" in page and "not without asking somebody" in page
+
+
+def test_the_address_follows(answering, anna):
+    answer = anna.post(f"{PAGE}ask/", {"text": "  find  it\0", "run": answering.pk})
+    assert answer["HX-Replace-Url"] == f"{PAGE}?text=find+it&run={answering.pk}"
+    page = anna.get(PAGE, {"text": "find <it>", "run": answering.pk})
+    assert 'value="find &lt;it&gt;"' in page.content.decode()
+
+
+def test_while_nobody_answers_the_page_says_so_and_asks_again(run, anna):
+    page = asked(anna, "bring me the bowl")
+    assert "The parse server is away" in page and "every 3s" in page
+    assert "The parse server is away" in anna.get(f"{PAGE}state/").content.decode()
+    assert anna.get(PAGE).status_code == 200
+
+
+def test_what_cannot_be_answered_is_said(run, anna, parse_server):  # noqa: F811
+    parse_server.update()
+    assert "No run of home has been promoted yet" in asked(anna, "bring me the bowl")
+    assert "Type a text" in asked(anna, " ")
+
+
+def test_the_state_says_which_run_answers(answering, anna):
+    assert f'answers with <a href="/w/home/runs/{answering.pk}/"' in (
+        anna.get(f"{PAGE}state/").content.decode()
+    )
+
+
+def test_without_a_trained_parser_the_page_says_so(world, anna, adam):
+    assert "There is no trained parser" in anna.get(PAGE).content.decode()
+    assert "/runs/new/" in adam.get(PAGE).content.decode()
+
+
+def wrong(client, **sent: object):
+    return client.post(f"{PAGE}wrong/", {"text": "get the mug", "answered": "( x )", **sent})
+
+
+def test_a_wrong_answer_goes_to_the_work_queue_with_the_right_form(run, anna):
+    page = wrong(anna, run=run.pk, right_form=FETCH, reason="it is not a search").content.decode()
+    assert "In the work queue, with your form offered first." in page
+    item = WorkItem.objects.get()
+    assert (item.utterance.text, item.kind) == ("get the mug", "requested")
+    assert item.reason == (
+        f"anna says: the answer of knn (run {run.pk}) is wrong: it is not a search"
+    )
+    first = candidates_for(item.utterance)[0]
+    assert first.form == FETCH and first.sources[0] == PERSON
+
+
+def test_parsers_do_not_replace_what_a_person_gave(run, anna, world):
+    wrong(anna, right_form=FETCH)
+    job = world.jobs.get(kind="propose")
+    propose(job, UNWATCHED)
+    assert set(Proposal.objects.values_list("source", flat=True)) == {PERSON, "knn"}
+
+
+def test_the_answer_itself_is_not_taken_for_the_right_form(run, anna):
+    assert "In the work queue." in wrong(anna, right_form=" ( x )\n").content.decode()
+    assert not Proposal.objects.exists()
+
+
+def test_it_may_be_that_no_form_is_right(run, anna):
+    wrong(anna, right_form="UNKNOWN")
+    assert "(it should be UNKNOWN)" in WorkItem.objects.get().reason
+
+
+def test_a_labelled_utterance_becomes_a_label_in_doubt(run, rene, world):
+    Utterance.objects.create(
+        world=world,
+        text="get the mug",
+        anonymized_text="get the mug",
+        status="labelled",
+        logical_form='( go " <room> " )',
+    )
+    assert "as a label in doubt" in wrong(rene, right_form=FETCH).content.decode()
+    assert world.audit_findings.get().suggested_form == FETCH
+
+
+def test_a_form_that_is_none_is_refused_and_kept(run, anna):
+    answer = wrong(anna, right_form='( bring "<x>', reason="so")
+    page = answer.content.decode()
+    assert answer.status_code == 422 and 'role="alert"' in page
+    assert "( bring &quot;&lt;x&gt;</textarea>" in page and 'value="so"' in page
+    assert not WorkItem.objects.exists() and not Utterance.objects.exists()
