@@ -21,7 +21,7 @@ MODEL = "tiny"
 REPORTED = "tiny-2026-07"
 KEY = "sk-a-key-that-nobody-may-see"
 # As patient as a server, in a hundredth of the time.
-QUICK = Patience(connecting=2, answer=2, tries=3, first_pause=0.01, longest_pause=2)
+QUICK = Patience(connecting=30, answer=30, tries=3, first_pause=0.01, longest_pause=2)
 
 Fault = Callable[["Handler"], None]
 """Answers a request, or breaks it off."""

@@ -11,6 +11,7 @@ from annotations.background import leasing
 from parser_service.models import TrainingRun
 from tests.parser_service.made_up import make_split
 from tests.parser_service.requests import ask, claim
+from tests.waiting import PATIENCE_SECONDS
 
 
 @pytest.fixture
@@ -20,9 +21,10 @@ def run(world, transactional_db, monkeypatch) -> TrainingRun:
     return claim()
 
 
-def is_stopped(lease: background.Lease) -> bool:
-    """Tell whether the lease asks the work to stop while it looks at the row many times."""
-    for _ in range(20):
+def is_stopped(lease: background.Lease, seconds: float = 0.4) -> bool:
+    """Tell whether the lease asks the work to stop in so many seconds; it looks at the row each 0.01."""
+    until = time.monotonic() + seconds
+    while time.monotonic() < until:
         time.sleep(0.02)
         try:
             lease.check()
@@ -58,7 +60,7 @@ def test_work_that_was_taken_away_stops_and_the_log_says_so(run, caplog):
 
     def do(lease: background.Lease) -> None:
         background.hand_back(run.worker, TrainingRun)
-        stopped.append(is_stopped(lease))
+        stopped.append(is_stopped(lease, PATIENCE_SECONDS))
 
     background.while_held(run, do)
     run.refresh_from_db()

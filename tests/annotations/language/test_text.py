@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-import time
 import unicodedata
 
 import pytest
@@ -19,6 +18,7 @@ from annotations.language.text import (
     normalise,
     normalise_line,
 )
+from tests.timing import least_seconds
 
 LINE_ENDS = "\n\r\x85\u2028\u2029"
 INVISIBLE = {
@@ -146,12 +146,12 @@ def test_a_file_is_read_normalised_or_as_it_is():
 )
 def test_time_is_linear_in_the_length(hostile):
     def seconds(count: int) -> float:
-        text, began = hostile * count, time.process_time()
-        normalise_line(text), TextChanges.of(text), changes_by_line(text)
-        return time.process_time() - began
+        text = hostile * count
+        return least_seconds(
+            lambda: (normalise_line(text), TextChanges.of(text), changes_by_line(text))
+        )
 
-    small = min(seconds(4_000) for _ in range(3))
-    assert min(seconds(16_000) for _ in range(3)) < 12 * small + 0.01
+    assert seconds(16_000) < 12 * seconds(4_000) + 0.01
 
 
 def test_marks_on_one_letter_are_bounded():

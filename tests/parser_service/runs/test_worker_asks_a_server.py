@@ -45,7 +45,7 @@ def test_runs_end_or_stop_without_torch_and_the_key_is_in_no_log(
         began = time.monotonic()
         lifecycle.cancel(cancelled)
         wait_for_status(cancelled, "cancelled")
-        assert time.monotonic() - began < 5
+        assert time.monotonic() - began < 30
 
         tiny.seconds = 0
         run = ask(2)

@@ -24,6 +24,9 @@ from tests.parser_service.llm_server import (
 )
 from tests.parser_service.parsers.llm.questions import ask, question
 
+# Seconds that no test waits, however slow the machine; what waits for them has failed.
+LONG = 30
+
 PASSING = {
     "busy": fails(429, "slow down"),
     "busy for a moment": fails(429, Retry_After="0"),
@@ -101,13 +104,13 @@ def test_a_server_that_is_away_is_said_to_be_so(tmp_path):
 
 def test_an_answer_that_takes_too_long_is_waited_for_no_longer(place, tiny):
     place = replace(place, patience=replace(QUICK, answer=0.3, tries=2))
-    for fault in (drips, lambda handler: time.sleep(5)):
+    for fault in (drips, lambda handler: time.sleep(LONG)):
         tiny.always = fault
         began = time.monotonic()
         with pytest.raises(Refusal, match=r"does not answer: it took longer than 0.3 s") as refused:
             ask(place, question())
         assert refused.value.code == "language_model_refused"
-        assert time.monotonic() - began < 3
+        assert time.monotonic() - began < LONG
 
 
 def test_a_wait_that_the_server_asks_for_is_kept_but_not_a_long_one(place, tiny):
@@ -129,9 +132,11 @@ def test_a_wait_that_the_server_asks_for_is_kept_but_not_a_long_one(place, tiny)
 
 @pytest.mark.parametrize("fault", ["slow", "drips", "pauses"])
 def test_stopping_takes_no_longer_than_the_check(place, tiny, fault):
-    place = replace(place, patience=replace(QUICK, answer=60, first_pause=60, longest_pause=60))
+    place = replace(
+        place, patience=replace(QUICK, answer=LONG, first_pause=LONG, longest_pause=LONG)
+    )
     tiny.always = {
-        "slow": lambda handler: time.sleep(20),
+        "slow": lambda handler: time.sleep(LONG),
         "drips": drips,
         "pauses": fails(500),
     }[fault]
@@ -143,7 +148,7 @@ def test_stopping_takes_no_longer_than_the_check(place, tiny, fault):
 
     with pytest.raises(Cancelled):
         ask(place, *(question(str(number)) for number in range(9)), check=check)
-    assert time.monotonic() - until < 1
+    assert time.monotonic() - until < LONG / 2
 
 
 def test_what_came_before_a_failure_is_not_asked_again(place, tiny):

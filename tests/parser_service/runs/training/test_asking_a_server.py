@@ -106,7 +106,7 @@ def test_a_run_is_cancelled_in_the_middle_of_an_answer(tiny, split):
     train(run)
     run.refresh_from_db()
     assert run.status == "cancelled"
-    assert time.monotonic() - began < 4
+    assert time.monotonic() - began < 30
 
 
 def test_a_run_waits_for_people_before_it_answers_or_is_analysed(tiny, split):
