@@ -17,13 +17,14 @@ View = TypeVar("View", bound=Any)
 
 
 def takes_files(view: View) -> View:
-    """Declare that a view, or the class of a route, reads files that people send. Reading may take long."""
+    """Declare that a view, the class of a route, or an action of a view set, reads files that people send.
+    Reading may take long."""
     view.takes_files = True
     return may_take_long(view)
 
 
 def may_take_long(view: View) -> View:
-    """Declare that a view, or the class of a route, makes or packs many rows."""
+    """Declare that a view, the class of a route, or an action of a view set, makes or packs many rows."""
     view.may_take_long = True
     return view
 
@@ -52,12 +53,14 @@ def allowance_at(path: str) -> Allowance:
         match = resolve(path)
     except Resolver404:
         return USUAL
-    view: Any = getattr(match.func, "view_class", match.func)
-    duties = getattr(view, "duties", {})
+    view: Any = getattr(match.func, "cls", match.func)
+    actions: dict[str, str] = getattr(match.func, "actions", {})  # of a view set, by method
+    declaring = [view, *(getattr(view, name) for name in actions.values())]
+    post = actions.get("post", "POST")
     return Allowance(
-        takes_files=getattr(view, "takes_files", False),
-        may_take_long=getattr(view, "may_take_long", False),
-        only_reads=getattr(view, "scopes", {}).get("POST") == Scope.READ,
+        takes_files=any(getattr(each, "takes_files", False) for each in declaring),
+        may_take_long=any(getattr(each, "may_take_long", False) for each in declaring),
+        only_reads=getattr(view, "scopes", {}).get(post) == Scope.READ,
         world=match.kwargs.get("world"),
-        duty=duties.get("POST"),
+        duty=getattr(view, "duties", {}).get(post),
     )

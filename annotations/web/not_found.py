@@ -43,8 +43,9 @@ def where_to_look(error: Exception, path: str) -> str:
             found = resolve(above)
         except Resolver404:
             continue
-        view = getattr(found.func, "view_class", None) or getattr(found.func, "cls", None)
-        if view is None or hasattr(view, "get"):
+        view = getattr(found.func, "view_class", None)
+        actions = getattr(found.func, "actions", None)  # of a view set
+        if "get" in actions if actions else view is None or hasattr(view, "get"):
             return above
     return "/api/v1/schema/" if parts[0] == "api" else ""
 

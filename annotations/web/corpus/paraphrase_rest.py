@@ -62,7 +62,7 @@ class OneParaphrase(ParaphraseNoun, RowRoute):
 
     change_serializer = LabelChange
     duties: ClassVar[dict[str, Duty]] = {"DELETE": Duty.ANNOTATE}
-    conditional_methods = ("PATCH", "DELETE")
+    conditional = ("PATCH", "DELETE")
 
     def patch(self, request: Request, **kwargs: object) -> Response:
         row = self.matched()

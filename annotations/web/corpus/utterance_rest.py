@@ -188,7 +188,7 @@ class OneUtterance(UtteranceNoun, RowRoute):
     """
 
     duties: ClassVar[dict[str, Duty]] = {"DELETE": Duty.ANNOTATE}
-    conditional_methods = ("DELETE",)
+    conditional = ("DELETE",)
 
     def delete(self, request: Request, **kwargs: object) -> Response:
         row = self.matched()

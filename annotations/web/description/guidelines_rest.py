@@ -48,7 +48,7 @@ class OneGuidelines(WorldRoute):
     filter_backends: ClassVar[list[type[BaseFilterBackend]]] = []
     pagination_class = None
     duties: ClassVar[dict[str, Duty]] = {"PATCH": Duty.MANAGE}
-    conditional_methods = ("PATCH",)
+    conditional = ("PATCH",)
 
     @extend_schema(operation_id="guidelines", responses={200: GuidelinesSerializer})
     def get(self, request: Request, **kwargs: object) -> Response:

@@ -89,7 +89,7 @@ class Comments(CommentNoun, RowsRoute):
 class OneComment(CommentNoun, RowRoute):
     """Shows a comment; its author edits it, and an admin may delete it too."""
 
-    conditional_methods: ClassVar[tuple[str, ...]] = ("PATCH", "DELETE")
+    conditional: ClassVar[tuple[str, ...]] = ("PATCH", "DELETE")
 
     @extend_schema(request=CommentText, responses={200: CommentSerializer})
     def patch(self, request: Request, **kwargs: object) -> Response:

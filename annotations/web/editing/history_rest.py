@@ -158,7 +158,7 @@ class Rename(OfKind, RowRoute):
     model = SemanticTemplate
     http_method_names = ["post", "options"]
     duties: ClassVar[dict[str, Duty]] = {"POST": Duty.ANNOTATE}
-    conditional_methods = ("POST",)
+    conditional = ("POST",)
 
     def get_serializer_class(self) -> Any:
         return serializer_of(self.kind())

@@ -68,7 +68,7 @@ class Accounts(AccountNoun, ManyRows):
 class OneAccount(AccountNoun, SingleRow):
     """Shows an account, closes it or opens it."""
 
-    conditional_methods = ("PATCH",)
+    conditional = ("PATCH",)
 
     @extend_schema(request=AccountChange, responses={200: AccountSerializer})
     def patch(self, request: Request, **kwargs: object) -> Response:

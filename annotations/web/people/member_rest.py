@@ -94,7 +94,7 @@ class Members(MemberNoun, RowsRoute):
 class OneMember(MemberNoun, RowRoute):
     """Shows a member; admins change their roles, or remove them."""
 
-    conditional_methods = ("PATCH", "DELETE")
+    conditional = ("PATCH", "DELETE")
 
     def hold(self) -> None:
         """Hold all roles of the world."""
@@ -187,7 +187,7 @@ class Invitations(InvitationNoun, RowsRoute):
 class OneInvitation(InvitationNoun, RowRoute):
     """Shows an invitation, and withdraws it: who has joined by it stays."""
 
-    conditional_methods = ("DELETE",)
+    conditional = ("DELETE",)
 
     def delete(self, request: Request, **kwargs: object) -> Response:
         with self.matching() as row:

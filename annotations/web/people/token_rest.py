@@ -98,7 +98,7 @@ class Tokens(TokenNoun, ManyRows):
 class OneToken(TokenNoun, SingleRow):
     """Shows one of one's tokens, and revokes it."""
 
-    conditional_methods = ("DELETE",)
+    conditional = ("DELETE",)
 
     def delete(self, request: Request, **kwargs: object) -> Response:
         with self.matching() as row:
@@ -142,7 +142,7 @@ class OneSession(SingleRow):
 
     model = LogInSession
     serializer_class = SessionSerializer
-    conditional_methods = ("DELETE",)
+    conditional = ("DELETE",)
     scopes: ClassVar[dict[str, Scope]] = {"DELETE": Scope.ADMIN}
     HANDLE = OpenApiParameter("handle", OpenApiTypes.STR, OpenApiParameter.PATH)
 

@@ -148,7 +148,7 @@ class QueueSettings(WorldRoute):
     pagination_class = None
     duties: ClassVar[dict[str, Duty]] = {"GET": Duty.MANAGE, "PATCH": Duty.MANAGE}
     scopes: ClassVar[dict[str, Scope]] = {"GET": Scope.READ}
-    conditional_methods = ("PATCH",)
+    conditional = ("PATCH",)
 
     @extend_schema(operation_id="queue_settings", responses={200: SharesSerializer})
     def get(self, request: Request, **kwargs: object) -> Response:

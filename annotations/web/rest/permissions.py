@@ -33,13 +33,19 @@ SCOPE_FOR = {
 }
 
 
+def asked_of(view: APIView, method: str) -> str:
+    """Return the name by which ``duties``, ``scopes`` and ``conditional`` of a view speak of a request: that
+    of the action in a view set, else of the method."""
+    return getattr(view, "action", None) or ("GET" if method == "HEAD" else method)
+
+
 def scope_needed(view: APIView, method: str) -> Scope:
     """Return the scope that a token needs for ``method`` of ``view``.
 
-    ``view.scopes`` says it per method where it is not what duty and method say: a POST that stores
-    nothing needs ``Scope.READ``, and so does what only admins read; one that starts a run ``Scope.TRAIN``.
+    ``view.scopes`` says it where it is not what duty and method say: a POST that stores nothing needs
+    ``Scope.READ``, and so does what only admins read; one that starts a run ``Scope.TRAIN``.
     """
-    named: Scope | None = getattr(view, "scopes", {}).get("GET" if method == "HEAD" else method)
+    named: Scope | None = getattr(view, "scopes", {}).get(asked_of(view, method))
     if named is not None:
         return named
     for_duty = SCOPE_FOR[getattr(view, "duty", Duty.VIEW)]

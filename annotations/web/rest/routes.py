@@ -1,4 +1,4 @@
-"""What routes of the API are made of: lists of rows, and single rows that people may edit.
+"""What routes of the API are made of: single addresses, and view sets of kinds of rows that people may edit.
 
 The verbs behind writes are those of the pages: a form of theirs says what is wrong, and
 ``annotations.editing`` stores what is right, with its history and all that follows from it.
@@ -21,6 +21,7 @@ from rest_framework.mixins import ListModelMixin
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.serializers import BaseSerializer
+from rest_framework.viewsets import ViewSetMixin
 
 from annotations.editing.edits import add, change, delete
 from annotations.language.errors import Problem
@@ -30,7 +31,7 @@ from annotations.web.rest.idempotency import once, slot_of
 from annotations.web.rest.matching import etag_of, require_match
 from annotations.web.rest.pagination import Keyset
 from annotations.web.rest.parsing import BoundedJSONParser
-from annotations.web.rest.permissions import HasDuty, HasScope
+from annotations.web.rest.permissions import HasDuty, HasScope, asked_of
 from annotations.web.rest.problem_details import refusal_of_form
 
 
@@ -39,7 +40,7 @@ class Route(GenericAPIView):
 
     permission_classes = [HasScope]
     parser_classes = [BoundedJSONParser]
-    conditional_methods: ClassVar[tuple[str, ...]] = ()
+    conditional: ClassVar[tuple[str, ...]] = ()  # what needs If-Match
     model: ClassVar[type[Model]]
 
     def rows(self) -> QuerySet[Any]:
@@ -58,7 +59,8 @@ class Route(GenericAPIView):
 
 
 class WorldRoute(Route):
-    """A route below a world. ``duties`` says what each method needs; reading needs ``Duty.VIEW``."""
+    """A route below a world. ``duties`` says what each method, or action of a view set, needs; reading
+    needs ``Duty.VIEW``."""
 
     permission_classes = [HasDuty]
     duties: ClassVar[Mapping[str, Duty]] = {}
@@ -66,9 +68,8 @@ class WorldRoute(Route):
 
     @property
     def duty(self) -> Duty:
-        """What the method of the request needs."""
-        method = "GET" if self.request.method == "HEAD" else self.request.method
-        return self.duties.get(method, Duty.VIEW)
+        """What the request needs."""
+        return self.duties.get(asked_of(self, self.request.method or ""), Duty.VIEW)
 
     def initial(self, request: Request, *args: Any, **kwargs: Any) -> None:
         super().initial(request, *args, **kwargs)
@@ -92,13 +93,8 @@ class ManyRows(ListModelMixin, Route):
         return self.list(request)
 
 
-class SingleRow(Route):
-    """One row, with the tag of its version."""
-
-    filter_backends: ClassVar[list[type[BaseFilterBackend]]] = []
-
-    def get(self, request: Request, **kwargs: Any) -> Response:
-        return self.show(self.get_object())
+class Tagged(Route):
+    """Shows a row with the tag of its version, and lets only those write to it who name that version."""
 
     def show(self, row: Any, status: int = HTTPStatus.OK) -> Response:
         shown = self.get_serializer(row).data
@@ -134,12 +130,48 @@ class SingleRow(Route):
         rows.filter(pk=self.kwargs["pk"]).first()
 
 
+class SingleRow(Tagged):
+    """One row, with the tag of its version."""
+
+    filter_backends: ClassVar[list[type[BaseFilterBackend]]] = []
+
+    def get(self, request: Request, **kwargs: Any) -> Response:
+        return self.show(self.get_object())
+
+
 class RowsRoute(ManyRows, WorldRoute):
     """A list of rows of a world."""
 
 
 class RowRoute(SingleRow, WorldRoute):
     """One row of a world."""
+
+
+class RowViewSet(ViewSetMixin, Tagged):
+    """A kind of row: its list, each of its rows, and what is done with one.
+
+    ``duties``, ``scopes`` and ``conditional`` speak of its actions. An action without a docstring of its
+    own is described by that of the class.
+    """
+
+    lookup_value_converter = "int"
+    pagination_class = Keyset
+    sorts: ClassVar[dict[str, str]] = {"id": "pk"}
+
+    def filter_queryset(self, rows: QuerySet[Any]) -> QuerySet[Any]:
+        """Filter lists: a single row is there whatever the address asks."""
+        return rows if self.detail else super().filter_queryset(rows)
+
+
+class WorldViewSet(RowViewSet, WorldRoute):
+    """A kind of row of a world."""
+
+
+class Retrieved(Tagged):
+    """The action that shows one row."""
+
+    def retrieve(self, request: Request, **kwargs: Any) -> Response:
+        return self.show(self.get_object())
 
 
 class Noun:
@@ -199,7 +231,7 @@ class EditableRow(Noun, RowRoute):
     """One row that annotators change and delete; its history keeps what it was."""
 
     duties: ClassVar[Mapping[str, Duty]] = {"PATCH": Duty.ANNOTATE, "DELETE": Duty.ANNOTATE}
-    conditional_methods = ("PATCH", "DELETE")
+    conditional = ("PATCH", "DELETE")
 
     def patch(self, request: Request, **kwargs: Any) -> Response:
         row = self.matched()
@@ -209,6 +241,35 @@ class EditableRow(Noun, RowRoute):
         return self.written(saved, form)
 
     def delete(self, request: Request, **kwargs: Any) -> Response:
+        row = self.matched()
+        delete(row, request.user, row.version)
+        return Response(status=HTTPStatus.NO_CONTENT)
+
+
+class EditableViewSet(ListModelMixin, Retrieved, Noun, WorldViewSet):
+    """Rows that annotators add, change and delete; the history of a row keeps what it was."""
+
+    duties: ClassVar[Mapping[str, Duty]] = dict.fromkeys(
+        ("create", "partial_update", "destroy"), Duty.ANNOTATE
+    )
+    conditional = ("partial_update", "destroy")
+
+    @once
+    def create(self, request: Request, **kwargs: Any) -> Response:
+        form = self.valid_form(None, self.read(self.new_serializer))
+        row = add(self.unsaved(form), request.user, slot_of(request))
+        response = self.written(row, form, HTTPStatus.CREATED)
+        response["Location"] = request.build_absolute_uri(f"{request.path}{row.pk}/")
+        return response
+
+    def partial_update(self, request: Request, **kwargs: Any) -> Response:
+        row = self.matched()
+        form = self.valid_form(row, self.read(self.change_serializer, partial=True))
+        values = self.values_of(form, row)
+        saved = change(row, values, request.user, row.version, again=False)
+        return self.written(saved, form)
+
+    def destroy(self, request: Request, **kwargs: Any) -> Response:
         row = self.matched()
         delete(row, request.user, row.version)
         return Response(status=HTTPStatus.NO_CONTENT)

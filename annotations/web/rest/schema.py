@@ -12,6 +12,7 @@ from rest_framework.permissions import AllowAny
 
 from annotations.web.rest.fields import with_problems
 from annotations.web.rest.idempotency import HEADER
+from annotations.web.rest.permissions import asked_of
 from annotations.web.rest.problem_details import CONTENT_TYPE, ProblemSerializer
 
 IF_MATCH = OpenApiParameter(
@@ -58,20 +59,23 @@ class Schema(AutoSchema):
         given = [*super().get_override_parameters()]
         if self._changes_rows:
             given.append(IF_MATCH)
-        if getattr(getattr(self.view, self.method.lower(), None), "takes_key", False):
+        handler = getattr(self.view, "action", None) or self.method.lower()
+        if getattr(getattr(self.view, handler, None), "takes_key", False):
             given.append(KEY)
         return given
 
     def get_request_serializer(self) -> Any:
         """Return what a noun reads of a new row, or of a change."""
-        names = {"POST": "new_serializer", "PATCH": "change_serializer"}
-        return getattr(self.view, names.get(self.method, ""), None) or (
+        names = dict.fromkeys(("POST", "create"), "new_serializer")
+        names |= dict.fromkeys(("PATCH", "partial_update"), "change_serializer")
+        return getattr(self.view, names.get(self._asked, ""), None) or (
             super().get_request_serializer()
         )
 
     def get_response_serializers(self) -> Any:
         """Return what a noun answers a write with: the row, and what the checker says of it."""
-        if self.method in ("POST", "PATCH") and hasattr(self.view, "new_serializer"):
+        writes = ("POST", "PATCH", "create", "partial_update")
+        if self._asked in writes and hasattr(self.view, "new_serializer"):
             return with_problems(self.view.serializer_class)
         return super().get_response_serializers()
 
@@ -94,5 +98,9 @@ class Schema(AutoSchema):
         return operation
 
     @property
+    def _asked(self) -> str:
+        return asked_of(self.view, self.method)
+
+    @property
     def _changes_rows(self) -> bool:
-        return self.method in getattr(self.view, "conditional_methods", ())
+        return self._asked in getattr(self.view, "conditional", ())

@@ -92,7 +92,7 @@ class OneWorld(WorldNoun, RowRoute):
     """Shows a world; its admins describe it, administrators of the site delete it."""
 
     duties = {"PATCH": Duty.MANAGE, "DELETE": Duty.MANAGE}
-    conditional_methods = ("PATCH", "DELETE")
+    conditional = ("PATCH", "DELETE")
 
     def get_object(self) -> World:
         return self.world

@@ -7,6 +7,8 @@ from http import HTTPStatus
 from django.db.models import QuerySet
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
+from rest_framework.decorators import action
+from rest_framework.mixins import ListModelMixin
 from rest_framework.request import Request
 from rest_framework.response import Response
 
@@ -14,7 +16,7 @@ from annotations.models import Duty
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
-from annotations.web.rest.routes import RowsRoute, WorldRoute
+from annotations.web.rest.routes import WorldViewSet
 from parser_service.dialogues.conversation import AnsweredMeanwhile, keep, reply, start
 from parser_service.dialogues.dialogue_json import as_json
 from parser_service.models import Dialogue
@@ -88,9 +90,13 @@ class DialogueRow(serializers.ModelSerializer):
         fields = ["id", "utterance", "phase", "kept_as", "started_at", "version"]
 
 
-class DialogueNoun:
+class DialogueViewSet(ListModelMixin, WorldViewSet):
+    """Dialogues about commands."""
+
     model = Dialogue
-    serializer_class = DialogueSerializer
+    serializer_class = DialogueRow
+    filter_backends = []
+    duties = {"keep": Duty.ANNOTATE}
 
     def rows(self) -> QuerySet[Dialogue]:
         return Dialogue.objects.filter(world=self.world)
@@ -98,54 +104,34 @@ class DialogueNoun:
     def show(self, row: Dialogue, status: int = HTTPStatus.OK) -> Response:
         return Response(DialogueSerializer(as_json(row)).data, status=status)
 
-
-class Dialogues(DialogueNoun, RowsRoute):
-    """Lists dialogues, and starts one about an utterance."""
-
-    serializer_class = DialogueRow
-    filter_backends = []
-
     @extend_schema(request=NewDialogue, responses={201: DialogueSerializer})
     @once
-    def post(self, request: Request, world: str) -> Response:
+    def create(self, request: Request, **kwargs: object) -> Response:
+        """Starts a dialogue about an utterance."""
         sent = self.read(NewDialogue)
         row = start(self.world, sent["utterance"], request.user)
         return self.show(row, HTTPStatus.CREATED)
 
-
-class OneDialogue(DialogueNoun, WorldRoute):
-    """Shows a dialogue."""
-
-    filter_backends = []
-
     @extend_schema(responses=DialogueSerializer)
-    def get(self, request: Request, world: str, pk: int) -> Response:
+    def retrieve(self, request: Request, **kwargs: object) -> Response:
+        """Shows a dialogue."""
         return self.show(self.get_object())
 
-
-class AnswerDialogue(DialogueNoun, WorldRoute):
-    """Answers what a dialogue asks. One that is over stays as it is."""
-
-    filter_backends = []
-
     @extend_schema(request=DialogueAnswer, responses=DialogueSerializer)
+    @action(detail=True, methods=["post"])
     @once
-    def post(self, request: Request, world: str, pk: int) -> Response:
+    def answer(self, request: Request, **kwargs: object) -> Response:
+        """Answers what a dialogue asks. One that is over stays as it is."""
         row = self.get_object()
         sent = self.read(DialogueAnswer)
         if sent.get("version", row.version) != row.version:
             raise AnsweredMeanwhile
         return self.show(reply(row, sent["answer"]))
 
-
-class KeepDialogue(DialogueNoun, WorldRoute):
-    """Makes a labelled utterance of a dialogue that ended with a form."""
-
-    filter_backends = []
-    duties = {"POST": Duty.ANNOTATE}
-
     @extend_schema(request=None, responses=DialogueSerializer)
-    def post(self, request: Request, world: str, pk: int) -> Response:
+    @action(detail=True, methods=["post"])
+    def keep(self, request: Request, **kwargs: object) -> Response:
+        """Makes a labelled utterance of a dialogue that ended with a form."""
         row = self.get_object()
         keep(row, request.user)
         return self.show(row)

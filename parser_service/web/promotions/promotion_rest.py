@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from http import HTTPStatus
-from typing import ClassVar
 
 from django.db.models import QuerySet
 from django.shortcuts import get_object_or_404
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
-from rest_framework.filters import BaseFilterBackend
+from rest_framework.decorators import action
+from rest_framework.mixins import ListModelMixin
 from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.models import Duty
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
-from annotations.web.rest.routes import RowRoute, RowsRoute
+from annotations.web.rest.routes import WorldViewSet
 from parser_service.models import Promotion
 from parser_service.promotions.promoting import MOST_REASON, decline, promote, roll_back
 
@@ -48,50 +48,40 @@ class RollBackReason(Fields):
     reason = serializers.CharField(max_length=MOST_REASON, allow_blank=True, default="")
 
 
-class PromotionNoun:
+class PromotionViewSet(ListModelMixin, WorldViewSet):
+    """The promotions and proposals of a world, the last one first."""
+
     model = Promotion
     serializer_class = PromotionSerializer
-    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.MANAGE}
-    filter_backends: ClassVar[list[type[BaseFilterBackend]]] = []
+    duties = dict.fromkeys(("create", "roll_back", "decline"), Duty.MANAGE)
+    filter_backends = []
+    sorts = {"newest": "-pk", "id": "pk"}
 
     def rows(self) -> QuerySet[Promotion]:
         return Promotion.objects.filter(world=self.world).select_related("decided_by")
 
-
-class Promotions(PromotionNoun, RowsRoute):
-    """The promotions and proposals of a world, the last one first; takes another promotion."""
-
-    sorts: ClassVar[dict[str, str]] = {"newest": "-pk", "id": "pk"}
-
     @extend_schema(request=NewPromotion, responses={201: PromotionSerializer})
     @once
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def create(self, request: Request, **kwargs: object) -> Response:
+        """Lets a run answer from now on."""
         sent = self.read(NewPromotion)
         run = get_object_or_404(self.world.runs.select_related("world"), pk=sent["run"])
         row = promote(run, request.user, sent["reason"])
         return Response(self.get_serializer(row).data, status=HTTPStatus.CREATED)
 
-
-class RollBack(PromotionNoun, RowRoute):
-    """Lets the run answer again that did before the present one."""
-
-    http_method_names: ClassVar[list[str]] = ["post", "options"]
-
     @extend_schema(request=RollBackReason, responses={201: PromotionSerializer})
+    @action(detail=False, methods=["post"], url_path="roll-back")
     @once
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def roll_back(self, request: Request, **kwargs: object) -> Response:
+        """Lets the run answer again that did before the present one."""
         reason = self.read(RollBackReason)["reason"]
         row = roll_back(self.world, request.user, reason)
         return Response(self.get_serializer(row).data, status=HTTPStatus.CREATED)
 
-
-class DeclinePromotion(PromotionNoun, RowRoute):
-    """Declines a proposal; the present run goes on answering."""
-
-    http_method_names: ClassVar[list[str]] = ["post", "options"]
-
     @extend_schema(request=None, responses={200: PromotionSerializer})
-    def post(self, request: Request, **kwargs: object) -> Response:
+    @action(detail=True, methods=["post"])
+    def decline(self, request: Request, **kwargs: object) -> Response:
+        """Declines a proposal; the present run goes on answering."""
         row = self.get_object()
         decline(self.world, row.pk, request.user)
         return Response(self.get_serializer(self.get_object()).data)

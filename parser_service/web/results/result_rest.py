@@ -7,13 +7,14 @@ from django.db.models import Case, OuterRef, Q, QuerySet, Subquery, When
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
+from rest_framework.mixins import ListModelMixin
 from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.language.corpus import KNOWN, harmonic_mean
 from annotations.lists.filtering import Key
 from annotations.models import Split
-from annotations.web.rest.routes import RowRoute, RowsRoute, WorldRoute
+from annotations.web.rest.routes import Retrieved, WorldRoute, WorldViewSet
 from parser_service.models import Evaluation
 from parser_service.results.export import as_json
 from parser_service.results.result_choices import read_choices, scored_splits
@@ -51,9 +52,13 @@ class EvaluationQuery(django_filters.FilterSet):
         fields = ["part", "test_source"]
 
 
-class EvaluationNoun:
+class EvaluationViewSet(ListModelMixin, Retrieved, WorldViewSet):
+    """How often runs are right."""
+
     model = Evaluation
     serializer_class = EvaluationSerializer
+    filterset_class = EvaluationQuery
+    sorts = {"id": "pk", "accuracy": "accuracy"}
 
     def rows(self) -> QuerySet[Evaluation]:
         known = Evaluation.objects.filter(
@@ -63,17 +68,6 @@ class EvaluationNoun:
         return Evaluation.objects.filter(run__world=self.world).annotate(
             accuracy_known=Case(beside_known, default=None)
         )
-
-
-class Evaluations(EvaluationNoun, RowsRoute):
-    """Lists how often runs are right."""
-
-    filterset_class = EvaluationQuery
-    sorts = {"id": "pk", "accuracy": "accuracy"}
-
-
-class OneEvaluation(EvaluationNoun, RowRoute):
-    """Shows an evaluation."""
 
 
 class Results(WorldRoute):

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from http import HTTPStatus
-from typing import Any, ClassVar
+from typing import Any
 
 from django.db.models import QuerySet
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework import serializers
+from rest_framework.decorators import action
+from rest_framework.mixins import ListModelMixin
 from rest_framework.request import Request
 from rest_framework.response import Response
 
@@ -16,7 +18,7 @@ from annotations.models import Duty
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.problem_details import refusal_of_form
-from annotations.web.rest.routes import RowRoute, RowsRoute
+from annotations.web.rest.routes import Retrieved, WorldViewSet
 from parser_service.models import ErrorCategory
 from parser_service.reviews.world_categories import (
     add_category,
@@ -57,10 +59,14 @@ class CategoryStep(Fields):
     step = serializers.ChoiceField(choices=[-1, 1])
 
 
-class CategoryNoun:
+class ErrorCategoryViewSet(ListModelMixin, Retrieved, WorldViewSet):
+    """The error categories of a world."""
+
     model = ErrorCategory
     serializer_class = ErrorCategorySerializer
-    duties: ClassVar[dict[str, Duty]] = dict.fromkeys(("POST", "PATCH", "DELETE"), Duty.MANAGE)
+    duties = dict.fromkeys(("create", "partial_update", "destroy", "move"), Duty.MANAGE)
+    conditional = ("partial_update", "destroy")
+    sorts = {"position": "position", "name": "name", "id": "pk"}
 
     def rows(self) -> QuerySet[ErrorCategory]:
         ensure_categories(self.world)
@@ -74,40 +80,30 @@ class CategoryNoun:
             raise refusal_of_form(form)
         return dict(form.cleaned_data)
 
-
-class ErrorCategories(CategoryNoun, RowsRoute):
-    """Lists the error categories, and adds one behind the others."""
-
-    sorts = {"position": "position", "name": "name", "id": "pk"}
-
     @extend_schema(request=CategoryChange, responses={201: ErrorCategorySerializer})
     @once
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def create(self, request: Request, **kwargs: object) -> Response:
+        """Adds an error category behind the others."""
         ensure_categories(self.world)
         values = self.valid(self.read(CategoryChange))
         added = add_category(self.world, values["name"], values["description"], values["slice"])
-        return RowRoute.show(self, added, HTTPStatus.CREATED)
-
-
-class OneErrorCategory(CategoryNoun, RowRoute):
-    """Shows, changes and deletes an error category."""
-
-    conditional_methods = ("PATCH", "DELETE")
-    http_method_names = ["get", "head", "patch", "delete", "options"]
+        return self.show(added, HTTPStatus.CREATED)
 
     def hold(self) -> None:
         """Hold all categories: they have one order and different names."""
         self.hold_world()
 
     @extend_schema(request=CategoryChange, responses={200: ErrorCategorySerializer})
-    def patch(self, request: Request, **kwargs: object) -> Response:
+    def partial_update(self, request: Request, **kwargs: object) -> Response:
+        """Changes an error category."""
         with self.matching() as row:
             values = self.valid(self.read(CategoryChange, partial=True), self.get_object())
             change_category(row, values["name"], values["description"], values["slice"])
         return self.show(row)
 
     @extend_schema(parameters=[MOVE_TO])
-    def delete(self, request: Request, **kwargs: object) -> Response:
+    def destroy(self, request: Request, **kwargs: object) -> Response:
+        """Deletes an error category; another one may get its reviews."""
         with self.matching() as row:
             form = DeletionForm(row, request.query_params)
             if not form.is_valid():
@@ -115,13 +111,9 @@ class OneErrorCategory(CategoryNoun, RowRoute):
             delete_category(row, form.cleaned_data["move_to"])
         return Response(status=HTTPStatus.NO_CONTENT)
 
-
-class MoveErrorCategory(CategoryNoun, RowRoute):
-    """Puts an error category one place up or down."""
-
-    http_method_names = ["post", "options"]
-
     @extend_schema(request=CategoryStep, responses={200: ErrorCategorySerializer})
-    def post(self, request: Request, **kwargs: object) -> Response:
+    @action(detail=True, methods=["post"])
+    def move(self, request: Request, **kwargs: object) -> Response:
+        """Puts an error category one place up or down."""
         move_category(self.get_object(), self.read(CategoryStep)["step"])
         return self.show(self.get_object())

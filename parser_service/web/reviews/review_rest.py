@@ -10,6 +10,7 @@ from django.db.models import QuerySet
 from django.shortcuts import get_object_or_404
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
+from rest_framework.mixins import ListModelMixin
 from rest_framework.request import Request
 from rest_framework.response import Response
 
@@ -18,7 +19,7 @@ from annotations.language.limits import MAX_FORM
 from annotations.lists.filtering import Key
 from annotations.models import Duty, Example, User
 from annotations.web.rest.fields import Fields, LineField
-from annotations.web.rest.routes import RowRoute, RowsRoute
+from annotations.web.rest.routes import Retrieved, RowRoute, WorldViewSet
 from parser_service.models import Review, TrainingRun
 from parser_service.reviews.label_doubts import LONGEST_DOUBT, doubt_label
 from parser_service.reviews.tagging import LONGEST_NOTE, accept, tag, take_back, write_note
@@ -52,24 +53,17 @@ class ReviewQuery(django_filters.FilterSet):
         fields = ["is_proposed", "is_new"]
 
 
-class ReviewNoun:
+class ReviewViewSet(ListModelMixin, Retrieved, WorldViewSet):
+    """What reviewers and the machine say about answers."""
+
     model = Review
     serializer_class = ReviewSerializer
+    filterset_class = ReviewQuery
+    sorts = {"id": "pk", "changed": "changed_at"}
 
     def rows(self) -> QuerySet[Review]:
         rows = Review.objects.filter(run__world=self.world)
         return rows.select_related("category", "reviewer")
-
-
-class Reviews(ReviewNoun, RowsRoute):
-    """Lists what reviewers and the machine say about answers."""
-
-    filterset_class = ReviewQuery
-    sorts = {"id": "pk", "changed": "changed_at"}
-
-
-class OneReview(ReviewNoun, RowRoute):
-    """Shows a review."""
 
 
 @dataclass(frozen=True)
@@ -114,7 +108,7 @@ class AnswerRoute(RowRoute):
 class ReviewOfAnswer(AnswerRoute):
     """Shows and changes the caller's review of an answer."""
 
-    conditional_methods = ("PATCH",)
+    conditional = ("PATCH",)
 
     def hold(self) -> None:
         """Hold the reviewer: each has one review of an answer, which may not be there yet."""

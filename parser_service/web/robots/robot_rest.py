@@ -9,6 +9,8 @@ from django.http import HttpResponse, HttpResponseBase
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
+from rest_framework.decorators import action
+from rest_framework.mixins import ListModelMixin
 from rest_framework.request import Request
 from rest_framework.response import Response
 
@@ -19,7 +21,7 @@ from annotations.language.plans import make_plan, to_behavior_tree
 from annotations.models import Duty, Scope
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.problem_details import refusal_of_text
-from annotations.web.rest.routes import RowsRoute, WorldRoute
+from annotations.web.rest.routes import WorldRoute, WorldViewSet
 from parser_service.dialogues.entity_offers import confirm, refuse
 from parser_service.models import OfferedEntity
 from parser_service.robots.action_naming import (
@@ -132,26 +134,21 @@ class DecisionSerializer(Fields):
     decision = serializers.ChoiceField(choices=["confirm", "refuse"])
 
 
-class OfferedEntityNoun:
+class OfferedEntityViewSet(ListModelMixin, WorldViewSet):
+    """What people named in dialogues and the ontology did not have."""
+
     model = OfferedEntity
     serializer_class = OfferedEntitySerializer
-    filter_backends: list[Any] = []
+    filter_backends = []
+    duties = {"decide": Duty.ANNOTATE}
 
     def rows(self) -> QuerySet[OfferedEntity]:
         return self.world.offered_entities.select_related("decided_by")
 
-
-class OfferedEntities(OfferedEntityNoun, RowsRoute):
-    """Lists what people named in dialogues and the ontology did not have."""
-
-
-class DecideOfferedEntity(OfferedEntityNoun, WorldRoute):
-    """Confirms an offered entity, or refuses it; once."""
-
-    duties = {"POST": Duty.ANNOTATE}
-
     @extend_schema(request=DecisionSerializer, responses=OfferedEntitySerializer)
-    def post(self, request: Request, world: str, pk: int) -> Response:
+    @action(detail=True, methods=["post"])
+    def decide(self, request: Request, **kwargs: object) -> Response:
+        """Confirms an offered entity, or refuses it; once."""
         row = self.get_object()
         decide = {"confirm": confirm, "refuse": refuse}[self.read(DecisionSerializer)["decision"]]
         decide(row, request.user)

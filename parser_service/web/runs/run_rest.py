@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from http import HTTPStatus
-from typing import Any, ClassVar
+from typing import Any
 
 from django.db.models import QuerySet
 from django.shortcuts import get_object_or_404
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
+from rest_framework.decorators import action
+from rest_framework.mixins import ListModelMixin
 from rest_framework.request import Request
 from rest_framework.response import Response
 
@@ -18,7 +20,7 @@ from annotations.web.background.job_rest import JobSerializer
 from annotations.web.rest.fields import Fields, FiniteField
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.problem_details import Refused, refusal_of_form
-from annotations.web.rest.routes import RowRoute, RowsRoute
+from annotations.web.rest.routes import Retrieved, RowsRoute, WorldViewSet
 from parser_service.analyses.state import analysis_of
 from parser_service.models import Checkpoint, EpochMetric, RunEvent, TrainingRun
 from parser_service.parsers.conditions import Protocol, TrainSources
@@ -77,11 +79,27 @@ class StartedRunsSerializer(serializers.Serializer):
     runs = RunSerializer(many=True)
 
 
-class RunNoun:
+class CurveSeeds(Fields):
+    """How many runs there are to be for each share, counting seeds up from that of the run."""
+
+    seeds = serializers.IntegerField(min_value=1, max_value=MOST_CURVE_SEEDS, default=1)
+
+
+TRAINING = ("create", "cancel", "retrain", "learning_curve")
+
+
+class RunViewSet(ListModelMixin, Retrieved, WorldViewSet):
+    """The training runs, the newest first."""
+
     model = TrainingRun
     serializer_class = RunSerializer
-    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.MANAGE}
-    scopes: ClassVar[dict[str, Scope]] = {"POST": Scope.TRAIN}
+    filterset_class = RunFilters
+    duties = dict.fromkeys(TRAINING, Duty.MANAGE) | {"analysis": Duty.REVIEW}
+    scopes = dict.fromkeys(TRAINING, Scope.TRAIN)
+    sorts = {
+        **{"newest": "-id", "parser": "parser", "status": "status"},
+        "seconds_trained": "seconds_trained",
+    }
 
     def rows(self) -> QuerySet[TrainingRun]:
         return self.world.runs.select_related("split__world", "created_by", "world")
@@ -93,21 +111,12 @@ class RunNoun:
         status = HTTPStatus.CREATED if new else HTTPStatus.OK
         return Response({"new": new, "runs": shown}, status=status)
 
-
-class Runs(RunNoun, RowsRoute):
-    """Lists the runs, the newest first, and starts some."""
-
-    filterset_class = RunFilters
-    sorts = {
-        **{"newest": "-id", "parser": "parser", "status": "status"},
-        "seconds_trained": "seconds_trained",
-    }
-
     @extend_schema(
         request=NewRuns, responses={201: StartedRunsSerializer, 200: StartedRunsSerializer}
     )
     @once
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def create(self, request: Request, **kwargs: object) -> Response:
+        """Starts runs, one for each seed."""
         form = self._form(self.read(NewRuns))
         if not form.is_valid():
             raise refusal_of_run(form)
@@ -127,70 +136,43 @@ class Runs(RunNoun, RowsRoute):
         asked = {**sent, **config, "protocol": protocol, "share": 100 * sent["train_share"]}
         return RunForm(self.world, sent["parser"], asked)
 
-
-class OneRun(RunNoun, RowRoute):
-    """Shows a run."""
-
-    http_method_names = ["get", "head", "options"]
-
-
-class RunVerb(RunNoun, RowRoute):
-    http_method_names = ["post", "options"]
-
-
-class CancelRun(RunVerb):
-    """Cancels a run that waits or runs; it stops within seconds."""
-
     @extend_schema(request=None, responses={200: RunSerializer})
-    def post(self, request: Request, **kwargs: object) -> Response:
+    @action(detail=True, methods=["post"])
+    def cancel(self, request: Request, **kwargs: object) -> Response:
+        """Cancels a run that waits or runs; it stops within seconds."""
         run = self.get_object()
         lifecycle.cancel(run)
         return self.show(self.get_object())
 
-
-class RetrainRun(RunVerb):
-    """Trains the same configuration on the split that follows the run's own."""
-
     @extend_schema(request=None, responses={201: StartedRunsSerializer, 200: StartedRunsSerializer})
+    @action(detail=True, methods=["post"])
     @once
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def retrain(self, request: Request, **kwargs: object) -> Response:
+        """Trains the same configuration on the split that follows the run's own."""
         run = self.get_object()
         return self.answer_started([start_again(run, request.user)])
-
-
-class CurveSeeds(Fields):
-    """How many runs there are to be for each share, counting seeds up from that of the run."""
-
-    seeds = serializers.IntegerField(min_value=1, max_value=MOST_CURVE_SEEDS, default=1)
-
-
-class StartLearningCurve(RunVerb):
-    """Trains the run's configuration on shares of its training pairs, as far as that is not done."""
 
     @extend_schema(
         request=CurveSeeds, responses={201: StartedRunsSerializer, 200: StartedRunsSerializer}
     )
+    @action(detail=True, methods=["post"], url_path="learning-curve")
     @once
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def learning_curve(self, request: Request, **kwargs: object) -> Response:
+        """Trains the run's configuration on shares of its training pairs, as far as that is not done."""
         run, seeds = self.get_object(), self.read(CurveSeeds)["seeds"]
         new = start_learning_curve(run, request.user, seeds)
         return self.answer_started([(each, True) for each in new])
 
-
-class Analyse(RunVerb):
-    """Lets a worker analyse the errors of a run, again where that was done; the answer is its job."""
-
-    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.REVIEW}
-    scopes: ClassVar[dict[str, Scope]] = {}
-
     @extend_schema(request=None, responses={202: JobSerializer})
-    def post(self, request: Request, **kwargs: object) -> Response:
-        analysis = analysis_of(self.get_object())
-        if not analysis.is_possible:
-            run = analysis.run
+    @action(detail=True, methods=["post"])
+    def analysis(self, request: Request, **kwargs: object) -> Response:
+        """Lets a worker analyse the errors of a run, again where that was done; the answer is its job."""
+        state = analysis_of(self.get_object())
+        if not state.is_possible:
+            run = state.run
             sentence = f"Run {run.pk} is {run.status}: only one that succeeded is analysed."
             raise Refusal(sentence, "run_not_succeeded", HTTPStatus.CONFLICT)
-        job = request_analysis(analysis.run, request.user, again=analysis.is_complete)
+        job = request_analysis(state.run, request.user, again=state.is_complete)
         return Response(JobSerializer(job).data, status=HTTPStatus.ACCEPTED)
 
 

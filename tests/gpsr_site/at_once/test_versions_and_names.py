@@ -31,7 +31,7 @@ from tests.gpsr_site.at_once.writes import (
 )
 from tests.gpsr_site.routes import addresses
 from tests.gpsr_site.routes.addresses import address
-from tests.gpsr_site.routes.listing import API_VIEWS
+from tests.gpsr_site.routes.listing import API_ROUTES
 from tests.sample_world import SampleWorld, fill_world
 
 WRITERS, ROUNDS = 20, 3
@@ -60,8 +60,9 @@ def send(key: str, method: str, path: str, body: Any = None, **headers: str) -> 
 def test_every_route_that_changes_a_version_is_raced_for():
     conditional = {
         (name, method)
-        for name, view in API_VIEWS.items()
-        for method in getattr(view, "conditional_methods", ())
+        for name, route in API_ROUTES.items()
+        for method in map(str.upper, route.methods)
+        if route.asked(method) in getattr(route.view, "conditional", ())
     }
     assert conditional == set(CHANGES)
 
@@ -69,9 +70,8 @@ def test_every_route_that_changes_a_version_is_raced_for():
 def test_whatever_is_changed_or_deleted_asks_for_a_version():
     asked = {
         (name, method.upper())
-        for name, view in API_VIEWS.items()
-        for method in ("put", "patch", "delete")
-        if hasattr(view, method)
+        for name, route in API_ROUTES.items()
+        for method in route.methods & {"put", "patch", "delete"}
     }
     assert asked <= set(CHANGES)
 
@@ -117,14 +117,14 @@ def require_stored(answer: dict[str, Any], after: Any) -> None:
 
 def require_history(name: str, shown: dict[str, Any]) -> None:
     """The history of a row that has one keeps this version once."""
-    model = getattr(API_VIEWS[SHOWN_BY.get(name, name)], "model", None)
+    model = getattr(API_ROUTES[SHOWN_BY.get(name, name)].view, "model", None)
     if model and issubclass(model, Editable):
         entries = model.history.filter(id=shown["id"], version=shown["version"])
         assert entries.count() == 1
 
 
 def test_every_route_that_is_posted_to_is_known():
-    posted = {name for name, view in API_VIEWS.items() if hasattr(view, "post")}
+    posted = {name for name, route in API_ROUTES.items() if "post" in route.methods}
     assert posted == set(NAMES) | {f"api:{name}" for name in NAMELESS}
 
 
@@ -134,8 +134,8 @@ MADE = {
     "api:worlds": lambda: World.objects.filter(name="attic"),
     "api:import-world": lambda: World.objects.exclude(name__in=["home", "cellar"]),
     "api:splits": lambda: Split.objects.filter(name="mine"),
-    "api:slices": lambda: Slice.objects.filter(name="wrong ones"),
-    "api:error-categories": lambda: ErrorCategory.objects.filter(name="Slip"),
+    "api:slice-list": lambda: Slice.objects.filter(name="wrong ones"),
+    "api:error-category-list": lambda: ErrorCategory.objects.filter(name="Slip"),
     "api:members": lambda: Membership.objects.filter(
         user__username="someone in home", role=Role.ANNOTATOR
     ),
@@ -171,8 +171,8 @@ PAGES = {
     "entities_new": {"entity_class": "object", "lines": "flurb", "attributes": "", "add": "yes"},
     "predicate_new": {**NAMES["api:predicates"], "signatures": "(object)", "gloss": ""},
     "world_new": {"name": "attic", "description": ""},
-    "slices": {**NAMES["api:slices"], "chosen": "outcome=wrong"},
-    "error_categories": {**NAMES["api:error-categories"], "slice": ""},
+    "slices": {**NAMES["api:slice-list"], "chosen": "outcome=wrong"},
+    "error_categories": {**NAMES["api:error-category-list"], "slice": ""},
     "split_new": {
         **{"name": "mine", "criterion": "command", "seed": "0"},
         **{"train": "70", "validation": "10", "test": "20", "freeze": "yes"},
@@ -185,8 +185,8 @@ ROUTE_OF_PAGE = {
     "entities_new": "api:entities",
     "predicate_new": "api:predicates",
     "world_new": "api:worlds",
-    "slices": "api:slices",
-    "error_categories": "api:error-categories",
+    "slices": "api:slice-list",
+    "error_categories": "api:error-category-list",
     "split_new": "api:splits",
     "people": "api:members",
 }

@@ -42,14 +42,14 @@ CHANGES: dict[tuple[str, str], Body] = {
     ("api:account", "PATCH"): lambda writer, turn: {"is_active": bool(turn % 2)},
     ("api:member", "PATCH"): lambda writer, turn: {"roles": ["annotator", "admin"][: 1 + turn % 2]},
     ("api:answer-review", "PATCH"): lambda *each: {"note": different(*each)},
-    ("api:error-category", "PATCH"): lambda *each: {"name": different(*each)},
-    ("api:slice", "PATCH"): lambda *each: {"name": different(*each)},
+    ("api:error-category-detail", "PATCH"): lambda *each: {"name": different(*each)},
+    ("api:slice-detail", "PATCH"): lambda *each: {"name": different(*each)},
     **{
         (f"api:{name}", "DELETE"): nothing
         for name in (
             *("entity", "predicate", "production", "template", "paraphrase", "comment", "world"),
             "utterance",
-            *("token", "session", "member", "invitation", "error-category", "slice"),
+            *("token", "session", "member", "invitation", "error-category-detail", "slice-detail"),
         )
     },
 }
@@ -63,16 +63,39 @@ NAMES: dict[str, dict[str, Any]] = {
     "api:worlds": {"name": "attic"},
     "api:import-world": {"name": "attic"},
     "api:splits": {"name": "mine"},
-    "api:slices": {"name": "wrong ones", "query": "outcome=wrong"},
-    "api:error-categories": {"name": "Slip", "description": "", "slice": None},
+    "api:slice-list": {"name": "wrong ones", "query": "outcome=wrong"},
+    "api:error-category-list": {"name": "Slip", "description": "", "slice": None},
     "api:members": {"name": "someone in home", "roles": ["annotator"]},
 }
 # Routes that are posted to and make no name: several rows may say the same, what is made has no name,
 # or nothing is made. Actions that are done once have tests of their own beside their verbs.
 NAMELESS = {
-    *("productions", "templates", "comments", "utterances", "invitations", "tokens", "dialogues"),
-    *("runs", "learning-curve", "run-retrain", "run-analyse", "run-cancel", "audit", "work-items"),
-    *("promotions", "promotion-decline", "promotion-roll-back", "split-renew", "history", "rename"),
+    *(
+        "productions",
+        "templates",
+        "comments",
+        "utterances",
+        "invitations",
+        "tokens",
+        "dialogue-list",
+    ),
+    *(
+        "run-list",
+        "run-learning-curve",
+        "run-retrain",
+        "run-analysis",
+        "run-cancel",
+        "audit",
+        "work-items",
+    ),
+    *(
+        "promotion-list",
+        "promotion-decline",
+        "promotion-roll-back",
+        "split-renew",
+        "history",
+        "rename",
+    ),
     *("import", "import-pairs", "generate", "job-answer", "job-cancel", "site-job-cancel"),
     *("check-form", "check-predicate", "check-production", "check-template", "suggestions"),
     *("parse", "parse-wrong", "plan", "action-names", "dialogue-answer", "dialogue-keep"),

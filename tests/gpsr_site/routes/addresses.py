@@ -114,9 +114,9 @@ KEYS: dict[str, RouteKeys] = {
             *("run", "run_state", "run_charts", "run_curves", "run_cancel", "run_retrain"),
             *("run_report", "predictions", "predictions_send"),
             "learning_curve_start",
-            *("api:run", "api:run-log", "api:run-curves", "api:run-checkpoints"),
+            *("api:run-detail", "api:run-log", "api:run-curves", "api:run-checkpoints"),
             *("api:run-cancel", "api:run-retrain", "api:predictions", "api:candidates"),
-            *("api:learning-curve", "api:run-analyse", "api:predictions-send"),
+            *("api:run-learning-curve", "api:run-analysis", "api:predictions-send"),
             *("api:run-findings", "api:run-probes"),
         ),
         pk_of(run),
@@ -129,12 +129,12 @@ KEYS: dict[str, RouteKeys] = {
     **dict.fromkeys(
         (
             *("error_category", "error_category_move", "error_category_delete"),
-            *("api:error-category", "api:error-category-move"),
+            *("api:error-category-detail", "api:error-category-move"),
         ),
         pk_of(error_category),
     ),
-    "api:evaluation": pk_of(lambda sample: sample.run.evaluations.first()),
-    "api:review": pk_of(review),
+    "api:evaluation-detail": pk_of(lambda sample: sample.run.evaluations.first()),
+    "api:review-detail": pk_of(review),
     **dict.fromkeys(
         ("api:answer-review", "api:answer-doubt"),
         lambda sample: {"run": sample.run.pk, "pk": sample.example.pk},
@@ -178,13 +178,13 @@ KEYS: dict[str, RouteKeys] = {
     **dict.fromkeys(
         (
             *("dialogue", "dialogue_keep"),
-            *("api:dialogue", "api:dialogue-answer", "api:dialogue-keep"),
+            *("api:dialogue-detail", "api:dialogue-answer", "api:dialogue-keep"),
         ),
         pk_of(dialogue),
     ),
     **dict.fromkeys(("offered_entity_decide", "api:offered-entity-decide"), pk_of(offered_entity)),
     "plan_schema": lambda _: {"name": "plan.schema.json"},
     "queue_ask": pk_of(utterance, kind="utterance"),
-    **dict.fromkeys(("slice_rename", "slice_delete", "api:slice"), pk_of(saved_slice)),
+    **dict.fromkeys(("slice_rename", "slice_delete", "api:slice-detail"), pk_of(saved_slice)),
     **dict.fromkeys(("promotion_decline", "api:promotion-decline"), pk_of(proposal)),
 }

@@ -18,9 +18,24 @@ READABLE = (
     *("paraphrases", "paraphrase", "utterances", "utterance", "splits", "split"),
     *("split-examples", "split-export", "split-manifest", "audit-findings", "audit-finding"),
     *("work-items", "work-item", "world"),
-    *("runs", "run", "run-log", "run-curves", "run-checkpoints", "predictions", "candidates"),
-    *("results", "evaluations", "evaluation", "reviews", "review", "answer-review"),
-    *("slices", "slice", "error-categories", "error-category"),
+    *(
+        "run-list",
+        "run-detail",
+        "run-log",
+        "run-curves",
+        "run-checkpoints",
+        "predictions",
+        "candidates",
+    ),
+    *(
+        "results",
+        "evaluation-list",
+        "evaluation-detail",
+        "review-list",
+        "review-detail",
+        "answer-review",
+    ),
+    *("slice-list", "slice-detail", "error-category-list", "error-category-detail"),
     *("jobs", "job", "download", "history", "deleted", "comments", "comment"),
     *("members", "member", "labels", "audit", "download-part", "run-findings", "run-probes"),
     *(
@@ -145,20 +160,23 @@ API_POLICY = [
     # What reviewers say, what admins decide
     *(
         Rule(f"api:{name}", *reviewers(NO_JSON), method="post")
-        for name in ("slices", "answer-doubt", "predictions-send")
+        for name in ("slice-list", "answer-doubt", "predictions-send")
     ),
     Rule("api:answer-review", *reviewers(NO_VERSION), method="patch"),
-    *(Rule("api:slice", *reviewers(NO_VERSION), method=method) for method in ("patch", "delete")),
     *(
-        Rule(f"api:{name}", *admins(NO_JSON), method="post")
-        for name in ("runs", "error-categories", "error-category-move")
-    ),
-    *(
-        Rule("api:error-category", *admins(NO_VERSION), method=method)
+        Rule("api:slice-detail", *reviewers(NO_VERSION), method=method)
         for method in ("patch", "delete")
     ),
-    Rule("api:learning-curve", *admins(NO_JSON), method="post"),
-    Rule("api:run-analyse", *reviewers(202), method="post"),
+    *(
+        Rule(f"api:{name}", *admins(NO_JSON), method="post")
+        for name in ("run-list", "error-category-list", "error-category-move")
+    ),
+    *(
+        Rule("api:error-category-detail", *admins(NO_VERSION), method=method)
+        for method in ("patch", "delete")
+    ),
+    Rule("api:run-learning-curve", *admins(NO_JSON), method="post"),
+    Rule("api:run-analysis", *reviewers(202), method="post"),
     Rule("api:run-cancel", *admins(CLASH), method="post"),  # it has ended
     Rule("api:run-retrain", *admins(400), method="post"),  # there is no newer split
     *(
@@ -174,19 +192,19 @@ API_POLICY = [
     Rule("api:work-item-finish", NO_TOKEN, NOWHERE, *[CLASH] * 3, method="post"),
     Rule("api:work-item-give-back", NO_TOKEN, NOWHERE, *[CLASH] * 3, method="post"),
     Rule("api:parse", NO_TOKEN, NOWHERE, *[NO_JSON] * 3, method="post"),
-    Rule("api:promotions", *READ),
-    Rule("api:promotions", *admins(NO_JSON), method="post"),
+    Rule("api:promotion-list", *READ),
+    Rule("api:promotion-list", *admins(NO_JSON), method="post"),
     Rule("api:promotion-roll-back", *admins(NO_JSON), method="post"),
     Rule("api:promotion-decline", *admins(YES), method="post"),
     # Who may see a world may talk about its commands; only annotators label what comes of it.
-    Rule("api:dialogues", *READ),
-    Rule("api:dialogue", *READ),
-    Rule("api:dialogues", NO_TOKEN, NOWHERE, *[NO_JSON] * 3, method="post"),
+    Rule("api:dialogue-list", *READ),
+    Rule("api:dialogue-detail", *READ),
+    Rule("api:dialogue-list", NO_TOKEN, NOWHERE, *[NO_JSON] * 3, method="post"),
     Rule("api:dialogue-answer", NO_TOKEN, NOWHERE, *[NO_JSON] * 3, method="post"),
     Rule("api:plan", NO_TOKEN, NOWHERE, *[NO_JSON] * 3, method="post"),
     Rule("api:action-names", *READ),
     Rule("api:action-names", *annotators(NO_JSON), method="post"),
-    Rule("api:offered-entities", *READ),
+    Rule("api:offered-entity-list", *READ),
     Rule("api:offered-entity-decide", *annotators(NO_JSON), method="post"),
     Rule("api:dialogue-keep", NO_TOKEN, NOWHERE, CLASH, NO, CLASH, method="post"),
 ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from django.urls import URLPattern, URLResolver, get_resolver
 
@@ -21,17 +22,36 @@ def list_routes(patterns, namespace: str = "", path: str = "") -> Iterator[tuple
             yield f"{namespace}{pattern.name}", here
 
 
-def list_views(patterns, namespace: str = "") -> Iterator[tuple[str, type]]:
-    """Yield name and class of every route of the API."""
+@dataclass(frozen=True)
+class ApiRoute:
+    """A route of the API: its class, and of a view set which action answers which method."""
+
+    view: type
+    actions: dict[str, str]
+
+    @property
+    def methods(self) -> set[str]:
+        """The methods that it answers, in small letters, HEAD left out."""
+        answered = [each for each in self.view.http_method_names if hasattr(self.view, each)]
+        return set(self.actions or answered) - {"head", "options"}
+
+    def asked(self, method: str) -> str:
+        """Return what ``duties``, ``scopes`` and ``conditional`` call a method."""
+        return self.actions.get(method.lower(), method.upper())
+
+
+def list_api_routes(patterns, namespace: str = "") -> Iterator[tuple[str, ApiRoute]]:
+    """Yield every route of the API by name."""
     for pattern in patterns:
         if isinstance(pattern, URLResolver):
             inside = f"{pattern.namespace}:" if pattern.namespace else namespace
-            yield from list_views(pattern.url_patterns, inside)
+            yield from list_api_routes(pattern.url_patterns, inside)
         elif isinstance(pattern, URLPattern) and namespace == "api:":
-            yield f"{namespace}{pattern.name}", pattern.callback.view_class
+            actions = getattr(pattern.callback, "actions", {})
+            yield f"{namespace}{pattern.name}", ApiRoute(pattern.callback.cls, actions)
 
 
 ALL_ROUTES = dict(list_routes(get_resolver().url_patterns))
-API_VIEWS = dict(list_views(get_resolver().url_patterns))
+API_ROUTES = dict(list_api_routes(get_resolver().url_patterns))
 ROUTES_OF_WORLDS = {name for name, path in ALL_ROUTES.items() if "<slug:world>" in path}
 ROUTES_OF_ROWS = sorted(name for name in ROUTES_OF_WORLDS if "<int:" in ALL_ROUTES[name])

@@ -30,7 +30,7 @@ def views_of(patterns, namespace: str = ""):
         elif isinstance(pattern, URLPattern):
             yield (
                 f"{namespace}{pattern.name}",
-                getattr(pattern.callback, "view_class", pattern.callback),
+                getattr(pattern.callback, "cls", pattern.callback),
             )
 
 

@@ -6,10 +6,10 @@ import pytest
 
 from annotations.models import AuditEntry
 from tests.gpsr_site.routes.addresses import address
-from tests.gpsr_site.routes.listing import API_VIEWS
+from tests.gpsr_site.routes.listing import API_ROUTES
 from tests.gpsr_site.routes.policy import POLICY
 
-POSTED = sorted({rule.name for rule in POLICY if rule.method == "post"} - set(API_VIEWS))
+POSTED = sorted({rule.name for rule in POLICY if rule.method == "post"} - set(API_ROUTES))
 # What pages send; of the others an empty form is sent, which is enough where a button is all there is.
 SENT = {
     "invite": {"invite-roles": ["annotator"], "invite-places": "1", "invite-days": "7"},

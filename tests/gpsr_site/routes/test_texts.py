@@ -18,7 +18,7 @@ from annotations.web.rest.parsing import BoundedJSONParser, FilesParser
 from parser_service.web.serving.parsing_rest import JsonLinesParser
 from tests.gpsr_site.routes.addresses import address
 from tests.gpsr_site.routes.bodies import bodies, example_of
-from tests.gpsr_site.routes.listing import API_VIEWS
+from tests.gpsr_site.routes.listing import API_ROUTES
 from tests.gpsr_site.routes.policy import POLICY
 from tests.gpsr_site.routes.test_odd_input import FIELDS_ELSEWHERE, FORM, fields_of, in_query
 from tests.sample_world import SampleWorld
@@ -111,5 +111,5 @@ def test_a_body_stores_nothing_invisible(free, sample: SampleWorld, root):
 
 def test_every_route_reads_bodies_in_the_one_way():
     readers = {BoundedJSONParser, FilesParser, JsonLinesParser}
-    for name, view in API_VIEWS.items():
-        assert readers.issuperset(view.parser_classes), name
+    for name, route in API_ROUTES.items():
+        assert readers.issuperset(route.view.parser_classes), name
