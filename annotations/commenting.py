@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime
+from http import HTTPStatus
 from itertools import pairwise
 from typing import Any
 
@@ -15,6 +16,7 @@ from django.urls import reverse
 from django.utils import timezone
 
 from annotations.form_presentation import Pieces, compare
+from annotations.language.errors import Refusal
 from annotations.models import Comment, EarlierText, LogicalForm, Notice, User, World
 from annotations.rows.row_kinds import KINDS
 
@@ -136,11 +138,14 @@ def mark_read(notices: models.QuerySet[Notice]) -> int:
     return notices.filter(read_at__isnull=True).update(read_at=timezone.now())
 
 
-class EditedElsewhere(Exception):
+class EditedElsewhere(Refusal):
     """The comment is at another version than the one that was edited, or deleted; nothing was saved.
 
     ``current`` is the comment as it is now.
     """
+
+    code = "edited_elsewhere"
+    status = HTTPStatus.CONFLICT
 
     def __init__(self, current: Comment) -> None:
         what = "deleted" if current.is_deleted else "edited"

@@ -9,6 +9,8 @@ from collections.abc import Iterator
 
 from django.db import DatabaseError
 
+from annotations.language.errors import Refusal
+
 FULL = (errno.ENOSPC, errno.EDQUOT)
 POSTGRES_FULL, SQLITE_FULL = "53100", sqlite3.SQLITE_FULL
 # What libraries say that pass no errno on: safetensors, and the system itself.
@@ -34,12 +36,12 @@ DAMAGED = (
 
 
 def failure_sentence(error: Exception, noun: str = "job") -> str:
-    """Say what stopped the work and what to do about it. A ValueError of ours says both itself."""
+    """Say what stopped the work and what to do about it. A Refusal says both itself."""
     if is_disk_full(error):
         return f"The disk is full. {FREE_SPACE}, then start the {noun} again."
     if is_damaged(error):
         return DAMAGED
-    if isinstance(error, ValueError):
+    if isinstance(error, Refusal):
         return str(error)
     if is_out_of_memory(error):
         return f"The memory ran out. Run the {noun} on another machine, or split it up."
@@ -47,6 +49,14 @@ def failure_sentence(error: Exception, noun: str = "job") -> str:
         f"The program has a fault: {type(error).__name__}: {error}. The worker's log shows where; "
         f"report it with the number of this {noun}."
     )
+
+
+def file_sentence(error: OSError) -> str:
+    """Say why a command could not use a file or the network, and what to do about it."""
+    if is_disk_full(error):
+        return f"The disk is full ({error.strerror}). {FREE_SPACE}, then run this again."
+    what = f"{error.filename} cannot be used" if error.filename else "The system refused this"
+    return f"{what}: {error.strerror or type(error).__name__}. Put this right, then run it again."
 
 
 def database_sentence(error: DatabaseError) -> str:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from http import HTTPStatus
 from typing import Any, TypeVar
 
 from django.core.exceptions import ValidationError
@@ -19,6 +20,7 @@ from annotations.checking.world_problems import check_again
 from annotations.editing.drafts import discard_draft_of_new
 from annotations.editing.once_keys import made_before, remember
 from annotations.generation.up_to_date import start_update
+from annotations.language.errors import Refusal
 from annotations.models import Editable, User, World
 from annotations.models.editing import HistoryEntry, Placed
 from annotations.rows.history import (
@@ -37,7 +39,7 @@ from annotations.rows.synchronise import BATCH, batches
 Row = TypeVar("Row", bound=Editable)
 
 
-class Overtaken(Exception):
+class Overtaken(Refusal):
     """Somebody changed or deleted the row after the reader had opened it; nothing was saved.
 
     Attributes:
@@ -46,6 +48,9 @@ class Overtaken(Exception):
         last: the newest entry of its history, which says who was faster; None where there is none.
         sentence: who did what, as the person reads it who was slower.
     """
+
+    code = "overtaken"
+    status = HTTPStatus.PRECONDITION_FAILED
 
     def __init__(
         self,

@@ -101,7 +101,8 @@ def _predicate(row: Any, place: Position) -> Predicate:
     except ValueError as error:
         kinds = ", ".join(ArgumentKind)
         hint = f"a predicate is an action or a description; kinds of arguments are {kinds}"
-        raise LanguageError(f"{row['name']}: {error}", place, hint) from error
+        sentence = f"{row['name']} has a kind, or arguments of a kind, that there is not"
+        raise LanguageError(sentence, place, hint) from error
     return Predicate(row["name"], kind, read, gloss)
 
 

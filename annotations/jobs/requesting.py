@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from http import HTTPStatus
 from pathlib import Path
 from typing import Any
 
@@ -97,10 +98,12 @@ def answer_job(job: Job, by: User) -> Job:
     with transaction.atomic():
         asked = Job.objects.select_for_update().get(pk=job.pk)
         if not asked.is_waiting_for_answer:
-            raise Refusal("This import has been answered already.", "already_answered")
+            said = "This import has been answered already."
+            raise Refusal(said, "already_answered", HTTPStatus.CONFLICT)
         _settle_question(asked)
         if not folder_of(asked).is_dir():
-            raise Refusal("The files are no longer here. Choose them again.", "files_gone")
+            said = "The files are no longer here. Choose them again."
+            raise Refusal(said, "files_gone", HTTPStatus.CONFLICT)
         answer = _new_job(asked.kind, asked.world_name, by, asked.arguments, ())
         answer.arguments = {**asked.arguments, "may_remove": True}
         answer.save()
@@ -115,6 +118,7 @@ def cancel_job(job: Job) -> None:
         raise Refusal(
             "A deletion cannot be stopped: a part of the world may be gone already.",
             "deletion_goes_on",
+            HTTPStatus.CONFLICT,
         )
     with transaction.atomic():
         asked = Job.objects.select_for_update().get(pk=job.pk)

@@ -62,7 +62,10 @@ def decide(
     if decision not in dict(decision_choices()):
         raise Refusal(f"There is no decision {decision[:20]!r}.", "no_such_decision")
     if WorkKind.AUDIT not in kinds_for(by, finding.world):
-        raise NotForThem(f"{by} has no role in this world that decides about labels.")
+        raise NotForThem(
+            f"{by} has no role in this world that decides about labels.",
+            status=HTTPStatus.FORBIDDEN,
+        )
     with transaction.atomic():
         stored = _lock(finding.pk)
         _require_open(stored, by)
@@ -91,9 +94,11 @@ def take_back(made: AuditDecision, by: User) -> AuditFinding:
         finding = _lock(made.finding_id)
         stored = AuditDecision.objects.select_for_update().get(pk=made.pk)
         if stored.decided_by_id != by.pk:
-            raise Refusal("Only the person who decided takes it back.", "not_their_decision")
+            said = "Only the person who decided takes it back."
+            raise Refusal(said, "not_their_decision", HTTPStatus.CONFLICT)
         if stored.taken_back_at is not None:
-            raise Refusal("This decision has been taken back already.", "already_taken_back")
+            said = "This decision has been taken back already."
+            raise Refusal(said, "already_taken_back", HTTPStatus.CONFLICT)
         stored.taken_back_at = timezone.now()
         stored.save(update_fields=["taken_back_at"])
         if stored.decision != FindingStatus.KEPT:
@@ -102,9 +107,8 @@ def take_back(made: AuditDecision, by: User) -> AuditFinding:
         subject.audit_findings.filter(status=FindingStatus.OPEN).delete()  # of another label
         _set(finding, FindingStatus.OPEN, "")
         if not AuditFinding.objects.open().filter(pk=finding.pk).exists():
-            raise Refusal(
-                "The label has changed since, so there is nothing to decide again.", "changed_since"
-            )
+            said = "The label has changed since, so there is nothing to decide again."
+            raise Refusal(said, "changed_since", HTTPStatus.CONFLICT)
         unsettle(subject, WorkKind.AUDIT, by)
     return finding
 
@@ -162,7 +166,10 @@ def correct_label(row: Paraphrase, form: str, by: User, version: int) -> Paraphr
         NotForThem: the person has no role that decides about labels.
     """
     if WorkKind.AUDIT not in kinds_for(by, row.world):
-        raise NotForThem(f"{by} has no role in this world that decides about labels.")
+        raise NotForThem(
+            f"{by} has no role in this world that decides about labels.",
+            status=HTTPStatus.FORBIDDEN,
+        )
     label = canonical_label(form, may_be_unknown=True)
     if label == row.logical_form:
         return row

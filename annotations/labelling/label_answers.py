@@ -161,9 +161,11 @@ def take_back(row: Label, by: User) -> Utterance:
         utterance = Utterance.with_deleted.select_for_update().get(pk=row.utterance_id)
         stored = Label.objects.select_for_update().get(pk=row.pk)
         if stored.annotator_id != by.pk:
-            raise Refusal("Only the person who gave an answer takes it back.", "not_their_answer")
+            said = "Only the person who gave an answer takes it back."
+            raise Refusal(said, "not_their_answer", HTTPStatus.CONFLICT)
         if stored.taken_back_at is not None:
-            raise Refusal("This answer has been taken back already.", "already_taken_back")
+            said = "This answer has been taken back already."
+            raise Refusal(said, "already_taken_back", HTTPStatus.CONFLICT)
         stored.taken_back_at = timezone.now()
         stored.save(update_fields=["taken_back_at"])
         settle(utterance, utterance.accepted_label, by)

@@ -13,7 +13,7 @@ from itertools import permutations
 from random import Random
 
 from annotations.language.english import CONTRASTS, NEAR_SYNONYMS, NEGATIONS, PREDICATE_WORDS
-from annotations.language.errors import LanguageError
+from annotations.language.errors import LanguageError, Refusal
 from annotations.language.forms import (
     Application,
     Form,
@@ -272,17 +272,15 @@ def assign_folds(pairs: Iterable[LabelledPair], count: int, seed: int = 0) -> di
     The order of the pairs has no effect.
 
     Raises:
-        ValueError: a sentence where ``count`` is out of range or there are fewer keys than folds.
+        Refusal: ``count`` is out of range or there are fewer keys than folds.
     """
     if not LEAST_FOLDS <= count <= MOST_FOLDS:
-        raise ValueError(
-            f"The number of folds is {count}; it has to be {LEAST_FOLDS} to {MOST_FOLDS}."
-        )
+        said = f"The number of folds is {count}; it has to be {LEAST_FOLDS} to {MOST_FOLDS}."
+        raise Refusal(said, "folds_out_of_range")
     sizes = Counter(map(source_key, pairs))
     if len(sizes) < count:
-        raise ValueError(
-            f"There are pairs of {len(sizes)} source commands, too few for {count} folds."
-        )
+        said = f"There are pairs of {len(sizes)} source commands, too few for {count} folds."
+        raise Refusal(said, "too_few_commands")
     shuffled = sorted(sizes)
     Random(seed).shuffle(shuffled)
     filled = [0] * count

@@ -25,7 +25,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Self
 
-from annotations.language.errors import Position, Problem, warning_at
+from annotations.language.errors import Position, Problem, Refusal, warning_at
 
 # Unicode's stream-safe format allows as many marks on one letter. NFC sorts them in quadratic time.
 MOST_MARKS = 30
@@ -123,7 +123,7 @@ def normalise_json(value: Any) -> tuple[Any, TextChanges]:
         The value, and what changed in it.
 
     Raises:
-        ValueError: two names in one object become the same.
+        Refusal: two names in one object become the same.
     """
     match value:
         case str():
@@ -134,7 +134,7 @@ def normalise_json(value: Any) -> tuple[Any, TextChanges]:
         case dict():
             names, of_names = normalise_json(list(value))
             if len(set(names)) < len(names):
-                raise ValueError("two names in one object are the same")
+                raise Refusal("two names in one object are the same", "equal_names")
             items, of_items = normalise_json(list(value.values()))
             return dict(zip(names, items, strict=True)), of_names + of_items
     return value, TextChanges()

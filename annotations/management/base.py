@@ -10,10 +10,10 @@ from typing import Any
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 from django.db import DatabaseError
 
-from annotations.background.failures import FREE_SPACE, database_sentence, is_disk_full
+from annotations.background.failures import database_sentence, file_sentence
 from annotations.language.corpus import Criterion
 from annotations.language.decoding import ENCODINGS, decode, why_outside
-from annotations.language.errors import LanguageError, Problem
+from annotations.language.errors import LanguageError, Problem, Refusal
 from annotations.language.text import normalise_line
 from annotations.models import Split, World
 from annotations.people.audit_log import record_command
@@ -23,8 +23,10 @@ NAMES = ("world", "name")  # options that are texts of rows, normalised as every
 MOST_EXCERPTS = 20  # errors that are shown with their line
 
 
-class RefusedReport(Exception):
+class RefusedReport(Refusal):
     """Work that was refused, with the report that is printed all the same."""
+
+    code = "refused_report"
 
     def __init__(self, report: Mapping[str, Any], sentences: list[str]):
         super().__init__("\n".join(sentences))
@@ -45,7 +47,7 @@ class ReportingCommand(BaseCommand):
     """A command that answers with one report.
 
     A subclass gives ``add_options`` and ``report(**options)``, which returns a JSON-ready mapping or
-    raises ``RefusedReport``, ``LanguageError`` or ``ValueError``. With ``--json`` the report is the only
+    raises ``RefusedReport`` or ``Refusal``. With ``--json`` the report is the only
     thing on standard output. Errors go to standard error as sentences, and the exit status is 1.
 
     What a command with ``audited`` has done goes into the audit log under these words, for the world that
@@ -96,10 +98,10 @@ class ReportingCommand(BaseCommand):
             raise CommandError(database_sentence(error)) from error
         except LanguageError as error:
             raise CommandError(_sentence(error)) from error
-        except (ValueError, OSError) as error:
-            full = is_disk_full(error)
-            said = f"The disk is full ({error}). {FREE_SPACE}, then run this again."
-            raise CommandError(said if full else str(error)) from error
+        except Refusal as refusal:
+            raise CommandError(refusal.message) from refusal
+        except OSError as error:
+            raise CommandError(file_sentence(error)) from error
         if self.audited:
             world = World.objects.filter(name=options.get("world") or "").first()
             record_command(self.audited, self.audit_subject(report, options), world)

@@ -20,8 +20,9 @@ class NotText(Refusal):
     code = "not_text"
 
     def __init__(self, field: str, sentence: str) -> None:
-        super().__init__(sentence)
         self.field = field[:LONGEST_FIELD].encode("utf-8", "replace").decode()
+        where = {"field": self.field} if self.field else {}
+        super().__init__(sentence, problems=[{**where, "message": sentence}])
 
 
 class SentTexts:

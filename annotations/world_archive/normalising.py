@@ -12,7 +12,7 @@ from django.db import models, transaction
 
 from annotations.checking.world_problems import check_again
 from annotations.generation.up_to_date import bring_up_to_date
-from annotations.language.errors import Position, Problem, warning_at
+from annotations.language.errors import Position, Problem, Refusal, warning_at
 from annotations.language.text import normalise_record
 from annotations.models import Command, Editable, LogicalForm, StoredProblem, World
 from annotations.rows.history import NORMALISED, keep_change
@@ -114,7 +114,7 @@ def _normalise(table: ArchiveTable, row: models.Model) -> Problem | None:
     noun = row._meta.verbose_name
     try:
         values, _ = normalise_columns(table, _columns(table, row))
-    except ValueError as error:
+    except Refusal as error:
         return warning_at(Position(table.name), f"{noun} {row.pk} stays as it is: {error}")
     for name, value in values.items():
         setattr(row, name, value)

@@ -10,6 +10,7 @@ from django.db import models
 from django.db.models.lookups import Exact
 
 from annotations.language.corpus import distance
+from annotations.language.errors import Refusal
 from annotations.language.text import TextChanges, normalise_json, normalise_record
 from annotations.world_archive.archive_tables import ArchiveTable
 
@@ -22,7 +23,7 @@ def normalise_columns(
     Spans stay at their words, and a paraphrase is measured again.
 
     Raises:
-        ValueError: nothing shows in a text that has to be there, or two names in an object are the same.
+        Refusal: nothing shows in a text that has to be there, or two names in an object are the same.
     """
     read, changes = normalise_json(dict(written))
     if read == written:
@@ -36,7 +37,7 @@ def normalise_columns(
         was, now = written.get(column.name), read.get(column.name)
         is_changed = isinstance(now, str) and was != now
         if is_changed and not (column.blank or now.strip()):
-            raise ValueError(f"nothing shows in {column.name}")
+            raise Refusal(f"nothing shows in {column.name}", "nothing_shows")
     return read, changes
 
 

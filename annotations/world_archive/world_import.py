@@ -16,7 +16,7 @@ from django.utils import timezone
 from annotations.background.progress import UNWATCHED, Progress
 from annotations.importing.target_world import require_world_name
 from annotations.importing.zip_archives import MANIFEST, open_archive, read_lines
-from annotations.language.errors import LanguageError, Position, Problem
+from annotations.language.errors import LanguageError, Position, Problem, Refusal
 from annotations.language.text import TextChanges, normalise_json, say_changes
 from annotations.models import Assignment, Grammar, Membership, Ontology, Split, User, World
 from annotations.models.worlds import Role
@@ -237,8 +237,8 @@ class _Loader:
         written = {each.name: values[each.name] for each in table.columns if each.name in values}
         try:
             read, changes = normalise_columns(table, written)
-        except ValueError as error:
-            raise LanguageError(str(error), place) from error
+        except Refusal as error:
+            raise LanguageError(error.message, place) from error
         if read == written:
             return values
         if changes:

@@ -12,6 +12,7 @@ from typing import Any
 from django.db import connections
 from django.db.migrations.loader import MigrationLoader
 
+from annotations.language.errors import Refusal
 from gpsr_site.backup.backup_tables import APPS
 
 NAME = "manifest.json"
@@ -76,18 +77,19 @@ def read_manifest(archive: zipfile.ZipFile) -> BackupManifest:
     """Return the manifest of a backup.
 
     Raises:
-        ValueError: the archive is no backup, or one of another version.
+        Refusal: the archive is no backup, or one of another version.
     """
     try:
-        if archive.getinfo(NAME).file_size > MOST_BYTES:
-            raise ValueError(f"{NAME} is too large")
-        values = json.loads(archive.read(NAME))
+        is_small = archive.getinfo(NAME).file_size <= MOST_BYTES
+        values = json.loads(archive.read(NAME)) if is_small else {}
         form, version = values.pop("format"), values.pop("version")
     except (KeyError, ValueError, AttributeError, TypeError, RecursionError) as error:
-        raise ValueError("This is no backup: “manage.py backup FILE” writes one.") from error
+        said = "This is no backup: “manage.py backup FILE” writes one."
+        raise Refusal(said, "no_backup") from error
     if (form, version) != (FORMAT, VERSION):
         what = f"{str(form)[:40]} {str(version)[:40]}"
-        raise ValueError(f"This is {what}; this version reads {FORMAT} {VERSION}.")
+        said = f"This is {what}; this version reads {FORMAT} {VERSION}."
+        raise Refusal(said, "other_format")
     _require_shape("", values, SHAPE)
     for name, shape in (("tables", SHAPE_OF_TABLE), ("files", SHAPE_OF_FILE)):
         for key, part in values[name].items():
@@ -97,26 +99,26 @@ def read_manifest(archive: zipfile.ZipFile) -> BackupManifest:
 
 
 def _require_shape(where: str, values: Any, shape: Mapping[str, Callable[[Any], bool]]) -> None:
-    """Raise ValueError, a sentence, where ``values`` has other keys than ``shape``, or other values."""
+    """Raise Refusal where ``values`` has other keys than ``shape``, or other values."""
     given = values.keys() if isinstance(values, dict) else set()
     wrong = (set(given) ^ set(shape)) or {
         name for name, is_right in shape.items() if not is_right(values[name])
     }
     if wrong:
         names = ", ".join(f"{where}{name[:80]}" for name in sorted(wrong)[:5])
-        raise ValueError(
-            f"{NAME} of this backup is not as it was written: see {names}. Nothing was restored."
-        )
+        said = f"{NAME} of this backup is not as it was written: see {names}. Nothing was restored."
+        raise Refusal(said, "backup_damaged")
 
 
 def newest_migrations() -> dict[str, str]:
     """Return the newest migration of each application that the database has.
 
     Raises:
-        ValueError: the database lacks a migration of this version.
+        Refusal: the database lacks a migration of this version.
     """
     loader = MigrationLoader(connections["default"])
     ours = {key for key in loader.disk_migrations if key[0] in APPS}
     if ours - set(loader.applied_migrations):
-        raise ValueError("The database is not that of this version. Run: manage.py migrate")
+        said = "The database is not that of this version. Run: manage.py migrate"
+        raise Refusal(said, "not_migrated")
     return {app: max(name for label, name in ours if label == app) for app in APPS}

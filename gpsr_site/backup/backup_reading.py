@@ -54,7 +54,7 @@ def restore(path: Path, replace: bool = False, say: Say = lambda sentence: None)
     With ``replace`` the rows that are here are deleted, and the files put into a folder beside.
 
     Raises:
-        ValueError: the file is no backup, is damaged, is of another version, or this installation
+        Refusal: the file is no backup, is damaged, is of another version, or this installation
             holds something and ``replace`` was not asked for.
     """
     staging = settings.VAR_DIR / ".restoring"
@@ -74,7 +74,8 @@ def restore(path: Path, replace: bool = False, say: Say = lambda sentence: None)
                 connection.check_constraints()
                 _move_files(staging, manifest, say)
     except zipfile.BadZipFile as error:
-        raise ValueError(f"{path} cannot be read as a backup: {error}.") from error
+        said = f"{path} cannot be read as a backup: it is no zip archive, or only a part of one."
+        raise Refusal(said, "no_backup") from error
     finally:
         shutil.rmtree(staging, ignore_errors=True)
     return manifest
@@ -84,26 +85,30 @@ def _refuse_other_versions(manifest: BackupManifest) -> None:
     here = newest_migrations()
     for app, name in here.items():
         if (there := manifest.migrations.get(app)) != name:
-            raise ValueError(
+            raise Refusal(
                 f"The backup is of the version whose newest migration of {app} is {there}; here it is "
-                f"{name}. Install that version, restore, then upgrade."
+                f"{name}. Install that version, restore, then upgrade.",
+                "other_version",
             )
     if set(manifest.tables) != {table.name for table in tables()}:
-        raise ValueError(
+        raise Refusal(
             "The backup has other tables than this installation. Single sign-on has to be set up in "
-            "both, or in neither."
+            "both, or in neither.",
+            "other_tables",
         )
 
 
 def _refuse_to_overwrite() -> None:
     for table in tables():
         if table.model._base_manager.exists():
-            raise ValueError(
+            raise Refusal(
                 f"This installation is not empty: it has rows of {table.name}. Restore into an empty "
-                "one, or give --replace, which deletes everything that is here."
+                "one, or give --replace, which deletes everything that is here.",
+                "not_empty",
             )
     if settings.RUNS_DIR.is_dir() and any(settings.RUNS_DIR.iterdir()):
-        raise ValueError(f"{settings.RUNS_DIR} holds runs of another database. Move it away first.")
+        said = f"{settings.RUNS_DIR} holds runs of another database. Move it away first."
+        raise Refusal(said, "not_empty")
 
 
 def _empty() -> None:
@@ -142,9 +147,11 @@ def _fill(archive: zipfile.ZipFile, manifest: BackupManifest, say: Say) -> None:
         except UNREADABLE as error:
             raise Damaged(table.name) from error
         except (IntegrityError, DataError) as error:
-            raise ValueError(
-                f"{table.name}: its rows do not fit together ({error}). Nothing was restored."
-            ) from error
+            said = (
+                f"{table.name}: its rows do not fit together; one names a row that is not there, or is "
+                "there twice. Nothing was restored."
+            )
+            raise Refusal(said, "rows_do_not_fit") from error
         say(f"{table.name}: {part.rows:,} rows")
     # New rows follow those that were restored.
     statements = connection.ops.sequence_reset_sql(no_style(), [table.model for table in filled])

@@ -68,14 +68,15 @@ class BackupTable:
 
         Raises:
             Unportable: the row holds what not every database can hold.
-            ValueError: the line does not hold a value for each column.
+            Refusal: the line does not hold a value for each column.
         """
         try:
             row = json.loads(line)
         except (ValueError, RecursionError) as error:
-            raise ValueError(f"A row of {self.name} is no line of JSON.") from error
+            raise Refusal(f"A row of {self.name} is no line of JSON.", "no_backup_row") from error
         if not isinstance(row, list) or len(row) != len(self.fields):
-            raise ValueError(f"A row of {self.name} has other columns than this version.")
+            said = f"A row of {self.name} has other columns than this version."
+            raise Refusal(said, "other_columns")
         self._require_portable(row)
         values = []
         for field, value in zip(self.fields, row, strict=True):

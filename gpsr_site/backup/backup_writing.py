@@ -12,6 +12,7 @@ from django.conf import settings
 from django.db import connection
 from django.utils import timezone
 
+from annotations.language.errors import Refusal
 from annotations.rows.synchronise import batches
 from gpsr_site.backup.backup_manifest import NAME, BackupManifest, BackupPart, newest_migrations
 from gpsr_site.backup.backup_tables import BackupTable, snapshot, tables
@@ -29,10 +30,11 @@ def write_backup(path: Path, say: Say = lambda sentence: None) -> BackupManifest
     checkpoint that a running run replaces meanwhile is missing; the run goes on without it.
 
     Raises:
-        ValueError: the database lacks a migration, or ``path`` exists.
+        Refusal: the database lacks a migration, or ``path`` exists.
     """
     if path.exists():
-        raise ValueError(f"{path} exists. Choose another name, or remove it first.")
+        said = f"{path} exists. Choose another name, or remove it first."
+        raise Refusal(said, "file_exists")
     manifest = BackupManifest(timezone.now().isoformat(), connection.vendor, newest_migrations())
     unfinished = path.with_name(f".{path.name}.{os.getpid()}")
     # It holds the hashes of passwords and tokens.

@@ -12,7 +12,7 @@ from enum import StrEnum
 from random import Random
 from types import MappingProxyType
 
-from annotations.language.errors import LanguageError
+from annotations.language.errors import LanguageError, Refusal
 
 KNOWN_SHARE = 0.1  # of the source commands of the training part
 KNOWN = "known"  # what the held-out pairs are called where parts are named
@@ -155,10 +155,11 @@ def draw_share(
     Items that the criterion keeps together are drawn together, such as all pairs of one logical form:
     half of the pairs then shows half of the forms. The order of the keys depends only on the items and
     the seed, and a share is the shortest beginning of it with at least so many items. So a smaller
-    share is part of every larger one. Raises ValueError for a share that is not above 0 and up to 1.
+    share is part of every larger one. Raises Refusal for a share that is not above 0 and up to 1.
     """
     if not 0 < share <= 1:
-        raise ValueError(f"The share {share:g} has to be above 0 and at most 1.")
+        said = f"The share {share:g} has to be above 0 and at most 1."
+        raise Refusal(said, "share_out_of_range")
     counts = Counter(item.key(criterion) for item in items)
     keys = sorted(counts)
     Random(seed).shuffle(keys)

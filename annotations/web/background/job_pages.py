@@ -14,6 +14,7 @@ from django.views.decorators.cache import never_cache
 from django.views.decorators.http import require_http_methods
 
 from annotations.jobs import answer_job, cancel_job
+from annotations.language.errors import Refusal
 from annotations.models import Duty, Job, World
 from annotations.people.access import READ, WRITE, demand, world_view
 from annotations.web.background.report_presentation import shown_report
@@ -70,7 +71,7 @@ def job_cancel(request: HttpRequest, job: Job) -> HttpResponse:
     """Stop a job within seconds, or drop an import that asks."""
     try:
         cancel_job(job)
-    except ValueError as error:
+    except Refusal as error:
         messages.warning(request, str(error))
     return redirect("job", pk=job.pk)
 
@@ -80,7 +81,7 @@ def job_answer(request: HttpRequest, job: Job) -> HttpResponse:
     """Import the kept files after all, and remove what they do not have."""
     try:
         return redirect("job", pk=answer_job(job, request.user).pk)
-    except ValueError as error:
+    except Refusal as error:
         messages.warning(request, str(error))
         return redirect("job", pk=job.pk)
 

@@ -10,6 +10,7 @@ from django.http import FileResponse
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
+from rest_framework.decorators import action
 from rest_framework.exceptions import NotFound
 from rest_framework.request import Request
 from rest_framework.response import Response
@@ -19,8 +20,7 @@ from annotations.jobs.files import result_of
 from annotations.models import Duty, Job, World
 from annotations.people.allowances import may_take_long
 from annotations.web.rest.negotiation import AnyType
-from annotations.web.rest.problem_details import Conflict
-from annotations.web.rest.routes import RowRoute, RowsRoute, SingleRow
+from annotations.web.rest.routes import Retrieved, RowsViewSet, SiteViewSet, Tagged
 from annotations.web.rest.streaming import JSON_LINES
 
 
@@ -57,33 +57,42 @@ class JobQuery(django_filters.FilterSet):
         fields = ["kind", "status"]
 
 
-class JobNoun:
+class Cancelling(Tagged):
+    """Stops a job, or says why it cannot be stopped."""
+
+    @extend_schema(request=None, responses={200: JobSerializer})
+    @action(detail=True, methods=["post"])
+    def cancel(self, request: Request, **kwargs: object) -> Response:
+        """Stops a job within seconds, or drops an import that asks."""
+        cancel_job(self.get_object())
+        return self.show(self.get_object())
+
+
+class JobViewSet(Cancelling, RowsViewSet):
+    """The jobs of a world, the newest first: how far one is, or what came of it."""
+
     model = Job
     serializer_class = JobSerializer
+    filterset_class = JobQuery
+    sorts = {"newest": "-id", "status": "status"}
+
+    @property
+    def duty(self) -> Duty:
+        """What the request needs; to cancel or to answer a job, what asking for it needed."""
+        if self.action not in ("cancel", "answer"):
+            return super().duty
+        keys = {"world__name": self.kwargs["world"], "pk": self.kwargs["pk"]}
+        job = Job.objects.filter(**keys).first()
+        return job.duty if job else Duty.VIEW
 
     def rows(self) -> QuerySet[Job]:
         return self.world.jobs.select_related("created_by")
 
-
-class Jobs(JobNoun, RowsRoute):
-    """Lists the jobs of a world, the newest first."""
-
-    filterset_class = JobQuery
-    sorts = {"newest": "-id", "status": "status"}
-
-
-class OneJob(JobNoun, RowRoute):
-    """Shows a job: how far it is, or what came of it."""
-
-
-@may_take_long
-class ResultOfJob(JobNoun, RowRoute):
-    """Downloads the file that a job has made. It is kept for seven days."""
-
-    content_negotiation_class = AnyType
-
     @extend_schema(responses={(200, JSON_LINES): OpenApiTypes.STR})
-    def get(self, request: Request, **kwargs: object) -> FileResponse:
+    @may_take_long
+    @action(detail=True, content_negotiation_class=AnyType)
+    def result(self, request: Request, **kwargs: object) -> FileResponse:
+        """Downloads the file that a job has made. It is kept for seven days."""
         job = self.get_object()
         try:
             file = result_of(job).open("rb")
@@ -94,69 +103,25 @@ class ResultOfJob(JobNoun, RowRoute):
         name = f"{self.world.name}-job-{job.pk}.jsonl"
         return FileResponse(file, as_attachment=True, filename=name, content_type=JSON_LINES)
 
-
-class JobVerb(JobNoun, RowRoute):
-    http_method_names = ["post", "options"]
-
-    @property
-    def duty(self) -> Duty:
-        """What asking for the job needed."""
-        keys = {"world__name": self.kwargs["world"], "pk": self.kwargs["pk"]}
-        job = Job.objects.filter(**keys).first()
-        return job.duty if job else Duty.VIEW
-
-
-class Cancelling:
-    """Stops a job, or says why it cannot be stopped."""
-
-    http_method_names = ["post", "options"]
-
-    @extend_schema(request=None, responses={200: JobSerializer})
-    def post(self, request: Request, **kwargs: object) -> Response:
-        try:
-            cancel_job(self.get_object())
-        except ValueError as error:
-            raise Conflict(str(error)) from error
-        return self.show(self.get_object())
-
-
-class CancelJob(Cancelling, JobVerb):
-    """Stops a job within seconds, or drops an import that asks."""
-
-
-class AnswerJob(JobVerb):
-    """Imports the kept files after all, and removes what they do not have."""
-
     @extend_schema(request=None, responses={202: JobSerializer})
-    def post(self, request: Request, **kwargs: object) -> Response:
-        try:
-            job = answer_job(self.get_object(), request.user)
-        except ValueError as error:
-            raise Conflict(str(error)) from error
-        return self.show(job, HTTPStatus.ACCEPTED)
+    @action(detail=True, methods=["post"])
+    def answer(self, request: Request, **kwargs: object) -> Response:
+        """Imports the kept files after all, and removes what they do not have."""
+        return self.show(answer_job(self.get_object(), request.user), HTTPStatus.ACCEPTED)
 
 
-class SiteJobNoun(SingleRow):
+class SiteJobViewSet(Cancelling, Retrieved, SiteViewSet):
     """Jobs without a world that anybody sees: its import has not ended, or its deletion has begun."""
 
     model = Job
     serializer_class = JobSerializer
 
+    duties = {"cancel": Duty.MANAGE}
+
     def rows(self) -> QuerySet[Job]:
         user = self.request.user
         rows = Job.objects.visible_to(user).select_related("created_by", "world")
         seen = World.objects.visible_to(user)
+        if self.action == "cancel":
+            return rows.exclude(world__in=World.objects.present())
         return rows.exclude(world__in=World.objects.present().exclude(pk__in=seen.values("pk")))
-
-
-class OneSiteJob(SiteJobNoun):
-    """Shows a job, also of a world that is not there yet, or no longer."""
-
-
-class CancelSiteJob(Cancelling, SiteJobNoun):
-    """Stops the import of a world within seconds."""
-
-    duty = Duty.MANAGE
-
-    def rows(self) -> QuerySet[Job]:
-        return super().rows().exclude(world__in=World.objects.present())

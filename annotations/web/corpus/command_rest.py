@@ -11,7 +11,7 @@ from rest_framework.response import Response
 from annotations.generation.complexity import complexity
 from annotations.models import Command, LogicalForm
 from annotations.web.corpus.corpus_filters import CommandFilters, LogicalFormFilters
-from annotations.web.rest.routes import Figures, RowRoute, RowsRoute
+from annotations.web.rest.routes import Figures, RowsViewSet
 
 
 class CommandSerializer(serializers.ModelSerializer):
@@ -29,23 +29,16 @@ class CommandSerializer(serializers.ModelSerializer):
         ]
 
 
-class CommandNoun:
+class CommandViewSet(RowsViewSet):
+    """The commands that the templates make."""
+
     model = Command
     serializer_class = CommandSerializer
-
-    def rows(self) -> QuerySet[Command]:
-        return self.world.commands.select_related("logical_form")
-
-
-class Commands(CommandNoun, RowsRoute):
-    """Lists the commands that the templates make."""
-
     filterset_class = CommandFilters
     sorts = {"position": "position", "text": "anonymized_text", "length": "length", "id": "pk"}
 
-
-class OneCommand(CommandNoun, RowRoute):
-    """Shows a command."""
+    def rows(self) -> QuerySet[Command]:
+        return self.world.commands.select_related("logical_form")
 
 
 class LogicalFormSerializer(serializers.ModelSerializer):
@@ -56,23 +49,16 @@ class LogicalFormSerializer(serializers.ModelSerializer):
         fields = ["id", "text", "head_predicate", "depth", "length", "task_category"]
 
 
-class LogicalFormNoun:
+class LogicalFormViewSet(RowsViewSet):
+    """The logical forms of the commands."""
+
     model = LogicalForm
     serializer_class = LogicalFormSerializer
-
-    def rows(self) -> QuerySet[LogicalForm]:
-        return self.world.logical_forms.all()
-
-
-class LogicalForms(LogicalFormNoun, RowsRoute):
-    """Lists the logical forms of the commands."""
-
     filterset_class = LogicalFormFilters
     sorts = {"id": "pk", "text": "text", "length": "length", "depth": "depth"}
 
-
-class OneLogicalForm(LogicalFormNoun, RowRoute):
-    """Shows a logical form."""
+    def rows(self) -> QuerySet[LogicalForm]:
+        return self.world.logical_forms.all()
 
 
 class ComplexitySerializer(serializers.Serializer):

@@ -2,29 +2,24 @@
 
 from __future__ import annotations
 
-from http import HTTPStatus
-from typing import Any, ClassVar
+from typing import Any
 
 from django.db.models import QuerySet
 from django.shortcuts import get_object_or_404
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
-from rest_framework.filters import BaseFilterBackend
+from rest_framework.decorators import action
+from rest_framework.mixins import ListModelMixin
 from rest_framework.request import Request
 from rest_framework.response import Response
 
-from annotations.labelling.entity_spans import mend_span
-from annotations.labelling.label_answers import AnsweredMeanwhile, NoLongerYours
-from annotations.language.errors import LanguageError
 from annotations.language.limits import MAX_FORM
 from annotations.lists.paging import LARGEST_INTEGER
-from annotations.models import Duty, Entity, Label
+from annotations.models import Duty, Label
 from annotations.models.corpus import MOST_CHARACTERS, verdict_choices
-from annotations.queueing.item_answers import answer, take_answer_back
-from annotations.web.corpus.utterance_rest import UtteranceNoun, UtteranceSerializer
+from annotations.queueing.item_answers import take_answer_back
 from annotations.web.rest.fields import Fields
-from annotations.web.rest.problem_details import Conflict, Refused, refusal_of_text
-from annotations.web.rest.routes import RowRoute, RowsRoute
+from annotations.web.rest.routes import WorldViewSet
 
 LARGEST_VERSION = 2**31 - 1
 
@@ -61,77 +56,26 @@ class NewSpan(Fields):
     version = serializers.IntegerField(min_value=0, max_value=LARGEST_VERSION)
 
 
-class LabelUtterance(UtteranceNoun, RowRoute):
-    """Answers what an utterance means, whether or not the work queue has asked the caller."""
+class LabelViewSet(ListModelMixin, WorldViewSet):
+    """The caller's own answers, the last one first."""
 
-    http_method_names = ["post", "options"]
-    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.ANNOTATE}
-
-    @extend_schema(request=NewLabel, responses={201: LabelSerializer})
-    def post(self, request: Request, **kwargs: object) -> Response:
-        row, sent = self.get_object(), self.read(NewLabel)
-        values = {name: sent[name] for name in ("verdict", "form", "version", "reason")}
-        try:
-            made = answer(row, by=request.user, **values)
-        except (AnsweredMeanwhile, NoLongerYours) as error:
-            raise Conflict(str(error)) from error
-        except LanguageError as error:
-            raise refusal_of_text(error, "form") from error
-        except ValueError as error:
-            raise Refused(str(error)) from error
-        return Response(LabelSerializer(made).data, status=HTTPStatus.CREATED)
-
-
-class MendUtterance(UtteranceNoun, RowRoute):
-    """Says which words of an utterance name which entity; unlabelled utterances with these words follow."""
-
-    http_method_names = ["post", "options"]
-    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.ANNOTATE}
-
-    @extend_schema(request=NewSpan, responses={200: UtteranceSerializer})
-    def post(self, request: Request, **kwargs: object) -> Response:
-        row, sent = self.get_object(), self.read(NewSpan)
-        entities = Entity.objects.filter(ontology__world=self.world)
-        entity = get_object_or_404(entities, pk=sent["entity"])
-        where = sent["start"], sent["end"]
-        try:
-            return self.show(mend_span(row, *where, entity, request.user, sent["version"]))
-        except AnsweredMeanwhile as error:
-            raise Conflict(str(error)) from error
-        except ValueError as error:
-            raise Refused(str(error)) from error
-
-
-class LabelNoun:
     model = Label
     serializer_class = LabelSerializer
-    filter_backends: ClassVar[list[type[BaseFilterBackend]]] = []
+    filter_backends = []
+    duties = {"take_back": Duty.ANNOTATE}
+    sorts = {"newest": "-pk", "id": "pk"}
 
     def rows(self) -> QuerySet[Label]:
         """Leave out what others answered: who may still be asked must not see it."""
         rows: Any = Label.objects.of_world(self.world)
         return rows.filter(annotator=self.request.user)
 
-
-class OwnLabels(LabelNoun, RowsRoute):
-    """Lists the caller's own answers, the last one first."""
-
-    sorts: ClassVar[dict[str, str]] = {"newest": "-pk", "id": "pk"}
-
-
-class TakeLabelBack(LabelNoun, RowRoute):
-    """Undoes an answer of the caller: the utterance is what it was before."""
-
-    http_method_names = ["post", "options"]
-    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.ANNOTATE}
-
     @extend_schema(request=None, responses={200: LabelSerializer})
-    def post(self, request: Request, **kwargs: object) -> Response:
+    @action(detail=True, methods=["post"], url_path="take-back")
+    def take_back(self, request: Request, **kwargs: object) -> Response:
+        """Undoes an answer of the caller: the utterance is what it was before."""
         rows = Label.objects.of_world(self.world)
         stored = get_object_or_404(rows, pk=self.kwargs["pk"])
-        try:
-            take_answer_back(stored, request.user)
-        except (NoLongerYours, ValueError) as error:
-            raise Conflict(str(error)) from error
+        take_answer_back(stored, request.user)
         stored.refresh_from_db()
         return self.show(stored)

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from django.db.models import QuerySet
 from rest_framework import serializers
-from rest_framework.exceptions import PermissionDenied
 from rest_framework.request import Request
 from rest_framework.response import Response
 
@@ -14,10 +11,9 @@ from annotations.editing.edits import delete
 from annotations.label_audit.label_decisions import correct_label
 from annotations.language.limits import MAX_FORM
 from annotations.models import Duty, Paraphrase
-from annotations.queueing.giving import NotForThem
 from annotations.web.corpus.corpus_filters import ParaphraseFilters
 from annotations.web.rest.fields import Fields
-from annotations.web.rest.routes import RowRoute, RowsRoute
+from annotations.web.rest.routes import RowsViewSet
 
 
 class ParaphraseSerializer(serializers.ModelSerializer):
@@ -39,40 +35,31 @@ class LabelChange(Fields):
     logical_form = serializers.CharField(max_length=MAX_FORM)
 
 
-class ParaphraseNoun:
+class ParaphraseViewSet(RowsViewSet):
+    """The paraphrases."""
+
     model = Paraphrase
     serializer_class = ParaphraseSerializer
-
-    def rows(self) -> QuerySet[Paraphrase]:
-        return self.world.paraphrases.all()
-
-
-class Paraphrases(ParaphraseNoun, RowsRoute):
-    """Lists the paraphrases."""
-
+    change_serializer = LabelChange
+    duties = {"destroy": Duty.ANNOTATE}
+    conditional = ("partial_update", "destroy")
     filterset_class = ParaphraseFilters
     sorts = {
         **{"position": "position", "utterance": "utterance", "prompt": "prompt"},
         **{"edit_distance": "edit_distance", "jaccard_distance": "jaccard_distance"},
     }
 
+    def rows(self) -> QuerySet[Paraphrase]:
+        return self.world.paraphrases.all()
 
-class OneParaphrase(ParaphraseNoun, RowRoute):
-    """Shows a paraphrase, corrects its label, deletes it."""
-
-    change_serializer = LabelChange
-    duties: ClassVar[dict[str, Duty]] = {"DELETE": Duty.ANNOTATE}
-    conditional = ("PATCH", "DELETE")
-
-    def patch(self, request: Request, **kwargs: object) -> Response:
+    def partial_update(self, request: Request, **kwargs: object) -> Response:
+        """Corrects the label of a paraphrase."""
         row = self.matched()
         form = self.read(LabelChange)["logical_form"]
-        try:
-            return self.show(correct_label(row, form, request.user, row.version))
-        except NotForThem as error:
-            raise PermissionDenied(str(error)) from error
+        return self.show(correct_label(row, form, request.user, row.version))
 
-    def delete(self, request: Request, **kwargs: object) -> Response:
+    def destroy(self, request: Request, **kwargs: object) -> Response:
+        """Deletes a paraphrase."""
         row = self.matched()
         delete(row, request.user, row.version)
         return Response(status=204)

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from http import HTTPStatus
-from typing import Any, ClassVar
+from typing import Any
 
 from django.db.models import QuerySet
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
+from rest_framework.decorators import action
 from rest_framework.exceptions import PermissionDenied
 from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.language.decoding import ENCODINGS
-from annotations.language.errors import LanguageError
+from annotations.language.errors import LanguageError, Refusal
 from annotations.language.text import normalise_line
 from annotations.models import Duty, Upload
 from annotations.models.corpus import MOST_CHARACTERS_OF_NAME
@@ -34,12 +35,10 @@ from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.parsing import BoundedJSONParser, FilesParser
 from annotations.web.rest.problem_details import (
-    Conflict,
     ProblemItemSerializer,
-    Refused,
     refusal_of_text,
 )
-from annotations.web.rest.routes import RowRoute, RowsRoute
+from annotations.web.rest.routes import Route, RowsViewSet
 
 
 class UploadSerializer(serializers.ModelSerializer):
@@ -146,30 +145,43 @@ def shown_as_json(shown: Preview, upload: Upload | None) -> dict[str, Any]:
     }
 
 
-class UploadNoun:
+class UndoRequest(Fields):
+    """``labelled`` says what becomes of utterances that somebody has answered since the upload."""
+
+    labelled = serializers.ChoiceField(choices=["keep", "delete"], required=False)
+
+
+class UndoneSerializer(serializers.Serializer):
+    """The upload, and how many of its utterances were deleted or restored; ``taken`` stay deleted because
+    their texts were added again."""
+
+    upload = UploadSerializer()
+    changed = serializers.IntegerField()
+    taken = serializers.IntegerField()
+
+
+class UploadViewSet(RowsViewSet):
+    """The uploads, the newest first."""
+
     model = Upload
     serializer_class = UploadSerializer
+    parser_classes = [FilesParser, BoundedJSONParser]
+    duties = dict.fromkeys(("create", "undo", "redo"), Duty.ANNOTATE)
+    sorts = {"newest": "-pk", "id": "pk"}
 
     def rows(self) -> QuerySet[Upload]:
         return (
             self.world.uploads.stored().select_related("created_by", "undone_by").defer("content")
         )
 
-
-@takes_files
-class Uploads(UploadNoun, RowsRoute):
-    """Lists what was uploaded, the newest first, and takes in a file of utterances."""
-
-    parser_classes = [FilesParser, BoundedJSONParser]
-    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.ANNOTATE}
-    sorts: ClassVar[dict[str, str]] = {"newest": "-pk", "id": "pk"}
-
     @extend_schema(
         request={"multipart/form-data": NewUpload, "application/json": NewUpload},
         responses={200: PreviewSerializer, 201: PreviewSerializer},
     )
+    @takes_files
     @once
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def create(self, request: Request, **kwargs: object) -> Response:
+        """Takes in a file of utterances."""
         sent = self.read(NewUpload)
         if sent["as_labels"] and not self.world.allows(request.user, Duty.MANAGE):
             raise PermissionDenied("Only admins of this world store forms as labels.")
@@ -183,7 +195,7 @@ class Uploads(UploadNoun, RowsRoute):
         return Response(shown_as_json(shown, stored), status=HTTPStatus.CREATED)
 
     def _preview(self, sent: dict[str, Any]) -> tuple[Preview, str]:
-        """Return how the upload is read, and its name. Raises Refused."""
+        """Return how the upload is read, and its name. Raises Refusal."""
         file = sent.get("file")
         data = file.read() if file else sent["text"].encode("utf-8", "replace")
         name = normalise_line(file.name) if file else ""
@@ -199,9 +211,32 @@ class Uploads(UploadNoun, RowsRoute):
         except LanguageError as error:
             raise refusal_of_text(error, "file" if file else "text") from error
 
+    @extend_schema(request=UndoRequest, responses={200: UndoneSerializer})
+    @may_take_long
+    @action(detail=True, methods=["post"], parser_classes=Route.parser_classes)
+    def undo(self, request: Request, **kwargs: object) -> Response:
+        """Deletes the utterances of an upload; ``redo/`` brings them back, with their answers."""
+        row, sent = self.get_object(), self.read(UndoRequest)
+        n_labelled = 0 if row.undone_at else count_labelled(row)
+        if n_labelled and "labelled" not in sent:
+            raise NotNow(
+                f"People have answered {n_labelled:,} of its utterances since. Send labelled=keep or "
+                "labelled=delete."
+            )
+        deleted = undo(row, request.user, with_labelled=sent.get("labelled") == "delete")
+        return _changed(self.get_object(), deleted)
+
+    @extend_schema(request=None, responses={200: UndoneSerializer})
+    @may_take_long
+    @action(detail=True, methods=["post"], parser_classes=Route.parser_classes)
+    def redo(self, request: Request, **kwargs: object) -> Response:
+        """Restores the utterances of an upload that was undone."""
+        restored, n_taken = redo(self.get_object(), request.user)
+        return _changed(self.get_object(), restored, n_taken)
+
 
 def _require_storable(shown: Preview, sent: dict[str, Any]) -> None:
-    """Raise Refused where the caller has to say more, or where a row cannot be stored."""
+    """Raise Refusal where the caller has to say more, or where a row cannot be stored."""
     sheet = shown.sheet
     if shown.encoding not in ("utf-8", sent.get("encoding", "utf-16")):
         _refuse(
@@ -218,71 +253,15 @@ def _require_storable(shown: Preview, sent: dict[str, Any]) -> None:
             "column", f"Say which column has the utterances: {names[:300]}; or say format=text."
         )
     if shown.refusal:
-        raise Refused(str(shown.refusal), [as_json(shown.refusal)])
+        raise Refusal(str(shown.refusal), "unreadable", problems=[as_json(shown.refusal)])
     if shown.problems and not (sent["skips_bad"] and shown.texts):
-        raise Refused(str(shown.problems[0]), [as_json(each) for each in shown.problems])
+        problems = [as_json(problem) for problem in shown.problems]
+        raise Refusal(str(shown.problems[0]), "bad_rows", problems=problems)
 
 
 def _refuse(field: str, sentence: str) -> None:
-    raise Refused(sentence, [{"field": field, "message": sentence}])
-
-
-class OneUpload(UploadNoun, RowRoute):
-    """Shows one upload."""
-
-
-class UndoRequest(Fields):
-    """``labelled`` says what becomes of utterances that somebody has answered since the upload."""
-
-    labelled = serializers.ChoiceField(choices=["keep", "delete"], required=False)
-
-
-class UndoneSerializer(serializers.Serializer):
-    """The upload, and how many of its utterances were deleted or restored; ``taken`` stay deleted because
-    their texts were added again."""
-
-    upload = UploadSerializer()
-    changed = serializers.IntegerField()
-    taken = serializers.IntegerField()
-
-
-@may_take_long
-class UndoUpload(UploadNoun, RowRoute):
-    """Deletes the utterances of an upload; ``redo/`` brings them back, with their answers."""
-
-    http_method_names = ["post", "options"]
-    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.ANNOTATE}
-
-    @extend_schema(request=UndoRequest, responses={200: UndoneSerializer})
-    def post(self, request: Request, **kwargs: object) -> Response:
-        row, sent = self.get_object(), self.read(UndoRequest)
-        n_labelled = 0 if row.undone_at else count_labelled(row)
-        if n_labelled and "labelled" not in sent:
-            raise Conflict(
-                f"People have answered {n_labelled:,} of its utterances since. Send labelled=keep or "
-                "labelled=delete."
-            )
-        try:
-            deleted = undo(row, request.user, with_labelled=sent.get("labelled") == "delete")
-        except NotNow as error:
-            raise Conflict(str(error)) from error
-        return _changed(self.get_object(), deleted)
-
-
-@may_take_long
-class RedoUpload(UploadNoun, RowRoute):
-    """Restores the utterances of an upload that was undone."""
-
-    http_method_names = ["post", "options"]
-    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.ANNOTATE}
-
-    @extend_schema(request=None, responses={200: UndoneSerializer})
-    def post(self, request: Request, **kwargs: object) -> Response:
-        try:
-            restored, n_taken = redo(self.get_object(), request.user)
-        except NotNow as error:
-            raise Conflict(str(error)) from error
-        return _changed(self.get_object(), restored, n_taken)
+    problem = {"field": field, "message": sentence}
+    raise Refusal(sentence, f"{field}_not_said", problems=[problem])
 
 
 def _changed(row: Upload, changed: int, taken: int = 0) -> Response:

@@ -2,33 +2,36 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from django.db.models import QuerySet
 from django.http import StreamingHttpResponse
+from django.shortcuts import get_object_or_404
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers, status
+from rest_framework.decorators import action
 from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.exporting.split_export import SplitFormat
 from annotations.labelling.collecting import MOST_AT_ONCE, collect
-from annotations.language.errors import LanguageError
-from annotations.models import Duty, Origin, Upload, Utterance
+from annotations.labelling.entity_spans import mend_span
+from annotations.language.errors import LanguageError, Refusal
+from annotations.models import Duty, Entity, Origin, Upload, Utterance
 from annotations.models.corpus import origin_choices
 from annotations.people.allowances import may_take_long
+from annotations.queueing.item_answers import answer
 from annotations.rows.stored_problems import as_json
 from annotations.utterances.label_export import FIELDS, LabelFormat, export_labels
 from annotations.utterances.upload_reading import UploadFormat as UploadFormat
 from annotations.utterances.utterance_deletion import delete_utterance
 from annotations.utterances.utterance_uploads import structure_of
 from annotations.web.corpus.corpus_filters import UtteranceFilters
+from annotations.web.corpus.label_rest import LabelSerializer, NewLabel, NewSpan
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.negotiation import CONTENT_TYPES, AnyType
-from annotations.web.rest.problem_details import Refused, refusal_of_text
-from annotations.web.rest.routes import RowRoute, RowsRoute, WorldRoute
+from annotations.web.rest.problem_details import refusal_of_text
+from annotations.web.rest.routes import RowsViewSet
 
 
 class UtteranceSerializer(serializers.ModelSerializer):
@@ -67,7 +70,7 @@ class CollectedSerializer(serializers.Serializer):
 
 
 def _require_texts(texts: list[str]) -> None:
-    """Raise Refused where the texts are the lines of a file, such as JSON or a table with a head."""
+    """Raise Refusal where the texts are the lines of a file, such as JSON or a table with a head."""
     try:
         format = structure_of(texts)
     except LanguageError as error:
@@ -77,41 +80,8 @@ def _require_texts(texts: list[str]) -> None:
             f"The texts are the lines of a {format} file, not what people say. Send the file to uploads/, "
             f"which reads it; with format=text there, each line is an utterance."
         )
-        raise Refused(sentence, [{"field": "texts", "message": sentence}])
-
-
-class UtteranceNoun:
-    model = Utterance
-    serializer_class = UtteranceSerializer
-
-    def rows(self) -> QuerySet[Utterance]:
-        return self.world.utterances.select_related("created_by")
-
-
-class Utterances(UtteranceNoun, RowsRoute):
-    """Lists utterances, the oldest first, and takes new ones in."""
-
-    filterset_class = UtteranceFilters
-    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.ANNOTATE}
-    sorts = {"id": "pk", "text": "text", "status": "status"}
-
-    @extend_schema(request=NewUtterances, responses={201: CollectedSerializer})
-    @once
-    def post(self, request: Request, **kwargs: object) -> Response:
-        sent = self.read(NewUtterances)
-        _require_texts(sent["texts"])
-        by = request.user
-        upload = Upload(world=self.world, created_by=by, format=UploadFormat.TEXT)
-        collected = collect(self.world, sent["texts"], sent["origin"], by, upload)
-        if collected.problems:
-            problems = [{"field": "texts", **as_json(each)} for each in collected.problems]
-            raise Refused(str(collected.problems[0]), problems)
-        values = {
-            "added": collected.added,
-            "duplicates": list(collected.duplicates),
-            "upload": upload.pk,
-        }
-        return Response(values, status=status.HTTP_201_CREATED)
+        problem = {"field": "texts", "message": sentence}
+        raise Refusal(sentence, "lines_of_a_file", problems=[problem])
 
 
 class ExportedLabelSerializer(serializers.Serializer):
@@ -150,15 +120,37 @@ class LabelExportQuery(serializers.Serializer):
         return {"as": serializers.ChoiceField(choices=[*LabelFormat], default=LabelFormat.JSONL)}
 
 
-@may_take_long
-class ExportUtterances(UtteranceNoun, WorldRoute):
-    """Streams the utterances that the filters leave with their labels, as JSON Lines, CSV or Parquet.
+class UtteranceViewSet(RowsViewSet):
+    """The utterances, the oldest first. One gets its form from the work queue."""
 
-    Answers that wait to be compared with another person's are in no export.
-    """
-
+    model = Utterance
+    serializer_class = UtteranceSerializer
     filterset_class = UtteranceFilters
-    content_negotiation_class = AnyType
+    duties = dict.fromkeys(("create", "destroy", "label", "spans"), Duty.ANNOTATE)
+    conditional = ("destroy",)
+    sorts = {"id": "pk", "text": "text", "status": "status"}
+
+    def rows(self) -> QuerySet[Utterance]:
+        return self.world.utterances.select_related("created_by")
+
+    @extend_schema(request=NewUtterances, responses={201: CollectedSerializer})
+    @once
+    def create(self, request: Request, **kwargs: object) -> Response:
+        """Takes in new utterances."""
+        sent = self.read(NewUtterances)
+        _require_texts(sent["texts"])
+        by = request.user
+        upload = Upload(world=self.world, created_by=by, format=UploadFormat.TEXT)
+        collected = collect(self.world, sent["texts"], sent["origin"], by, upload)
+        if collected.problems:
+            problems = [{"field": "texts", **as_json(each)} for each in collected.problems]
+            raise Refusal(str(collected.problems[0]), "unreadable_texts", problems=problems)
+        values = {
+            "added": collected.added,
+            "duplicates": list(collected.duplicates),
+            "upload": upload.pk,
+        }
+        return Response(values, status=status.HTTP_201_CREATED)
 
     @extend_schema(
         operation_id="utterances_export",
@@ -170,7 +162,13 @@ class ExportUtterances(UtteranceNoun, WorldRoute):
             (200, "application/vnd.apache.parquet"): OpenApiTypes.BINARY,
         },
     )
-    def get(self, request: Request, **kwargs: object) -> StreamingHttpResponse:
+    @may_take_long
+    @action(detail=False, pagination_class=None, content_negotiation_class=AnyType)
+    def export(self, request: Request, **kwargs: object) -> StreamingHttpResponse:
+        """Streams the utterances that the filters leave with their labels, as JSON Lines, CSV or Parquet.
+
+        Answers that wait to be compared with another person's are in no export.
+        """
         query = LabelExportQuery(data=request.query_params)
         query.is_valid(raise_exception=True)
         as_ = query.validated_data["as"]
@@ -180,17 +178,30 @@ class ExportUtterances(UtteranceNoun, WorldRoute):
         response["Content-Disposition"] = f'attachment; filename="{name}"'
         return response
 
-
-class OneUtterance(UtteranceNoun, RowRoute):
-    """Shows one utterance, and deletes it; it gets its form from the work queue.
-
-    A deleted one keeps its answers: ``history/utterance/ID/`` restores it with them.
-    """
-
-    duties: ClassVar[dict[str, Duty]] = {"DELETE": Duty.ANNOTATE}
-    conditional = ("DELETE",)
-
-    def delete(self, request: Request, **kwargs: object) -> Response:
+    def destroy(self, request: Request, **kwargs: object) -> Response:
+        """Deletes an utterance, which keeps its answers: ``history/utterance/ID/`` restores it with them."""
         row = self.matched()
         delete_utterance(row, request.user, row.version)
         return Response(status=status.HTTP_204_NO_CONTENT)
+
+    @extend_schema(request=NewLabel, responses={201: LabelSerializer})
+    @action(detail=True, methods=["post"])
+    def label(self, request: Request, **kwargs: object) -> Response:
+        """Answers what an utterance means, whether or not the work queue has asked the caller."""
+        row, sent = self.get_object(), self.read(NewLabel)
+        values = {name: sent[name] for name in ("verdict", "form", "version", "reason")}
+        try:
+            made = answer(row, by=request.user, **values)
+        except LanguageError as error:
+            raise refusal_of_text(error, "form") from error
+        return Response(LabelSerializer(made).data, status=status.HTTP_201_CREATED)
+
+    @extend_schema(request=NewSpan, responses={200: UtteranceSerializer})
+    @action(detail=True, methods=["post"])
+    def spans(self, request: Request, **kwargs: object) -> Response:
+        """Says which words of an utterance name which entity; unlabelled utterances with these words follow."""
+        row, sent = self.get_object(), self.read(NewSpan)
+        entities = Entity.objects.filter(ontology__world=self.world)
+        entity = get_object_or_404(entities, pk=sent["entity"])
+        where = sent["start"], sent["end"]
+        return self.show(mend_span(row, *where, entity, request.user, sent["version"]))

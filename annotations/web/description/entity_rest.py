@@ -8,15 +8,14 @@ from typing import Any
 from django.db.models import QuerySet
 from rest_framework import serializers
 
-from annotations.language.errors import Problem
+from annotations.language.errors import Problem, Refusal
 from annotations.language.limits import MAX_ENTITY
 from annotations.models import Entity
 from annotations.models.description import entity_class_choices
 from annotations.web.description.description_filters import EntityFilters
 from annotations.web.description.entity_forms import EntityForm, initial_values, ontology_in
 from annotations.web.rest.fields import AttributesField, Fields, LineField
-from annotations.web.rest.problem_details import Refused
-from annotations.web.rest.routes import EditableRow, EditableRows, Noun
+from annotations.web.rest.routes import EditableViewSet
 
 
 class EntitySerializer(serializers.ModelSerializer):
@@ -49,11 +48,15 @@ class NewEntity(EntityChange):
         return fields
 
 
-class EntityNoun(Noun):
+class EntityViewSet(EditableViewSet):
+    """The entities of the ontology."""
+
     model = Entity
     serializer_class = EntitySerializer
     new_serializer = NewEntity
     change_serializer = EntityChange
+    filterset_class = EntityFilters
+    sorts = {"position": "position", "text": "text", "class": "entity_class", "id": "pk"}
 
     def rows(self) -> QuerySet[Entity]:
         return Entity.objects.filter(ontology__world=self.world)
@@ -72,7 +75,8 @@ class EntityNoun(Noun):
         form = super().valid_form(row, sent)
         if row is None and form.additions.duplicates:
             said = "This entity is there already."
-            raise Refused(said, [{"field": "text", "message": said}])
+            problem = {"field": "text", "message": said}
+            raise Refusal(said, "is_there_already", problems=[problem])
         return form
 
     def unsaved(self, form: EntityForm) -> Entity:
@@ -83,14 +87,3 @@ class EntityNoun(Noun):
 
     def problems_of(self, form: EntityForm) -> Iterable[Problem]:
         return form.additions.problems
-
-
-class Entities(EntityNoun, EditableRows):
-    """Lists the entities of the ontology, and adds one."""
-
-    filterset_class = EntityFilters
-    sorts = {"position": "position", "text": "text", "class": "entity_class", "id": "pk"}
-
-
-class OneEntity(EntityNoun, EditableRow):
-    """Shows, changes and deletes an entity."""

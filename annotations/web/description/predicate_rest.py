@@ -9,14 +9,14 @@ from typing import Any
 from django.db.models import QuerySet
 from rest_framework import serializers
 
+from annotations.language.errors import Refusal
 from annotations.language.limits import MAX_GLOSS, MAX_PREDICATE
 from annotations.models import Predicate
 from annotations.models.description import predicate_kind_choices
 from annotations.web.description.description_filters import PredicateFilters
 from annotations.web.description.predicate_forms import PredicateForm, initial_values
 from annotations.web.rest.fields import Fields, LineField
-from annotations.web.rest.problem_details import Refused
-from annotations.web.rest.routes import EditableRow, EditableRows, Noun
+from annotations.web.rest.routes import EditableViewSet, Noun
 
 
 class PredicateSerializer(serializers.ModelSerializer):
@@ -63,8 +63,8 @@ class PredicateNoun(Noun):
         form = super().valid_form(row, sent)
         if row is None and self.rows().filter(name=form.cleaned_data["name"]).exists():
             said = "There is a predicate of this name already. Change that one."
-            problems = [{"field": "name", "message": said}]
-            raise Refused(said, problems, HTTPStatus.CONFLICT)
+            problem = {"field": "name", "message": said}
+            raise Refusal(said, "is_there_already", HTTPStatus.CONFLICT, [problem])
         return form
 
     def unsaved(self, form: PredicateForm) -> Predicate:
@@ -74,12 +74,8 @@ class PredicateNoun(Noun):
         return form.values
 
 
-class Predicates(PredicateNoun, EditableRows):
-    """Lists the predicates, and declares one."""
+class PredicateViewSet(PredicateNoun, EditableViewSet):
+    """The predicates of the logical forms."""
 
     filterset_class = PredicateFilters
     sorts = {"name": "name", "kind": "kind", "id": "pk"}
-
-
-class OnePredicate(PredicateNoun, EditableRow):
-    """Shows, changes and deletes a predicate."""

@@ -18,7 +18,7 @@ from annotations.web.description.production_forms import (
     unsaved_production,
 )
 from annotations.web.rest.fields import Fields, LineField
-from annotations.web.rest.routes import EditableRow, EditableRows, Noun, RowsRoute
+from annotations.web.rest.routes import EditableViewSet, Noun, RowsRoute
 
 
 class ProductionSerializer(serializers.ModelSerializer):
@@ -66,15 +66,11 @@ class ProductionNoun(Noun):
         return form.checked.problems if form.checked else ()
 
 
-class Productions(ProductionNoun, EditableRows):
-    """Lists the lines of the grammar, and adds one."""
+class ProductionViewSet(ProductionNoun, EditableViewSet):
+    """The lines of the grammar."""
 
     filterset_class = ProductionFilters
     sorts = {"position": "position", "nonterminal": "nonterminal", "id": "pk"}
-
-
-class OneProduction(ProductionNoun, EditableRow):
-    """Shows, changes and deletes a line of the grammar."""
 
 
 class TaskCategorySerializer(serializers.ModelSerializer):

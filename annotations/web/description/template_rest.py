@@ -9,14 +9,15 @@ import django_filters
 from django.db.models import QuerySet
 from rest_framework import serializers
 
+from annotations.language.errors import Refusal
 from annotations.language.limits import MAX_FORM, MAX_PATTERN
 from annotations.models import SemanticTemplate, TaskCategory, World
 from annotations.models.description import TemplateStatus, template_status_choices
 from annotations.web.description.description_filters import TemplateFilters, with_counts
 from annotations.web.description.template_forms import TemplateForm, initial_of, values_of
 from annotations.web.rest.fields import Fields, LineField
-from annotations.web.rest.problem_details import ProblemItemSerializer, Refused
-from annotations.web.rest.routes import EditableRow, EditableRows, Noun
+from annotations.web.rest.problem_details import ProblemItemSerializer
+from annotations.web.rest.routes import EditableViewSet, Noun
 
 
 class TemplateSerializer(serializers.ModelSerializer):
@@ -57,13 +58,14 @@ class TemplateQuery(TemplateFilters):
 
 
 def category_called(world: World, name: str) -> TaskCategory:
-    """Return the task category of this name. Raises Refused, which names those that there are."""
+    """Return the task category of this name. Raises Refusal, which names those that there are."""
     categories = TaskCategory.objects.filter(grammar__world=world)
     category = categories.filter(name=name).first()
     if category is None:
         names = ", ".join(categories.values_list("name", flat=True)) or "none"
         said = f"There is no task category “{name}”; there are: {names}."
-        raise Refused(said, [{"field": "task_category", "message": said}])
+        problem = {"field": "task_category", "message": said}
+        raise Refusal(said, "no_such_task_category", problems=[problem])
     return category
 
 
@@ -95,12 +97,8 @@ class TemplateNoun(Noun):
         return values_of(form) | row.moved_to(form.cleaned_data["task_category"])
 
 
-class Templates(TemplateNoun, EditableRows):
-    """Lists the semantic templates, and adds one."""
+class TemplateViewSet(TemplateNoun, EditableViewSet):
+    """The semantic templates. After a change the commands follow at once, or as a job."""
 
     filterset_class = TemplateQuery
     sorts = {"position": "position", "pattern": "pattern", "status": "status", "id": "pk"}
-
-
-class OneTemplate(TemplateNoun, EditableRow):
-    """Shows, changes and deletes a template. The commands follow at once, or as a job."""

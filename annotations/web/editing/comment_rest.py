@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from http import HTTPStatus
-from typing import Any, ClassVar
+from typing import Any
 
 from django.db.models import QuerySet
 from django.http import Http404
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
+from rest_framework.decorators import action
 from rest_framework.exceptions import PermissionDenied
 from rest_framework.request import Request
 from rest_framework.response import Response
@@ -20,13 +21,13 @@ from annotations.commenting import (
     delete_comment,
     restore_comment,
 )
-from annotations.models import Comment
+from annotations.language.errors import Refusal
+from annotations.models import Comment, User
 from annotations.models.editing import MOST_CHARACTERS_OF_COMMENT
 from annotations.web.editing.comment_forms import COMMENTS, TOO_MANY
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
-from annotations.web.rest.problem_details import Refused
-from annotations.web.rest.routes import RowRoute, RowsRoute
+from annotations.web.rest.routes import Retrieved, RowsRoute, WorldViewSet
 
 
 class CommentSerializer(serializers.ModelSerializer):
@@ -48,21 +49,17 @@ class CommentText(Fields):
     text = serializers.CharField(max_length=MOST_CHARACTERS_OF_COMMENT)
 
 
-class CommentNoun:
+def count(by: User) -> None:
+    """Count one comment of somebody. Raises Refusal where they have written many within minutes."""
+    if COMMENTS.take(str(by.pk)) is None:
+        raise Refusal(TOO_MANY, "too_many_comments", HTTPStatus.TOO_MANY_REQUESTS)
+
+
+class Comments(RowsRoute):
+    """Lists the comments on a row, the oldest first, and adds one."""
+
     model = Comment
     serializer_class = CommentSerializer
-
-    def rows(self) -> QuerySet[Comment]:
-        return self.world.comments.present().select_related("author", "world")
-
-    def count(self) -> None:
-        """Count one comment of the caller. Raises Refused where they have written many within minutes."""
-        if COMMENTS.take(str(self.request.user.pk)) is None:
-            raise Refused(TOO_MANY, status=HTTPStatus.TOO_MANY_REQUESTS)
-
-
-class Comments(CommentNoun, RowsRoute):
-    """Lists the comments on a row, the oldest first, and adds one."""
 
     def _subject(self) -> Any:
         if self.kwargs["kind"] not in SUBJECTS:
@@ -73,7 +70,8 @@ class Comments(CommentNoun, RowsRoute):
         subject = self._subject()
         row = subject.row(self.world, self.kwargs["pk"])
         same = {"about": str(row)} if subject.is_known_by_text else {"subject": row.pk}
-        return super().rows().filter(kind=subject.name, **same)
+        comments = self.world.comments.present().select_related("author", "world")
+        return comments.filter(kind=subject.name, **same)
 
     @extend_schema(request=CommentText, responses={201: CommentSerializer})
     @once
@@ -81,28 +79,36 @@ class Comments(CommentNoun, RowsRoute):
         subject = self._subject()
         row = subject.row(self.world, self.kwargs["pk"])
         text = self.read(CommentText)["text"]
-        self.count()
+        count(request.user)
         made = add_comment(self.world, subject, row, text, request.user)
-        return RowRoute.show(self, made, HTTPStatus.CREATED)
+        return self.show(made, HTTPStatus.CREATED)
 
 
-class OneComment(CommentNoun, RowRoute):
-    """Shows a comment; its author edits it, and an admin may delete it too."""
+class CommentViewSet(Retrieved, WorldViewSet):
+    """A comment. Its author edits it, and an admin may delete it too."""
 
-    conditional: ClassVar[tuple[str, ...]] = ("PATCH", "DELETE")
+    model = Comment
+    serializer_class = CommentSerializer
+    conditional = ("partial_update", "destroy")
+
+    def rows(self) -> QuerySet[Comment]:
+        comments = self.world.comments.select_related("author", "world")
+        return comments if self.action == "restore" else comments.present()
 
     @extend_schema(request=CommentText, responses={200: CommentSerializer})
-    def patch(self, request: Request, **kwargs: object) -> Response:
+    def partial_update(self, request: Request, **kwargs: object) -> Response:
+        """Edits a comment of the caller."""
         row = self.get_object()
         if not row.may_be_edited_by(request.user):
             raise PermissionDenied("Only the author of a comment edits it.")
         text = self.read(CommentText)["text"]
         with self.matching() as row:
-            self.count()
+            count(request.user)
             changed = change_comment(row, text, row.version)
         return self.show(changed)
 
-    def delete(self, request: Request, **kwargs: object) -> Response:
+    def destroy(self, request: Request, **kwargs: object) -> Response:
+        """Deletes a comment; ``restore/`` brings it back."""
         row = self.get_object()
         if not row.may_be_deleted_by(request.user, self.world.duties_of(request.user)):
             raise PermissionDenied("Only its author and the admins of this world delete a comment.")
@@ -110,17 +116,10 @@ class OneComment(CommentNoun, RowRoute):
             delete_comment(row, request.user)
         return Response(status=HTTPStatus.NO_CONTENT)
 
-
-class RestoreComment(CommentNoun, RowRoute):
-    """Brings a deleted comment back."""
-
-    http_method_names = ["post", "options"]
-
-    def rows(self) -> QuerySet[Comment]:
-        return self.world.comments.select_related("author", "world")
-
     @extend_schema(request=None, responses={200: CommentSerializer})
-    def post(self, request: Request, **kwargs: object) -> Response:
+    @action(detail=True, methods=["post"])
+    def restore(self, request: Request, **kwargs: object) -> Response:
+        """Brings a deleted comment back."""
         row = self.get_object()
         if row.is_deleted:
             if not row.may_be_restored_by(request.user, self.world.duties_of(request.user)):

@@ -9,12 +9,13 @@ from django.http import Http404, HttpRequest, JsonResponse
 from django.views.decorators.cache import never_cache
 
 from annotations.editing.drafts import MOST_BYTES, discard_draft, read_draft, save_draft
+from annotations.language.errors import Refusal
 from annotations.lists.paging import number_in
 from annotations.models import Draft, Duty, World
 from annotations.models.editing import NEW
 from annotations.people.access import READ_AND_WRITE, world_view
 from annotations.web.editing.kinds_of_rows import kind_named
-from annotations.web.sent_texts import NotText, sent_texts_of
+from annotations.web.sent_texts import sent_texts_of
 
 LONGEST_SUBJECT = Draft._meta.get_field("subject").max_length
 
@@ -51,10 +52,10 @@ def _post(request: HttpRequest, world: World, kind: str, subject: str) -> JsonRe
         sent = sent_texts_of(request).read_json(json.loads(request.body))
         is_discarded = isinstance(sent, dict) and sent.get("discard") is True
         values = {} if is_discarded else read_draft(sent)
-    except (ValueError, RecursionError) as error:
-        is_sentence = type(error) in (ValueError, NotText)
-        sentence = str(error) if is_sentence else "This is not JSON."
-        return JsonResponse({"error": sentence}, status=400)
+    except Refusal as refusal:
+        return JsonResponse({"error": refusal.message}, status=400)
+    except (ValueError, RecursionError):
+        return JsonResponse({"error": "This is not JSON."}, status=400)
     if sent.get("of") != request.user.pk:
         sentence = "You have logged in as somebody else since. The draft is in your browser only."
         return JsonResponse({"error": sentence}, status=409)

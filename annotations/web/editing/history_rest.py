@@ -14,7 +14,6 @@ from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.editing.edits import restore
-from annotations.labelling.label_answers import NoLongerYours
 from annotations.language.limits import MAX_ENTITY
 from annotations.models import Duty, SemanticTemplate
 from annotations.renaming.rename_plans import PLANS
@@ -25,7 +24,7 @@ from annotations.web.editing.kinds_of_rows import RESTORING, kind_named
 from annotations.web.editing.rename_forms import RenameForm
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.idempotency import once
-from annotations.web.rest.problem_details import Conflict, refusal_of_form
+from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import RowRoute, RowsRoute
 
 # Kind of row → the serializer of its own routes. By path: the rooms of the rows import this one.
@@ -123,10 +122,7 @@ class HistoryOfRow(Versions):
     def post(self, request: Request, **kwargs: object) -> Response:
         kind, entries = self.kind(), self.rows()
         entry = get_object_or_404(entries, history_id=self.read(RestoredEntry)["entry"])
-        try:
-            row = RESTORING.get(kind.model, restore)(entry, request.user)
-        except NoLongerYours as error:
-            raise Conflict(str(error)) from error
+        row = RESTORING.get(kind.model, restore)(entry, request.user)
         return Response({"kind": kind.name, "row": serializer_of(kind)(row).data})
 
 

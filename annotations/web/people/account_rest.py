@@ -8,18 +8,19 @@ from django.db.models import QuerySet
 from django.shortcuts import get_object_or_404
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
+from rest_framework.decorators import action
+from rest_framework.mixins import ListModelMixin
 from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.models import AuditEntry, Duty, Membership, Scope, User
-from annotations.people.accounts import OwnAccount, password_path, set_open
+from annotations.people.accounts import password_path, set_open
 from annotations.people.audit_log import note
 from annotations.web.people.member_rest import UNCACHED
 from annotations.web.people.people_filters import AccountFilters, AuditEntryFilters
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.permissions import ForSiteAdmins
-from annotations.web.rest.problem_details import Conflict
-from annotations.web.rest.routes import ManyRows, RowsRoute, SingleRow
+from annotations.web.rest.routes import ManyRows, Retrieved, RowsRoute, SiteViewSet
 
 
 class RoleInWorld(serializers.ModelSerializer):
@@ -47,54 +48,40 @@ class AccountChange(Fields):
     is_active = serializers.BooleanField()
 
 
-class AccountNoun:
-    model = User
-    serializer_class = AccountSerializer
-    permission_classes: ClassVar[list[type]] = [ForSiteAdmins]
-    duty = Duty.MANAGE
-    scopes: ClassVar[dict[str, Scope]] = {"GET": Scope.READ}
-
-    def rows(self) -> QuerySet[User]:
-        return User.objects.prefetch_related("memberships__world")
-
-
-class Accounts(AccountNoun, ManyRows):
-    """Lists all accounts. People join by invitations; ``manage.py`` makes the first one."""
-
-    filterset_class = AccountFilters
-    sorts = {"name": "username", "joined": "date_joined"}
-
-
-class OneAccount(AccountNoun, SingleRow):
-    """Shows an account, closes it or opens it."""
-
-    conditional = ("PATCH",)
-
-    @extend_schema(request=AccountChange, responses={200: AccountSerializer})
-    def patch(self, request: Request, **kwargs: object) -> Response:
-        is_open = self.read(AccountChange)["is_active"]
-        with self.matching() as row:
-            try:
-                set_open(row, is_open, by=request.user)
-            except OwnAccount as error:
-                raise Conflict(str(error)) from error
-        note(request, f"{row}: {'open' if is_open else 'closed'}")
-        return self.show(self.get_object())
-
-
 class PasswordLink(serializers.Serializer):
     """Whoever opens the page sets a new password, once, within three days."""
 
     link = serializers.CharField()
 
 
-class AccountLink(AccountNoun, SingleRow):
-    """Makes a link for somebody who has lost their password."""
+class AccountViewSet(ListModelMixin, Retrieved, SiteViewSet):
+    """All accounts. People join by invitations; ``manage.py`` makes the first one."""
 
-    http_method_names = ["post", "options"]
+    model = User
+    serializer_class = AccountSerializer
+    filterset_class = AccountFilters
+    permission_classes = [ForSiteAdmins]
+    duty = Duty.MANAGE
+    scopes = dict.fromkeys(("list", "retrieve"), Scope.READ)
+    conditional = ("partial_update",)
+    sorts = {"name": "username", "joined": "date_joined"}
+
+    def rows(self) -> QuerySet[User]:
+        return User.objects.prefetch_related("memberships__world")
+
+    @extend_schema(request=AccountChange, responses={200: AccountSerializer})
+    def partial_update(self, request: Request, **kwargs: object) -> Response:
+        """Closes an account, or opens it."""
+        is_open = self.read(AccountChange)["is_active"]
+        with self.matching() as row:
+            set_open(row, is_open, by=request.user)
+        note(request, f"{row}: {'open' if is_open else 'closed'}")
+        return self.show(self.get_object())
 
     @extend_schema(request=None, responses={200: PasswordLink})
-    def post(self, request: Request, **kwargs: object) -> Response:
+    @action(detail=True, methods=["post"])
+    def link(self, request: Request, **kwargs: object) -> Response:
+        """Makes a link for somebody who has lost their password."""
         row = get_object_or_404(self.rows().filter(is_active=True), pk=self.kwargs["pk"])
         note(request, str(row))
         link = request.build_absolute_uri(password_path(row))

@@ -13,19 +13,19 @@ from rest_framework.exceptions import NotFound
 from rest_framework.request import Request
 from rest_framework.response import Response
 
+from annotations.language.errors import Refusal
 from annotations.models import Duty, Invitation, Membership, Scope, User
 from annotations.models.worlds import Role, role_choices
 from annotations.people.audit_log import note
-from annotations.people.invitations import MOST_DAYS, MOST_PLACES, InvitationOver, join
-from annotations.people.members import NoAdminLeft, add_roles, role_names, set_roles
+from annotations.people.invitations import MOST_DAYS, MOST_PLACES, join
+from annotations.people.members import add_roles, role_names, set_roles
 from annotations.people.rate_limits import JOINING
 from annotations.web.people.member_forms import OVER, TOO_OFTEN, InvitationForm, MemberForm
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.idempotency import once
-from annotations.web.rest.problem_details import Conflict, Refused, refusal_of_form
-from annotations.web.rest.routes import Route, RowRoute, RowsRoute
+from annotations.web.rest.problem_details import refusal_of_form
+from annotations.web.rest.routes import Route, RowsViewSet
 
-MANAGED: dict[str, Duty] = dict.fromkeys(("POST", "PATCH", "DELETE"), Duty.MANAGE)
 UNCACHED = {"Cache-Control": "no-store"}  # of answers with a secret
 
 
@@ -61,62 +61,55 @@ class NewMember(RolesChange):
     name = LineField(max_length=150)
 
 
-class MemberNoun:
+class MemberViewSet(RowsViewSet):
+    """The members of a world."""
+
     model = User
     serializer_class = MemberSerializer
-    duties: ClassVar[dict[str, Duty]] = MANAGED
+    filter_backends = []
+    duties = dict.fromkeys(("create", "partial_update", "destroy"), Duty.MANAGE)
+    conditional = ("partial_update", "destroy")
+    sorts = {"name": "username", "id": "pk"}
 
     def rows(self) -> QuerySet[User]:
         here = Membership.objects.filter(world=self.world)
         rows = User.objects.filter(pk__in=here.values("user"))
         return rows.prefetch_related(Prefetch("memberships", here, "roles_here"))
 
-
-class Members(MemberNoun, RowsRoute):
-    """Lists the members of a world, and gives somebody with an account roles in it."""
-
-    filter_backends = []
-    sorts = {"name": "username", "id": "pk"}
-
     @extend_schema(request=NewMember, responses={201: MemberSerializer})
     @once
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def create(self, request: Request, **kwargs: object) -> Response:
+        """Gives somebody with an account roles in the world."""
         form = MemberForm(self.read(NewMember))
         if not form.is_valid():
             raise refusal_of_form(form)
         account, roles = form.cleaned_data["name"], form.cleaned_data["roles"]
         if not add_roles(self.world, account, roles):
-            raise Conflict(f"{account} is {role_names(roles)} here already.")
+            said = f"{account} is {role_names(roles)} here already."
+            raise Refusal(said, "has_roles_already", HTTPStatus.CONFLICT)
         note(request, f"{account}: {role_names(roles)}")
-        return RowRoute.show(self, self.rows().get(pk=account.pk), HTTPStatus.CREATED)
-
-
-class OneMember(MemberNoun, RowRoute):
-    """Shows a member; admins change their roles, or remove them."""
-
-    conditional = ("PATCH", "DELETE")
+        return self.show(self.rows().get(pk=account.pk), HTTPStatus.CREATED)
 
     def hold(self) -> None:
         """Hold all roles of the world."""
         self.hold_world()
 
     @extend_schema(request=RolesChange, responses={200: MemberSerializer})
-    def patch(self, request: Request, **kwargs: object) -> Response:
+    def partial_update(self, request: Request, **kwargs: object) -> Response:
+        """Changes the roles of a member."""
         with self.matching() as row:
             self._set_roles(row, self.read(RolesChange)["roles"])
         return self.show(self.get_object())
 
-    def delete(self, request: Request, **kwargs: object) -> Response:
+    def destroy(self, request: Request, **kwargs: object) -> Response:
+        """Removes a member."""
         with self.matching() as row:
             self._set_roles(row, [])
         return Response(status=HTTPStatus.NO_CONTENT)
 
     def _set_roles(self, row: User, roles: list[str]) -> None:
-        """Give the member just these roles. Raises Conflict where no admin would be left."""
-        try:
-            set_roles(self.world, row, roles, by=self.request.user)
-        except NoAdminLeft as error:
-            raise Conflict(str(error)) from error
+        """Give the member just these roles. Raises NoAdminLeft."""
+        set_roles(self.world, row, roles, by=self.request.user)
         note(self.request, f"{row}: {role_names(roles) or 'removed'}")
 
 
@@ -153,24 +146,23 @@ class NewInvitation(Fields):
     note = LineField(max_length=80, allow_blank=True, default="")
 
 
-class InvitationNoun:
+class InvitationViewSet(RowsViewSet):
+    """The invitations that somebody can still join by."""
+
     model = Invitation
     serializer_class = InvitationSerializer
-    duties: ClassVar[dict[str, Duty]] = {**MANAGED, "GET": Duty.MANAGE}
-    scopes: ClassVar[dict[str, Scope]] = {"GET": Scope.READ}
+    filter_backends = []
+    duties = dict.fromkeys(("list", "retrieve", "create", "destroy"), Duty.MANAGE)
+    scopes = dict.fromkeys(("list", "retrieve"), Scope.READ)
+    conditional = ("destroy",)
+    sorts = {"newest": "-pk"}
 
     def rows(self) -> QuerySet[Invitation]:
         return self.world.invitations.open().select_related("created_by")
 
-
-class Invitations(InvitationNoun, RowsRoute):
-    """Lists the invitations that somebody can still join by, and makes one."""
-
-    filter_backends = []
-    sorts = {"newest": "-pk"}
-
     @extend_schema(request=NewInvitation, responses={201: IssuedInvitation})
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def create(self, request: Request, **kwargs: object) -> Response:
+        """Makes an invitation."""
         sent = self.read(NewInvitation)
         form = InvitationForm(
             {f"{InvitationForm.prefix}-{name}": each for name, each in sent.items()}
@@ -183,13 +175,8 @@ class Invitations(InvitationNoun, RowsRoute):
         shown = {**InvitationSerializer(row).data, "link": link, "key": key}
         return Response(shown, status=HTTPStatus.CREATED, headers=UNCACHED)
 
-
-class OneInvitation(InvitationNoun, RowRoute):
-    """Shows an invitation, and withdraws it: who has joined by it stays."""
-
-    conditional = ("DELETE",)
-
-    def delete(self, request: Request, **kwargs: object) -> Response:
+    def destroy(self, request: Request, **kwargs: object) -> Response:
+        """Withdraws an invitation: who has joined by it stays."""
         with self.matching() as row:
             row.delete()
         note(request, row.note or "a link")
@@ -221,14 +208,11 @@ class Join(Route):
         key = self.read(KeyOfInvitation)["key"]
         place = JOINING.take(str(request.META["REMOTE_ADDR"]))
         if place is None:
-            raise Refused(TOO_OFTEN, status=HTTPStatus.TOO_MANY_REQUESTS)
+            raise Refusal(TOO_OFTEN, "too_often", HTTPStatus.TOO_MANY_REQUESTS)
         invitation = Invitation.objects.for_key(key)
         if invitation is None:
             raise NotFound(OVER)
-        try:
-            join(invitation, request.user)
-        except InvitationOver as error:
-            raise NotFound(str(error)) from error
+        join(invitation, request.user)
         JOINING.give_back(place)
         note(request, f"{invitation.world} as {role_names(invitation.roles)}")
         return Response({"world": invitation.world.name, "roles": invitation.roles})

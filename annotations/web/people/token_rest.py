@@ -12,6 +12,7 @@ from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework import serializers
 from rest_framework.exceptions import PermissionDenied
+from rest_framework.mixins import ListModelMixin
 from rest_framework.request import Request
 from rest_framework.response import Response
 
@@ -23,7 +24,7 @@ from annotations.web.people.member_rest import UNCACHED
 from annotations.web.people.token_forms import MOST_DAYS, TokenForm
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.problem_details import refusal_of_form
-from annotations.web.rest.routes import ManyRows, Route, SingleRow
+from annotations.web.rest.routes import Retrieved, Route, SingleRow, SiteViewSet
 
 
 class TokenSerializer(serializers.ModelSerializer):
@@ -57,9 +58,14 @@ class NewToken(Fields):
     days = serializers.IntegerField(min_value=1, max_value=MOST_DAYS, default=90)
 
 
-class TokenNoun:
+class TokenViewSet(ListModelMixin, Retrieved, SiteViewSet):
+    """One's own tokens."""
+
     model = ApiToken
     serializer_class = TokenSerializer
+    filter_backends = []
+    conditional = ("destroy",)
+    sorts = {"newest": "-pk"}
 
     def rows(self) -> QuerySet[ApiToken]:
         return self.request.user.api_tokens.all()
@@ -75,15 +81,9 @@ class TokenNoun:
             )
         return token
 
-
-class Tokens(TokenNoun, ManyRows):
-    """Lists one's tokens, and makes one."""
-
-    filter_backends = []
-    sorts = {"newest": "-pk"}
-
     @extend_schema(request=NewToken, responses={201: IssuedToken})
-    def post(self, request: Request) -> Response:
+    def create(self, request: Request) -> Response:
+        """Makes a token."""
         sent = self.read(NewToken)
         by = self.calling_token(sent["scope"])
         form = TokenForm(request.user, sent)
@@ -94,13 +94,8 @@ class Tokens(TokenNoun, ManyRows):
         shown = {**self.get_serializer(row).data, "key": key}
         return Response(shown, status=HTTPStatus.CREATED, headers=UNCACHED)
 
-
-class OneToken(TokenNoun, SingleRow):
-    """Shows one of one's tokens, and revokes it."""
-
-    conditional = ("DELETE",)
-
-    def delete(self, request: Request, **kwargs: object) -> Response:
+    def destroy(self, request: Request, **kwargs: object) -> Response:
+        """Revokes a token."""
         with self.matching() as row:
             self.calling_token(row.scope)
             row.delete()

@@ -5,18 +5,17 @@ from __future__ import annotations
 from typing import Any
 
 import django_filters
-from django.shortcuts import get_object_or_404
+from django.db.models import QuerySet
 from drf_spectacular.utils import extend_schema, extend_schema_field
 from rest_framework import serializers
-from rest_framework.exceptions import PermissionDenied
+from rest_framework.decorators import action
 from rest_framework.request import Request
 from rest_framework.response import Response
 
-from annotations.label_audit.label_decisions import DecidedMeanwhile, decide, take_back
-from annotations.labelling.label_answers import AnsweredMeanwhile, NoLongerYours
+from annotations.label_audit.label_decisions import decide, take_back
 from annotations.language.errors import LanguageError
 from annotations.language.limits import MAX_FORM
-from annotations.models import AuditDecision, AuditFinding, AuditReason
+from annotations.models import AuditDecision, AuditFinding, AuditReason, World
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.models.queueing import (
     AuditFindingQuerySet,
@@ -24,10 +23,9 @@ from annotations.models.queueing import (
     decision_choices,
     finding_status_choices,
 )
-from annotations.queueing.giving import NotForThem
 from annotations.web.rest.fields import Fields
-from annotations.web.rest.problem_details import Conflict, Refused, refusal_of_text
-from annotations.web.rest.routes import RowRoute, RowsRoute
+from annotations.web.rest.problem_details import refusal_of_text
+from annotations.web.rest.routes import RowsViewSet, WorldViewSet
 
 
 class AuditReasonSerializer(serializers.ModelSerializer):
@@ -93,57 +91,46 @@ class NewDecision(Fields):
     reason = serializers.CharField(max_length=MOST_CHARACTERS, allow_blank=True, default="")
 
 
-class AuditFindingNoun:
+def finding_rows(world: World) -> AuditFindingQuerySet:
+    """Return the findings of a world with what is shown of them."""
+    return world.audit_findings.prefetch_related("reasons", "decisions__decided_by")
+
+
+class AuditFindingViewSet(RowsViewSet):
+    """The labels that audits have found to be in doubt, the most suspect first."""
+
     model = AuditFinding
     serializer_class = AuditFindingSerializer
-
-    def rows(self) -> AuditFindingQuerySet:
-        return self.world.audit_findings.prefetch_related("reasons", "decisions__decided_by")
-
-
-class AuditFindings(AuditFindingNoun, RowsRoute):
-    """Lists the labels that audits have found to be in doubt, the most suspect first."""
-
     filterset_class = AuditFindingQuery
     sorts = {"rank": "rank", "id": "pk"}
 
-
-class OneAuditFinding(AuditFindingNoun, RowRoute):
-    """Shows one finding."""
-
-
-class DecideAuditFinding(AuditFindingNoun, RowRoute):
-    """Decides about a label in doubt, once. The work queue knows who may."""
-
-    http_method_names = ["post", "options"]
+    def rows(self) -> AuditFindingQuerySet:
+        return finding_rows(self.world)
 
     @extend_schema(request=NewDecision, responses={200: AuditFindingSerializer})
-    def post(self, request: Request, **kwargs: object) -> Response:
+    @action(detail=True, methods=["post"])
+    def decide(self, request: Request, **kwargs: object) -> Response:
+        """Decides about a label in doubt, once. The work queue knows who may."""
         row, sent = self.get_object(), self.read(NewDecision)
         try:
             decide(row, sent["decision"], request.user, sent["form"], sent["reason"])
-        except NotForThem as error:
-            raise PermissionDenied(str(error)) from error
-        except (AnsweredMeanwhile, DecidedMeanwhile, NoLongerYours) as error:
-            raise Conflict(str(error)) from error
         except LanguageError as error:
             raise refusal_of_text(error, "form") from error
-        except ValueError as error:
-            raise Refused(str(error)) from error
         return self.show(self.get_object())
 
 
-class TakeBackDecision(AuditFindingNoun, RowRoute):
-    """Undoes a decision of the caller; its label is in doubt again."""
+class AuditDecisionViewSet(WorldViewSet):
+    """Decisions about labels in doubt."""
 
-    http_method_names = ["post", "options"]
+    model = AuditDecision
+    serializer_class = AuditFindingSerializer
+
+    def rows(self) -> QuerySet[AuditDecision]:
+        return AuditDecision.objects.filter(finding__world=self.world)
 
     @extend_schema(request=None, responses={200: AuditFindingSerializer})
-    def post(self, request: Request, **kwargs: object) -> Response:
-        rows = AuditDecision.objects.filter(finding__world=self.world)
-        made = get_object_or_404(rows, pk=self.kwargs["pk"])
-        try:
-            finding = take_back(made, request.user)
-        except ValueError as error:
-            raise Conflict(str(error)) from error
-        return self.show(self.rows().get(pk=finding.pk))
+    @action(detail=True, methods=["post"], url_path="take-back")
+    def take_back(self, request: Request, **kwargs: object) -> Response:
+        """Undoes a decision of the caller; its label is in doubt again."""
+        finding = take_back(self.get_object(), request.user)
+        return self.show(finding_rows(self.world).get(pk=finding.pk))

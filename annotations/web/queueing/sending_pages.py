@@ -9,6 +9,7 @@ from django.http import HttpRequest, HttpResponse, HttpResponseRedirect
 from django.shortcuts import get_object_or_404, redirect
 from django.utils.http import url_has_allowed_host_and_scheme
 
+from annotations.language.errors import Refusal
 from annotations.models import Duty, Example, World
 from annotations.people.access import WRITE, world_view
 from annotations.queueing.sent_examples import send_examples
@@ -32,7 +33,7 @@ def send(request: HttpRequest, world: World, examples: Iterable[Example]) -> Non
         return
     try:
         sent = send_examples(world, examples, form.cleaned_data["reason"], request.user)
-    except ValueError as error:
+    except Refusal as error:
         messages.error(request, str(error))
         return
     tell = messages.success if sent.queued else messages.info

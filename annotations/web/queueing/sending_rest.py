@@ -17,7 +17,6 @@ from annotations.queueing.sent_examples import send_examples
 from annotations.web.queueing.work_item_forms import LONGEST_QUESTION
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.idempotency import once
-from annotations.web.rest.problem_details import Refused
 from annotations.web.rest.routes import WorldRoute
 
 
@@ -43,12 +42,9 @@ class Sending(WorldRoute):
     duties: ClassVar[dict[str, Duty]] = {"POST": Duty.REVIEW}
 
     def send(self, examples: Iterable[Example]) -> Response:
-        """Send examples for the reason in the body. Raises Refused where they are too many."""
+        """Send examples for the reason in the body. Raises Refusal where they are too many."""
         reason = self.read(WhatToLookAt)["reason"]
-        try:
-            sent = send_examples(self.world, examples, reason, self.request.user)
-        except ValueError as error:
-            raise Refused(str(error)) from error
+        sent = send_examples(self.world, examples, reason, self.request.user)
         return Response(SentSerializer(sent).data)
 
 

@@ -12,8 +12,9 @@ from django.urls import reverse
 from django.views.decorators.cache import never_cache
 
 from annotations.label_audit.label_decisions import end_item
-from annotations.labelling.label_answers import AnsweredMeanwhile, NoLongerYours
+from annotations.labelling.label_answers import NoLongerYours
 from annotations.language.english import say_count
+from annotations.language.errors import Refusal
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.models import Assignment, Duty, WorkItem, WorkKind, World
 from annotations.models.queueing import OCCUPYING
@@ -140,7 +141,7 @@ def queue_settle(request: HttpRequest, world: World, pk: int) -> HttpResponse:
         return _item_page(request, item, form, status=422)
     try:
         answer(item.utterance, by=request.user, version=item.utterance.version, **form.decision)
-    except (AnsweredMeanwhile, ValueError) as error:
+    except Refusal as error:
         messages.error(request, str(error))
         return redirect("queue_item", world=world.name, pk=pk)
     messages.success(request, f"Settled: {item.title[:80]}")

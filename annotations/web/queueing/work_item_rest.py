@@ -10,25 +10,25 @@ from django.db.models import Prefetch, prefetch_related_objects
 from django.shortcuts import get_object_or_404
 from drf_spectacular.utils import OpenApiResponse, extend_schema, extend_schema_field
 from rest_framework import serializers
-from rest_framework.exceptions import ValidationError
+from rest_framework.decorators import action
 from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.label_audit.label_decisions import end_item
-from annotations.labelling.label_answers import AnsweredMeanwhile, NoLongerYours
-from annotations.language.errors import LanguageError
-from annotations.models import Assignment, Duty, Label, Verdict, WorkItem, WorkKind
+from annotations.language.errors import LanguageError, Refusal
+from annotations.models import Assignment, Duty, Label, User, Verdict, WorkItem, WorkKind, World
 from annotations.models.corpus import MOST_CHARACTERS, verdict_choices
 from annotations.models.queueing import WorkItemQuerySet, work_kind_choices
 from annotations.queueing.enqueuing import ASKABLE, ask_about
 from annotations.queueing.finishing import finish, give_back, skip
-from annotations.queueing.giving import next_item
+from annotations.queueing.giving import assign, assign_first, next_item, take, withdraw
 from annotations.queueing.item_answers import answer, labels_to_compare
-from annotations.web.queueing.work_item_forms import LONGEST_QUESTION
+from annotations.web.queueing.queueing_filters import WorkItemFilters
+from annotations.web.queueing.work_item_forms import LONGEST_QUESTION, MOST_ASSIGNED, AssignForm
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.idempotency import once
-from annotations.web.rest.problem_details import Conflict, PreconditionRequired, refusal_of_text
-from annotations.web.rest.routes import RowRoute, RowsRoute, WorldRoute
+from annotations.web.rest.problem_details import PreconditionRequired, refusal_of_text
+from annotations.web.rest.routes import RowsViewSet
 
 PARTS = Prefetch("assignments", Assignment.objects.select_related("person"))
 STATES = ("open", "free", "taken", "done")
@@ -129,56 +129,77 @@ class AnswerSerializer(Fields):
     version = serializers.IntegerField(required=False, min_value=0, max_value=2**31 - 1)
 
 
-class WorkItemNoun:
+class PersonSerializer(Fields):
+    """The name of the member who is to do it."""
+
+    person = LineField(max_length=150)
+
+
+class PersonAndCount(PersonSerializer):
+    """The member who is to do the most urgent free items, and how many of them."""
+
+    count = serializers.IntegerField(min_value=1, max_value=MOST_ASSIGNED)
+
+
+class GivenSerializer(serializers.Serializer):
+    """How many items the person has beside those that they had."""
+
+    given = serializers.IntegerField()
+
+
+def person_called(world: World, name: str) -> User:
+    """Return the member whom admins may give an item. Raises Refusal where there is none."""
+    members = AssignForm(world).fields["person"].queryset
+    person: User | None = members.filter(username=name).first()
+    if person is None:
+        said = "Choose a person of this world."
+        raise Refusal(said, "no_such_member", problems=[{"field": "person", "message": said}])
+    return person
+
+
+class WorkItemViewSet(RowsViewSet):
+    """The items of the work queue, the oldest first. The queue itself knows who may do one."""
+
     model = WorkItem
     serializer_class = WorkItemSerializer
+    filterset_class = WorkItemQuery
+    duties = {"create": Duty.REVIEW} | dict.fromkeys(
+        ("assign", "withdraw", "assign_many"), Duty.MANAGE
+    )
+    sorts = {"id": "pk", "created": "created_at", "priority": "priority"}
+
+    def get_serializer_class(self) -> type[WorkItemSerializer]:
+        return ComparedWorkItemSerializer if self.action == "retrieve" else WorkItemSerializer
 
     def rows(self) -> WorkItemQuerySet:
         return self.world.work_items.present().select_related("utterance").prefetch_related(PARTS)
 
-
-class WorkItems(WorkItemNoun, RowsRoute):
-    """Lists the items of the work queue, the oldest first; reviewers ask for a look at a row."""
-
-    filterset_class = WorkItemQuery
-    sorts = {"id": "pk", "created": "created_at", "priority": "priority"}
-    duties = {"POST": Duty.REVIEW}
-
     @extend_schema(request=WhatToAsk, responses={201: WorkItemSerializer})
     @once
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def create(self, request: Request, **kwargs: object) -> Response:
+        """Asks for a look at a row."""
         sent = self.read(WhatToAsk)
         subject = get_object_or_404(ASKABLE[sent["kind"]](self.world), pk=sent["id"])
         if not ask_about(self.world, subject, sent["reason"], request.user):
-            raise Conflict("Somebody is asked about this already.")
+            said = "Somebody is asked about this already."
+            raise Refusal(said, "asked_already", HTTPStatus.CONFLICT)
         rows = self.rows().filter(**{sent["kind"]: subject, "kind": WorkKind.REQUESTED})
-        return RowRoute.show(self, rows.order_by("-pk")[0], HTTPStatus.CREATED)
+        return self.show(rows.order_by("-pk")[0], HTTPStatus.CREATED)
 
+    def held(self) -> Assignment:
+        """Return the caller's assignment of the item. Raises Http404, or Refusal where they have none."""
+        assignments = Assignment.objects.held().filter(person=self.request.user)
+        item = self.world.work_items.present().filter(pk=self.kwargs["pk"])
+        found = assignments.filter(item__in=item).select_related("item__utterance").first()
+        if found is None:
+            get_object_or_404(item)
+            said = "This is not yours now. POST to next/ to get an item."
+            raise Refusal(said, "not_yours_now", HTTPStatus.CONFLICT)
+        return found
 
-class OneWorkItem(WorkItemNoun, RowRoute):
-    """Shows one item."""
-
-    serializer_class = ComparedWorkItemSerializer
-
-
-class WorkItemVerb(WorkItemNoun, WorldRoute):
-    """What a person does with an item; the queue itself knows who may."""
-
-    def held(self, request: Request, pk: int) -> Assignment:
-        """Return the caller's part of an item. Raises Http404 or Conflict."""
-        parts = Assignment.objects.held().filter(person=request.user, item__world=self.world)
-        part = parts.filter(item=pk).select_related("item__utterance").first()
-        if part is None:
-            get_object_or_404(self.world.work_items.present(), pk=pk)
-            raise Conflict("This is not yours now. POST to next/ to get an item.")
-        return part
-
-    def shown(self, pk: int) -> Response:
-        return Response(WorkItemSerializer(self.rows().get(pk=pk)).data)
-
-
-class NextWorkItem(WorkItemVerb):
-    """Gives the caller the item they hold, or the most urgent one that is free."""
+    def shown(self) -> Response:
+        """Answer with the item as it is now, without a tag: what others do with it changes it too."""
+        return Response(self.get_serializer(self.rows().get(pk=self.kwargs["pk"])).data)
 
     @extend_schema(
         operation_id="work_item_next",
@@ -188,16 +209,14 @@ class NextWorkItem(WorkItemVerb):
             204: OpenApiResponse(description="There is nothing that the caller can do now."),
         },
     )
-    def post(self, request: Request, world: str) -> Response:
-        part = next_item(request.user, self.world)
-        if part is None:
-            return Response(status=204)
-        prefetch_related_objects([part.item], PARTS)
-        return Response(WorkItemSerializer(part.item).data)
-
-
-class FinishWorkItem(WorkItemVerb):
-    """Ends the caller's part of an item, with a label where it is about an utterance."""
+    @action(detail=False, methods=["post"])
+    def next(self, request: Request, **kwargs: object) -> Response:
+        """Gives the caller the item they hold, or the most urgent one that is free."""
+        given = next_item(request.user, self.world)
+        if given is None:
+            return Response(status=HTTPStatus.NO_CONTENT)
+        prefetch_related_objects([given.item], PARTS)
+        return Response(WorkItemSerializer(given.item).data)
 
     @extend_schema(
         operation_id="work_item_finish",
@@ -206,61 +225,92 @@ class FinishWorkItem(WorkItemVerb):
             200: WorkItemSerializer,
         },
     )
-    def post(self, request: Request, world: str, pk: int) -> Response:
-        part = self.held(request, pk)
-        sent = self.read(AnswerSerializer)
+    @action(detail=True, methods=["post"])
+    def finish(self, request: Request, **kwargs: object) -> Response:
+        """Ends the caller's part of an item, with a label where it is about an utterance."""
+        assignment = self.held()
         try:
-            self._finish(part, request, sent)
-        except (AnsweredMeanwhile, NoLongerYours) as error:
-            raise Conflict(str(error)) from error
+            _finish(assignment, request.user, self.read(AnswerSerializer))
         except LanguageError as error:
             raise refusal_of_text(error, "form") from error
-        except ValueError as error:
-            raise ValidationError({"form": [str(error)]}) from error
-        return self.shown(pk)
+        return self.shown()
 
-    def _finish(self, part: Assignment, request: Request, values: dict[str, Any]) -> None:
-        if end_item(part, values.get("verdict", ""), values["form"], values["reason"]):
-            return
-        if part.item.utterance is None:
-            finish(part)
-            return
-        verdict, version = values.pop("verdict", Verdict.FORM), values.pop("version", None)
-        if version is None and not part.item.is_for_two and verdict != Verdict.SKIP:
-            raise PreconditionRequired(
-                "Send the version of the utterance as you read it, so that nobody's answer is overwritten unseen."
-            )
-        answer(
-            part.item.utterance,
-            verdict,
-            by=request.user,
-            version=version or 0,
-            assignment=part,
-            **values,
+    @extend_schema(
+        operation_id="work_item_give_back", request=None, responses={200: WorkItemSerializer}
+    )
+    @action(detail=True, methods=["post"], url_path="give-back")
+    def give_back(self, request: Request, **kwargs: object) -> Response:
+        """Returns an item that the caller holds, for others."""
+        give_back(self.held())
+        return self.shown()
+
+    @extend_schema(operation_id="work_item_skip", request=None, responses={200: WorkItemSerializer})
+    @action(detail=True, methods=["post"])
+    def skip(self, request: Request, **kwargs: object) -> Response:
+        """Returns an item that the caller holds; they do not get it again."""
+        skip(self.held())
+        return self.shown()
+
+    @extend_schema(operation_id="work_item_take", request=None, responses={200: WorkItemSerializer})
+    @action(detail=True, methods=["post"])
+    def take(self, request: Request, **kwargs: object) -> Response:
+        """Gives the caller this very item."""
+        take(request.user, self.get_object())
+        return self.shown()
+
+    @extend_schema(
+        operation_id="work_item_assign",
+        request=PersonSerializer,
+        responses={200: WorkItemSerializer},
+    )
+    @action(detail=True, methods=["post"])
+    def assign(self, request: Request, **kwargs: object) -> Response:
+        """Gives an item to a member, without end."""
+        item = self.get_object()
+        person = person_called(self.world, self.read(PersonSerializer)["person"])
+        assign(item, person, by=request.user)
+        return self.shown()
+
+    @extend_schema(
+        operation_id="work_item_withdraw", request=None, responses={200: WorkItemSerializer}
+    )
+    @action(detail=True, methods=["post"])
+    def withdraw(self, request: Request, **kwargs: object) -> Response:
+        """Takes an item from whoever has it, for others."""
+        for assignment in self.get_object().assignments.held():
+            withdraw(assignment)
+        return self.shown()
+
+    @extend_schema(
+        operation_id="work_items_assign", request=PersonAndCount, responses={200: GivenSerializer}
+    )
+    @action(
+        detail=False,
+        methods=["post"],
+        url_path="assign",
+        url_name="assign-many",
+        filterset_class=WorkItemFilters,
+        pagination_class=None,
+    )
+    @once
+    def assign_many(self, request: Request, **kwargs: object) -> Response:
+        """Gives a member the most urgent free items among those that the filters of the page choose."""
+        sent = self.read(PersonAndCount)
+        person = person_called(self.world, sent["person"])
+        rows = self.filter_queryset(self.get_queryset())
+        return Response({"given": assign_first(rows, person, sent["count"], request.user)})
+
+
+def _finish(assignment: Assignment, by: User, sent: dict[str, Any]) -> None:
+    item = assignment.item
+    if end_item(assignment, sent.get("verdict", ""), sent["form"], sent["reason"]):
+        return
+    if item.utterance is None:
+        finish(assignment)
+        return
+    verdict, version = sent.pop("verdict", Verdict.FORM), sent.pop("version", None)
+    if version is None and not item.is_for_two and verdict != Verdict.SKIP:
+        raise PreconditionRequired(
+            "Send the version of the utterance as you read it, so that nobody's answer is overwritten unseen."
         )
-
-
-class GiveBackWorkItem(WorkItemVerb):
-    """Returns an item that the caller holds, for others."""
-
-    @extend_schema(
-        operation_id="work_item_give_back",
-        request=None,
-        responses={200: WorkItemSerializer},
-    )
-    def post(self, request: Request, world: str, pk: int) -> Response:
-        give_back(self.held(request, pk))
-        return self.shown(pk)
-
-
-class SkipWorkItem(WorkItemVerb):
-    """Returns an item that the caller holds; they do not get it again."""
-
-    @extend_schema(
-        operation_id="work_item_skip",
-        request=None,
-        responses={200: WorkItemSerializer},
-    )
-    def post(self, request: Request, world: str, pk: int) -> Response:
-        skip(self.held(request, pk))
-        return self.shown(pk)
+    answer(item.utterance, verdict, by=by, version=version or 0, assignment=assignment, **sent)

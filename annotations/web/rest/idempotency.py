@@ -16,7 +16,7 @@ from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.editing.once_keys import REMEMBERED_SECONDS
-from annotations.web.rest.problem_details import Conflict, Refused
+from annotations.language.errors import Refusal
 
 HEADER = "Idempotency-Key"
 LONGEST = 255
@@ -85,11 +85,13 @@ def _kept(response: Response) -> dict[str, Any]:
 
 def _replay(kept: dict[str, Any] | None, sent: str) -> Response:
     if kept is None or ("status" not in kept and kept["sent"] == sent):
-        raise Conflict("The first request with this key is still being worked on. Ask again later.")
+        said = "The first request with this key is still being worked on. Ask again later."
+        raise Refusal(said, "still_worked_on", HTTPStatus.CONFLICT)
     if kept["sent"] != sent:
-        raise Refused(
+        raise Refusal(
             f"This {HEADER} was sent with another request. Choose a new one.",
-            status=HTTPStatus.UNPROCESSABLE_ENTITY,
+            "key_of_another_request",
+            HTTPStatus.UNPROCESSABLE_ENTITY,
         )
     response = Response(json.loads(kept["data"]), status=kept["status"], headers=kept["headers"])
     response["Idempotency-Replayed"] = "true"

@@ -12,6 +12,7 @@ from django.utils.http import parse_etags
 from rest_framework.request import Request
 
 from annotations.editing.edits import Overtaken
+from annotations.language.errors import Refusal
 from annotations.models import Editable
 from annotations.web.rest.problem_details import PreconditionRequired
 
@@ -45,6 +46,6 @@ class Changed(Overtaken):
 
     def __init__(self, row: Any) -> None:
         self.sentence = "This is not the version that you read."
-        Exception.__init__(self, f"{self.sentence} Compare yours with the present one below.")
+        Refusal.__init__(self, f"{self.sentence} Compare yours with the present one below.")
         self.current = row
         self.base = self.last = None

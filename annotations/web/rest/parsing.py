@@ -7,23 +7,18 @@ from typing import Any
 from rest_framework.exceptions import ParseError
 from rest_framework.parsers import DataAndFiles, JSONParser, MultiPartParser
 
-from annotations.web.rest.problem_details import Refused
-from annotations.web.sent_texts import NotText, SentTexts, sent_texts_of
+from annotations.web.sent_texts import SentTexts, sent_texts_of
 
 
 class BoundedJSONParser(JSONParser):
-    """Reads JSON. Raises ParseError or Refused where it nests too deep, or holds what is no text."""
+    """Reads JSON. Raises ParseError where it nests too deep, NotText where it holds what is no text."""
 
     def parse(self, stream: Any, media_type: Any = None, parser_context: Any = None) -> Any:
         try:
             sent = super().parse(stream, media_type, parser_context)
         except RecursionError:
             raise ParseError("The JSON nests too deep.") from None
-        try:
-            return _texts_in(parser_context).read_json(sent)
-        except NotText as error:
-            field = {"field": error.field} if error.field else {}
-            raise Refused(str(error), [{**field, "message": str(error)}]) from error
+        return _texts_in(parser_context).read_json(sent)
 
 
 class FilesParser(MultiPartParser):

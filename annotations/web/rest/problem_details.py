@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from http import HTTPStatus
 from typing import Any
 
@@ -45,13 +45,6 @@ class ProblemSerializer(serializers.Serializer):
     current = serializers.DictField(required=False)
 
 
-class Conflict(exceptions.APIException):
-    """The request does not fit what is stored by now."""
-
-    status_code = HTTPStatus.CONFLICT
-    default_code = "conflict"
-
-
 class PreconditionRequired(exceptions.APIException):
     """A write does not say which version it changes."""
 
@@ -62,36 +55,22 @@ class PreconditionRequired(exceptions.APIException):
     )
 
 
-class Refused(exceptions.APIException):
-    """What was sent has problems: each one with its field, or with its place in a file."""
-
-    def __init__(
-        self,
-        detail: str,
-        problems: Iterable[dict[str, Any]] = (),
-        status: int = HTTPStatus.BAD_REQUEST,
-    ) -> None:
-        super().__init__(detail)
-        self.status_code = status
-        self.problems = list(problems)
-
-
-def refusal_of_form(form: forms.Form) -> Refused:
+def refusal_of_form(form: forms.Form) -> Refusal:
     """Return what is wrong with a form of the pages, with the places that its checker knows."""
     checked = getattr(form, "checked", None)
     found = [each for each in checked.problems if each.is_error] if checked else []
     placed = [_with_field(problem, form) for problem in found]
     problems = placed or list(_problems_in(form.errors))
-    return Refused(problems[0]["message"], problems)
+    return Refusal(problems[0]["message"], "not_valid", problems=problems)
 
 
-def refusal_of_text(error: LanguageError, field: str = "") -> Refused:
+def refusal_of_text(error: LanguageError, field: str = "") -> Refusal:
     """Return what is wrong with a text, and where in it."""
     item = as_json(error.problem)
     parts = [part for part in (error.message, error.hint) if part]
     sentence = f"{'; '.join(parts)}."
     item = {"field": field, **item} if field else item
-    return Refused(f"{sentence[:1].upper()}{sentence[1:]}", [item])
+    return Refusal(f"{sentence[:1].upper()}{sentence[1:]}", error.code, problems=[item])
 
 
 def handle(error: Exception, context: dict[str, Any]) -> Response | None:
@@ -99,13 +78,14 @@ def handle(error: Exception, context: dict[str, Any]) -> Response | None:
     # Its module reads the settings, and they name parsers of bodies that raise what is defined here.
     from rest_framework.views import exception_handler
 
+    if isinstance(error, LanguageError):
+        error = refusal_of_text(error)
     match error:
-        case Overtaken():
-            return _answer(HTTPStatus.PRECONDITION_FAILED, str(error), **_current(error, context))
-        case LanguageError():
-            error = refusal_of_text(error)
         case Refusal():
-            more = {"problems": list(error.problems)} if error.problems else {}
+            more: dict[str, Any] = {"problems": list(error.problems)} if error.problems else {}
+            if isinstance(error, Overtaken) and error.current is not None:
+                # The row as it is now, as its route shows it.
+                more["current"] = context["view"].get_serializer(error.current).data
             answer = _answer(error.status, error.message, **more)
             if error.wait:
                 answer["Retry-After"] = str(error.wait)
@@ -117,12 +97,10 @@ def handle(error: Exception, context: dict[str, Any]) -> Response | None:
     response = exception_handler(error, context)
     if response is None:
         return None
-    problems = getattr(error, "problems", None)
-    if problems is None and isinstance(error, exceptions.ValidationError):
+    problems = None
+    if isinstance(error, exceptions.ValidationError):
         problems = list(_problems_in(error.detail))
-    if isinstance(error, Refused):
-        detail = str(error.detail)
-    elif problems:
+    if problems:
         detail = problems[0]["message"]
     else:
         said = response.data
@@ -143,13 +121,6 @@ def _answer(status: int, detail: str, **more: Any) -> Response:
     title = HTTPStatus(status).phrase
     problem = {"type": "about:blank", "title": title, "status": int(status), "detail": detail}
     return Response({**problem, **more}, status=status, content_type=CONTENT_TYPE)
-
-
-def _current(error: Overtaken, context: dict[str, Any]) -> dict[str, Any]:
-    """Return the row as it is now, as its route shows it; nothing where it was deleted."""
-    if error.current is None:
-        return {}
-    return {"current": context["view"].get_serializer(error.current).data}
 
 
 def _problems_in(errors: Any, field: str = "") -> Iterator[dict[str, Any]]:

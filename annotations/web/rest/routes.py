@@ -36,12 +36,19 @@ from annotations.web.rest.problem_details import refusal_of_form
 
 
 class Route(GenericAPIView):
-    """A route outside of any world. ``duty`` says which scope a token needs, as it does below a world."""
+    """A route outside of any world. ``duties`` says what each method, or action of a view set, needs, which
+    decides the scope of a token; reading needs ``Duty.VIEW``."""
 
     permission_classes = [HasScope]
+    duties: ClassVar[Mapping[str, Duty]] = {}
     parser_classes = [BoundedJSONParser]
     conditional: ClassVar[tuple[str, ...]] = ()  # what needs If-Match
     model: ClassVar[type[Model]]
+
+    @property
+    def duty(self) -> Duty:
+        """What the request needs."""
+        return self.duties.get(asked_of(self, self.request.method or ""), Duty.VIEW)
 
     def rows(self) -> QuerySet[Any]:
         """Return the rows that the route is about, as far as the caller sees them."""
@@ -59,17 +66,10 @@ class Route(GenericAPIView):
 
 
 class WorldRoute(Route):
-    """A route below a world. ``duties`` says what each method, or action of a view set, needs; reading
-    needs ``Duty.VIEW``."""
+    """A route below a world: ``duties`` are those of the caller there."""
 
     permission_classes = [HasDuty]
-    duties: ClassVar[Mapping[str, Duty]] = {}
     world: World
-
-    @property
-    def duty(self) -> Duty:
-        """What the request needs."""
-        return self.duties.get(asked_of(self, self.request.method or ""), Duty.VIEW)
 
     def initial(self, request: Request, *args: Any, **kwargs: Any) -> None:
         super().initial(request, *args, **kwargs)
@@ -147,7 +147,7 @@ class RowRoute(SingleRow, WorldRoute):
     """One row of a world."""
 
 
-class RowViewSet(ViewSetMixin, Tagged):
+class SiteViewSet(ViewSetMixin, Tagged):
     """A kind of row: its list, each of its rows, and what is done with one.
 
     ``duties``, ``scopes`` and ``conditional`` speak of its actions. An action without a docstring of its
@@ -163,7 +163,7 @@ class RowViewSet(ViewSetMixin, Tagged):
         return rows if self.detail else super().filter_queryset(rows)
 
 
-class WorldViewSet(RowViewSet, WorldRoute):
+class WorldViewSet(SiteViewSet, WorldRoute):
     """A kind of row of a world."""
 
 
@@ -172,6 +172,10 @@ class Retrieved(Tagged):
 
     def retrieve(self, request: Request, **kwargs: Any) -> Response:
         return self.show(self.get_object())
+
+
+class RowsViewSet(ListModelMixin, Retrieved, WorldViewSet):
+    """A kind of row of a world that is listed, and shown one by one."""
 
 
 class Noun:
@@ -246,7 +250,7 @@ class EditableRow(Noun, RowRoute):
         return Response(status=HTTPStatus.NO_CONTENT)
 
 
-class EditableViewSet(ListModelMixin, Retrieved, Noun, WorldViewSet):
+class EditableViewSet(Noun, RowsViewSet):
     """Rows that annotators add, change and delete; the history of a row keeps what it was."""
 
     duties: ClassVar[Mapping[str, Duty]] = dict.fromkeys(

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import asdict
 from http import HTTPStatus
-from typing import Any, ClassVar
+from typing import Any
 
 from django.db.models import QuerySet
 from django.shortcuts import get_object_or_404
 from drf_spectacular.utils import extend_schema, extend_schema_field
 from rest_framework import serializers
+from rest_framework.decorators import action
 from rest_framework.request import Request
 from rest_framework.response import Response
 
@@ -24,7 +25,7 @@ from annotations.splits.split_statistics import counts_of, near_duplicates_of
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.problem_details import refusal_of_form
-from annotations.web.rest.routes import Figures, RowRoute, RowsRoute
+from annotations.web.rest.routes import Figures, RowsRoute, RowsViewSet
 from annotations.web.splits.split_filters import (
     MOST_CHANGES,
     MOST_SHOWN,
@@ -78,9 +79,14 @@ class NewSplit(Fields):
     )
 
 
-class SplitNoun:
+class SplitViewSet(RowsViewSet):
+    """The splits."""
+
     model = Split
     serializer_class = SplitSerializer
+    filterset_class = SplitFilters
+    duties = dict.fromkeys(("create", "renew"), Duty.ANNOTATE)
+    sorts = {"created": "-created_at", "name": "name", "id": "pk"}
 
     def rows(self) -> QuerySet[Split]:
         return self.world.splits.select_related("created_by", "world")
@@ -91,18 +97,11 @@ class SplitNoun:
             serializer.context["counts"] = counts_of(rows if options.get("many") else [rows])
         return serializer
 
-
-@may_take_long
-class Splits(SplitNoun, RowsRoute):
-    """Lists the splits, and freezes one from the corpus of today."""
-
-    filterset_class = SplitFilters
-    sorts = {"created": "-created_at", "name": "name", "id": "pk"}
-    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.ANNOTATE}
-
     @extend_schema(request=NewSplit)
+    @may_take_long
     @once
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def create(self, request: Request, **kwargs: object) -> Response:
+        """Freezes a split from the corpus of today."""
         sent = self.read(NewSplit)
         shares = dict(zip(SplitForm.SHARES, sent.pop("proportions"), strict=True))
         form = SplitForm({**sent, **{part: 100 * share for part, share in shares.items()}})
@@ -110,32 +109,22 @@ class Splits(SplitNoun, RowsRoute):
             raise refusal_of_form(form)
         chosen = {**form.choice, "must_be_new": True}
         frozen = freeze_split(self.world, sent["name"], by=request.user, **chosen)
-        return frozen_response(self, frozen)
-
-
-class OneSplit(SplitNoun, RowRoute):
-    """Shows a split."""
-
-
-@may_take_long
-class RenewSplit(SplitNoun, RowRoute):
-    """Freezes a split anew from the corpus of today; the old one stays as it was."""
-
-    http_method_names = ["post", "options"]
-    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.ANNOTATE}
+        return self._frozen(frozen)
 
     @extend_schema(request=None, responses={201: SplitSerializer})
+    @may_take_long
+    @action(detail=True, methods=["post"])
     @once
-    def post(self, request: Request, **kwargs: object) -> Response:
-        return frozen_response(self, freeze_anew(self.get_object(), request.user))
+    def renew(self, request: Request, **kwargs: object) -> Response:
+        """Freezes a split anew from the corpus of today; the old one stays as it was."""
+        return self._frozen(freeze_anew(self.get_object(), request.user))
 
-
-def frozen_response(view: Any, split: Split) -> Response:
-    """Answer with a split that was just frozen, and where it is."""
-    response = Response(view.get_serializer(split).data, status=HTTPStatus.CREATED)
-    path = f"/api/v1/worlds/{view.world.name}/splits/{split.pk}/"
-    response["Location"] = view.request.build_absolute_uri(path)
-    return response
+    def _frozen(self, split: Split) -> Response:
+        """Answer with a split that was just frozen, and where it is."""
+        path = f"/api/v1/worlds/{self.world.name}/splits/{split.pk}/"
+        location = {"Location": self.request.build_absolute_uri(path)}
+        shown = self.get_serializer(split).data
+        return Response(shown, status=HTTPStatus.CREATED, headers=location)
 
 
 class ExampleSerializer(serializers.ModelSerializer):

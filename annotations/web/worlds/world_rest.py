@@ -17,7 +17,7 @@ from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.permissions import ChangedBySiteAdmins, ForSiteAdmins
 from annotations.web.rest.problem_details import refusal_of_form
-from annotations.web.rest.routes import ManyRows, RowRoute
+from annotations.web.rest.routes import ManyRows, RowRoute, Tagged
 from annotations.web.worlds.world_forms import WorldForm
 from annotations.worlds.world_deletion import request_deletion, start_deletion
 
@@ -50,7 +50,9 @@ class NewWorld(Fields):
     description = serializers.CharField(max_length=10_000, allow_blank=True, default="")
 
 
-class WorldNoun:
+class WorldShowing(Tagged):
+    """What the routes of worlds have in common: a world is shown with what the caller may do in it."""
+
     model = World
     serializer_class = WorldSerializer
 
@@ -62,16 +64,14 @@ class WorldNoun:
         return {**context, "duties": duties}
 
 
-class Worlds(WorldNoun, ManyRows):
+class Worlds(WorldShowing, ManyRows):
     """Lists the worlds that the caller is a member of; administrators of the site make another one."""
 
     permission_classes = [ChangedBySiteAdmins]
     filter_backends = []
     sorts = {"name": "name"}
 
-    @property
-    def duty(self) -> Duty:
-        return Duty.MANAGE if self.request.method == "POST" else Duty.VIEW
+    duties = {"POST": Duty.MANAGE}
 
     def rows(self) -> QuerySet[World]:
         return World.objects.visible_to(self.request.user)
@@ -83,12 +83,12 @@ class Worlds(WorldNoun, ManyRows):
         created = form.create() if form.is_valid() else None
         if created is None:
             raise refusal_of_form(form)
-        response = RowRoute.show(self, created, HTTPStatus.CREATED)
+        response = self.show(created, HTTPStatus.CREATED)
         response["Location"] = request.build_absolute_uri(f"{request.path}{created.name}/")
         return response
 
 
-class OneWorld(WorldNoun, RowRoute):
+class OneWorld(WorldShowing, RowRoute):
     """Shows a world; its admins describe it, administrators of the site delete it."""
 
     duties = {"PATCH": Duty.MANAGE, "DELETE": Duty.MANAGE}

@@ -15,6 +15,7 @@ from django_htmx.http import reselect, reswap, retarget
 from annotations.label_audit.label_decisions import DecidedMeanwhile, decide, take_back
 from annotations.labelling.form_check import check_label
 from annotations.labelling.label_answers import AnsweredMeanwhile, NoLongerYours
+from annotations.language.errors import Refusal
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.lists.paging import number_in
 from annotations.models import (
@@ -101,8 +102,8 @@ def audit_decide(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     except (AnsweredMeanwhile, DecidedMeanwhile, NoLongerYours, NotForThem) as error:
         messages.error(request, str(error))
         return _to(request, world, finding)
-    except ValueError as error:
-        return _refuse(request, world, finding, str(error))
+    except Refusal as refusal:
+        return _refuse(request, world, finding, refusal.message)
     listing = Listing(request, AuditFindingFilters, world.audit_findings.all(), SORTS)
     rows = listing.matching.exclude(pk=pk).order_by("rank", "pk")
     beyond = rows.filter(Q(rank__gt=finding.rank) | Q(rank=finding.rank, pk__gt=pk))
@@ -115,8 +116,8 @@ def audit_take_back(request: HttpRequest, world: World, pk: int) -> HttpResponse
     made = get_object_or_404(AuditDecision.objects.filter(finding__world=world), pk=pk)
     try:
         take_back(made, request.user)
-    except ValueError as error:
-        messages.error(request, str(error))
+    except Refusal as refusal:
+        messages.error(request, refusal.message)
     return _to(request, world, made.finding)
 
 

@@ -15,7 +15,6 @@ from django.views.decorators.cache import never_cache
 from annotations.labelling.collecting import collect
 from annotations.labelling.entity_spans import mend_span
 from annotations.labelling.form_check import check_label
-from annotations.labelling.label_answers import AnsweredMeanwhile, NoLongerYours
 from annotations.labelling.label_queue import last_labels, next_utterance, progress_of
 from annotations.language.errors import Refusal
 from annotations.lists.listing import Listing
@@ -70,10 +69,8 @@ def label_answer(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     form, reason = sent.get("form", ""), sent.get("reason", "")
     try:
         answer(row, verdict, form, request.user, int(version or 0), seconds, reason)
-    except (AnsweredMeanwhile, NoLongerYours) as error:
-        return _reply(request, world, row, str(error), 409)
-    except ValueError as error:
-        return _reply(request, world, row, str(error), 422)
+    except Refusal as refusal:
+        return _reply(request, world, row, refusal.message, status_of(refusal))
     return _reply(request, world, row)
 
 
@@ -83,8 +80,8 @@ def label_take_back(request: HttpRequest, world: World, pk: int) -> HttpResponse
     stored = get_object_or_404(Label.objects.of_world(world), pk=pk)
     try:
         row = take_answer_back(stored, request.user)
-    except ValueError as error:
-        return _reply(request, world, stored.utterance, str(error), 409)
+    except Refusal as refusal:
+        return _reply(request, world, stored.utterance, refusal.message, HTTPStatus.CONFLICT)
     return _reply(request, world, row, stays=True)
 
 
@@ -123,11 +120,15 @@ def label_mend(request: HttpRequest, world: World, pk: int) -> HttpResponse:
             )
         version = int(_number(request.POST.get("version")) or 0)
         row = mend_span(row, start, start + len(words), entity, request.user, version)
-    except AnsweredMeanwhile as error:
-        return _reply(request, world, row, str(error), 409)
-    except ValueError as error:
-        return _reply(request, world, row, str(error), 422)
+    except Refusal as refusal:
+        return _reply(request, world, row, refusal.message, status_of(refusal))
     return _reply(request, world, row, stays=True)
+
+
+def status_of(refusal: Refusal) -> int:
+    """Return the status of a fragment: a form that is not valid is 422, as on every page."""
+    is_conflict = refusal.status == HTTPStatus.CONFLICT
+    return HTTPStatus.CONFLICT if is_conflict else HTTPStatus.UNPROCESSABLE_ENTITY
 
 
 def _listing(request: HttpRequest, world: World) -> Listing:

@@ -7,14 +7,13 @@ from django.db.models import Case, OuterRef, Q, QuerySet, Subquery, When
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
-from rest_framework.mixins import ListModelMixin
 from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.language.corpus import KNOWN, harmonic_mean
 from annotations.lists.filtering import Key
 from annotations.models import Split
-from annotations.web.rest.routes import Retrieved, WorldRoute, WorldViewSet
+from annotations.web.rest.routes import RowsViewSet, WorldRoute
 from parser_service.models import Evaluation
 from parser_service.results.export import as_json
 from parser_service.results.result_choices import read_choices, scored_splits
@@ -52,7 +51,7 @@ class EvaluationQuery(django_filters.FilterSet):
         fields = ["part", "test_source"]
 
 
-class EvaluationViewSet(ListModelMixin, Retrieved, WorldViewSet):
+class EvaluationViewSet(RowsViewSet):
     """How often runs are right."""
 
     model = Evaluation

@@ -7,14 +7,13 @@ from http import HTTPStatus
 from django.db.models import QuerySet
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
-from rest_framework.mixins import ListModelMixin
 from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.models import Duty
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.idempotency import once
-from annotations.web.rest.routes import Retrieved, WorldViewSet
+from annotations.web.rest.routes import RowsViewSet
 from parser_service.models import Slice
 from parser_service.models.reviews import LONGEST_SLICE_NAME
 from parser_service.slices.saving import delete_slice, rename_slice, save_slice
@@ -40,7 +39,7 @@ class NewSlice(SliceName):
     query = LineField(max_length=LONGEST_QUERY)
 
 
-class SliceViewSet(ListModelMixin, Retrieved, WorldViewSet):
+class SliceViewSet(RowsViewSet):
     """The saved slices."""
 
     model = Slice

@@ -10,7 +10,6 @@ from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework import serializers
 from rest_framework.decorators import action
-from rest_framework.mixins import ListModelMixin
 from rest_framework.request import Request
 from rest_framework.response import Response
 
@@ -18,7 +17,7 @@ from annotations.models import Duty
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.problem_details import refusal_of_form
-from annotations.web.rest.routes import Retrieved, WorldViewSet
+from annotations.web.rest.routes import RowsViewSet
 from parser_service.models import ErrorCategory
 from parser_service.reviews.world_categories import (
     add_category,
@@ -59,7 +58,7 @@ class CategoryStep(Fields):
     step = serializers.ChoiceField(choices=[-1, 1])
 
 
-class ErrorCategoryViewSet(ListModelMixin, Retrieved, WorldViewSet):
+class ErrorCategoryViewSet(RowsViewSet):
     """The error categories of a world."""
 
     model = ErrorCategory

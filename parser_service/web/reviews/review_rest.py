@@ -10,7 +10,6 @@ from django.db.models import QuerySet
 from django.shortcuts import get_object_or_404
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
-from rest_framework.mixins import ListModelMixin
 from rest_framework.request import Request
 from rest_framework.response import Response
 
@@ -19,7 +18,7 @@ from annotations.language.limits import MAX_FORM
 from annotations.lists.filtering import Key
 from annotations.models import Duty, Example, User
 from annotations.web.rest.fields import Fields, LineField
-from annotations.web.rest.routes import Retrieved, RowRoute, WorldViewSet
+from annotations.web.rest.routes import RowRoute, RowsViewSet
 from parser_service.models import Review, TrainingRun
 from parser_service.reviews.label_doubts import LONGEST_DOUBT, doubt_label
 from parser_service.reviews.tagging import LONGEST_NOTE, accept, tag, take_back, write_note
@@ -53,7 +52,7 @@ class ReviewQuery(django_filters.FilterSet):
         fields = ["is_proposed", "is_new"]
 
 
-class ReviewViewSet(ListModelMixin, Retrieved, WorldViewSet):
+class ReviewViewSet(RowsViewSet):
     """What reviewers and the machine say about answers."""
 
     model = Review

@@ -10,7 +10,6 @@ from django.shortcuts import get_object_or_404
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.decorators import action
-from rest_framework.mixins import ListModelMixin
 from rest_framework.request import Request
 from rest_framework.response import Response
 
@@ -19,8 +18,8 @@ from annotations.models import Duty, Scope
 from annotations.web.background.job_rest import JobSerializer
 from annotations.web.rest.fields import Fields, FiniteField
 from annotations.web.rest.idempotency import once
-from annotations.web.rest.problem_details import Refused, refusal_of_form
-from annotations.web.rest.routes import Retrieved, RowsRoute, WorldViewSet
+from annotations.web.rest.problem_details import refusal_of_form
+from annotations.web.rest.routes import RowsRoute, RowsViewSet
 from parser_service.analyses.state import analysis_of
 from parser_service.models import Checkpoint, EpochMetric, RunEvent, TrainingRun
 from parser_service.parsers.conditions import Protocol, TrainSources
@@ -88,7 +87,7 @@ class CurveSeeds(Fields):
 TRAINING = ("create", "cancel", "retrain", "learning_curve")
 
 
-class RunViewSet(ListModelMixin, Retrieved, WorldViewSet):
+class RunViewSet(RowsViewSet):
     """The training runs, the newest first."""
 
     model = TrainingRun
@@ -176,7 +175,7 @@ class RunViewSet(ListModelMixin, Retrieved, WorldViewSet):
         return Response(JobSerializer(job).data, status=HTTPStatus.ACCEPTED)
 
 
-def refusal_of_run(form: RunForm) -> Refused:
+def refusal_of_run(form: RunForm) -> Refusal:
     """Return what is wrong with the form, its hyperparameters by their names in the body."""
     refusal = refusal_of_form(form)
     for problem in refusal.problems:

@@ -129,14 +129,14 @@ def test_every_route_that_is_posted_to_is_known():
 
 
 MADE = {
-    "api:entities": lambda: Entity.objects.filter(text="flurb"),
-    "api:predicates": lambda: World.objects.get(name="home").predicates.filter(name="shines"),
+    "api:entity-list": lambda: Entity.objects.filter(text="flurb"),
+    "api:predicate-list": lambda: World.objects.get(name="home").predicates.filter(name="shines"),
     "api:worlds": lambda: World.objects.filter(name="attic"),
     "api:import-world": lambda: World.objects.exclude(name__in=["home", "cellar"]),
-    "api:splits": lambda: Split.objects.filter(name="mine"),
+    "api:split-list": lambda: Split.objects.filter(name="mine"),
     "api:slice-list": lambda: Slice.objects.filter(name="wrong ones"),
     "api:error-category-list": lambda: ErrorCategory.objects.filter(name="Slip"),
-    "api:members": lambda: Membership.objects.filter(
+    "api:member-list": lambda: Membership.objects.filter(
         user__username="someone in home", role=Role.ANNOTATOR
     ),
 }
@@ -167,9 +167,9 @@ def send_file(key: str, path: str, body: dict[str, Any], archive: bytes) -> Any:
 
 
 PAGES = {
-    "entity_new": {**NAMES["api:entities"], "aliases": "", "attributes": ""},
+    "entity_new": {**NAMES["api:entity-list"], "aliases": "", "attributes": ""},
     "entities_new": {"entity_class": "object", "lines": "flurb", "attributes": "", "add": "yes"},
-    "predicate_new": {**NAMES["api:predicates"], "signatures": "(object)", "gloss": ""},
+    "predicate_new": {**NAMES["api:predicate-list"], "signatures": "(object)", "gloss": ""},
     "world_new": {"name": "attic", "description": ""},
     "slices": {**NAMES["api:slice-list"], "chosen": "outcome=wrong"},
     "error_categories": {**NAMES["api:error-category-list"], "slice": ""},
@@ -177,18 +177,18 @@ PAGES = {
         **{"name": "mine", "criterion": "command", "seed": "0"},
         **{"train": "70", "validation": "10", "test": "20", "freeze": "yes"},
     },
-    "people": NAMES["api:members"],
+    "people": NAMES["api:member-list"],
 }
 # The page that makes what a route of the API makes.
 ROUTE_OF_PAGE = {
-    "entity_new": "api:entities",
-    "entities_new": "api:entities",
-    "predicate_new": "api:predicates",
+    "entity_new": "api:entity-list",
+    "entities_new": "api:entity-list",
+    "predicate_new": "api:predicate-list",
     "world_new": "api:worlds",
     "slices": "api:slice-list",
     "error_categories": "api:error-category-list",
-    "split_new": "api:splits",
-    "people": "api:members",
+    "split_new": "api:split-list",
+    "people": "api:member-list",
 }
 
 

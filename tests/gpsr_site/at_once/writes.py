@@ -29,54 +29,73 @@ def different(writer: int, turn: int) -> str:
 
 # Route and method → body. Whatever takes ``If-Match`` stands here.
 CHANGES: dict[tuple[str, str], Body] = {
-    ("api:entity", "PATCH"): lambda *each: {"aliases": [different(*each)]},
-    ("api:predicate", "PATCH"): lambda *each: {"gloss": different(*each)},
-    ("api:production", "PATCH"): lambda *each: {"expansion": f"go {different(*each)}"},
-    ("api:template", "PATCH"): lambda *each: {"pattern": f"find {different(*each)} $object"},
+    ("api:entity-detail", "PATCH"): lambda *each: {"aliases": [different(*each)]},
+    ("api:predicate-detail", "PATCH"): lambda *each: {"gloss": different(*each)},
+    ("api:production-detail", "PATCH"): lambda *each: {"expansion": f"go {different(*each)}"},
+    ("api:template-detail", "PATCH"): lambda *each: {"pattern": f"find {different(*each)} $object"},
     ("api:rename", "POST"): lambda writer, turn: {"new": f"name_{writer}_{turn}"},
-    ("api:paraphrase", "PATCH"): lambda *each: {"logical_form": f'( go " {different(*each)} " )'},
-    ("api:comment", "PATCH"): lambda *each: {"text": different(*each)},
+    ("api:paraphrase-detail", "PATCH"): lambda *each: {
+        "logical_form": f'( go " {different(*each)} " )'
+    },
+    ("api:comment-detail", "PATCH"): lambda *each: {"text": different(*each)},
     ("api:world", "PATCH"): lambda *each: {"description": different(*each)},
     ("api:guidelines", "PATCH"): lambda *each: {"text": different(*each)},
     ("api:queue-settings", "PATCH"): lambda writer, turn: {"unlabelled": 1 + writer + 30 * turn},
-    ("api:account", "PATCH"): lambda writer, turn: {"is_active": bool(turn % 2)},
-    ("api:member", "PATCH"): lambda writer, turn: {"roles": ["annotator", "admin"][: 1 + turn % 2]},
+    ("api:account-detail", "PATCH"): lambda writer, turn: {"is_active": bool(turn % 2)},
+    ("api:member-detail", "PATCH"): lambda writer, turn: {
+        "roles": ["annotator", "admin"][: 1 + turn % 2]
+    },
     ("api:answer-review", "PATCH"): lambda *each: {"note": different(*each)},
     ("api:error-category-detail", "PATCH"): lambda *each: {"name": different(*each)},
     ("api:slice-detail", "PATCH"): lambda *each: {"name": different(*each)},
     **{
         (f"api:{name}", "DELETE"): nothing
         for name in (
-            *("entity", "predicate", "production", "template", "paraphrase", "comment", "world"),
-            "utterance",
-            *("token", "session", "member", "invitation", "error-category-detail", "slice-detail"),
+            *(
+                "entity-detail",
+                "predicate-detail",
+                "production-detail",
+                "template-detail",
+                "paraphrase-detail",
+                "comment-detail",
+                "world",
+            ),
+            "utterance-detail",
+            *(
+                "token-detail",
+                "session",
+                "member-detail",
+                "invitation-detail",
+                "error-category-detail",
+                "slice-detail",
+            ),
         )
     },
 }
 # Routes that show no version, by those that do.
-SHOWN_BY = {"api:rename": "api:predicate"}
+SHOWN_BY = {"api:rename": "api:predicate-detail"}
 
 # Routes that make something of a name that is there once.
 NAMES: dict[str, dict[str, Any]] = {
-    "api:entities": {"entity_class": "object", "text": "flurb"},
-    "api:predicates": {"name": "shines", "kind": "description", "signatures": [["object"]]},
+    "api:entity-list": {"entity_class": "object", "text": "flurb"},
+    "api:predicate-list": {"name": "shines", "kind": "description", "signatures": [["object"]]},
     "api:worlds": {"name": "attic"},
     "api:import-world": {"name": "attic"},
-    "api:splits": {"name": "mine"},
+    "api:split-list": {"name": "mine"},
     "api:slice-list": {"name": "wrong ones", "query": "outcome=wrong"},
     "api:error-category-list": {"name": "Slip", "description": "", "slice": None},
-    "api:members": {"name": "someone in home", "roles": ["annotator"]},
+    "api:member-list": {"name": "someone in home", "roles": ["annotator"]},
 }
 # Routes that are posted to and make no name: several rows may say the same, what is made has no name,
 # or nothing is made. Actions that are done once have tests of their own beside their verbs.
 NAMELESS = {
     *(
-        "productions",
-        "templates",
+        "production-list",
+        "template-list",
         "comments",
-        "utterances",
-        "invitations",
-        "tokens",
+        "utterance-list",
+        "invitation-list",
+        "token-list",
         "dialogue-list",
     ),
     *(
@@ -86,7 +105,7 @@ NAMELESS = {
         "run-analysis",
         "run-cancel",
         "audit",
-        "work-items",
+        "work-item-list",
     ),
     *(
         "promotion-list",
@@ -100,11 +119,17 @@ NAMELESS = {
     *("check-form", "check-predicate", "check-production", "check-template", "suggestions"),
     *("parse", "parse-wrong", "plan", "action-names", "dialogue-answer", "dialogue-keep"),
     *("offered-entity-decide", "answer-doubt", "example-send", "predictions-send"),
-    *("audit-decide", "audit-take-back", "label-take-back", "utterance-label", "utterance-spans"),
+    *(
+        "audit-finding-decide",
+        "audit-decision-take-back",
+        "label-take-back",
+        "utterance-label",
+        "utterance-spans",
+    ),
     *("work-item-assign", "work-item-finish", "work-item-give-back", "work-item-next"),
-    *("work-item-skip", "work-item-take", "work-item-withdraw", "work-items-assign"),
+    *("work-item-skip", "work-item-take", "work-item-withdraw", "work-item-assign-many"),
     *("comment-restore", "error-category-move", "account-link", "join", "sessions-end"),
-    *("notice-read", "notices-read", "uploads", "upload-undo", "upload-redo", "parse-jobs"),
+    *("notice-read", "notice-read-all", "upload-list", "upload-undo", "upload-redo", "parse-jobs"),
 }
 
 
@@ -122,7 +147,7 @@ def keys_for(person: User, sample: SampleWorld) -> dict[str, RouteKeys]:
     paraphrase.save()
     return {
         **KEYS,
-        "api:token": lambda _: {"pk": token.pk},
+        "api:token-detail": lambda _: {"pk": token.pk},
         "api:session": lambda _: {"handle": handle},
     }
 

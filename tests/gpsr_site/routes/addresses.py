@@ -53,46 +53,54 @@ def pk_of(row: Callable[[SampleWorld], Model], **others: str) -> RouteKeys:
 
 KEYS: dict[str, RouteKeys] = {
     **dict.fromkeys(
-        ("member", "api:member", "api:account", "api:account-link"), pk_of(removable_member)
+        ("member", "api:member-detail", "api:account-detail", "api:account-link"),
+        pk_of(removable_member),
     ),
-    **dict.fromkeys(("invitation_withdraw", "api:invitation"), pk_of(invitation)),
-    **dict.fromkeys(("api:token", "api:notice-read"), lambda _: {"pk": 10**6}),
+    **dict.fromkeys(("invitation_withdraw", "api:invitation-detail"), pk_of(invitation)),
+    **dict.fromkeys(("api:token-detail", "api:notice-read"), lambda _: {"pk": 10**6}),
     "api:session": lambda _: {"handle": "none"},
-    **dict.fromkeys(("api:site-job", "api:site-job-cancel"), pk_of(job_without_world)),
+    **dict.fromkeys(("api:site-job-detail", "api:site-job-cancel"), pk_of(job_without_world)),
     "join": join_keys,
     **dict.fromkeys(("account_close", "account_link"), pk_of(removable_member)),
     "password_set": lambda _: {"uidb64": "MQ", "token": "none"},
     "token_revoke": lambda _: {"pk": 10**6},
     "session_end": lambda _: {"handle": "none"},
     **dict.fromkeys(
-        ("template", "template_duplicate", "template_repair", "api:template"), pk_of(template)
+        ("template", "template_duplicate", "template_repair", "api:template-detail"),
+        pk_of(template),
     ),
     "template_completion": pk_of(lambda sample: sample.world.grammar.task_categories.first()),
     "delete_row": pk_of(template, kind="template"),
     **dict.fromkeys(("history", "api:history"), pk_of(template, kind="template")),
     **dict.fromkeys(("comments", "api:comments"), pk_of(template, kind="template")),
     **dict.fromkeys(
-        ("comment", "comment_delete", "comment_restore", "api:comment", "api:comment-restore"),
+        (
+            "comment",
+            "comment_delete",
+            "comment_restore",
+            "api:comment-detail",
+            "api:comment-restore",
+        ),
         pk_of(lambda sample: comment_in(sample.world)),
     ),
     "draft": lambda sample: {"kind": "template", "subject": sample.template.pk},
     **dict.fromkeys(("deleted", "api:deleted"), lambda _: {"kind": "template"}),
-    **dict.fromkeys(("logical_form", "api:form"), pk_of(lambda sample: sample.form)),
+    **dict.fromkeys(("logical_form", "api:form-detail"), pk_of(lambda sample: sample.form)),
     **dict.fromkeys(
-        ("command", "api:command"), pk_of(lambda sample: sample.world.commands.first())
+        ("command", "api:command-detail"), pk_of(lambda sample: sample.world.commands.first())
     ),
     **dict.fromkeys(
-        ("paraphrase", "paraphrase_label", "paraphrase_check", "api:paraphrase"),
+        ("paraphrase", "paraphrase_label", "paraphrase_check", "api:paraphrase-detail"),
         pk_of(lambda sample: paraphrase_in(sample.world)),
     ),
     **dict.fromkeys(
-        ("entity", "api:entity"),
+        ("entity", "api:entity-detail"),
         pk_of(lambda sample: Entity.objects.filter(ontology__world=sample.world).first()),
     ),
-    **dict.fromkeys(("predicate", "api:predicate"), pk_of(predicate)),
+    **dict.fromkeys(("predicate", "api:predicate-detail"), pk_of(predicate)),
     **dict.fromkeys(("rename", "api:rename"), pk_of(predicate, kind="predicate")),
     **dict.fromkeys(
-        ("production", "api:production"),
+        ("production", "api:production-detail"),
         pk_of(lambda sample: sample.world.grammar.productions.first()),
     ),
     **dict.fromkeys(("download_part", "api:download-part"), lambda _: {"part": "grammar"}),
@@ -100,7 +108,7 @@ KEYS: dict[str, RouteKeys] = {
     **dict.fromkeys(
         (
             *("split", "near_duplicates", "split_changes", "split_renew", "split_runs"),
-            *("api:split-export", "api:split", "api:split-renew", "api:split-examples"),
+            *("api:split-export", "api:split-detail", "api:split-renew", "api:split-examples"),
             *("api:split-manifest", "api:near-duplicates", "api:split-changes"),
         ),
         pk_of(split),
@@ -142,13 +150,13 @@ KEYS: dict[str, RouteKeys] = {
     **dict.fromkeys(
         (
             *("job", "job_state", "job_cancel", "job_answer"),
-            *("api:job", "api:job-cancel", "api:job-answer", "api:job-result"),
+            *("api:job-detail", "api:job-cancel", "api:job-answer", "api:job-result"),
         ),
         pk_of(waiting_job),
     ),
     **dict.fromkeys(
         (
-            *("utterance", "label_answer", "label_check", "label_mend", "api:utterance"),
+            *("utterance", "label_answer", "label_check", "label_mend", "api:utterance-detail"),
             *("api:utterance-label", "api:utterance-spans", "api:utterance-candidates"),
         ),
         pk_of(utterance),
@@ -156,7 +164,7 @@ KEYS: dict[str, RouteKeys] = {
     **dict.fromkeys(
         (
             *("upload", "upload_undo", "upload_redo"),
-            *("api:upload", "api:upload-undo", "api:upload-redo"),
+            *("api:upload-detail", "api:upload-undo", "api:upload-redo"),
         ),
         pk_of(upload),
     ),
@@ -164,17 +172,23 @@ KEYS: dict[str, RouteKeys] = {
     **dict.fromkeys(
         (
             *("queue_item", "queue_act", "queue_settle"),
-            *("api:work-item", "api:work-item-finish", "api:work-item-give-back"),
+            *("api:work-item-detail", "api:work-item-finish", "api:work-item-give-back"),
             *("api:work-item-take", "api:work-item-skip"),
             *("api:work-item-assign", "api:work-item-withdraw"),
         ),
         pk_of(work_item),
     ),
     **dict.fromkeys(
-        ("audit_item", "audit_decide", "audit_check", "api:audit-finding", "api:audit-decide"),
+        (
+            "audit_item",
+            "audit_decide",
+            "audit_check",
+            "api:audit-finding-detail",
+            "api:audit-finding-decide",
+        ),
         pk_of(finding),
     ),
-    **dict.fromkeys(("audit_take_back", "api:audit-take-back"), pk_of(decision_of_nobody)),
+    **dict.fromkeys(("audit_take_back", "api:audit-decision-take-back"), pk_of(decision_of_nobody)),
     **dict.fromkeys(
         (
             *("dialogue", "dialogue_keep"),

@@ -13,11 +13,39 @@ READ = (NO_TOKEN, NOWHERE, YES, YES, YES)
 
 # Lists and rows that members read.
 READABLE = (
-    *("entities", "entity", "predicates", "predicate", "task-categories", "productions"),
-    *("production", "templates", "template", "commands", "command", "forms", "form"),
-    *("paraphrases", "paraphrase", "utterances", "utterance", "splits", "split"),
-    *("split-examples", "split-export", "split-manifest", "audit-findings", "audit-finding"),
-    *("work-items", "work-item", "world"),
+    *(
+        "entity-list",
+        "entity-detail",
+        "predicate-list",
+        "predicate-detail",
+        "task-categories",
+        "production-list",
+    ),
+    *(
+        "production-detail",
+        "template-list",
+        "template-detail",
+        "command-list",
+        "command-detail",
+        "form-list",
+        "form-detail",
+    ),
+    *(
+        "paraphrase-list",
+        "paraphrase-detail",
+        "utterance-list",
+        "utterance-detail",
+        "split-list",
+        "split-detail",
+    ),
+    *(
+        "split-examples",
+        "split-export",
+        "split-manifest",
+        "audit-finding-list",
+        "audit-finding-detail",
+    ),
+    *("work-item-list", "work-item-detail", "world"),
     *(
         "run-list",
         "run-detail",
@@ -36,8 +64,16 @@ READABLE = (
         "answer-review",
     ),
     *("slice-list", "slice-detail", "error-category-list", "error-category-detail"),
-    *("jobs", "job", "download", "history", "deleted", "comments", "comment"),
-    *("members", "member", "labels", "audit", "download-part", "run-findings", "run-probes"),
+    *("job-list", "job-detail", "download", "history", "deleted", "comments", "comment-detail"),
+    *(
+        "member-list",
+        "member-detail",
+        "label-list",
+        "audit",
+        "download-part",
+        "run-findings",
+        "run-probes",
+    ),
     *(
         "complexity",
         "uncovered",
@@ -47,11 +83,23 @@ READABLE = (
         "progress",
         "guidelines",
     ),
-    *("split-changes", "uploads", "upload", "utterances-export"),
+    *("split-changes", "upload-list", "upload-detail", "utterance-export"),
 )
 # Lists that annotators add to, and rows that they change and delete.
-ADDED_BY_ANNOTATORS = ("entities", "predicates", "productions", "templates", "utterances", "splits")
-CHANGED_BY_ANNOTATORS = ("entity", "predicate", "production", "template")
+ADDED_BY_ANNOTATORS = (
+    "entity-list",
+    "predicate-list",
+    "production-list",
+    "template-list",
+    "utterance-list",
+    "split-list",
+)
+CHANGED_BY_ANNOTATORS = (
+    "entity-detail",
+    "predicate-detail",
+    "production-detail",
+    "template-detail",
+)
 
 
 def annotators(outcome: int) -> tuple[int, ...]:
@@ -78,20 +126,26 @@ API_POLICY = [
     Rule("api:schema", YES, YES, YES, YES, YES),
     Rule("api:worlds", *everybody(YES)),
     # Everybody has tokens, log-ins and notices of their own alone
-    *(Rule(f"api:{name}", *everybody(YES)) for name in ("tokens", "sessions", "notices")),
-    Rule("api:tokens", *everybody(NO_JSON), method="post"),
-    *(Rule(f"api:{name}", *everybody(NOWHERE)) for name in ("token", "session")),
-    *(Rule(f"api:{each}", *everybody(NOWHERE), method="delete") for each in ("token", "session")),
+    *(Rule(f"api:{name}", *everybody(YES)) for name in ("token-list", "sessions", "notice-list")),
+    Rule("api:token-list", *everybody(NO_JSON), method="post"),
+    *(Rule(f"api:{name}", *everybody(NOWHERE)) for name in ("token-detail", "session")),
+    *(
+        Rule(f"api:{each}", *everybody(NOWHERE), method="delete")
+        for each in ("token-detail", "session")
+    ),
     Rule("api:sessions-end", *everybody(NOTHING), method="post"),
-    Rule("api:notices-read", *everybody(YES), method="post"),
+    Rule("api:notice-read-all", *everybody(YES), method="post"),
     Rule("api:notice-read", *everybody(NOWHERE), method="post"),
     Rule("api:join", *everybody(NO_JSON), method="post"),
     # Jobs of worlds that are not there are for who asked for them
-    Rule("api:site-job", *everybody(NOWHERE)),
+    Rule("api:site-job-detail", *everybody(NOWHERE)),
     Rule("api:site-job-cancel", *everybody(NOWHERE), method="post"),
     # Worlds and accounts are made and unmade by administrators of the site, who are none of these
-    *(Rule(f"api:{name}", *everybody(NO)) for name in ("accounts", "account", "site-log")),
-    Rule("api:account", *everybody(NO), method="patch"),
+    *(
+        Rule(f"api:{name}", *everybody(NO))
+        for name in ("account-list", "account-detail", "site-log")
+    ),
+    Rule("api:account-detail", *everybody(NO), method="patch"),
     *(
         Rule(f"api:{name}", *everybody(NO), method="post")
         for name in ("worlds", "import-world", "account-link")
@@ -99,25 +153,31 @@ API_POLICY = [
     Rule("api:world", *admins(NO_VERSION), method="patch"),
     Rule("api:world", *members(NO), method="delete"),
     # Admins say who is in a world, and see who did what there
-    *(Rule(f"api:{name}", *admins(YES)) for name in ("invitations", "invitation", "audit-log")),
-    *(Rule(f"api:{name}", *admins(NO_JSON), method="post") for name in ("members", "invitations")),
-    Rule("api:member", *admins(NO_VERSION), method="patch"),
+    *(
+        Rule(f"api:{name}", *admins(YES))
+        for name in ("invitation-list", "invitation-detail", "audit-log")
+    ),
+    *(
+        Rule(f"api:{name}", *admins(NO_JSON), method="post")
+        for name in ("member-list", "invitation-list")
+    ),
+    Rule("api:member-detail", *admins(NO_VERSION), method="patch"),
     *(
         Rule(f"api:{name}", *admins(NO_VERSION), method="delete")
-        for name in ("member", "invitation")
+        for name in ("member-detail", "invitation-detail")
     ),
     *(Rule(f"api:{name}", *READ) for name in READABLE),
     *(Rule(f"api:{name}", *annotators(NO_JSON), method="post") for name in ADDED_BY_ANNOTATORS),
     # Every member comments; what somebody said is their own, and admins may take it away.
     Rule("api:comments", NO_TOKEN, NOWHERE, *[NO_JSON] * 3, method="post"),
-    Rule("api:comment", NO_TOKEN, NOWHERE, NO, NO, NO, method="patch"),
-    Rule("api:comment", NO_TOKEN, NOWHERE, NO, NO, NO_VERSION, method="delete"),
+    Rule("api:comment-detail", NO_TOKEN, NOWHERE, NO, NO, NO, method="patch"),
+    Rule("api:comment-detail", NO_TOKEN, NOWHERE, NO, NO, NO_VERSION, method="delete"),
     Rule("api:comment-restore", NO_TOKEN, NOWHERE, YES, YES, YES, method="post"),  # it is there
     Rule("api:generate", *annotators(YES), method="post"),
-    Rule("api:uploads", *annotators(400), method="post"),  # neither a file nor a text
+    Rule("api:upload-list", *annotators(400), method="post"),  # neither a file nor a text
     Rule("api:upload-undo", *annotators(NO_JSON), method="post"),
     Rule("api:upload-redo", *annotators(CLASH), method="post"),  # it is not undone
-    Rule("api:utterance", *annotators(NO_VERSION), method="delete"),
+    Rule("api:utterance-detail", *annotators(NO_VERSION), method="delete"),
     Rule("api:history", *annotators(NO_JSON), method="post"),
     Rule("api:rename", *annotators(NO_VERSION), method="post"),
     *(Rule(f"api:{name}", *admins(400), method="post") for name in ("import", "import-pairs")),
@@ -142,11 +202,11 @@ API_POLICY = [
     Rule("api:parse-jobs", *members(NO_JSON), method="post"),
     Rule("api:parse-wrong", *members(NO_JSON), method="post"),
     # Everybody with a role decides about labels in doubt, reviewers let them be looked for
-    Rule("api:audit-decide", *members(NO_JSON), method="post"),
-    Rule("api:audit-take-back", *members(CLASH), method="post"),
+    Rule("api:audit-finding-decide", *members(NO_JSON), method="post"),
+    Rule("api:audit-decision-take-back", *members(CLASH), method="post"),
     *(
         Rule(f"api:{name}", *reviewers(NO_JSON), method="post")
-        for name in ("audit", "work-items", "example-send")
+        for name in ("audit", "work-item-list", "example-send")
     ),
     # Admins say who does what
     Rule("api:guidelines", *admins(NO_VERSION), method="patch"),
@@ -154,7 +214,7 @@ API_POLICY = [
     Rule("api:queue-settings", *admins(NO_VERSION), method="patch"),
     *(
         Rule(f"api:{name}", *admins(NO_JSON), method="post")
-        for name in ("work-items-assign", "work-item-assign")
+        for name in ("work-item-assign-many", "work-item-assign")
     ),
     Rule("api:work-item-withdraw", *admins(YES), method="post"),
     # What reviewers say, what admins decide
@@ -185,8 +245,8 @@ API_POLICY = [
         for method in ("patch", "delete")
     ),
     # Who corrects a label is the business of the work queue.
-    Rule("api:paraphrase", NO_TOKEN, NOWHERE, *[NO_VERSION] * 3, method="patch"),
-    Rule("api:paraphrase", *annotators(NO_VERSION), method="delete"),
+    Rule("api:paraphrase-detail", NO_TOKEN, NOWHERE, *[NO_VERSION] * 3, method="patch"),
+    Rule("api:paraphrase-detail", *annotators(NO_VERSION), method="delete"),
     Rule("api:split-renew", *annotators(400), method="post"),  # nothing has changed since
     Rule("api:work-item-next", NO_TOKEN, NOWHERE, YES, NOTHING, YES, method="post"),
     Rule("api:work-item-finish", NO_TOKEN, NOWHERE, *[CLASH] * 3, method="post"),

@@ -88,7 +88,7 @@ def sent(client, path: str, size: int) -> int:
 
 @pytest.mark.parametrize("page", ["generate", "split_new", "split_renew", "download"])
 def test_a_page_and_its_route_may_both_take_long(page, sample):
-    route = {"split_new": "api:splits"}.get(page, "api:" + page.replace("_", "-"))
+    route = {"split_new": "api:split-list"}.get(page, "api:" + page.replace("_", "-"))
     assert all(allowance_at(address(name, sample)).may_take_long for name in (page, route))
 
 

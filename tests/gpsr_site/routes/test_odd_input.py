@@ -51,7 +51,7 @@ if connection.vendor != "sqlite":
     WORST_VALUES = ["a\0b", SURROGATE, str(2**63)]
 FILE_FIELDS = {
     **{"import": b"files", "import_pairs": b"archive", "world_import": b"archive"},
-    **{"utterances_new": b"file", "api:uploads": b"file"},
+    **{"utterances_new": b"file", "api:upload-list": b"file"},
     **{"api:import": b"files", "api:import-pairs": b"archive", "api:import-world": b"archive"},
 }
 CURSORS = [

@@ -61,7 +61,7 @@ def keys(sample, superuser, logged_in_people) -> dict[str, RouteKeys]:
     handle = sessions_of(superuser)[0].handle
     return {
         **KEYS,
-        "api:token": lambda _: {"pk": token.pk},
+        "api:token-detail": lambda _: {"pk": token.pk},
         "api:session": lambda _: {"handle": handle},
         "api:notice-read": lambda _: {"pk": notice.pk},
     }
