@@ -27,7 +27,7 @@ MOST_SUBJECT_CHARACTERS = 200
 # Routes that are posted to and change nothing that others see.
 UNRECORDED = re.compile(
     r"_(check|preview|suggestions|completion|consequences)$"
-    r"|^(draft|inbox|notice_open|notices-read|notice-read|queue_next|work-item-next|tryout_ask|playground_ask)$"
+    r"|^(draft|inbox|notice_open|notice-read-all|notice-read|queue_next|work-item-next|tryout_ask|playground_ask)$"
 )
 VERBS = {"POST": "create", "PUT": "change", "PATCH": "change", "DELETE": "delete"}
 # What a route does where its name does not say it.
@@ -185,8 +185,10 @@ def _has_done_something(request: HttpRequest, match: ResolverMatch, response: Ht
     if not request.user.is_authenticated or UNRECORDED.search(match.url_name or ""):
         return False
     if _is_api(match):
+        method = request.method or ""
+        asked = getattr(match.func, "actions", {}).get(method.lower(), method)
         scopes = getattr(getattr(match.func, "cls", None), "scopes", {})
-        return scopes.get(request.method) != Scope.READ
+        return scopes.get(asked) != Scope.READ
     # A page that answers a form with itself has refused it, unless it says otherwise.
     is_htmx = bool(getattr(request, "htmx", False))
     return response.status_code != 200 or is_htmx or hasattr(request, "audit_note")
@@ -197,12 +199,15 @@ def _is_api(match: ResolverMatch) -> bool:
 
 
 def _what(request: HttpRequest, match: ResolverMatch) -> str:
-    words = re.sub(r"[_-]+", " ", match.url_name or "")
+    name = match.url_name or ""
+    if name.endswith("-list"):  # of a view set: its address has the plural
+        name = match.route.strip("/").rpartition("/")[2]
+    words = re.sub(r"[_-]+", " ", name.removesuffix("-detail"))
     if _is_api(match):
         return f"{VERBS[request.method or '']} {words}"
     if "admin" in match.namespaces:
         return f"site administration: {words}"
-    return WHAT.get(match.url_name or "", words)
+    return WHAT.get(name, words)
 
 
 def _subject(request: HttpRequest, match: ResolverMatch) -> str:

@@ -83,16 +83,6 @@ class WorldRoute(Route):
         self.world = held
 
 
-class ManyRows(ListModelMixin, Route):
-    """A list, filtered, sorted and paged by its address."""
-
-    pagination_class = Keyset
-    sorts: ClassVar[dict[str, str]] = {"id": "pk"}
-
-    def get(self, request: Request, **kwargs: Any) -> Response:
-        return self.list(request)
-
-
 class Tagged(Route):
     """Shows a row with the tag of its version, and lets only those write to it who name that version."""
 
@@ -128,6 +118,16 @@ class Tagged(Route):
         """
         rows = self.model._default_manager.select_for_update(no_key=True)
         rows.filter(pk=self.kwargs["pk"]).first()
+
+
+class ManyRows(ListModelMixin, Tagged):
+    """A list, filtered, sorted and paged by its address."""
+
+    pagination_class = Keyset
+    sorts: ClassVar[dict[str, str]] = {"id": "pk"}
+
+    def get(self, request: Request, **kwargs: Any) -> Response:
+        return self.list(request)
 
 
 class SingleRow(Tagged):

@@ -20,6 +20,7 @@ from annotations.importing.import_jobs import start_generator_import, start_pair
 from annotations.importing.pair_files import Notation
 from annotations.language.decoding import ENCODINGS
 from annotations.language.english import say_count
+from annotations.language.errors import Refusal
 from annotations.models import Duty, Job
 from annotations.people.allowances import may_take_long, takes_files
 from annotations.web.background.job_rest import JobSerializer, address_of_job
@@ -27,7 +28,7 @@ from annotations.web.rest.idempotency import once
 from annotations.web.rest.negotiation import AnyType
 from annotations.web.rest.parsing import FilesParser
 from annotations.web.rest.permissions import ForSiteAdmins
-from annotations.web.rest.problem_details import Refused, refusal_of_form
+from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import Route, WorldRoute
 from annotations.web.worlds.downloads import archive_of, file_of
 from annotations.web.worlds.import_forms import ImportForm, PairsForm, WorldArchiveForm, uploads_of
@@ -83,7 +84,7 @@ class Doing(Route):
     http_method_names = ["post", "options"]
 
     def answer(self, start: Callable[[], Any]) -> Response:
-        """Start the work and say what came of it. Raises Refused, with every problem and its place."""
+        """Start the work and say what came of it. Raises Refusal, with every problem and its place."""
         started = start()
         if isinstance(started, Job):
             done = {"job": JobSerializer(started).data, "report": None}
@@ -94,7 +95,8 @@ class Doing(Route):
         errors = sum(each["severity"] == "error" for each in problems)
         if errors:
             sentence = f"Nothing was imported: {say_count(errors, 'error')}."
-            raise Refused(sentence, problems, HTTPStatus.UNPROCESSABLE_ENTITY)
+            status = HTTPStatus.UNPROCESSABLE_ENTITY
+            raise Refusal(sentence, "not_imported", status, problems)
         return Response({"job": None, "report": report})
 
     def valid(self, form: forms.Form) -> forms.Form:

@@ -15,34 +15,31 @@ from annotations.people.allowances import allowance_at
 from gpsr_site import web
 from gpsr_site.web.body_limits import ORDINARY_BYTES, largest_body
 from tests.gpsr_site.routes.addresses import address
-from tests.gpsr_site.routes.listing import ALL_ROUTES
+from tests.gpsr_site.routes.listing import ALL_ROUTES, ApiRoute
 
 TOO_MUCH = 413
 
 
 def views_of(patterns, namespace: str = ""):
-    """Yield name and view, function or class, of every route but those of Django's admin."""
+    """Yield name and callback of every route but those of Django's admin."""
     for pattern in patterns:
         if isinstance(pattern, URLResolver):
             inside = f"{pattern.namespace}:" if pattern.namespace else namespace
             if pattern.namespace != "admin":
                 yield from views_of(pattern.url_patterns, inside)
         elif isinstance(pattern, URLPattern):
-            yield (
-                f"{namespace}{pattern.name}",
-                getattr(pattern.callback, "cls", pattern.callback),
-            )
+            yield f"{namespace}{pattern.name}", pattern.callback
 
 
 VIEWS = dict(views_of(get_resolver().url_patterns))
 
 
 def reads_files(view) -> bool:
-    """Whether a view reads files: a class that parses their encoding, or code that names ``request.FILES``."""
-    if inspect.isclass(view):
-        if not any(hasattr(view, method) for method in ("post", "put", "patch")):
+    """Whether a view reads files: a route that parses their encoding, or code that names ``request.FILES``."""
+    if hasattr(view, "cls"):
+        if not ApiRoute(view.cls, getattr(view, "actions", {})).methods & {"post", "put", "patch"}:
             return False
-        takes = getattr(view, "parser_classes", ())
+        takes = view.initkwargs.get("parser_classes", view.cls.parser_classes)
         return any(issubclass(each, MultiPartParser | FileUploadParser) for each in takes)
     return "request.FILES" in inspect.getsource(inspect.unwrap(view))
 
