@@ -217,39 +217,6 @@ class Noun:
         return Response(shown, status=status, headers={"ETag": etag_of(row, shown)})
 
 
-class EditableRows(Noun, RowsRoute):
-    """A list to which annotators add rows."""
-
-    duties: ClassVar[Mapping[str, Duty]] = {"POST": Duty.ANNOTATE}
-
-    @once
-    def post(self, request: Request, **kwargs: Any) -> Response:
-        form = self.valid_form(None, self.read(self.new_serializer))
-        row = add(self.unsaved(form), request.user, slot_of(request))
-        response = self.written(row, form, HTTPStatus.CREATED)
-        response["Location"] = request.build_absolute_uri(f"{request.path}{row.pk}/")
-        return response
-
-
-class EditableRow(Noun, RowRoute):
-    """One row that annotators change and delete; its history keeps what it was."""
-
-    duties: ClassVar[Mapping[str, Duty]] = {"PATCH": Duty.ANNOTATE, "DELETE": Duty.ANNOTATE}
-    conditional = ("PATCH", "DELETE")
-
-    def patch(self, request: Request, **kwargs: Any) -> Response:
-        row = self.matched()
-        form = self.valid_form(row, self.read(self.change_serializer, partial=True))
-        values = self.values_of(form, row)
-        saved = change(row, values, request.user, row.version, again=False)
-        return self.written(saved, form)
-
-    def delete(self, request: Request, **kwargs: Any) -> Response:
-        row = self.matched()
-        delete(row, request.user, row.version)
-        return Response(status=HTTPStatus.NO_CONTENT)
-
-
 class EditableViewSet(Noun, RowsViewSet):
     """Rows that annotators add, change and delete; the history of a row keeps what it was."""
 
@@ -260,6 +227,7 @@ class EditableViewSet(Noun, RowsViewSet):
 
     @once
     def create(self, request: Request, **kwargs: Any) -> Response:
+        """Adds one."""
         form = self.valid_form(None, self.read(self.new_serializer))
         row = add(self.unsaved(form), request.user, slot_of(request))
         response = self.written(row, form, HTTPStatus.CREATED)
@@ -267,6 +235,7 @@ class EditableViewSet(Noun, RowsViewSet):
         return response
 
     def partial_update(self, request: Request, **kwargs: Any) -> Response:
+        """Changes one."""
         row = self.matched()
         form = self.valid_form(row, self.read(self.change_serializer, partial=True))
         values = self.values_of(form, row)
@@ -274,6 +243,7 @@ class EditableViewSet(Noun, RowsViewSet):
         return self.written(saved, form)
 
     def destroy(self, request: Request, **kwargs: Any) -> Response:
+        """Deletes one; its history can bring it back."""
         row = self.matched()
         delete(row, request.user, row.version)
         return Response(status=HTTPStatus.NO_CONTENT)
