@@ -12,13 +12,14 @@ from functools import wraps
 from typing import Any
 
 from django.core.exceptions import PermissionDenied
-from django.http import Http404, HttpRequest, HttpResponse
+from django.http import Http404, HttpRequest
+from django.http.response import HttpResponseBase
 from django.views.decorators.http import require_http_methods
 from django_htmx.middleware import HtmxDetails
 
 from annotations.models import Duty, User, World
 
-View = Callable[..., HttpResponse]
+View = Callable[..., HttpResponseBase]
 
 
 class PageRequest(HttpRequest):
@@ -57,7 +58,7 @@ def world_view(
 
     def decorate(view: View) -> View:
         @wraps(view)
-        def guarded(request: WorldRequest, world: str, **kwargs: Any) -> HttpResponse:
+        def guarded(request: WorldRequest, world: str, **kwargs: Any) -> HttpResponseBase:
             request.world, request.duties = world_of(request, world)
             demand(request, write_duty if write_duty and request.method == "POST" else duty)
             return view(request, request.world, **kwargs)
@@ -73,7 +74,7 @@ def site_view(methods: tuple[str, ...] = READ) -> Callable[[View], View]:
 
     def decorate(view: View) -> View:
         @wraps(view)
-        def guarded(request: HttpRequest, **kwargs: Any) -> HttpResponse:
+        def guarded(request: HttpRequest, **kwargs: Any) -> HttpResponseBase:
             demand_site_admin(request)
             return view(request, **kwargs)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from http import HTTPStatus
 
+from django.contrib.auth.models import AnonymousUser
 from django.db import IntegrityError, transaction
 
 from annotations.language.errors import Refusal
@@ -40,10 +41,10 @@ def has_joined(invitation: Invitation, user: User) -> bool:
     return set(invitation.roles) <= set(held)
 
 
-def world_joined_by(key: str, user: User) -> World | None:
+def world_joined_by(key: str, user: User | AnonymousUser) -> World | None:
     """Return the world that ``user`` has joined, where ``key`` is of an invitation to it, open or over."""
     invitation = Invitation.objects.ever_made_with(key)
-    if not user.is_authenticated or invitation is None or not has_joined(invitation, user):
+    if isinstance(user, AnonymousUser) or invitation is None or not has_joined(invitation, user):
         return None
     return invitation.world
 

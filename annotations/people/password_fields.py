@@ -9,7 +9,7 @@ MOST_CHARACTERS = 1000  # more would be dear to hash
 RULE = "At least 8 characters, and not a common one."
 
 
-def ask_twice(form: forms.Form, first: str, again: str) -> None:
+def ask_twice(form: forms.BaseForm, first: str, again: str) -> None:
     """Label the two fields of ``form`` that take a new password, and bound their length."""
     form.fields[first].help_text = RULE
     form.fields[again].help_text = ""

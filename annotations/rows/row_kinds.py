@@ -65,7 +65,7 @@ class EditableKind:
         )
         return deletions
 
-    def row_or_last_known(self, world: World, pk: int) -> tuple[Editable, bool]:
+    def row_or_last_known(self, world: World, pk: int) -> tuple[Any, bool]:
         """Return the row and whether it is there; one that was deleted is as it was last.
 
         Raises Http404 where the world never had such a row.

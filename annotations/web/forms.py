@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from django.http import HttpRequest, QueryDict
+from typing import Any
+
+from django import forms
+from django.http import QueryDict
 
 from annotations.language.errors import LanguageError
+from annotations.people.access import PageRequest
 
 
-def posted(request: HttpRequest) -> QueryDict | None:
+def posted(request: PageRequest) -> QueryDict | None:
     """Return the data to bind a form to; None when nothing has been sent."""
     return request.POST if request.method == "POST" else None
 
@@ -17,3 +21,17 @@ def sentence_of(error: LanguageError) -> str:
     message = error.message[:1].upper() + error.message[1:]
     hint = f" {error.hint[:1].upper()}{error.hint[1:]}." if error.hint else ""
     return f"{message}.{hint}"
+
+
+def row_field(form: forms.BaseForm, name: str) -> forms.ModelChoiceField[Any]:
+    """Return the field of ``form`` in which one chooses a row, so that it can be told from which."""
+    field = form.fields[name]
+    assert isinstance(field, forms.ModelChoiceField)
+    return field
+
+
+def choice_field(form: forms.BaseForm, name: str) -> forms.ChoiceField:
+    """Return the field of ``form`` in which one chooses a text, so that it can be told from which."""
+    field = form.fields[name]
+    assert isinstance(field, forms.ChoiceField)
+    return field

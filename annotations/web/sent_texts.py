@@ -80,9 +80,11 @@ class SentTexts:
 
 def sent_texts_of(request: HttpRequest) -> SentTexts:
     """Return the reader of the texts of this request; all its parts share one."""
-    if not hasattr(request, "sent_texts"):
-        request.sent_texts = SentTexts()
-    return request.sent_texts
+    kept: Any = request  # a request keeps what is set on it
+    if not hasattr(kept, "sent_texts"):
+        kept.sent_texts = SentTexts()
+    texts: SentTexts = kept.sent_texts
+    return texts
 
 
 def _below(field: str, name: str | int) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 
 from django.contrib import messages
 from django.core.exceptions import PermissionDenied
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.views.decorators.cache import never_cache
 from django.views.decorators.http import require_http_methods
@@ -16,7 +16,7 @@ from django.views.decorators.http import require_http_methods
 from annotations.jobs import answer_job, cancel_job
 from annotations.language.errors import Refusal
 from annotations.models import Duty, Job, World
-from annotations.people.access import READ, WRITE, demand, world_view
+from annotations.people.access import READ, WRITE, WorldRequest, demand, world_view
 from annotations.web.background.report_presentation import shown_report
 
 LISTED = 100
@@ -30,7 +30,7 @@ def job_view(methods: tuple[str, ...] = READ) -> Callable[..., Any]:
 
     def decorate(view: Callable[..., HttpResponse]) -> Callable[..., HttpResponse]:
         @wraps(view)
-        def guarded(request: HttpRequest, pk: int) -> HttpResponse:
+        def guarded(request: WorldRequest, pk: int) -> HttpResponse:
             jobs = Job.objects.visible_to(request.user).select_related("world", "created_by")
             job = get_object_or_404(jobs, pk=pk)
             world = job.world
@@ -47,27 +47,27 @@ def job_view(methods: tuple[str, ...] = READ) -> Callable[..., Any]:
 
 
 @world_view(Duty.VIEW)
-def jobs(request: HttpRequest, world: World) -> HttpResponse:
+def jobs(request: WorldRequest, world: World) -> HttpResponse:
     """Show the jobs of a world, the newest first."""
     rows = world.jobs.select_related("created_by")[:LISTED]
     return render(request, "annotations/background/jobs.html", {"jobs": rows, "most": LISTED})
 
 
 @job_view()
-def job(request: HttpRequest, job: Job) -> HttpResponse:
+def job(request: WorldRequest, job: Job) -> HttpResponse:
     """Show one job: how far it is, or what came of it."""
     return render(request, "annotations/background/job.html", _state_of(request, job))
 
 
 @never_cache
 @job_view()
-def job_state(request: HttpRequest, job: Job) -> HttpResponse:
+def job_state(request: WorldRequest, job: Job) -> HttpResponse:
     """Show what changes on the page of a job while it works."""
     return render(request, "annotations/background/_job_state.html", _state_of(request, job))
 
 
 @job_view(WRITE)
-def job_cancel(request: HttpRequest, job: Job) -> HttpResponse:
+def job_cancel(request: WorldRequest, job: Job) -> HttpResponse:
     """Stop a job within seconds, or drop an import that asks."""
     try:
         cancel_job(job)
@@ -77,7 +77,7 @@ def job_cancel(request: HttpRequest, job: Job) -> HttpResponse:
 
 
 @job_view(WRITE)
-def job_answer(request: HttpRequest, job: Job) -> HttpResponse:
+def job_answer(request: WorldRequest, job: Job) -> HttpResponse:
     """Import the kept files after all, and remove what they do not have."""
     try:
         return redirect("job", pk=answer_job(job, request.user).pk)
@@ -86,8 +86,8 @@ def job_answer(request: HttpRequest, job: Job) -> HttpResponse:
         return redirect("job", pk=job.pk)
 
 
-def _state_of(request: HttpRequest, job: Job) -> dict[str, Any]:
-    duties = getattr(request, "duties", frozenset())
+def _state_of(request: WorldRequest, job: Job) -> dict[str, Any]:
+    duties: frozenset[Duty] = getattr(request, "duties", frozenset())
     may_act = request.user.is_superuser or job.duty in duties or job.world is None
     shown = shown_report(job.kind, job.report, job.world) if job.report is not None else {}
     return {"job": job, "may_act": may_act, **shown}

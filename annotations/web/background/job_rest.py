@@ -12,7 +12,6 @@ from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.decorators import action
 from rest_framework.exceptions import NotFound
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.jobs import answer_job, cancel_job
@@ -20,11 +19,12 @@ from annotations.jobs.files import result_of
 from annotations.models import Duty, Job, World
 from annotations.people.allowances import may_take_long
 from annotations.web.rest.negotiation import AnyType
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import Retrieved, RowsViewSet, SiteViewSet, Tagged
 from annotations.web.rest.streaming import JSON_LINES
 
 
-class JobSerializer(serializers.ModelSerializer):
+class JobSerializer(serializers.ModelSerializer[Job]):
     """An import, a generation, an analysis. ``report`` is what came of it, null until it has ended.
 
     One that ``is_waiting_for_answer`` would remove something: POST to ``answer/`` lets it, ``cancel/``
@@ -44,7 +44,7 @@ class JobSerializer(serializers.ModelSerializer):
         ]
 
 
-def address_of_job(request: Request, job: Job) -> str:
+def address_of_job(request: ApiRequest, job: Job) -> str:
     """Return the address at which the caller follows a job: below its world, where there is one."""
     world = job.world if job.world and job.world.deletion_requested_at is None else None
     below = f"worlds/{world.name}/jobs" if world else "jobs"
@@ -62,7 +62,7 @@ class Cancelling(Tagged):
 
     @extend_schema(request=None, responses={200: JobSerializer})
     @action(detail=True, methods=["post"])
-    def cancel(self, request: Request, **kwargs: object) -> Response:
+    def cancel(self, request: ApiRequest, **kwargs: object) -> Response:
         """Stops a job within seconds, or drops an import that asks."""
         cancel_job(self.get_object())
         return self.show(self.get_object())
@@ -91,7 +91,7 @@ class JobViewSet(Cancelling, RowsViewSet):
     @extend_schema(responses={(200, JSON_LINES): OpenApiTypes.STR})
     @may_take_long
     @action(detail=True, content_negotiation_class=AnyType)
-    def result(self, request: Request, **kwargs: object) -> FileResponse:
+    def result(self, request: ApiRequest, **kwargs: object) -> FileResponse:
         """Downloads the file that a job has made. It is kept for seven days."""
         job = self.get_object()
         try:
@@ -105,7 +105,7 @@ class JobViewSet(Cancelling, RowsViewSet):
 
     @extend_schema(request=None, responses={202: JobSerializer})
     @action(detail=True, methods=["post"])
-    def answer(self, request: Request, **kwargs: object) -> Response:
+    def answer(self, request: ApiRequest, **kwargs: object) -> Response:
         """Imports the kept files after all, and removes what they do not have."""
         return self.show(answer_job(self.get_object(), request.user), HTTPStatus.ACCEPTED)
 

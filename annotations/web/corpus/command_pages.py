@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from django.db.models import Count
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, render
 
 from annotations.generation.complexity import complexity as complexity_of
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.models import Duty, LogicalForm, Paraphrase, World
 from annotations.models.description import ProblemSubject
-from annotations.people.access import world_view
+from annotations.people.access import WorldRequest, world_view
 from annotations.rows.occurrences import MOST_SHOWN
 from annotations.web.corpus.corpus_filters import (
     CommandFilters,
@@ -35,7 +35,7 @@ FORM_SORTS = {
 
 
 @world_view(Duty.VIEW)
-def commands(request: HttpRequest, world: World) -> HttpResponse:
+def commands(request: WorldRequest, world: World) -> HttpResponse:
     """List every command with its form."""
     rows = world.commands.select_related("logical_form")
     context = {
@@ -46,7 +46,7 @@ def commands(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.VIEW)
-def command(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def command(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show one command: its form, the template that makes it, and how people say it."""
     rows = world.commands.select_related("logical_form", "template")
     row = get_object_or_404(rows, pk=pk)
@@ -55,13 +55,13 @@ def command(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 @world_view(Duty.VIEW)
-def complexity(request: HttpRequest, world: World) -> HttpResponse:
+def complexity(request: WorldRequest, world: World) -> HttpResponse:
     """Show counts, mean lengths and commands per form, by task category."""
     return render(request, "annotations/corpus/complexity.html", {"columns": complexity_of(world)})
 
 
 @world_view(Duty.VIEW)
-def logical_forms(request: HttpRequest, world: World) -> HttpResponse:
+def logical_forms(request: WorldRequest, world: World) -> HttpResponse:
     """List every logical form with the number of its commands."""
     rows = LogicalForm.objects.filter(world=world).annotate(n_commands=Count("commands"))
     context = {"listing": Listing(request, LogicalFormFilters, rows, FORM_SORTS)}
@@ -69,7 +69,7 @@ def logical_forms(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.VIEW)
-def logical_form(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def logical_form(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show one logical form: its notations, its commands and how people say them."""
     row = get_object_or_404(LogicalForm, world=world, pk=pk)
     paraphrases = Paraphrase.objects.filter(world=world, logical_form=row.text)

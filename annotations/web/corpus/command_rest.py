@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from django.db.models import QuerySet
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.generation.complexity import complexity
 from annotations.models import Command, LogicalForm
 from annotations.web.corpus.corpus_filters import CommandFilters, LogicalFormFilters
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import Figures, RowsViewSet
 
 
-class CommandSerializer(serializers.ModelSerializer):
+class CommandSerializer(serializers.ModelSerializer[Command]):
     """A generated command with its form; ``template`` makes it."""
 
     logical_form = serializers.CharField(source="logical_form.text")
@@ -41,7 +43,7 @@ class CommandViewSet(RowsViewSet):
         return self.world.commands.select_related("logical_form")
 
 
-class LogicalFormSerializer(serializers.ModelSerializer):
+class LogicalFormSerializer(serializers.ModelSerializer[LogicalForm]):
     """One meaning, in canonical corpus notation; ``length`` counts tokens."""
 
     class Meta:
@@ -61,7 +63,7 @@ class LogicalFormViewSet(RowsViewSet):
         return self.world.logical_forms.all()
 
 
-class ComplexitySerializer(serializers.Serializer):
+class ComplexitySerializer(serializers.Serializer[Any]):
     """A column of the table of complexity; ``task_category`` is empty for all together. Lengths in tokens."""
 
     task_category = serializers.CharField(allow_blank=True)
@@ -73,7 +75,7 @@ class ComplexitySerializer(serializers.Serializer):
     commands_per_form = serializers.FloatField(allow_null=True)
 
 
-class ComplexityTable(serializers.Serializer):
+class ComplexityTable(serializers.Serializer[Any]):
     results = ComplexitySerializer(many=True)
 
 
@@ -83,5 +85,5 @@ class ComplexityOfWorld(Figures):
     model = Command
 
     @extend_schema(operation_id="complexity", responses={200: ComplexityTable})
-    def get(self, request: Request, **kwargs: object) -> Response:
+    def get(self, request: ApiRequest, **kwargs: object) -> Response:
         return Response(ComplexityTable({"results": complexity(self.world)}).data)

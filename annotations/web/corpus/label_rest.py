@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from django.db.models import QuerySet
 from django.shortcuts import get_object_or_404
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.decorators import action
 from rest_framework.mixins import ListModelMixin
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.language.limits import MAX_FORM
@@ -19,12 +16,13 @@ from annotations.models import Duty, Label
 from annotations.models.corpus import MOST_CHARACTERS, verdict_choices
 from annotations.queueing.item_answers import take_answer_back
 from annotations.web.rest.fields import Fields
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import WorldViewSet
 
 LARGEST_VERSION = 2**31 - 1
 
 
-class LabelSerializer(serializers.ModelSerializer):
+class LabelSerializer(serializers.ModelSerializer[Label]):
     """An answer of the caller. It decides from ``accepted_at`` on, a blind one once another agrees."""
 
     utterance = serializers.IntegerField(source="utterance_id")
@@ -67,12 +65,11 @@ class LabelViewSet(ListModelMixin, WorldViewSet):
 
     def rows(self) -> QuerySet[Label]:
         """Leave out what others answered: who may still be asked must not see it."""
-        rows: Any = Label.objects.of_world(self.world)
-        return rows.filter(annotator=self.request.user)
+        return Label.objects.of_world(self.world).filter(annotator=self.request.user)
 
     @extend_schema(request=None, responses={200: LabelSerializer})
     @action(detail=True, methods=["post"], url_path="take-back")
-    def take_back(self, request: Request, **kwargs: object) -> Response:
+    def take_back(self, request: ApiRequest, **kwargs: object) -> Response:
         """Undoes an answer of the caller: the utterance is what it was before."""
         rows = Label.objects.of_world(self.world)
         stored = get_object_or_404(rows, pk=self.kwargs["pk"])

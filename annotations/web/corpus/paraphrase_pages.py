@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from django.contrib import messages
-from django.http import HttpRequest, HttpResponse, JsonResponse
+from django.http import HttpResponse, JsonResponse
 from django.shortcuts import get_object_or_404, redirect, render
 
 from annotations.editing.edits import Overtaken
@@ -13,7 +13,7 @@ from annotations.labelling.form_check import check_label
 from annotations.language.errors import LanguageError
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.models import Duty, WorkKind, World
-from annotations.people.access import WRITE, world_view
+from annotations.people.access import WRITE, WorldRequest, world_view
 from annotations.queueing.giving import NotForThem, kinds_for
 from annotations.rows.occurrences import MOST_SHOWN, examples_of_pair, logical_form_of
 from annotations.web.corpus.corpus_filters import ParaphraseFilters
@@ -28,14 +28,14 @@ SORTS = {
 
 
 @world_view(Duty.VIEW)
-def paraphrases(request: HttpRequest, world: World) -> HttpResponse:
+def paraphrases(request: WorldRequest, world: World) -> HttpResponse:
     """List every paraphrase beside the prompt that it rewrites, with its distances."""
     listing = Listing(request, ParaphraseFilters, world.paraphrases.all(), SORTS)
     return render_list(request, "annotations/corpus/paraphrases.html", {"listing": listing})
 
 
 @world_view(Duty.VIEW)
-def paraphrase(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def paraphrase(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show one paraphrase: its prompt, command and form, and the splits that hold it."""
     row = get_object_or_404(world.paraphrases.select_related("command"), pk=pk)
     context = {
@@ -48,7 +48,7 @@ def paraphrase(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 @world_view(Duty.VIEW, WRITE)
-def paraphrase_label(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def paraphrase_label(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Correct the label of a paraphrase; the queue knows who may."""
     row = get_object_or_404(world.paraphrases, pk=pk)
     sent = request.POST.get("version", "")
@@ -71,7 +71,7 @@ def paraphrase_label(request: HttpRequest, world: World, pk: int) -> HttpRespons
 
 
 @world_view(Duty.VIEW, WRITE)
-def paraphrase_check(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def paraphrase_check(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Say what is wrong with a label while somebody writes it."""
     row = get_object_or_404(world.paraphrases, pk=pk)
     anonymized = anonymizer_of(world).anonymize(row.utterance).command

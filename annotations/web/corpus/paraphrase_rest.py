@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from django.db.models import QuerySet
 from rest_framework import serializers
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.editing.edits import delete
@@ -13,10 +12,11 @@ from annotations.language.limits import MAX_FORM
 from annotations.models import Duty, Paraphrase
 from annotations.web.corpus.corpus_filters import ParaphraseFilters
 from annotations.web.rest.fields import Fields
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import RowsViewSet
 
 
-class ParaphraseSerializer(serializers.ModelSerializer):
+class ParaphraseSerializer(serializers.ModelSerializer[Paraphrase]):
     """How somebody said a prompt. Distances are to the prompt; ``command`` is the one behind it."""
 
     command = serializers.IntegerField(source="command_id", allow_null=True)
@@ -52,13 +52,13 @@ class ParaphraseViewSet(RowsViewSet):
     def rows(self) -> QuerySet[Paraphrase]:
         return self.world.paraphrases.all()
 
-    def partial_update(self, request: Request, **kwargs: object) -> Response:
+    def partial_update(self, request: ApiRequest, **kwargs: object) -> Response:
         """Corrects the label of a paraphrase."""
         row = self.matched()
         form = self.read(LabelChange)["logical_form"]
         return self.show(correct_label(row, form, request.user, row.version))
 
-    def destroy(self, request: Request, **kwargs: object) -> Response:
+    def destroy(self, request: ApiRequest, **kwargs: object) -> Response:
         """Deletes a paraphrase."""
         row = self.matched()
         delete(row, request.user, row.version)

@@ -7,7 +7,7 @@ from typing import Any
 
 from django import forms
 from django.contrib import messages
-from django.http import Http404, HttpRequest, HttpResponse
+from django.http import Http404, HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.urls import reverse
 
@@ -17,7 +17,7 @@ from annotations.language.errors import LanguageError
 from annotations.lists.filtering import PageFilters, Search
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.models import Duty, Upload, World
-from annotations.people.access import READ_AND_WRITE, WRITE, world_view
+from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
 from annotations.people.allowances import may_take_long
 from annotations.utterances.upload_reading import FORMAT_NAMES, TABLES
 from annotations.utterances.utterance_uploads import (
@@ -68,8 +68,9 @@ class ChoicesForm(forms.Form):
     def fit(self, shown: Preview, can_label: bool) -> None:
         """Offer the formats, columns and encodings that fit the upload."""
         names = shown.sheet.columns
-        self.data = self.data.copy()
-        self.data["column"] = shown.sheet.column
+        data: Any = self.data
+        self.data = data = data.copy()
+        data["column"] = shown.sheet.column
         self.fields["column"].widget.choices = [(name, name) for name in names]
         if len(names) < 2:
             del self.fields["column"]
@@ -84,7 +85,7 @@ class UploadFilters(PageFilters):
 
 
 @world_view(Duty.VIEW)
-def uploads(request: HttpRequest, world: World) -> HttpResponse:
+def uploads(request: WorldRequest, world: World) -> HttpResponse:
     """List what was uploaded, the newest first."""
     rows = world.uploads.stored().select_related("created_by", "undone_by").defer("content")
     listing = Listing(request, UploadFilters, rows, SORTS)
@@ -93,7 +94,7 @@ def uploads(request: HttpRequest, world: World) -> HttpResponse:
 
 @may_take_long
 @world_view(Duty.ANNOTATE, READ_AND_WRITE)
-def upload(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def upload(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show what an upload would store, or what it has stored; a POST stores it."""
     row = _upload(world, pk)
     if row.stored_at is not None:
@@ -117,7 +118,7 @@ def upload(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     return render(request, "annotations/corpus/upload_preview.html", context, status=status)
 
 
-def _store(request: HttpRequest, world: World, row: Upload, shown: Preview) -> HttpResponse:
+def _store(request: WorldRequest, world: World, row: Upload, shown: Preview) -> HttpResponse:
     added = store(world, shown, row, request.user).added
     sentence = f"{say_count(added, 'utterance')} added from {row}."
     if shown.forms or shown.n_bad_forms:
@@ -132,7 +133,7 @@ def _store(request: HttpRequest, world: World, row: Upload, shown: Preview) -> H
 
 @may_take_long
 @world_view(Duty.ANNOTATE, READ_AND_WRITE)
-def upload_undo(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def upload_undo(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Delete the utterances of an upload. Where somebody has answered some since, ask first about these."""
     row = _upload(world, pk)
     n_labelled = count_labelled(row) if row.stored_at and not row.undone_at else 0
@@ -153,7 +154,7 @@ def upload_undo(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 @may_take_long
 @world_view(Duty.ANNOTATE, WRITE)
-def upload_redo(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def upload_redo(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Restore the utterances of an upload that was undone."""
     row = _upload(world, pk)
     try:

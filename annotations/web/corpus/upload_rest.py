@@ -10,7 +10,6 @@ from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.decorators import action
 from rest_framework.exceptions import PermissionDenied
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.language.decoding import ENCODINGS
@@ -34,6 +33,7 @@ from annotations.utterances.utterance_uploads import (
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.parsing import BoundedJSONParser, FilesParser
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import (
     ProblemItemSerializer,
     refusal_of_text,
@@ -41,7 +41,7 @@ from annotations.web.rest.problem_details import (
 from annotations.web.rest.routes import Route, RowsViewSet
 
 
-class UploadSerializer(serializers.ModelSerializer):
+class UploadSerializer(serializers.ModelSerializer[Upload]):
     """What was sent at once. ``undone_at`` is null while its utterances are here."""
 
     created_by = serializers.CharField(source="created_by.username", default=None)
@@ -71,7 +71,7 @@ class NewUpload(Fields):
     format = serializers.ChoiceField(choices=[*UploadFormat], required=False)
     column = serializers.CharField(required=False, max_length=MOST_CHARACTERS_OF_NAME)
     has_head = serializers.BooleanField(required=False, allow_null=True, default=None)
-    encoding = serializers.ChoiceField(choices=ENCODINGS, required=False)
+    encoding = serializers.ChoiceField(choices=list(ENCODINGS), required=False)
     preview = serializers.BooleanField(default=False)
     skips_bad = serializers.BooleanField(default=False)
     as_labels = serializers.BooleanField(default=False)
@@ -86,7 +86,7 @@ class NewUpload(Fields):
         return sent
 
 
-class ShownTextSerializer(serializers.Serializer):
+class ShownTextSerializer(serializers.Serializer[Any]):
     """One row: ``state`` is new, known (the world has it) or repeated."""
 
     line = serializers.IntegerField()
@@ -95,7 +95,7 @@ class ShownTextSerializer(serializers.Serializer):
     was_cleaned = serializers.BooleanField()
 
 
-class PreviewSerializer(serializers.Serializer):
+class PreviewSerializer(serializers.Serializer[Any]):
     """How an upload was read, and what came of it: ``upload`` is null for a preview.
 
     ``ignored`` are columns that are not stored, ``first`` the first ten rows; ``forms`` counts those that
@@ -151,7 +151,7 @@ class UndoRequest(Fields):
     labelled = serializers.ChoiceField(choices=["keep", "delete"], required=False)
 
 
-class UndoneSerializer(serializers.Serializer):
+class UndoneSerializer(serializers.Serializer[Any]):
     """The upload, and how many of its utterances were deleted or restored; ``taken`` stay deleted because
     their texts were added again."""
 
@@ -180,7 +180,7 @@ class UploadViewSet(RowsViewSet):
     )
     @takes_files
     @once
-    def create(self, request: Request, **kwargs: object) -> Response:
+    def create(self, request: ApiRequest, **kwargs: object) -> Response:
         """Takes in a file of utterances."""
         sent = self.read(NewUpload)
         if sent["as_labels"] and not self.world.allows(request.user, Duty.MANAGE):
@@ -214,7 +214,7 @@ class UploadViewSet(RowsViewSet):
     @extend_schema(request=UndoRequest, responses={200: UndoneSerializer})
     @may_take_long
     @action(detail=True, methods=["post"], parser_classes=Route.parser_classes)
-    def undo(self, request: Request, **kwargs: object) -> Response:
+    def undo(self, request: ApiRequest, **kwargs: object) -> Response:
         """Deletes the utterances of an upload; ``redo/`` brings them back, with their answers."""
         row, sent = self.get_object(), self.read(UndoRequest)
         n_labelled = 0 if row.undone_at else count_labelled(row)
@@ -229,7 +229,7 @@ class UploadViewSet(RowsViewSet):
     @extend_schema(request=None, responses={200: UndoneSerializer})
     @may_take_long
     @action(detail=True, methods=["post"], parser_classes=Route.parser_classes)
-    def redo(self, request: Request, **kwargs: object) -> Response:
+    def redo(self, request: ApiRequest, **kwargs: object) -> Response:
         """Restores the utterances of an upload that was undone."""
         restored, n_taken = redo(self.get_object(), request.user)
         return _changed(self.get_object(), restored, n_taken)

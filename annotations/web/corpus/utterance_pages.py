@@ -6,7 +6,7 @@ from typing import Any
 
 from django import forms
 from django.contrib import messages
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.urls import reverse
 from django.utils import timezone
@@ -18,7 +18,7 @@ from annotations.language.text import normalise_line
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.lists.paging import number_in
 from annotations.models import Duty, Upload, Utterance, World
-from annotations.people.access import READ_AND_WRITE, WRITE, world_view
+from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
 from annotations.people.allowances import may_take_long, takes_files
 from annotations.utterances.upload_reading import MOST_BYTES, UploadFormat
 from annotations.utterances.utterance_deletion import delete_utterances, restore_utterances
@@ -66,7 +66,7 @@ class UtterancesForm(forms.Form):
         return file
 
     def clean(self) -> dict[str, Any]:
-        cleaned = super().clean()
+        cleaned = self.cleaned_data
         text = cleaned.get("text", "").strip()
         if not self.errors and not text and not cleaned["file"]:
             self.add_error("text", "Write an utterance, or choose a file that has some.")
@@ -78,7 +78,8 @@ class UtterancesForm(forms.Form):
     def data_sent(self) -> bytes:
         """What was pasted, or what the file holds."""
         file = self.cleaned_data["file"]
-        return file.read() if file else self.cleaned_data["text"].encode()
+        data: bytes = file.read() if file else self.cleaned_data["text"].encode()
+        return data
 
     @property
     def file_name(self) -> str:
@@ -88,7 +89,7 @@ class UtterancesForm(forms.Form):
 
 
 @world_view(Duty.VIEW)
-def utterances(request: HttpRequest, world: World) -> HttpResponse:
+def utterances(request: WorldRequest, world: World) -> HttpResponse:
     """List what people said, with the form that it has."""
     rows = world.utterances.select_related("created_by")
     listing = Listing(request, UtteranceFilters, rows, SORTS)
@@ -96,7 +97,7 @@ def utterances(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.VIEW)
-def utterance(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def utterance(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show one utterance, its form and every answer to it that the reader may see, taken back or not."""
     row = get_object_or_404(world.utterances.select_related("created_by"), pk=pk)
     accepted = row.accepted_label
@@ -107,7 +108,7 @@ def utterance(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 @takes_files
 @world_view(Duty.ANNOTATE, READ_AND_WRITE)
-def utterances_new(request: HttpRequest, world: World) -> HttpResponse:
+def utterances_new(request: WorldRequest, world: World) -> HttpResponse:
     """Take utterances in. Pasted lines are stored at once, all or none; a file or a table is shown first."""
     form = UtterancesForm(posted(request), request.FILES or None)
     context: dict[str, Any] = {"form": form}
@@ -134,7 +135,7 @@ def utterances_new(request: HttpRequest, world: World) -> HttpResponse:
     )
 
 
-def _store_pasted(request: HttpRequest, world: World, shown: Preview) -> HttpResponse:
+def _store_pasted(request: WorldRequest, world: World, shown: Preview) -> HttpResponse:
     upload = Upload()
     added = store(world, shown, upload, request.user).added
     others = shown.n_known + shown.n_repeated
@@ -151,7 +152,7 @@ def _store_pasted(request: HttpRequest, world: World, shown: Preview) -> HttpRes
 
 @may_take_long
 @world_view(Duty.ANNOTATE, READ_AND_WRITE)
-def utterances_delete(request: HttpRequest, world: World) -> HttpResponse:
+def utterances_delete(request: WorldRequest, world: World) -> HttpResponse:
     """Say which utterances would be deleted: those that are ticked, or all that the filters leave.
 
     A POST deletes them, if they are as many still as its ``total`` says.
@@ -186,7 +187,7 @@ def utterances_delete(request: HttpRequest, world: World) -> HttpResponse:
 
 @may_take_long
 @world_view(Duty.ANNOTATE, WRITE)
-def utterances_restore(request: HttpRequest, world: World) -> HttpResponse:
+def utterances_restore(request: WorldRequest, world: World) -> HttpResponse:
     """Restore the utterances that were deleted together, at the time that was sent as ``at``."""
     try:
         at = parse_datetime(request.POST.get("at", "")[:40])

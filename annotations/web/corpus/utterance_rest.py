@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from django.db.models import QuerySet
 from django.http import StreamingHttpResponse
 from django.shortcuts import get_object_or_404
@@ -9,7 +11,6 @@ from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers, status
 from rest_framework.decorators import action
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.exporting.split_export import SplitFormat
@@ -30,11 +31,12 @@ from annotations.web.corpus.label_rest import LabelSerializer, NewLabel, NewSpan
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.negotiation import CONTENT_TYPES, AnyType
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_text
 from annotations.web.rest.routes import RowsViewSet
 
 
-class UtteranceSerializer(serializers.ModelSerializer):
+class UtteranceSerializer(serializers.ModelSerializer[Utterance]):
     """An utterance with its form, which is empty while nobody has given it one.
 
     ``spans`` are rows of start, end, class and entity.
@@ -61,7 +63,7 @@ class NewUtterances(Fields):
     origin = serializers.ChoiceField(choices=origin_choices(), default=Origin.UPLOADED)
 
 
-class CollectedSerializer(serializers.Serializer):
+class CollectedSerializer(serializers.Serializer[Any]):
     """What was stored. ``uploads/ID/undo/`` with the id in ``upload``, null where nothing was new, takes it away."""
 
     added = serializers.IntegerField()
@@ -84,7 +86,7 @@ def _require_texts(texts: list[str]) -> None:
         raise Refusal(sentence, "lines_of_a_file", problems=[problem])
 
 
-class ExportedLabelSerializer(serializers.Serializer):
+class ExportedLabelSerializer(serializers.Serializer[Any]):
     """An answer that was accepted."""
 
     annotator = serializers.CharField()
@@ -95,7 +97,7 @@ class ExportedLabelSerializer(serializers.Serializer):
     seconds = serializers.FloatField(allow_null=True)
 
 
-class ExportedUtteranceSerializer(serializers.ModelSerializer):
+class ExportedUtteranceSerializer(serializers.ModelSerializer[Utterance]):
     """One line of a JSON Lines export. ``labels`` are the accepted answers; the last one decides, and
     ``annotator``, ``labelled_at`` and ``seconds`` are its own."""
 
@@ -112,10 +114,10 @@ class ExportedUtteranceSerializer(serializers.ModelSerializer):
         fields = FIELDS
 
 
-class LabelExportQuery(serializers.Serializer):
+class LabelExportQuery(serializers.Serializer[Any]):
     """The format of an export."""
 
-    def get_fields(self) -> dict[str, serializers.Field]:
+    def get_fields(self) -> dict[str, Any]:
         # "as" is a word of Python and cannot be a class attribute.
         return {"as": serializers.ChoiceField(choices=[*LabelFormat], default=LabelFormat.JSONL)}
 
@@ -135,7 +137,7 @@ class UtteranceViewSet(RowsViewSet):
 
     @extend_schema(request=NewUtterances, responses={201: CollectedSerializer})
     @once
-    def create(self, request: Request, **kwargs: object) -> Response:
+    def create(self, request: ApiRequest, **kwargs: object) -> Response:
         """Takes in new utterances."""
         sent = self.read(NewUtterances)
         _require_texts(sent["texts"])
@@ -164,7 +166,7 @@ class UtteranceViewSet(RowsViewSet):
     )
     @may_take_long
     @action(detail=False, pagination_class=None, content_negotiation_class=AnyType)
-    def export(self, request: Request, **kwargs: object) -> StreamingHttpResponse:
+    def export(self, request: ApiRequest, **kwargs: object) -> StreamingHttpResponse:
         """Streams the utterances that the filters leave with their labels, as JSON Lines, CSV or Parquet.
 
         Answers that wait to be compared with another person's are in no export.
@@ -178,7 +180,7 @@ class UtteranceViewSet(RowsViewSet):
         response["Content-Disposition"] = f'attachment; filename="{name}"'
         return response
 
-    def destroy(self, request: Request, **kwargs: object) -> Response:
+    def destroy(self, request: ApiRequest, **kwargs: object) -> Response:
         """Deletes an utterance, which keeps its answers: ``history/utterance/ID/`` restores it with them."""
         row = self.matched()
         delete_utterance(row, request.user, row.version)
@@ -186,7 +188,7 @@ class UtteranceViewSet(RowsViewSet):
 
     @extend_schema(request=NewLabel, responses={201: LabelSerializer})
     @action(detail=True, methods=["post"])
-    def label(self, request: Request, **kwargs: object) -> Response:
+    def label(self, request: ApiRequest, **kwargs: object) -> Response:
         """Answers what an utterance means, whether or not the work queue has asked the caller."""
         row, sent = self.get_object(), self.read(NewLabel)
         values = {name: sent[name] for name in ("verdict", "form", "version", "reason")}
@@ -198,7 +200,7 @@ class UtteranceViewSet(RowsViewSet):
 
     @extend_schema(request=NewSpan, responses={200: UtteranceSerializer})
     @action(detail=True, methods=["post"])
-    def spans(self, request: Request, **kwargs: object) -> Response:
+    def spans(self, request: ApiRequest, **kwargs: object) -> Response:
         """Says which words of an utterance name which entity; unlabelled utterances with these words follow."""
         row, sent = self.get_object(), self.read(NewSpan)
         entities = Entity.objects.filter(ontology__world=self.world)

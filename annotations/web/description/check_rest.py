@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import asdict
-from typing import Any, ClassVar
+from typing import Any, cast
 
 from django.shortcuts import get_object_or_404
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
-from rest_framework.filters import BaseFilterBackend
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.checking.predicate_check import check_predicate
@@ -34,6 +32,7 @@ from annotations.web.description.production_rest import NewProduction, Productio
 from annotations.web.description.template_forms import consequences_of_form
 from annotations.web.description.template_rest import TemplateChange, TemplateNoun
 from annotations.web.rest.fields import Fields
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import ProblemItemSerializer, refusal_of_form
 from annotations.web.rest.routes import WorldRoute
 
@@ -47,20 +46,20 @@ def _row_field() -> serializers.IntegerField:
     )
 
 
-class FoundSerializer(serializers.Serializer):
+class FoundSerializer(serializers.Serializer[Any]):
     """What the checker says, each with its place in a field of the body."""
 
     problems = ProblemItemSerializer(many=True)
 
 
-class ConsequencesSerializer(serializers.Serializer):
+class ConsequencesSerializer(serializers.Serializer[Any]):
     """What storing it would do to commands and splits; ``trouble`` says why that is not known."""
 
     sentence = serializers.CharField()
     trouble = serializers.CharField(allow_blank=True)
 
 
-class SampleSerializer(serializers.Serializer):
+class SampleSerializer(serializers.Serializer[Any]):
     text = serializers.CharField()
     english = serializers.CharField()
 
@@ -82,7 +81,7 @@ class ProductionToCheck(NewProduction):
     replaces = _row_field()
 
 
-class GrammarSizeSerializer(serializers.Serializer):
+class GrammarSizeSerializer(serializers.Serializer[Any]):
     """How many commands the grammar of a task category makes at most, as people read it."""
 
     task_category = serializers.CharField()
@@ -100,13 +99,13 @@ class PredicateToCheck(NewPredicate):
     replaces = _row_field()
 
 
-class BrokenTemplateSerializer(serializers.Serializer):
+class BrokenTemplateSerializer(serializers.Serializer[Any]):
     id = serializers.IntegerField()
     pattern = serializers.CharField()
     messages = serializers.ListField(child=serializers.CharField())
 
 
-class CheckedPredicateSerializer(serializers.Serializer):
+class CheckedPredicateSerializer(serializers.Serializer[Any]):
     """Forms with the predicate in English, and the templates that it would leave with a problem."""
 
     samples = SampleSerializer(many=True)
@@ -129,9 +128,9 @@ class Check(WorldRoute):
     """Answers what the checker says; stores nothing."""
 
     http_method_names = ["post", "options"]
-    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.ANNOTATE}
-    scopes: ClassVar[dict[str, Scope]] = {"POST": Scope.READ}
-    filter_backends: ClassVar[list[type[BaseFilterBackend]]] = []
+    duties = {"POST": Duty.ANNOTATE}
+    scopes = {"POST": Scope.READ}
+    filter_backends = []
 
     def replaced(self, sent: dict[str, Any]) -> Any | None:
         """Return the row that ``replaces`` names, which is no field of a form. Raises Http404."""
@@ -143,7 +142,7 @@ class CheckTemplate(TemplateNoun, Check):
     """Checks a template, and says what storing it would do."""
 
     @extend_schema(request=TemplateToCheck, responses={200: CheckedTemplate})
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def post(self, request: ApiRequest, **kwargs: object) -> Response:
         sent = self.read(TemplateToCheck)
         row = self.replaced(sent)
         form = self.form_of(row, sent)
@@ -164,15 +163,15 @@ class CheckProduction(ProductionNoun, Check):
     """Checks a line of the grammar, and says what storing it would do."""
 
     @extend_schema(request=ProductionToCheck, responses={200: CheckedProductionSerializer})
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def post(self, request: ApiRequest, **kwargs: object) -> Response:
         sent = self.read(ProductionToCheck)
         row = self.replaced(sent)
         form = self.form_of(row, sent)
         form.is_valid()
         if wrong := {name: each for name, each in form.errors.items() if name != "expansion"}:
-            raise serializers.ValidationError(wrong)
-        names = [form.cleaned_data[name] for name in ("source", "nonterminal")]
-        edit = ProductionEdit(self.world, *names, sent["expansion"], row)
+            raise serializers.ValidationError(cast(dict[str, Any], wrong))
+        source, nonterminal = form.cleaned_data["source"], form.cleaned_data["nonterminal"]
+        edit = ProductionEdit(self.world, source, nonterminal, sent["expansion"], row)
         checked = check_production(edit)
         expected = None if checked.has_errors else consequences_of_production(edit)
         answer = {
@@ -188,7 +187,7 @@ class CheckPredicate(PredicateNoun, Check):
     """Says a predicate in English, and names the templates that it would break."""
 
     @extend_schema(request=PredicateToCheck, responses={200: CheckedPredicateSerializer})
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def post(self, request: ApiRequest, **kwargs: object) -> Response:
         sent = self.read(PredicateToCheck)
         row = self.replaced(sent)
         form = self.form_of(row, sent)
@@ -206,11 +205,11 @@ class CheckPredicate(PredicateNoun, Check):
 class CheckForm(Check):
     """Checks a form as the label of an utterance."""
 
-    duties: ClassVar[dict[str, Duty]] = {}
+    duties = {}
     model = SemanticTemplate
 
     @extend_schema(request=FormToCheck, responses={200: CheckedForm})
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def post(self, request: ApiRequest, **kwargs: object) -> Response:
         sent = self.read(FormToCheck)
         anonymized = anonymizer_of(self.world).anonymize(sent["utterance"]).command
         checked = check_label(self.world, anonymized, sent["form"], may_be_unknown=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from django import forms
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import render
 from django.views.decorators.cache import never_cache
 
@@ -14,7 +14,8 @@ from annotations.generation.uncovered import uncovered_of
 from annotations.language.errors import LanguageError
 from annotations.lists.listing import NumberedPages, render_list
 from annotations.models import Duty, TaskCategory, World
-from annotations.people.access import world_view
+from annotations.people.access import WorldRequest, world_view
+from annotations.web.forms import choice_field
 
 MOST_BARS = 8
 
@@ -33,9 +34,9 @@ class UncoveredFilters(forms.Form):
 
     def __init__(self, categories: list[str], nonterminals: list[str], *args: Any) -> None:
         super().__init__(*args)
-        self.fields["task_category"].choices = choices_of("Task category", categories)
+        choice_field(self, "task_category").choices = choices_of("Task category", categories)
         names = {name: f"${name}" for name in nonterminals}
-        self.fields["nonterminal"].choices = [("", "Nonterminal: any"), *names.items()]
+        choice_field(self, "nonterminal").choices = [("", "Nonterminal: any"), *names.items()]
 
 
 def choices_of(label: str, names: list[str]) -> list[tuple[str, str]]:
@@ -44,10 +45,10 @@ def choices_of(label: str, names: list[str]) -> list[tuple[str, str]]:
 
 @never_cache
 @world_view(Duty.VIEW)
-def coverage(request: HttpRequest, world: World) -> HttpResponse:
+def coverage(request: WorldRequest, world: World) -> HttpResponse:
     """Show size, samples and coverage by task category: a part of the grammar page, loaded after it."""
     try:
-        context = {"categories": coverage_of(world)}
+        context: dict[str, Any] = {"categories": coverage_of(world)}
     except LanguageError as error:
         context = {"problems": [error.problem]}
     return render(request, "annotations/description/_coverage.html", context)
@@ -55,7 +56,7 @@ def coverage(request: HttpRequest, world: World) -> HttpResponse:
 
 @never_cache
 @world_view(Duty.VIEW)
-def uncovered(request: HttpRequest, world: World) -> HttpResponse:
+def uncovered(request: WorldRequest, world: World) -> HttpResponse:
     """List the commands of the grammar that no template gives a form."""
     categories = TaskCategory.objects.filter(grammar__world=world)
     names = [each.name for each in categories]

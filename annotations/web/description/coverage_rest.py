@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import asdict
+from typing import Any
 
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework import serializers
 from rest_framework.exceptions import ValidationError
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.generation.conflicts import conflicts_of
@@ -16,13 +16,14 @@ from annotations.generation.uncovered import uncovered_of
 from annotations.models import SemanticTemplate, TaskCategory
 from annotations.rows.stored_problems import as_json
 from annotations.web.rest.fields import Fields, LineField
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import ProblemItemSerializer
 from annotations.web.rest.routes import Figures
 
 MOST_UNCOVERED = 1_000  # commands of an answer
 
 
-class UncoveredCommandSerializer(serializers.Serializer):
+class UncoveredCommandSerializer(serializers.Serializer[Any]):
     """A command without a form, and the nonterminals that a derivation of it goes through."""
 
     text = serializers.CharField()
@@ -30,7 +31,7 @@ class UncoveredCommandSerializer(serializers.Serializer):
     nonterminals = serializers.ListField(child=serializers.CharField())
 
 
-class ShareSerializer(serializers.Serializer):
+class ShareSerializer(serializers.Serializer[Any]):
     """How many of the commands that go through a nonterminal have no form."""
 
     nonterminal = serializers.CharField()
@@ -38,7 +39,7 @@ class ShareSerializer(serializers.Serializer):
     uncovered = serializers.IntegerField()
 
 
-class UncoveredSerializer(serializers.Serializer):
+class UncoveredSerializer(serializers.Serializer[Any]):
     """``count`` commands without a form, the first of which are in ``results``. Of the task categories in
     ``cut`` only a part was looked at; ``problems`` say which could not be looked at."""
 
@@ -68,7 +69,7 @@ class Uncovered(Figures):
         ],
         responses={200: UncoveredSerializer},
     )
-    def get(self, request: Request, **kwargs: object) -> Response:
+    def get(self, request: ApiRequest, **kwargs: object) -> Response:
         query = UncoveredQuery(data=request.query_params)
         query.is_valid(raise_exception=True)
         asked = query.validated_data
@@ -92,7 +93,7 @@ class Uncovered(Figures):
         return Response(UncoveredSerializer(answer).data)
 
 
-class ConflictSerializer(serializers.Serializer):
+class ConflictSerializer(serializers.Serializer[Any]):
     """``count`` commands that both templates make, such as ``command``; the form of ``kept`` wins."""
 
     task_category = serializers.CharField()
@@ -102,7 +103,7 @@ class ConflictSerializer(serializers.Serializer):
     count = serializers.IntegerField()
 
 
-class ConflictsSerializer(serializers.Serializer):
+class ConflictsSerializer(serializers.Serializer[Any]):
     """Pairs of templates; ``trouble`` says why they could not be worked out."""
 
     results = ConflictSerializer(source="pairs", many=True)
@@ -115,5 +116,5 @@ class Conflicts(Figures):
     model = SemanticTemplate
 
     @extend_schema(operation_id="conflicts", responses={200: ConflictsSerializer})
-    def get(self, request: Request, **kwargs: object) -> Response:
+    def get(self, request: ApiRequest, **kwargs: object) -> Response:
         return Response(ConflictsSerializer(conflicts_of(self.world)).data)

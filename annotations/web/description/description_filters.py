@@ -10,7 +10,6 @@ from django import forms
 from django.db.models import Count, Min, Q, QuerySet, TextField
 from django.db.models.functions import Cast
 from django.db.models.lookups import IContains
-from django.http import HttpRequest
 
 from annotations.language.symbols import ENTITY_CLASSES
 from annotations.lists.filtering import Choices, PageFilters, Search
@@ -20,21 +19,22 @@ from annotations.models.description import (
     predicate_kind_choices,
     template_status_choices,
 )
+from annotations.people.access import WorldRequest
 from annotations.rows.composition import split_entry
 
 
-def template_file_choices(request: HttpRequest) -> Choices:
+def template_file_choices(request: WorldRequest) -> Choices:
     """Return the files and sets that the world's templates belong to."""
     rows = SemanticTemplate.objects.filter(grammar__world=request.world)
     return _sources_of(rows)
 
 
-def grammar_file_choices(request: HttpRequest) -> Choices:
+def grammar_file_choices(request: WorldRequest) -> Choices:
     """Return the files that the world's productions come from."""
     return _sources_of(Production.objects.filter(grammar__world=request.world))
 
 
-def grammar_category_choices(request: HttpRequest) -> Choices:
+def grammar_category_choices(request: WorldRequest) -> Choices:
     """Return the task categories of the world's grammar, whether they have commands or not."""
     rows = TaskCategory.objects.filter(grammar__world=request.world)
     return [(name, name) for name in rows.values_list("name", flat=True)]
@@ -88,9 +88,7 @@ class TemplateFilters(PageFilters):
     )
     world_choices = {"task_category": grammar_category_choices, "source": template_file_choices}
 
-    def by_problems(
-        self, rows: QuerySet[SemanticTemplate], name: str, value: str
-    ) -> QuerySet[SemanticTemplate]:
+    def by_problems(self, rows: Any, name: str, value: str) -> Any:
         return rows.with_problems() if value == "yes" else rows.filter(problems=[])
 
 
@@ -109,7 +107,7 @@ class ProductionFilters(PageFilters):
         return rows.filter(source__in=[split_entry(entry)[0] for entry in category.rule_sources])
 
 
-def with_counts(world: World) -> QuerySet[SemanticTemplate]:
+def with_counts(world: World) -> QuerySet[Any]:
     """Return the ready templates with how many of their commands are in the grammar and outside it."""
     is_outside = Q(commands__is_in_grammar=False)
     return SemanticTemplate.objects.filter(

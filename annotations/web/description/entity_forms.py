@@ -71,7 +71,7 @@ class EntityForm(forms.Form):
         self.fields["text"].disabled = row is not None
 
     def clean(self) -> dict[str, Any]:
-        cleaned = super().clean()
+        cleaned = self.cleaned_data
         names = [("aliases", alias) for alias in cleaned.get("aliases", ())]
         if self.row is None and "text" in cleaned:
             cleaned["text"] = " ".join(cleaned["text"].split())
@@ -124,7 +124,7 @@ class EntitiesForm(forms.Form):
         self.world = world
 
     def clean(self) -> dict[str, Any]:
-        cleaned = super().clean()
+        cleaned = self.cleaned_data
         if self.errors:
             return cleaned
         entities = read_entities(cleaned["lines"], cleaned["entity_class"], cleaned["attributes"])

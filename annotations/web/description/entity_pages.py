@@ -6,7 +6,7 @@ from typing import Any
 
 from django.contrib import messages
 from django.core.exceptions import ValidationError
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import redirect, render
 
 from annotations.editing.edits import Overtaken, add, add_many
@@ -16,7 +16,7 @@ from annotations.language.errors import Problem
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.models import Duty, Entity, World
 from annotations.models.description import ProblemSubject
-from annotations.people.access import READ_AND_WRITE, world_view
+from annotations.people.access import READ_AND_WRITE, PageRequest, WorldRequest, world_view
 from annotations.rows.occurrences import MOST_SHOWN, occurrences_of
 from annotations.rows.row_kinds import KINDS
 from annotations.web.description.description_filters import EntityFilters
@@ -37,7 +37,7 @@ SORTS = {
 
 
 @world_view(Duty.VIEW)
-def ontology(request: HttpRequest, world: World) -> HttpResponse:
+def ontology(request: WorldRequest, world: World) -> HttpResponse:
     """List the entities, their number by class, and what the checker says of their files."""
     entities = Entity.objects.filter(ontology__world=world)
     context = {
@@ -49,7 +49,7 @@ def ontology(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.ANNOTATE)
-def entity(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def entity(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show one entity and where it occurs; annotators change it."""
     row, is_there = KINDS["entity"].row_or_last_known(world, pk)
     if not is_there and request.method != "POST":
@@ -71,7 +71,7 @@ def entity(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 @world_view(Duty.ANNOTATE, READ_AND_WRITE)
-def entity_new(request: HttpRequest, world: World) -> HttpResponse:
+def entity_new(request: WorldRequest, world: World) -> HttpResponse:
     """Add one entity."""
     form = EntityForm(world, None, posted(request), initial=asked_class(request))
     if request.method == "POST" and form.is_valid() and is_new(request, form):
@@ -88,7 +88,7 @@ def entity_new(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.ANNOTATE, READ_AND_WRITE)
-def entities_new(request: HttpRequest, world: World) -> HttpResponse:
+def entities_new(request: WorldRequest, world: World) -> HttpResponse:
     """Preview what the pasted lines would add. With ``add``, add all of them or none."""
     form = EntitiesForm(world, posted(request), initial=asked_class(request))
     context: dict[str, Any] = {"form": form}
@@ -106,7 +106,7 @@ def entities_new(request: HttpRequest, world: World) -> HttpResponse:
     return render(request, "annotations/description/entities_new.html", context)
 
 
-def is_new(request: HttpRequest, form: EntityForm) -> bool:
+def is_new(request: PageRequest, form: EntityForm) -> bool:
     """Return whether the entity is new, or the same form was sent twice. Otherwise add an error to the form."""
     if made_before(request.user, form.cleaned_data["once"]) or not form.additions.duplicates:
         return True
@@ -128,11 +128,11 @@ def unsaved_rows(world: World, form: EntitiesForm) -> list[Entity]:
     ]
 
 
-def asked_class(request: HttpRequest) -> dict[str, str]:
+def asked_class(request: PageRequest) -> dict[str, str]:
     return {"entity_class": request.GET.get("entity_class", "object")}
 
 
-def tell_saved(request: HttpRequest, sentence: str, problems: tuple[Problem, ...]) -> None:
+def tell_saved(request: PageRequest, sentence: str, problems: tuple[Problem, ...]) -> None:
     """Tell the reader that it was saved, with the checker's remarks."""
     if not problems:
         messages.success(request, sentence)

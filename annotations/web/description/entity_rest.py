@@ -18,7 +18,7 @@ from annotations.web.rest.fields import AttributesField, Fields, LineField
 from annotations.web.rest.routes import EditableViewSet
 
 
-class EntitySerializer(serializers.ModelSerializer):
+class EntitySerializer(serializers.ModelSerializer[Entity]):
     """A thing, place, person or phrase that commands name. ``text`` changes by renaming."""
 
     attributes = serializers.DictField(child=serializers.CharField(allow_blank=True))
@@ -41,7 +41,7 @@ class EntityChange(Fields):
 class NewEntity(EntityChange):
     text = LineField(max_length=MAX_ENTITY)
 
-    def get_fields(self) -> dict[str, serializers.Field]:
+    def get_fields(self) -> dict[str, Any]:
         fields = super().get_fields()
         for name in ("aliases", "attributes"):
             fields[name].required = False
@@ -72,7 +72,7 @@ class EntityViewSet(EditableViewSet):
         return EntityForm(self.world, row, {**stored, **given}, initial=stored)
 
     def valid_form(self, row: Entity | None, sent: Mapping[str, Any]) -> EntityForm:
-        form = super().valid_form(row, sent)
+        form: EntityForm = super().valid_form(row, sent)
         if row is None and form.additions.duplicates:
             said = "This entity is there already."
             problem = {"field": "text", "message": said}

@@ -7,15 +7,15 @@ from typing import Any
 from django import forms
 from django.contrib import messages
 from django.core.exceptions import ValidationError
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import redirect, render
 
 from annotations.editing.edits import Overtaken, add
 from annotations.editing.once_keys import new_key
 from annotations.markdown import rendered
-from annotations.models import Duty, Editable, Guidelines, World
+from annotations.models import Duty, Guidelines, World
 from annotations.models.description import MOST_CHARACTERS_OF_GUIDELINES
-from annotations.people.access import READ_AND_WRITE, WRITE, world_view
+from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
 from annotations.web.editing.merge_pages import merge_page, save_edit
 from annotations.web.forms import posted
 
@@ -36,7 +36,7 @@ class GuidelinesForm(forms.Form):
 
 
 @world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.MANAGE)
-def guidelines(request: HttpRequest, world: World) -> HttpResponse:
+def guidelines(request: WorldRequest, world: World) -> HttpResponse:
     """Show the guidelines; a POST saves them as their next version."""
     row = world.guidelines.first()
     form = GuidelinesForm(posted(request), initial=initial_values(row) if row else {})
@@ -49,7 +49,8 @@ def guidelines(request: HttpRequest, world: World) -> HttpResponse:
             else:
                 row = save_edit(request, row, form, {"text": text})
         except Overtaken as clash:
-            return merge_page(request, row, form, clash, initial_values)
+            found = row or Guidelines(world=world, version=0)
+            return merge_page(request, found, form, clash, initial_values)
         except ValidationError as error:
             form.add_error(None, error)
         else:
@@ -62,7 +63,7 @@ def guidelines(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.MANAGE, WRITE)
-def guidelines_preview(request: HttpRequest, world: World) -> HttpResponse:
+def guidelines_preview(request: WorldRequest, world: World) -> HttpResponse:
     """Show what the typed guidelines look like."""
     form = GuidelinesForm(request.POST)
     text = form.cleaned_data["text"] if form.is_valid() else ""
@@ -70,6 +71,6 @@ def guidelines_preview(request: HttpRequest, world: World) -> HttpResponse:
     return render(request, "annotations/description/_guidelines_preview.html", context)
 
 
-def initial_values(row: Editable) -> dict[str, Any]:
+def initial_values(row: Any) -> dict[str, Any]:
     """Return what the fields of the form show for ``row``."""
     return {"text": row.text, "version": row.version}

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 from django.db import transaction
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
-from rest_framework.filters import BaseFilterBackend
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.editing.edits import add, change
@@ -17,10 +15,11 @@ from annotations.models import Duty, Guidelines
 from annotations.models.description import MOST_CHARACTERS_OF_GUIDELINES
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.matching import etag_of, require_match
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import WorldRoute
 
 
-class GuidelinesSerializer(serializers.ModelSerializer):
+class GuidelinesSerializer(serializers.ModelSerializer[Guidelines]):
     """``text`` is Markdown, ``html`` what pages show. ``id`` is null and ``version`` 0 until somebody writes them."""
 
     id = serializers.IntegerField(allow_null=True, read_only=True)
@@ -45,13 +44,13 @@ class OneGuidelines(WorldRoute):
 
     model = Guidelines
     serializer_class = GuidelinesSerializer
-    filter_backends: ClassVar[list[type[BaseFilterBackend]]] = []
+    filter_backends = []
     pagination_class = None
-    duties: ClassVar[dict[str, Duty]] = {"PATCH": Duty.MANAGE}
+    duties = {"PATCH": Duty.MANAGE}
     conditional = ("PATCH",)
 
     @extend_schema(operation_id="guidelines", responses={200: GuidelinesSerializer})
-    def get(self, request: Request, **kwargs: object) -> Response:
+    def get(self, request: ApiRequest, **kwargs: object) -> Response:
         row = self._row()
         shown = self._shown(row)
         return Response(shown, headers={"ETag": etag_of(row, shown)})
@@ -61,7 +60,7 @@ class OneGuidelines(WorldRoute):
         request=GuidelinesChange,
         responses={200: GuidelinesSerializer},
     )
-    def patch(self, request: Request, **kwargs: object) -> Response:
+    def patch(self, request: ApiRequest, **kwargs: object) -> Response:
         sent = self.read(GuidelinesChange, partial=True)
         with transaction.atomic():
             self.hold_world()

@@ -18,8 +18,8 @@ from annotations.language.predicates import (
     print_signatures,
     read_signatures,
 )
-from annotations.models import Editable, World
 from annotations.models import Predicate as StoredPredicate
+from annotations.models import World
 from annotations.models.description import predicate_kind_choices
 from annotations.rows.from_rows import predicate_of
 from annotations.web.forms import sentence_of
@@ -86,7 +86,7 @@ class PredicateForm(forms.Form):
         return {"kind": str(typed.kind), "signatures": signatures, "gloss": typed.gloss}
 
 
-def initial_values(row: Editable) -> dict[str, Any]:
+def initial_values(row: Any) -> dict[str, Any]:
     """Return what the fields of the form show for ``row``."""
     value = predicate_of(row)
     names = ("name", "kind", "gloss", "version")

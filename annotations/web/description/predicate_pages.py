@@ -6,7 +6,7 @@ from typing import Any
 
 from django.contrib import messages
 from django.core.exceptions import ValidationError
-from django.http import Http404, HttpRequest, HttpResponse
+from django.http import Http404, HttpResponse
 from django.shortcuts import redirect, render
 
 from annotations.checking.predicate_check import check_predicate
@@ -14,7 +14,7 @@ from annotations.editing.edits import Overtaken, add
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.lists.paging import number_in
 from annotations.models import Duty, Predicate, World
-from annotations.people.access import READ_AND_WRITE, WRITE, world_view
+from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
 from annotations.rows.from_rows import predicate_of
 from annotations.rows.row_kinds import KINDS
 from annotations.web.description.description_filters import PredicateFilters
@@ -26,7 +26,7 @@ SORTS = {"name": Sort("Predicate", "name"), "kind": Sort("Kind", "kind")}
 
 
 @world_view(Duty.VIEW)
-def predicates(request: HttpRequest, world: World) -> HttpResponse:
+def predicates(request: WorldRequest, world: World) -> HttpResponse:
     """List the predicates with their arguments."""
     rows = world.predicates.all()
     context = {"listing": Listing(request, PredicateFilters, rows, SORTS, size=200)}
@@ -34,7 +34,7 @@ def predicates(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.ANNOTATE)
-def predicate(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def predicate(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show a predicate with its arguments and its English sentence. Annotators change it."""
     row, is_there = KINDS["predicate"].row_or_last_known(world, pk)
     if not is_there and request.method != "POST":
@@ -57,7 +57,7 @@ def predicate(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 @world_view(Duty.ANNOTATE, READ_AND_WRITE)
-def predicate_new(request: HttpRequest, world: World) -> HttpResponse:
+def predicate_new(request: WorldRequest, world: World) -> HttpResponse:
     """Declare a predicate."""
     form = PredicateForm(world, None, posted(request))
     if request.method == "POST" and form.is_valid():
@@ -73,7 +73,7 @@ def predicate_new(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.ANNOTATE, WRITE)
-def predicate_preview(request: HttpRequest, world: World) -> HttpResponse:
+def predicate_preview(request: WorldRequest, world: World) -> HttpResponse:
     """Preview the typed predicate: its English sentence, and the templates that it would break."""
     key = request.GET.get("predicate", "")
     row = Predicate.objects.filter(world=world, pk=number_in(key)).first()

@@ -19,7 +19,7 @@ from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.routes import EditableViewSet, Noun
 
 
-class PredicateSerializer(serializers.ModelSerializer):
+class PredicateSerializer(serializers.ModelSerializer[Predicate]):
     """A predicate. ``signatures`` lists the kinds of its arguments, once for each way to use it."""
 
     signatures = serializers.ListField(child=serializers.ListField(child=serializers.CharField()))
@@ -60,7 +60,7 @@ class PredicateNoun(Noun):
         return PredicateForm(self.world, row, {**stored, **given}, initial=stored)
 
     def valid_form(self, row: Predicate | None, sent: Mapping[str, Any]) -> PredicateForm:
-        form = super().valid_form(row, sent)
+        form: PredicateForm = super().valid_form(row, sent)
         if row is None and self.rows().filter(name=form.cleaned_data["name"]).exists():
             said = "There is a predicate of this name already. Change that one."
             problem = {"field": "name", "message": said}

@@ -13,12 +13,12 @@ from annotations.checking.production_check import (
     check_production,
 )
 from annotations.editing.once_keys import new_key
-from annotations.language.errors import LanguageError
+from annotations.language.errors import LanguageError, Problem
 from annotations.language.limits import MAX_NONTERMINAL, MAX_PATTERN
 from annotations.language.names import require_nonterminal
 from annotations.models import Editable, Production, TaskCategory, World
 from annotations.rows.composition import own_category, split_entry
-from annotations.web.forms import sentence_of
+from annotations.web.forms import choice_field, sentence_of
 
 
 def sources_of(world: World) -> list[str]:
@@ -55,7 +55,7 @@ class ProductionForm(forms.Form):
         sources = sources_of(world)
         if row and row.source not in sources:
             sources.append(row.source)
-        self.fields["source"].choices = [(name, name) for name in sources]
+        choice_field(self, "source").choices = [(name, name) for name in sources]
         for name in ("nonterminal", "source"):
             self.fields[name].disabled = row is not None
 
@@ -72,7 +72,7 @@ class ProductionForm(forms.Form):
         return " ".join(self.cleaned_data["expansion"].split())
 
     def clean(self) -> dict[str, Any]:
-        cleaned = super().clean()
+        cleaned = self.cleaned_data
         if self.errors:
             return cleaned
         self.checked = check_production(self.edit)
@@ -81,6 +81,11 @@ class ProductionForm(forms.Form):
                 EXPANSION_FIELD, sentence_of(LanguageError(problem.message, hint=problem.hint))
             )
         return cleaned
+
+    @property
+    def remarks(self) -> tuple[Problem, ...]:
+        """What the checker says; nothing before the form has been validated."""
+        return tuple(self.checked.problems) if self.checked else ()
 
     @property
     def edit(self) -> ProductionEdit:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import groupby
 from typing import Any
 
-from django.http import Http404, HttpRequest, HttpResponse, JsonResponse
+from django.http import Http404, HttpResponse, JsonResponse
 from django.shortcuts import redirect, render
 from django.urls import reverse
 
@@ -16,11 +16,12 @@ from annotations.checking.production_check import (
     consequences_of_production,
 )
 from annotations.editing.edits import Overtaken, add
+from annotations.language.limits import MAX_PATTERN
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.lists.paging import number_in
 from annotations.models import Duty, Production, World
 from annotations.models.description import ProblemSubject
-from annotations.people.access import READ_AND_WRITE, WRITE, world_view
+from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
 from annotations.rows.row_kinds import KINDS
 from annotations.web.description.description_filters import ProductionFilters
 from annotations.web.description.entity_pages import tell_saved
@@ -33,7 +34,7 @@ from annotations.web.description.production_forms import (
 from annotations.web.description.template_pages import has_grammar
 from annotations.web.editing.consequence_presentation import groups_of
 from annotations.web.editing.merge_pages import merge_page, save_edit
-from annotations.web.forms import posted
+from annotations.web.forms import choice_field, posted
 
 SORTS = {
     "position": Sort("File and line", "position"),
@@ -43,7 +44,7 @@ PAGE_SIZE = 200
 
 
 @world_view(Duty.VIEW)
-def grammar(request: HttpRequest, world: World) -> HttpResponse:
+def grammar(request: WorldRequest, world: World) -> HttpResponse:
     """List the productions by nonterminal, with the checker's remarks."""
     rows = Production.objects.filter(grammar__world=world)
     listing = Listing(request, ProductionFilters, rows, SORTS, size=PAGE_SIZE)
@@ -57,7 +58,7 @@ def grammar(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.ANNOTATE)
-def production(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def production(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show a line of the grammar with the others of its nonterminal; annotators change it."""
     row, is_there = KINDS["production"].row_or_last_known(world, pk)
     if not is_there and request.method != "POST":
@@ -70,7 +71,7 @@ def production(request: HttpRequest, world: World, pk: int) -> HttpResponse:
             address = reverse("production_check", kwargs={"world": world.name})
             check_url = f"{address}?production={row.pk}"
             return merge_page(request, row, form, clash, initial_values, check_url=check_url)
-        tell_saved(request, f"Saved as version {row.version}.", form.checked.problems)
+        tell_saved(request, f"Saved as version {row.version}.", form.remarks)
         return redirect("production", world=world.name, pk=pk)
     lines = Production.objects.filter(grammar__world=world, nonterminal=row.nonterminal)
     context = {
@@ -85,7 +86,7 @@ def production(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 @world_view(Duty.ANNOTATE, READ_AND_WRITE)
-def production_new(request: HttpRequest, world: World) -> HttpResponse:
+def production_new(request: WorldRequest, world: World) -> HttpResponse:
     """Add a line to the grammar."""
     if not has_grammar(world):
         return render(request, "annotations/description/production_needs_grammar.html")
@@ -93,7 +94,7 @@ def production_new(request: HttpRequest, world: World) -> HttpResponse:
     form = ProductionForm(world, None, posted(request), initial=asked)
     if request.method == "POST" and form.is_valid():
         row = add(unsaved_production(world, form), request.user, form.cleaned_data["once"])
-        tell_saved(request, "Added.", form.checked.problems)
+        tell_saved(request, "Added.", form.remarks)
         return redirect("production", world=world.name, pk=row.pk)
     context = {
         "form": form,
@@ -104,14 +105,14 @@ def production_new(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.ANNOTATE, WRITE)
-def production_check(request: HttpRequest, world: World) -> JsonResponse:
+def production_check(request: WorldRequest, world: World) -> JsonResponse:
     """Check what is typed, for the editor."""
     edit = _read_typed(request, world)
     return JsonResponse(assist_production(edit) if edit else {"problems": [], "slots": []})
 
 
 @world_view(Duty.ANNOTATE, WRITE)
-def production_preview(request: HttpRequest, world: World) -> HttpResponse:
+def production_preview(request: WorldRequest, world: World) -> HttpResponse:
     """Preview the typed production: what it expands to, and what saving it would change."""
     edit = _read_typed(request, world)
     context: dict[str, Any] = {"checked": check_production(edit) if edit else None}
@@ -121,23 +122,25 @@ def production_preview(request: HttpRequest, world: World) -> HttpResponse:
     return render(request, "annotations/description/_production_preview.html", context)
 
 
-def _read_typed(request: HttpRequest, world: World) -> ProductionEdit | None:
+def _read_typed(request: WorldRequest, world: World) -> ProductionEdit | None:
     """Return the production as typed, or None while a field is empty or invalid."""
     row = _read_stored(request, world)
     form = ProductionForm(world, row, request.POST, initial=initial_values(row) if row else {})
     form.is_valid()
     names = ("source", "nonterminal", "expansion")
-    values = [form.cleaned_data.get(name) or form[name].value() or "" for name in names]
-    if not values[2].strip() or values[0] not in dict(form.fields["source"].choices):
+    source, nonterminal, expansion = (
+        form.cleaned_data.get(name) or form[name].value() or "" for name in names
+    )
+    if not expansion.strip() or not choice_field(form, "source").valid_value(source):
         return None
-    if len(values[2]) > form.fields["expansion"].max_length or "\0" in "".join(values):
+    if len(expansion) > MAX_PATTERN or "\0" in f"{source}{nonterminal}{expansion}":
         return None
     if "nonterminal" in form.errors:
         return None
-    return ProductionEdit(world, *values, row)
+    return ProductionEdit(world, source, nonterminal, expansion, row)
 
 
-def _read_stored(request: HttpRequest, world: World) -> Production | None:
+def _read_stored(request: WorldRequest, world: World) -> Production | None:
     """Return the row that the URL names as ``production``. Raises Http404 if it is not in this world."""
     key = request.GET.get("production", "")
     if not key:

@@ -21,7 +21,7 @@ from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.routes import EditableViewSet, Noun, RowsRoute
 
 
-class ProductionSerializer(serializers.ModelSerializer):
+class ProductionSerializer(serializers.ModelSerializer[Production]):
     """A line of the grammar: what a nonterminal may become. The nonterminal changes by renaming."""
 
     class Meta:
@@ -40,7 +40,7 @@ class NewProduction(ProductionChange):
     """``source`` is the file of the grammar that the line is added to."""
 
     nonterminal = LineField(max_length=MAX_NONTERMINAL)
-    source = LineField(max_length=200)
+    source = LineField(max_length=200)  # type: ignore[assignment]  # the name of the column
 
 
 class ProductionNoun(Noun):
@@ -63,7 +63,7 @@ class ProductionNoun(Noun):
         return {"expansion": form.cleaned_data["expansion"]}
 
     def problems_of(self, form: ProductionForm) -> Iterable[Problem]:
-        return form.checked.problems if form.checked else ()
+        return form.remarks
 
 
 class ProductionViewSet(ProductionNoun, EditableViewSet):
@@ -73,7 +73,7 @@ class ProductionViewSet(ProductionNoun, EditableViewSet):
     sorts = {"position": "position", "nonterminal": "nonterminal", "id": "pk"}
 
 
-class TaskCategorySerializer(serializers.ModelSerializer):
+class TaskCategorySerializer(serializers.ModelSerializer[TaskCategory]):
     """A class of commands, with the files that it is generated from, in order."""
 
     rule_sources = serializers.ListField(child=serializers.CharField())

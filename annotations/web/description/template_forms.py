@@ -17,6 +17,7 @@ from annotations.generation.world_consequences import (
 from annotations.language.limits import MAX_FORM, MAX_PATTERN
 from annotations.models import Production, SemanticTemplate, TaskCategory, World
 from annotations.models.description import TemplateStatus, template_status_choices
+from annotations.web.forms import row_field
 
 
 class TemplateForm(forms.Form):
@@ -25,7 +26,7 @@ class TemplateForm(forms.Form):
     ``checked`` is what the checker says, once the form has been validated and holds both sides.
     """
 
-    task_category = forms.ModelChoiceField(queryset=None, empty_label=None)
+    task_category = forms.ModelChoiceField(TaskCategory.objects.none(), empty_label=None)
     pattern = forms.CharField(
         max_length=MAX_PATTERN,
         widget=forms.Textarea(attrs={"rows": 2, "data-editor": "pattern"}),
@@ -47,12 +48,14 @@ class TemplateForm(forms.Form):
         super().__init__(*args, **kwargs)
         self.world = world
         self.checked: CheckedTemplate | None = None
-        self.fields["task_category"].queryset = TaskCategory.objects.filter(grammar__world=world)
+        row_field(self, "task_category").queryset = TaskCategory.objects.filter(
+            grammar__world=world
+        )
         for name, example in example_template(world).items():
             self.fields[name].widget.attrs["placeholder"] = example
 
     def clean(self) -> dict[str, Any]:
-        cleaned = super().clean()
+        cleaned = self.cleaned_data
         if self.errors:
             return cleaned
         self.checked = check_template(
@@ -68,12 +71,15 @@ class TemplateForm(forms.Form):
     @property
     def chosen_category(self) -> TaskCategory | None:
         """The chosen task category, or else that of the template, or else the last one."""
-        field = self.fields["task_category"]
+        field: Any = row_field(self, "task_category")
         try:
-            chosen = field.clean(self["task_category"].value())
+            chosen: TaskCategory | None = field.clean(self["task_category"].value())
         except forms.ValidationError:
             chosen = None
-        return chosen or self.initial.get("task_category") or field.queryset.last()
+        found: TaskCategory | None = (
+            chosen or self.initial.get("task_category") or field.queryset.last()
+        )
+        return found
 
 
 def example_template(world: World) -> dict[str, str]:

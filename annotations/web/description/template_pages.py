@@ -9,7 +9,7 @@ from typing import Any
 from django.contrib import messages
 from django.db.models import Count, Q
 from django.db.models.functions import Length
-from django.http import HttpRequest, HttpResponse, JsonResponse
+from django.http import HttpResponse, JsonResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.urls import reverse
 from django.utils.cache import patch_cache_control
@@ -33,7 +33,7 @@ from annotations.lists.listing import Listing, Sort, render_list
 from annotations.lists.paging import number_in
 from annotations.models import Duty, SemanticTemplate, StoredProblem, TaskCategory, User, World
 from annotations.models.description import ProblemSubject, TemplateStatus
-from annotations.people.access import READ_AND_WRITE, WRITE, world_view
+from annotations.people.access import READ_AND_WRITE, WRITE, PageRequest, WorldRequest, world_view
 from annotations.rows.row_kinds import KINDS
 from annotations.suggesting import (
     MOST_COMMAND,
@@ -67,7 +67,7 @@ EXAMPLES, MOST_EXAMPLES = 3, 100
 
 
 @world_view(Duty.VIEW)
-def templates(request: HttpRequest, world: World) -> HttpResponse:
+def templates(request: WorldRequest, world: World) -> HttpResponse:
     """List all templates with what the checker says of each."""
     rows = SemanticTemplate.objects.filter(grammar__world=world)
     listing = Listing(request, TemplateFilters, rows.annotate(n_commands=Count("commands")), SORTS)
@@ -125,7 +125,7 @@ def has_grammar(world: World) -> bool:
 
 
 @world_view(Duty.ANNOTATE, READ_AND_WRITE)
-def template_new(request: HttpRequest, world: World) -> HttpResponse:
+def template_new(request: WorldRequest, world: World) -> HttpResponse:
     """Write a new template."""
     if not has_grammar(world):
         return render(request, "annotations/description/template_needs_grammar.html")
@@ -152,7 +152,7 @@ def template_new(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.ANNOTATE)
-def template(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def template(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show one template: what it means, its commands and its problems. Annotators change it."""
     row, is_there = KINDS["template"].row_or_last_known(world, pk)
     if not is_there and request.method != "POST":
@@ -189,13 +189,14 @@ def template(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 def tell_saved(
-    request: HttpRequest, row: SemanticTemplate, sentence: str, expected: WorldConsequences
+    request: PageRequest, row: SemanticTemplate, sentence: str, expected: WorldConsequences
 ) -> None:
     """Tell the reader that the template was saved, what changed, and how many problems it has."""
     parts = [format_html("{} {}", sentence, what_came_of_it(row, expected))]
     count = len(row.problems)
     if count:
-        parts.append(f"The checker sees {say_count(count, 'problem')} in it, listed below.")
+        found = say_count(count, "problem")
+        parts.append(format_html("The checker sees {} in it, listed below.", found))
     level = messages.WARNING if count else messages.SUCCESS
     messages.add_message(request, level, format_html_join(" ", "{}", ((part,) for part in parts)))
 
@@ -229,19 +230,19 @@ def typed_in(form: TemplateForm) -> tuple[TaskCategory | None, str, str] | None:
 
 
 @world_view(Duty.ANNOTATE, WRITE)
-def template_check(request: HttpRequest, world: World) -> JsonResponse:
+def template_check(request: WorldRequest, world: World) -> JsonResponse:
     """Check what is typed, for the editor."""
     typed = typed_in(TemplateForm(world, request.POST))
     return JsonResponse(assist(world, *typed) if typed else {"problems": []})
 
 
 @world_view(Duty.ANNOTATE)
-def template_completion(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def template_completion(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Return the completions for templates of a task category. A browser may send the tag that it has."""
     category = get_object_or_404(TaskCategory, grammar__world=world, pk=pk)
 
     @condition(etag_func=lambda request: f'"{completion_tag(category)}"')
-    def answer(request: HttpRequest) -> HttpResponse:
+    def answer(request: PageRequest) -> HttpResponse:
         return JsonResponse(completions_of(category))
 
     response = answer(request)
@@ -250,7 +251,7 @@ def template_completion(request: HttpRequest, world: World, pk: int) -> HttpResp
 
 
 @world_view(Duty.ANNOTATE, WRITE)
-def template_preview(request: HttpRequest, world: World) -> HttpResponse:
+def template_preview(request: WorldRequest, world: World) -> HttpResponse:
     """Preview what the typed template means, with samples of its commands."""
     checked = checked_of(world, TemplateForm(world, request.POST))
     seed = number_in(request.POST.get("seed", ""))
@@ -259,7 +260,7 @@ def template_preview(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.ANNOTATE, WRITE)
-def template_consequences(request: HttpRequest, world: World) -> HttpResponse:
+def template_consequences(request: WorldRequest, world: World) -> HttpResponse:
     """Preview what saving the typed template would change. ``template`` names the stored one."""
     key = request.GET.get("template", "")
     rows = SemanticTemplate.objects.filter(grammar__world=world)
@@ -270,7 +271,7 @@ def template_consequences(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.ANNOTATE, WRITE)
-def template_duplicate(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def template_duplicate(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Copy a template as a draft, to be changed into another one."""
     row = get_object_or_404(SemanticTemplate, grammar__world=world, pk=pk)
     names = ("grammar", "source", "task_category", "pattern", "form", "problems")
@@ -280,7 +281,7 @@ def template_duplicate(request: HttpRequest, world: World, pk: int) -> HttpRespo
     return redirect("template", world=world.name, pk=copy.pk)
 
 
-def suggestions_for_command(request: HttpRequest, world: World) -> dict[str, Any]:
+def suggestions_for_command(request: WorldRequest, world: World) -> dict[str, Any]:
     """Return the context of the page of a new template for the command in its URL; empty without one.
 
     ``initial`` are the values that its fields begin with. The form is left to the writer where it would be a
@@ -300,6 +301,8 @@ def suggestions_for_command(request: HttpRequest, world: World) -> dict[str, Any
     categories = TaskCategory.objects.filter(grammar__world=world)
     named = categories.filter(name=request.GET.get("task_category", "").replace("\0", ""))
     category = named.first() or categories.last()
+    if category is None:  # a world without a grammar
+        return about
     pattern = suggest_pattern(world, category, command)
     suggestions = suggest_forms(world, category, pattern)
     likely = [each.text for each in suggestions if not each.is_guess]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from django.contrib import messages
 from django.core.exceptions import ValidationError
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.views.decorators.cache import never_cache
 
@@ -14,7 +14,7 @@ from annotations.generation.conflicts import conflicts_of
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.lists.paging import number_in
 from annotations.models import Duty, SemanticTemplate, TaskCategory, World
-from annotations.people.access import WRITE, world_view
+from annotations.people.access import WRITE, WorldRequest, world_view
 from annotations.suggesting import moved_form
 from annotations.web.description.description_filters import TemplateFilters, with_counts
 
@@ -26,7 +26,7 @@ LISTS = ("unmatched", "conflicts", "outside_grammar")
 
 
 @world_view(Duty.VIEW)
-def unmatched(request: HttpRequest, world: World) -> HttpResponse:
+def unmatched(request: WorldRequest, world: World) -> HttpResponse:
     """List the templates that give no command of the grammar its form."""
     rows = with_counts(world).filter(n_inside=0)
     context = {"listing": Listing(request, TemplateFilters, rows, SORTS), "current": "unmatched"}
@@ -34,7 +34,7 @@ def unmatched(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.VIEW)
-def outside_grammar(request: HttpRequest, world: World) -> HttpResponse:
+def outside_grammar(request: WorldRequest, world: World) -> HttpResponse:
     """List the templates that make commands outside the grammar, with one of these."""
     rows = with_counts(world).filter(n_outside__gt=0)
     listing = Listing(request, TemplateFilters, rows, SORTS)
@@ -44,14 +44,14 @@ def outside_grammar(request: HttpRequest, world: World) -> HttpResponse:
 
 @never_cache
 @world_view(Duty.VIEW)
-def conflicts(request: HttpRequest, world: World) -> HttpResponse:
+def conflicts(request: WorldRequest, world: World) -> HttpResponse:
     """List the pairs of templates that give one command different forms."""
     context = {"report": conflicts_of(world), "current": "conflicts"}
     return render(request, "annotations/description/conflicts.html", context)
 
 
 @world_view(Duty.ANNOTATE, WRITE)
-def template_repair(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def template_repair(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Delete a template, move it to another task category, or give it the form of another template."""
     row = get_object_or_404(SemanticTemplate, grammar__world=world, pk=pk)
     version = number_in(request.POST.get("version", ""))
@@ -72,7 +72,7 @@ def template_repair(request: HttpRequest, world: World, pk: int) -> HttpResponse
     return redirect(asked if asked in LISTS else LISTS[0], world=world.name)
 
 
-def _take_form(request: HttpRequest, world: World, row: SemanticTemplate, version: int) -> None:
+def _take_form(request: WorldRequest, world: World, row: SemanticTemplate, version: int) -> None:
     """Give ``row`` the form of the template that was sent as ``form_of``, if it fits its pattern."""
     key = number_in(request.POST["form_of"])
     other = get_object_or_404(SemanticTemplate, grammar__world=world, pk=key)
@@ -88,7 +88,7 @@ def _take_form(request: HttpRequest, world: World, row: SemanticTemplate, versio
     messages.success(request, "Both templates have this form now.")
 
 
-def _move(request: HttpRequest, world: World, row: SemanticTemplate, version: int) -> None:
+def _move(request: WorldRequest, world: World, row: SemanticTemplate, version: int) -> None:
     """Move ``row`` to the task category that was sent as ``move_to``."""
     key = number_in(request.POST["move_to"])
     category = get_object_or_404(TaskCategory, grammar__world=world, pk=key)

@@ -20,7 +20,7 @@ from annotations.web.rest.problem_details import ProblemItemSerializer
 from annotations.web.rest.routes import EditableViewSet, Noun
 
 
-class TemplateSerializer(serializers.ModelSerializer):
+class TemplateSerializer(serializers.ModelSerializer[SemanticTemplate]):
     """A pattern and the logical form of its commands; ``problems`` is what the checker says."""
 
     author = serializers.CharField(source="author.username", default=None)
@@ -79,7 +79,7 @@ class TemplateNoun(Noun):
         return rows.select_related("author", "grammar__world")
 
     def form_of(self, row: SemanticTemplate | None, sent: Mapping[str, Any]) -> TemplateForm:
-        stored = initial_of(self.world, row) if row else {}
+        stored: dict[str, Any] = dict(initial_of(self.world, row)) if row else {}
         given = {**stored, **sent}
         category = stored.get("task_category")
         if "task_category" in sent:

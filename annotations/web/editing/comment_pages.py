@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from django.contrib import messages
 from django.core.exceptions import PermissionDenied
-from django.http import Http404, HttpRequest, HttpResponse
+from django.http import Http404, HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.urls import reverse
 from django.views.decorators.http import require_http_methods
@@ -21,7 +23,7 @@ from annotations.commenting import (
 )
 from annotations.lists.paging import number_in
 from annotations.models import Comment, Duty, Notice, World
-from annotations.people.access import READ_AND_WRITE, WRITE, world_view
+from annotations.people.access import READ_AND_WRITE, WRITE, PageRequest, WorldRequest, world_view
 from annotations.rows.row_kinds import KINDS
 from annotations.web.editing.comment_forms import COMMENTS, TOO_MANY, CommentEditForm, CommentForm
 from annotations.web.forms import posted
@@ -30,7 +32,7 @@ INBOX_SHOWN = 50
 
 
 @world_view(Duty.VIEW, READ_AND_WRITE)
-def comments(request: HttpRequest, world: World, kind: str, pk: int) -> HttpResponse:
+def comments(request: WorldRequest, world: World, kind: str, pk: int) -> HttpResponse:
     """Show the comments on a row; a POST adds one."""
     if kind not in SUBJECTS:
         raise Http404("There are no comments on such rows.")
@@ -48,7 +50,7 @@ def comments(request: HttpRequest, world: World, kind: str, pk: int) -> HttpResp
 
 
 @world_view(Duty.VIEW, READ_AND_WRITE)
-def comment(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def comment(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show a comment and its earlier versions. Its author edits it with a POST."""
     row = get_object_or_404(world.comments.present(), pk=pk)
     may_edit = row.may_be_edited_by(request.user)
@@ -67,7 +69,7 @@ def comment(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     return render(request, "annotations/editing/comment.html", context)
 
 
-def _save_edit(request: HttpRequest, row: Comment, form: CommentEditForm) -> bool:
+def _save_edit(request: PageRequest, row: Comment, form: CommentEditForm) -> bool:
     """Store the edit and return True, or add an error to the form and return False."""
     if COMMENTS.take(str(request.user.pk)) is None:
         form.add_error("text", TOO_MANY)
@@ -76,14 +78,15 @@ def _save_edit(request: HttpRequest, row: Comment, form: CommentEditForm) -> boo
         change_comment(row, form.cleaned_data["text"], form.cleaned_data["version"])
     except EditedElsewhere as error:
         form.add_error("text", f"{error} What it says now stands below; save again to replace it.")
-        form.data = form.data.copy()
-        form.data["version"] = error.current.version
+        data: Any = form.data
+        form.data = data = data.copy()
+        data["version"] = error.current.version
         return False
     return True
 
 
 @world_view(Duty.VIEW, WRITE)
-def comment_delete(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def comment_delete(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Delete a comment. Its author may, and so may admins."""
     row = get_object_or_404(world.comments.present(), pk=pk)
     if not row.may_be_deleted_by(request.user, request.duties):
@@ -94,7 +97,7 @@ def comment_delete(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 @world_view(Duty.VIEW, WRITE)
-def comment_restore(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def comment_restore(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Bring a deleted comment back."""
     row = get_object_or_404(world.comments, pk=pk)
     if row.is_deleted:
@@ -105,7 +108,7 @@ def comment_restore(request: HttpRequest, world: World, pk: int) -> HttpResponse
 
 
 @require_http_methods(READ_AND_WRITE)
-def inbox(request: HttpRequest) -> HttpResponse:
+def inbox(request: PageRequest) -> HttpResponse:
     """Show the reader's notices from all their worlds. A POST marks all of them read."""
     notices = Notice.objects.of(request.user)
     if request.method == "POST":
@@ -123,7 +126,7 @@ def inbox(request: HttpRequest) -> HttpResponse:
 
 
 @require_http_methods(WRITE)
-def notice_open(request: HttpRequest, pk: int) -> HttpResponse:
+def notice_open(request: PageRequest, pk: int) -> HttpResponse:
     """Mark a notice read and open its comment. With ``stay``, stay in the inbox."""
     notice = get_object_or_404(Notice.objects.of(request.user), pk=pk)
     mark_read(Notice.objects.filter(pk=notice.pk))

@@ -11,7 +11,6 @@ from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.decorators import action
 from rest_framework.exceptions import PermissionDenied
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.commenting import (
@@ -27,10 +26,11 @@ from annotations.models.editing import MOST_CHARACTERS_OF_COMMENT
 from annotations.web.editing.comment_forms import COMMENTS, TOO_MANY
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import Retrieved, RowsRoute, WorldViewSet
 
 
-class CommentSerializer(serializers.ModelSerializer):
+class CommentSerializer(serializers.ModelSerializer[Comment]):
     """What somebody said about a row of a kind; ``about`` is what the row said then."""
 
     author = serializers.CharField(source="author.username", default=None)
@@ -75,7 +75,7 @@ class Comments(RowsRoute):
 
     @extend_schema(request=CommentText, responses={201: CommentSerializer})
     @once
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def post(self, request: ApiRequest, **kwargs: object) -> Response:
         subject = self._subject()
         row = subject.row(self.world, self.kwargs["pk"])
         text = self.read(CommentText)["text"]
@@ -96,7 +96,7 @@ class CommentViewSet(Retrieved, WorldViewSet):
         return comments if self.action == "restore" else comments.present()
 
     @extend_schema(request=CommentText, responses={200: CommentSerializer})
-    def partial_update(self, request: Request, **kwargs: object) -> Response:
+    def partial_update(self, request: ApiRequest, **kwargs: object) -> Response:
         """Edits a comment of the caller."""
         row = self.get_object()
         if not row.may_be_edited_by(request.user):
@@ -107,7 +107,7 @@ class CommentViewSet(Retrieved, WorldViewSet):
             changed = change_comment(row, text, row.version)
         return self.show(changed)
 
-    def destroy(self, request: Request, **kwargs: object) -> Response:
+    def destroy(self, request: ApiRequest, **kwargs: object) -> Response:
         """Deletes a comment; ``restore/`` brings it back."""
         row = self.get_object()
         if not row.may_be_deleted_by(request.user, self.world.duties_of(request.user)):
@@ -118,7 +118,7 @@ class CommentViewSet(Retrieved, WorldViewSet):
 
     @extend_schema(request=None, responses={200: CommentSerializer})
     @action(detail=True, methods=["post"])
-    def restore(self, request: Request, **kwargs: object) -> Response:
+    def restore(self, request: ApiRequest, **kwargs: object) -> Response:
         """Brings a deleted comment back."""
         row = self.get_object()
         if row.is_deleted:

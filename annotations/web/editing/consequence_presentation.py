@@ -23,7 +23,8 @@ class ChangeGroup:
 
 def groups_of(expected: WorldConsequences) -> list[ChangeGroup]:
     """Group what would change by kind, with the first rows of each."""
-    changes, name = expected.changes, expected.templates.get
+    changes = expected.changes
+    name: Any = expected.templates.get
     kinds = (
         ("covered", "newly covered", changes.covered_in_grammar),
         ("outside", "that the grammar does not make", changes.covered_outside),

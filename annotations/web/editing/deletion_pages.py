@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from django.contrib import messages
-from django.http import Http404, HttpRequest, HttpResponse
+from django.http import Http404, HttpResponse
 from django.shortcuts import redirect, render
 from django.urls import reverse
 
@@ -11,14 +11,14 @@ from annotations.checking.deletion_check import check_deletion
 from annotations.editing.edits import Overtaken, delete
 from annotations.lists.paging import number_in
 from annotations.models import Duty, World
-from annotations.people.access import READ_AND_WRITE, world_view
+from annotations.people.access import READ_AND_WRITE, WorldRequest, world_view
 from annotations.web.editing.consequence_presentation import groups_of
 from annotations.web.editing.kinds_of_rows import DELETING, kind_named
 from annotations.web.editing.undo import say_with_undo
 
 
 @world_view(Duty.ANNOTATE, READ_AND_WRITE)
-def delete_row(request: HttpRequest, world: World, kind: str, pk: int) -> HttpResponse:
+def delete_row(request: WorldRequest, world: World, kind: str, pk: int) -> HttpResponse:
     """Preview the deletion of a row. A POST deletes it if it is still at ``version``."""
     of_kind = kind_named(kind)
     if not of_kind.is_deletable:
@@ -40,7 +40,7 @@ def delete_row(request: HttpRequest, world: World, kind: str, pk: int) -> HttpRe
     except Overtaken as error:
         messages.error(request, f"Not deleted. {error.sentence} Look at it again.")
         return here
-    deletion = of_kind.entries_of(world).filter(id=pk).first()
+    entry = of_kind.entries_of(world).filter(id=pk).first()
     sentence = f"Deleted. “Deleted {of_kind.plural}” below the list brings it back."
-    say_with_undo(request, sentence, here.url, entry=deletion.history_id)
+    say_with_undo(request, sentence, here.url, entry=entry and entry.history_id)
     return redirect(of_kind.list_page, world=world.name)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from django.http import Http404, HttpRequest, JsonResponse
+from django.http import Http404, JsonResponse
 from django.views.decorators.cache import never_cache
 
 from annotations.editing.drafts import MOST_BYTES, discard_draft, read_draft, save_draft
@@ -13,7 +13,7 @@ from annotations.language.errors import Refusal
 from annotations.lists.paging import number_in
 from annotations.models import Draft, Duty, World
 from annotations.models.editing import NEW
-from annotations.people.access import READ_AND_WRITE, world_view
+from annotations.people.access import READ_AND_WRITE, WorldRequest, world_view
 from annotations.web.editing.kinds_of_rows import kind_named
 from annotations.web.sent_texts import sent_texts_of
 
@@ -22,14 +22,14 @@ LONGEST_SUBJECT = Draft._meta.get_field("subject").max_length
 
 @never_cache
 @world_view(Duty.ANNOTATE, READ_AND_WRITE)
-def draft(request: HttpRequest, world: World, kind: str, subject: str) -> JsonResponse:
+def draft(request: WorldRequest, world: World, kind: str, subject: str) -> JsonResponse:
     """Return the reader's own draft about a row. A POST keeps or discards it.
 
     A POST brings JSON: ``of`` (the account that the page was made for), then either
     ``{"discard": true}`` or ``fields``, ``version`` and ``device``.
     """
     of_kind = kind_named(kind)
-    if len(subject) > LONGEST_SUBJECT:
+    if len(subject) > (LONGEST_SUBJECT or 0):
         raise Http404("There is no such draft.")
     about = subject.partition("-")[0]
     if about != NEW:
@@ -40,7 +40,7 @@ def draft(request: HttpRequest, world: World, kind: str, subject: str) -> JsonRe
     return JsonResponse({"draft": _as_json(Draft.objects.filter(**key).first())})
 
 
-def _post(request: HttpRequest, world: World, kind: str, subject: str) -> JsonResponse:
+def _post(request: WorldRequest, world: World, kind: str, subject: str) -> JsonResponse:
     if request.content_type != "application/json":  # the body of a form has been read already
         return JsonResponse({"error": "Send a draft as application/json."}, status=400)
     if len(request.body) > MOST_BYTES:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from django.contrib import messages
 from django.core.exceptions import ValidationError
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import redirect, render
 from django.urls import reverse
 
@@ -13,7 +13,7 @@ from annotations.editing.row_versions import history_of_row
 from annotations.labelling.label_answers import NoLongerYours
 from annotations.lists.paging import number_in
 from annotations.models import Duty, World
-from annotations.people.access import READ_AND_WRITE, demand, world_view
+from annotations.people.access import READ_AND_WRITE, WorldRequest, demand, world_view
 from annotations.rows.row_kinds import EditableKind
 from annotations.web.editing.kinds_of_rows import RESTORING, kind_named
 
@@ -21,7 +21,7 @@ DELETED_SHOWN = 50
 
 
 @world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.ANNOTATE)
-def history(request: HttpRequest, world: World, kind: str, pk: int) -> HttpResponse:
+def history(request: WorldRequest, world: World, kind: str, pk: int) -> HttpResponse:
     """Show the versions of a row; a POST restores the one that ``entry`` names."""
     of_kind = kind_named(kind)
     row, is_there = of_kind.row_or_last_known(world, pk)
@@ -44,7 +44,7 @@ def history(request: HttpRequest, world: World, kind: str, pk: int) -> HttpRespo
 
 
 @world_view(Duty.VIEW)
-def deleted(request: HttpRequest, world: World, kind: str) -> HttpResponse:
+def deleted(request: WorldRequest, world: World, kind: str) -> HttpResponse:
     """List the rows of a kind that were deleted, the latest first."""
     of_kind = kind_named(kind)
     entries = of_kind.deletions_in(world)
@@ -60,7 +60,7 @@ def deleted(request: HttpRequest, world: World, kind: str) -> HttpResponse:
     return render(request, "annotations/editing/deleted.html", context)
 
 
-def restore_entry(request: HttpRequest, world: World, kind: EditableKind, pk: int) -> None:
+def restore_entry(request: WorldRequest, world: World, kind: EditableKind, pk: int) -> None:
     """Restore the version that was sent as ``entry``, and say what came of it."""
     number = number_in(request.POST.get("entry", ""))
     entry = kind.entries_of(world).filter(id=pk, history_id=number).first()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 from django.db.models import QuerySet
 from django.http import Http404
@@ -10,7 +10,6 @@ from django.shortcuts import get_object_or_404
 from django.utils.module_loading import import_string
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.editing.edits import restore
@@ -24,8 +23,9 @@ from annotations.web.editing.kinds_of_rows import RESTORING, kind_named
 from annotations.web.editing.rename_forms import RenameForm
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.idempotency import once
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
-from annotations.web.rest.routes import RowRoute, RowsRoute
+from annotations.web.rest.routes import Route, RowRoute, RowsRoute
 
 # Kind of row → the serializer of its own routes. By path: the rooms of the rows import this one.
 SERIALIZERS = {
@@ -39,13 +39,13 @@ SERIALIZERS = {
 }
 
 
-def serializer_of(kind: EditableKind) -> type[serializers.ModelSerializer]:
+def serializer_of(kind: EditableKind) -> type[serializers.ModelSerializer[Any]]:
     """Return the class that shows rows of ``kind`` at their own address."""
-    serializer: type[serializers.ModelSerializer] = import_string(SERIALIZERS[kind.name])
+    serializer: type[serializers.ModelSerializer[Any]] = import_string(SERIALIZERS[kind.name])
     return serializer
 
 
-class VersionSerializer(serializers.Serializer):
+class VersionSerializer(serializers.Serializer[Any]):
     """What a row was: ``values`` as people edit them, who made it so, and when."""
 
     entry = serializers.IntegerField(source="history_id")
@@ -61,13 +61,13 @@ class VersionSerializer(serializers.Serializer):
         return what_happened(entry)
 
     def get_is_deletion(self, entry: Any) -> bool:
-        return entry.history_type == DELETED
+        return bool(entry.history_type == DELETED)
 
     def get_values(self, entry: Any) -> dict[str, Any]:
         return {name: getattr(entry, name) for name in self.context["kind"].model.edited_fields}
 
 
-class OfKind:
+class OfKind(Route):
     """Routes whose address names a kind of row, such as ``template``."""
 
     def kind(self) -> EditableKind:
@@ -81,7 +81,7 @@ class Versions(OfKind, RowsRoute):
     sorts = {"newest": "-history_id"}
 
     def get_serializer_context(self) -> dict[str, Any]:
-        context = super().get_serializer_context()
+        context = dict(super().get_serializer_context())
         is_described = getattr(self, "swagger_fake_view", False)
         return context if is_described else {**context, "kind": self.kind()}
 
@@ -92,7 +92,7 @@ class RestoredEntry(Fields):
     entry = serializers.IntegerField(min_value=1, max_value=2**63 - 1)
 
 
-class RestoredSerializer(serializers.Serializer):
+class RestoredSerializer(serializers.Serializer[Any]):
     """The row as it is now: ``row`` is what its own address shows."""
 
     kind = serializers.CharField()
@@ -102,7 +102,7 @@ class RestoredSerializer(serializers.Serializer):
 class HistoryOfRow(Versions):
     """Lists the versions of a row, the newest first, and restores one; a deleted row comes back."""
 
-    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.ANNOTATE}
+    duties = {"POST": Duty.ANNOTATE}
 
     @property
     def duty(self) -> Duty:
@@ -119,7 +119,7 @@ class HistoryOfRow(Versions):
 
     @extend_schema(request=RestoredEntry, responses={200: RestoredSerializer})
     @once
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def post(self, request: ApiRequest, **kwargs: object) -> Response:
         kind, entries = self.kind(), self.rows()
         entry = get_object_or_404(entries, history_id=self.read(RestoredEntry)["entry"])
         row = RESTORING.get(kind.model, restore)(entry, request.user)
@@ -140,7 +140,7 @@ class NewName(Fields):
     old = LineField(max_length=MAX_ENTITY, required=False)
 
 
-class RenamedSerializer(serializers.Serializer):
+class RenamedSerializer(serializers.Serializer[Any]):
     """The row, and how many rows of each kind changed with its name."""
 
     kind = serializers.CharField()
@@ -153,7 +153,7 @@ class Rename(OfKind, RowRoute):
 
     model = SemanticTemplate
     http_method_names = ["post", "options"]
-    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.ANNOTATE}
+    duties = {"POST": Duty.ANNOTATE}
     conditional = ("POST",)
 
     def get_serializer_class(self) -> Any:
@@ -165,10 +165,10 @@ class Rename(OfKind, RowRoute):
         return self.kind().rows_of(self.world)
 
     @extend_schema(request=NewName, responses={200: RenamedSerializer})
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def post(self, request: ApiRequest, **kwargs: object) -> Response:
         row, sent = self.matched(), self.read(NewName)
-        form = RenameForm(row, {"version": row.version, **sent})
-        form.data.setdefault("old", form.initial["old"])
+        asked = {"version": row.version, "old": RenameForm(row).initial["old"], **sent}
+        form = RenameForm(row, asked)
         if not form.is_valid():
             raise refusal_of_form(form)
         names = form.cleaned_data["old"], form.cleaned_data["new"]

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 from django.http import Http404
 
-from annotations.models import Utterance
+from annotations.models import Editable, User, Utterance
 from annotations.rows.row_kinds import KINDS, EditableKind
 from annotations.utterances.utterance_deletion import delete_utterance
 from annotations.utterances.utterance_deletion import restore as restore_with_answers
 
-RESTORING = {Utterance: restore_with_answers}  # what more than the row itself is restored with
+RESTORING: dict[type[Editable], Callable[[Any, User], Any]] = {
+    Utterance: restore_with_answers
+}  # what more than the row itself is restored with
 
-DELETING = {Utterance: delete_utterance}  # what keeps more than its history
+DELETING: dict[type[Editable], Callable[[Any, User, int], Any]] = {
+    Utterance: delete_utterance
+}  # what keeps more than its history
 
 
 def kind_named(name: str) -> EditableKind:

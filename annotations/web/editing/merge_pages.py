@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 from django import forms
 from django.db import transaction
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import render
 
 from annotations.editing.drafts import discard_draft
@@ -16,7 +16,10 @@ from annotations.editing.edits import Overtaken, bring_back, change
 from annotations.editing.merged_fields import MergedField, merge
 from annotations.form_presentation import Pieces, compare
 from annotations.models import Editable
+from annotations.people.access import PageRequest
 from annotations.rows.row_kinds import FORM_FIELDS, kind_of
+
+Row = TypeVar("Row", bound=Editable)
 
 # What the fields of a form are called → what they show for a row.
 Shown = Callable[[Editable], Mapping[str, Any]]
@@ -31,9 +34,7 @@ class Side:
     pieces: Pieces
 
 
-def save_edit(
-    request: HttpRequest, row: Editable, form: forms.Form, values: Mapping[str, Any]
-) -> Editable:
+def save_edit(request: PageRequest, row: Row, form: forms.Form, values: Mapping[str, Any]) -> Row:
     """Save ``values``, if the row is still at the version that the field ``version`` of ``form`` holds.
 
     Raises Overtaken otherwise: answer it with ``merge_page``.
@@ -47,7 +48,7 @@ def save_edit(
 
 
 def merge_page(
-    request: HttpRequest,
+    request: PageRequest,
     row: Editable,
     form: forms.Form,
     clash: Overtaken,
@@ -65,9 +66,11 @@ def merge_page(
     A change that only one of both made is taken over. The page sends the form to the same
     address, as an edit of the present version.
     """
-    merged = _merge(form, clash, shown) if clash.current else {}
-    data = form.data.copy()
-    data["version"] = clash.current.version if clash.current else clash.last.version
+    merged = _merge(form, clash, clash.current, shown) if clash.current else {}
+    data: Any = form.data
+    data = data.copy()
+    now: Any = clash.current or clash.last
+    data["version"] = now.version
     for name, each in merged.items():
         data[name] = each.merged
     form.data = data
@@ -90,10 +93,12 @@ def _fields_to_fill_in(form: forms.Form) -> list[forms.BoundField]:
     return [field for field in form.visible_fields() if not field.field.disabled]
 
 
-def _merge(form: forms.Form, clash: Overtaken, shown: Shown) -> dict[str, MergedField]:
+def _merge(
+    form: forms.Form, clash: Overtaken, current: Editable, shown: Shown
+) -> dict[str, MergedField]:
     fields = _fields_to_fill_in(form)
     mine = {field.name: _as_posted(field, field.value()) for field in fields}
-    theirs = _posted_values(fields, shown(clash.current))
+    theirs = _posted_values(fields, shown(current))
     base = _posted_values(fields, shown(clash.base.instance)) if clash.base else None
     return {each.name: each for each in merge(base, theirs, mine)}
 

@@ -10,7 +10,7 @@ from annotations.language.errors import LanguageError
 from annotations.language.limits import MAX_ENTITY
 from annotations.models import Editable, Entity, Production
 from annotations.renaming.world_rename import TouchedRows, touched_by
-from annotations.web.forms import sentence_of
+from annotations.web.forms import choice_field, sentence_of
 
 
 def names_of(row: Editable) -> list[str]:
@@ -32,13 +32,13 @@ class RenameForm(forms.Form):
         self.row = row
         self.touched: tuple[TouchedRows, ...] = ()
         names = names_of(row)
-        self.fields["old"].choices = [(name, name) for name in names]
+        choice_field(self, "old").choices = [(name, name) for name in names]
         if len(names) == 1:
             self.fields["old"].widget = forms.HiddenInput()
         self.initial = {"old": names[0], "new": names[0], "version": row.version, **self.initial}
 
     def clean(self) -> dict[str, Any]:
-        cleaned = super().clean()
+        cleaned = self.cleaned_data
         if not self.errors:
             try:
                 self.touched = touched_by(self.row, cleaned["old"], cleaned["new"])

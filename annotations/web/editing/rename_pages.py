@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from django.contrib import messages
-from django.http import Http404, HttpRequest, HttpResponse
+from django.http import Http404, HttpResponse
 from django.shortcuts import redirect, render
 from django.urls import reverse
 
 from annotations.editing.edits import Overtaken
 from annotations.models import Duty, Editable, World
-from annotations.people.access import READ_AND_WRITE, world_view
+from annotations.people.access import READ_AND_WRITE, WorldRequest, world_view
 from annotations.renaming.rename_plans import PLANS
 from annotations.renaming.world_rename import rename
 from annotations.rows.row_kinds import EditableKind
@@ -20,7 +20,7 @@ WHAT = {"production": "nonterminal"}
 
 
 @world_view(Duty.ANNOTATE, READ_AND_WRITE)
-def rename_row(request: HttpRequest, world: World, kind: str, pk: int) -> HttpResponse:
+def rename_row(request: WorldRequest, world: World, kind: str, pk: int) -> HttpResponse:
     """Preview a renaming. A POST carries it out."""
     of_kind = kind_named(kind)
     if of_kind.model not in PLANS:
@@ -50,7 +50,8 @@ def rename_row(request: HttpRequest, world: World, kind: str, pk: int) -> HttpRe
         "page": _page_of(world, of_kind, row),
         "n_rows": sum(map(len, form.touched)) if is_valid else 0,
     }
-    form.data = {**form.data.dict(), "version": row.version} if form.is_bound else form.data
+    if form.is_bound:
+        form.data = {**request.POST.dict(), "version": row.version}
     status = 409 if request.method == "POST" and form.non_field_errors() else 200
     return render(request, "annotations/editing/rename.html", context, status=status)
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from django.contrib import messages
-from django.http import HttpRequest
 from django.middleware.csrf import get_token
 from django.utils.html import format_html, format_html_join
 
+from annotations.people.access import PageRequest
 
-def say_with_undo(request: HttpRequest, sentence: str, address: str, **fields: object) -> None:
+
+def say_with_undo(request: PageRequest, sentence: str, address: str, **fields: object) -> None:
     """Show ``sentence`` on the next page, with a button “Undo” that posts ``fields`` to ``address``."""
     values = {"csrfmiddlewaretoken": get_token(request), **fields}
     hidden = format_html_join("", '<input type="hidden" name="{}" value="{}">', values.items())

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from django.contrib import messages
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect
 from django.views.decorators.cache import never_cache
 
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.models import User
 from annotations.people import shown_once
-from annotations.people.access import WRITE, site_view
+from annotations.people.access import WRITE, PageRequest, site_view
 from annotations.people.accounts import OwnAccount, password_path, set_open
 from annotations.people.audit_log import note
 from annotations.web.people.people_filters import AccountFilters
@@ -20,7 +20,7 @@ SORTS = {"name": Sort("Name", "username"), "joined": Sort("Since", "date_joined"
 
 @never_cache
 @site_view()
-def accounts(request: HttpRequest) -> HttpResponse:
+def accounts(request: PageRequest) -> HttpResponse:
     """List all accounts with their worlds. A new link for a password is shown once."""
     rows = User.objects.prefetch_related("memberships__world")
     listing = Listing(request, AccountFilters, rows, SORTS)
@@ -31,7 +31,7 @@ def accounts(request: HttpRequest) -> HttpResponse:
 
 
 @site_view(WRITE)
-def account_close(request: HttpRequest, pk: int) -> HttpResponse:
+def account_close(request: PageRequest, pk: int) -> HttpResponse:
     """Close or reopen an account. Closing it logs it out everywhere and stops its tokens."""
     account = get_object_or_404(User, pk=pk)
     try:
@@ -46,7 +46,7 @@ def account_close(request: HttpRequest, pk: int) -> HttpResponse:
 
 
 @site_view(WRITE)
-def account_link(request: HttpRequest, pk: int) -> HttpResponse:
+def account_link(request: PageRequest, pk: int) -> HttpResponse:
     """Make a link for a new password. It works once, for three days."""
     account = get_object_or_404(User.objects.filter(is_active=True), pk=pk)
     link = request.build_absolute_uri(password_path(account))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import Any
 
 from django.db.models import QuerySet
 from django.shortcuts import get_object_or_404
@@ -10,7 +10,6 @@ from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.decorators import action
 from rest_framework.mixins import ListModelMixin
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.models import AuditEntry, Duty, Membership, Scope, User
@@ -19,11 +18,11 @@ from annotations.people.audit_log import note
 from annotations.web.people.member_rest import UNCACHED
 from annotations.web.people.people_filters import AccountFilters, AuditEntryFilters
 from annotations.web.rest.fields import Fields
-from annotations.web.rest.permissions import ForSiteAdmins
+from annotations.web.rest.permissions import ApiRequest, ForSiteAdmins
 from annotations.web.rest.routes import ManyRows, Retrieved, RowsRoute, SiteViewSet
 
 
-class RoleInWorld(serializers.ModelSerializer):
+class RoleInWorld(serializers.ModelSerializer[Membership]):
     world = serializers.CharField(source="world.name")
 
     class Meta:
@@ -31,7 +30,7 @@ class RoleInWorld(serializers.ModelSerializer):
         fields = ["world", "role"]
 
 
-class AccountSerializer(serializers.ModelSerializer):
+class AccountSerializer(serializers.ModelSerializer[User]):
     """An account with its roles in all worlds. Nobody logs in to one that is not active."""
 
     name = serializers.CharField(source="username")
@@ -48,7 +47,7 @@ class AccountChange(Fields):
     is_active = serializers.BooleanField()
 
 
-class PasswordLink(serializers.Serializer):
+class PasswordLink(serializers.Serializer[Any]):
     """Whoever opens the page sets a new password, once, within three days."""
 
     link = serializers.CharField()
@@ -70,7 +69,7 @@ class AccountViewSet(ListModelMixin, Retrieved, SiteViewSet):
         return User.objects.prefetch_related("memberships__world")
 
     @extend_schema(request=AccountChange, responses={200: AccountSerializer})
-    def partial_update(self, request: Request, **kwargs: object) -> Response:
+    def partial_update(self, request: ApiRequest, **kwargs: object) -> Response:
         """Closes an account, or opens it."""
         is_open = self.read(AccountChange)["is_active"]
         with self.matching() as row:
@@ -80,7 +79,7 @@ class AccountViewSet(ListModelMixin, Retrieved, SiteViewSet):
 
     @extend_schema(request=None, responses={200: PasswordLink})
     @action(detail=True, methods=["post"])
-    def link(self, request: Request, **kwargs: object) -> Response:
+    def link(self, request: ApiRequest, **kwargs: object) -> Response:
         """Makes a link for somebody who has lost their password."""
         row = get_object_or_404(self.rows().filter(is_active=True), pk=self.kwargs["pk"])
         note(request, str(row))
@@ -88,7 +87,7 @@ class AccountViewSet(ListModelMixin, Retrieved, SiteViewSet):
         return Response({"link": link}, headers=UNCACHED)
 
 
-class AuditEntrySerializer(serializers.ModelSerializer):
+class AuditEntrySerializer(serializers.ModelSerializer[AuditEntry]):
     """What somebody did, and to what; ``through`` names the token of a program. It outlives both."""
 
     who = serializers.CharField(source="who_name")
@@ -99,29 +98,29 @@ class AuditEntrySerializer(serializers.ModelSerializer):
         fields = ["id", "at", "who", "through", "what", "subject", "world"]
 
 
-class AuditEntryNoun:
+class AuditEntryRows(ManyRows):
     model = AuditEntry
     serializer_class = AuditEntrySerializer
     filterset_class = AuditEntryFilters
-    sorts: ClassVar[dict[str, str]] = {"newest": "-pk"}
+    sorts = {"newest": "-pk"}
 
 
-class AuditLogOfWorld(AuditEntryNoun, RowsRoute):
+class AuditLogOfWorld(AuditEntryRows, RowsRoute):
     """Lists who did what in a world, the newest first."""
 
-    duties: ClassVar[dict[str, Duty]] = {"GET": Duty.MANAGE}
-    scopes: ClassVar[dict[str, Scope]] = {"GET": Scope.READ}
+    duties = {"GET": Duty.MANAGE}
+    scopes = {"GET": Scope.READ}
 
     def rows(self) -> QuerySet[AuditEntry]:
         return AuditEntry.objects.filter(world=self.world)
 
 
-class SiteLog(AuditEntryNoun, ManyRows):
+class SiteLog(AuditEntryRows):
     """Lists who did what anywhere, the newest first."""
 
-    permission_classes: ClassVar[list[type]] = [ForSiteAdmins]
+    permission_classes = [ForSiteAdmins]
     duty = Duty.MANAGE
-    scopes: ClassVar[dict[str, Scope]] = {"GET": Scope.READ}
+    scopes = {"GET": Scope.READ}
 
     def rows(self) -> QuerySet[AuditEntry]:
         return AuditEntry.objects.all()

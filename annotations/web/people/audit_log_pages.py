@@ -2,28 +2,28 @@
 
 from __future__ import annotations
 
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.models import Duty, World
-from annotations.people.access import site_view, world_view
+from annotations.people.access import PageRequest, WorldRequest, site_view, world_view
 from annotations.web.people.people_filters import AuditEntryFilters, entries_of
 
 SORTS = {"when": Sort("When", "-id")}
 
 
 @world_view(Duty.MANAGE)
-def audit_log(request: HttpRequest, world: World) -> HttpResponse:
+def audit_log(request: WorldRequest, world: World) -> HttpResponse:
     """List who did what in a world, the newest first."""
     return _render_log(request)
 
 
 @site_view()
-def site_log(request: HttpRequest) -> HttpResponse:
+def site_log(request: PageRequest) -> HttpResponse:
     """List who did what anywhere, the newest first."""
     return _render_log(request)
 
 
-def _render_log(request: HttpRequest) -> HttpResponse:
+def _render_log(request: PageRequest) -> HttpResponse:
     listing = Listing(request, AuditEntryFilters, entries_of(request), SORTS)
     return render_list(request, "annotations/people/audit_log.html", {"listing": listing})

@@ -30,7 +30,7 @@ from annotations.web.people.member_forms import OVER, TOO_OFTEN
 MODEL_BACKEND = "django.contrib.auth.backends.ModelBackend"
 
 
-class SignUpForm(UserCreationForm):
+class SignUpForm(UserCreationForm):  # type: ignore[type-arg]  # generic in the stubs alone
     """A name that nobody has in any spelling, and a password that is not easily guessed."""
 
     class Meta:
@@ -85,7 +85,7 @@ def join(request: HttpRequest, key: str) -> HttpResponse:
             form.add_error("username", str(error))
         if request.user.is_authenticated:
             JOINING.give_back(place)
-            request.world = invitation.world
+            request.world = invitation.world  # type: ignore[attr-defined]  # for the audit log
             note(request, f"as {role_names(invitation.roles)}")
             return redirect("world", world=invitation.world.name)
     context = {"invitation": invitation, "form": form, "roles": role_names(invitation.roles)}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from django.contrib import messages
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.urls import reverse
 from django.views.decorators.cache import never_cache
@@ -11,7 +11,7 @@ from django.views.decorators.cache import never_cache
 from annotations.models import Duty, Invitation, User, World
 from annotations.models.worlds import Role
 from annotations.people import shown_once
-from annotations.people.access import READ_AND_WRITE, WRITE, world_view
+from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
 from annotations.people.audit_log import note
 from annotations.people.members import (
     NoAdminLeft,
@@ -31,7 +31,7 @@ WHAT_ROLES_DO = {
 
 @never_cache
 @world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.MANAGE)
-def people(request: HttpRequest, world: World) -> HttpResponse:
+def people(request: WorldRequest, world: World) -> HttpResponse:
     """List the members with their roles; add one who has an account."""
     form = MemberForm(request.POST if request.method == "POST" else None)
     if form.is_bound and form.is_valid():
@@ -44,7 +44,7 @@ def people(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.MANAGE, WRITE)
-def invite(request: HttpRequest, world: World) -> HttpResponse:
+def invite(request: WorldRequest, world: World) -> HttpResponse:
     """Create an invitation. The page “People” shows its link once."""
     form = InvitationForm(request.POST)
     if not form.is_valid():
@@ -57,7 +57,7 @@ def invite(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.MANAGE, WRITE)
-def withdraw(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def withdraw(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Delete an invitation. Its link stops working."""
     invitation = get_object_or_404(world.invitations, pk=pk)
     invitation.delete()
@@ -67,7 +67,7 @@ def withdraw(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 @world_view(Duty.MANAGE, WRITE)
-def member(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def member(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Change the roles of a member, or remove them."""
     account = get_object_or_404(User.objects.filter(memberships__world=world).distinct(), pk=pk)
     form = RolesForm(request.POST)
@@ -89,7 +89,7 @@ def member(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 def _render_people(
-    request: HttpRequest,
+    request: WorldRequest,
     world: World,
     status: int = 200,
     form: MemberForm | None = None,

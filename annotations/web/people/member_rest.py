@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from http import HTTPStatus
-from typing import Any, ClassVar
+from typing import Any
 
 from django.db.models import Prefetch, QuerySet
 from django.urls import reverse
 from drf_spectacular.utils import extend_schema, extend_schema_field
 from rest_framework import serializers
 from rest_framework.exceptions import NotFound
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.language.errors import Refusal
@@ -23,6 +22,7 @@ from annotations.people.rate_limits import JOINING
 from annotations.web.people.member_forms import OVER, TOO_OFTEN, InvitationForm, MemberForm
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.idempotency import once
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import Route, RowsViewSet
 
@@ -33,7 +33,7 @@ def roles_field(**options: Any) -> serializers.ListField:
     return serializers.ListField(child=serializers.ChoiceField(choices=role_choices()), **options)
 
 
-class MemberSerializer(serializers.ModelSerializer):
+class MemberSerializer(serializers.ModelSerializer[User]):
     """An account, and all its roles in the world."""
 
     name = serializers.CharField(source="username")
@@ -44,7 +44,7 @@ class MemberSerializer(serializers.ModelSerializer):
         fields = ["id", "name", "roles"]
 
     @extend_schema_field(roles_field())
-    def get_roles(self, user: User) -> list[str]:
+    def get_roles(self, user: Any) -> list[str]:
         held = {each.role for each in user.roles_here}
         return [role for role in Role.values if role in held]
 
@@ -78,7 +78,7 @@ class MemberViewSet(RowsViewSet):
 
     @extend_schema(request=NewMember, responses={201: MemberSerializer})
     @once
-    def create(self, request: Request, **kwargs: object) -> Response:
+    def create(self, request: ApiRequest, **kwargs: object) -> Response:
         """Gives somebody with an account roles in the world."""
         form = MemberForm(self.read(NewMember))
         if not form.is_valid():
@@ -95,13 +95,13 @@ class MemberViewSet(RowsViewSet):
         self.hold_world()
 
     @extend_schema(request=RolesChange, responses={200: MemberSerializer})
-    def partial_update(self, request: Request, **kwargs: object) -> Response:
+    def partial_update(self, request: ApiRequest, **kwargs: object) -> Response:
         """Changes the roles of a member."""
         with self.matching() as row:
             self._set_roles(row, self.read(RolesChange)["roles"])
         return self.show(self.get_object())
 
-    def destroy(self, request: Request, **kwargs: object) -> Response:
+    def destroy(self, request: ApiRequest, **kwargs: object) -> Response:
         """Removes a member."""
         with self.matching() as row:
             self._set_roles(row, [])
@@ -113,7 +113,7 @@ class MemberViewSet(RowsViewSet):
         note(self.request, f"{row}: {role_names(roles) or 'removed'}")
 
 
-class InvitationSerializer(serializers.ModelSerializer):
+class InvitationSerializer(serializers.ModelSerializer[Invitation]):
     """A link that gives ``roles`` to as many people as it has ``places``, until it expires."""
 
     roles = roles_field()
@@ -161,7 +161,7 @@ class InvitationViewSet(RowsViewSet):
         return self.world.invitations.open().select_related("created_by")
 
     @extend_schema(request=NewInvitation, responses={201: IssuedInvitation})
-    def create(self, request: Request, **kwargs: object) -> Response:
+    def create(self, request: ApiRequest, **kwargs: object) -> Response:
         """Makes an invitation."""
         sent = self.read(NewInvitation)
         form = InvitationForm(
@@ -175,7 +175,7 @@ class InvitationViewSet(RowsViewSet):
         shown = {**InvitationSerializer(row).data, "link": link, "key": key}
         return Response(shown, status=HTTPStatus.CREATED, headers=UNCACHED)
 
-    def destroy(self, request: Request, **kwargs: object) -> Response:
+    def destroy(self, request: ApiRequest, **kwargs: object) -> Response:
         """Withdraws an invitation: who has joined by it stays."""
         with self.matching() as row:
             row.delete()
@@ -189,7 +189,7 @@ class KeyOfInvitation(Fields):
     key = serializers.CharField(max_length=200)
 
 
-class JoinedSerializer(serializers.Serializer):
+class JoinedSerializer(serializers.Serializer[Any]):
     """The world that the caller is in now, and the roles that the invitation gave."""
 
     world = serializers.CharField()
@@ -201,10 +201,10 @@ class Join(Route):
 
     http_method_names = ["post", "options"]
     model = Invitation
-    scopes: ClassVar[dict[str, Scope]] = {"POST": Scope.ADMIN}
+    scopes = {"POST": Scope.ADMIN}
 
     @extend_schema(request=KeyOfInvitation, responses={200: JoinedSerializer})
-    def post(self, request: Request) -> Response:
+    def post(self, request: ApiRequest) -> Response:
         key = self.read(KeyOfInvitation)["key"]
         place = JOINING.take(str(request.META["REMOTE_ADDR"]))
         if place is None:

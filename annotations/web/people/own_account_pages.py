@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from django.contrib import messages
 from django.contrib.auth import logout
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.utils import timezone
 from django.views.decorators.cache import never_cache
@@ -12,7 +12,7 @@ from django.views.decorators.http import require_http_methods
 
 from annotations.models import ApiToken, LogInSession, Scope
 from annotations.people import shown_once
-from annotations.people.access import READ, WRITE
+from annotations.people.access import READ, WRITE, PageRequest
 from annotations.people.accounts import end_session, sessions_of
 from annotations.people.audit_log import note
 from annotations.web.people.token_forms import TokenForm
@@ -27,14 +27,14 @@ WHAT_SCOPES_DO = {
 
 @never_cache
 @require_http_methods(READ)
-def account(request: HttpRequest) -> HttpResponse:
+def account(request: PageRequest) -> HttpResponse:
     """Show the user's tokens and sessions. The secret of a new token is shown once."""
     key = shown_once.take(request, "token") if request.method == "GET" else ""
     return _render_account(request, key=key)
 
 
 @require_http_methods(WRITE)
-def token_new(request: HttpRequest) -> HttpResponse:
+def token_new(request: PageRequest) -> HttpResponse:
     """Create a token. The account page shows its secret once."""
     form = TokenForm(request.user, request.POST)
     if not form.is_valid():
@@ -46,7 +46,7 @@ def token_new(request: HttpRequest) -> HttpResponse:
 
 
 @require_http_methods(WRITE)
-def token_revoke(request: HttpRequest, pk: int) -> HttpResponse:
+def token_revoke(request: PageRequest, pk: int) -> HttpResponse:
     """Revoke a token of the user."""
     token = get_object_or_404(request.user.api_tokens, pk=pk)
     token.delete()
@@ -56,7 +56,7 @@ def token_revoke(request: HttpRequest, pk: int) -> HttpResponse:
 
 
 @require_http_methods(WRITE)
-def session_end(request: HttpRequest, handle: str) -> HttpResponse:
+def session_end(request: PageRequest, handle: str) -> HttpResponse:
     """Log the user out in one browser, which may be this one."""
     if end_session(request.user, handle):
         messages.success(request, "Logged out there.")
@@ -64,7 +64,7 @@ def session_end(request: HttpRequest, handle: str) -> HttpResponse:
 
 
 @require_http_methods(WRITE)
-def sessions_end(request: HttpRequest) -> HttpResponse:
+def sessions_end(request: PageRequest) -> HttpResponse:
     """Log the user out everywhere, in this browser too."""
     LogInSession.objects.filter(user=request.user).delete()
     logout(request)
@@ -72,7 +72,7 @@ def sessions_end(request: HttpRequest) -> HttpResponse:
 
 
 def _render_account(
-    request: HttpRequest, status: int = 200, form: TokenForm | None = None, key: str = ""
+    request: PageRequest, status: int = 200, form: TokenForm | None = None, key: str = ""
 ) -> HttpResponse:
     context = {
         "form": form or TokenForm(request.user),

@@ -5,25 +5,25 @@ from __future__ import annotations
 import django_filters
 from django import forms
 from django.db.models import QuerySet
-from django.http import HttpRequest
 
 from annotations.lists.filtering import PageFilters, Search
 from annotations.models import AuditEntry
+from annotations.people.access import PageRequest
 
 
-def entries_of(request: HttpRequest) -> QuerySet[AuditEntry]:
+def entries_of(request: PageRequest) -> QuerySet[AuditEntry]:
     """Return the audit log of the world that the page is about; of the whole site where it is about none."""
     world = getattr(request, "world", None)
     return AuditEntry.objects.filter(world=world) if world else AuditEntry.objects.all()
 
 
-def who_choices(request: HttpRequest) -> list[tuple[str, str]]:
+def who_choices(request: PageRequest) -> list[tuple[str, str]]:
     """Return the names of all who appear in the audit log."""
     names = entries_of(request).order_by("who_name").values_list("who_name", flat=True).distinct()
     return [(name, name) for name in names]
 
 
-def what_choices(request: HttpRequest) -> list[tuple[str, str]]:
+def what_choices(request: PageRequest) -> list[tuple[str, str]]:
     """Return all actions that appear in the audit log."""
     names = entries_of(request).order_by("what").values_list("what", flat=True).distinct()
     return [(name, name) for name in names]

@@ -35,4 +35,4 @@ class TokenForm(forms.Form):
             raise forms.ValidationError(
                 f"You have {MOST_TOKENS} tokens. Revoke one that you do not need."
             )
-        return super().clean()
+        return self.cleaned_data

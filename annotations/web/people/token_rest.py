@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from http import HTTPStatus
-from typing import ClassVar
+from typing import Any
 
 from django.contrib.auth import logout
 from django.db.models import QuerySet
@@ -13,7 +13,6 @@ from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework import serializers
 from rest_framework.exceptions import PermissionDenied
 from rest_framework.mixins import ListModelMixin
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.models import ApiToken, LogInSession, Scope, User
@@ -23,11 +22,12 @@ from annotations.people.audit_log import note
 from annotations.web.people.member_rest import UNCACHED
 from annotations.web.people.token_forms import MOST_DAYS, TokenForm
 from annotations.web.rest.fields import Fields, LineField
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import Retrieved, Route, SingleRow, SiteViewSet
 
 
-class TokenSerializer(serializers.ModelSerializer):
+class TokenSerializer(serializers.ModelSerializer[ApiToken]):
     """A token, without its secret. ``is_this`` is the one that the request came with."""
 
     is_this = serializers.SerializerMethodField()
@@ -37,7 +37,7 @@ class TokenSerializer(serializers.ModelSerializer):
         fields = ["id", "name", "scope", "created_at", "expires_at", "is_this"]
 
     def get_is_this(self, token: ApiToken) -> bool:
-        return self.context["request"].auth == token
+        return bool(self.context["request"].auth == token)
 
 
 class IssuedToken(TokenSerializer):
@@ -82,7 +82,7 @@ class TokenViewSet(ListModelMixin, Retrieved, SiteViewSet):
         return token
 
     @extend_schema(request=NewToken, responses={201: IssuedToken})
-    def create(self, request: Request) -> Response:
+    def create(self, request: ApiRequest) -> Response:
         """Makes a token."""
         sent = self.read(NewToken)
         by = self.calling_token(sent["scope"])
@@ -94,7 +94,7 @@ class TokenViewSet(ListModelMixin, Retrieved, SiteViewSet):
         shown = {**self.get_serializer(row).data, "key": key}
         return Response(shown, status=HTTPStatus.CREATED, headers=UNCACHED)
 
-    def destroy(self, request: Request, **kwargs: object) -> Response:
+    def destroy(self, request: ApiRequest, **kwargs: object) -> Response:
         """Revokes a token."""
         with self.matching() as row:
             self.calling_token(row.scope)
@@ -103,7 +103,7 @@ class TokenViewSet(ListModelMixin, Retrieved, SiteViewSet):
         return Response(status=HTTPStatus.NO_CONTENT)
 
 
-class SessionSerializer(serializers.ModelSerializer):
+class SessionSerializer(serializers.ModelSerializer[LogInSession]):
     """A browser in which one is logged in."""
 
     id = serializers.CharField(source="handle", read_only=True)
@@ -114,7 +114,7 @@ class SessionSerializer(serializers.ModelSerializer):
         fields = ["id", "device", "begun_at", "expires_at"]
 
 
-class SessionsSerializer(serializers.Serializer):
+class SessionsSerializer(serializers.Serializer[Any]):
     """All of them, the newest first."""
 
     results = SessionSerializer(many=True)
@@ -124,10 +124,10 @@ class Sessions(Route):
     """Lists where one is logged in."""
 
     model = LogInSession
-    filter_backends: ClassVar[list[type]] = []
+    filter_backends = []
 
     @extend_schema(operation_id="sessions_list", responses={200: SessionsSerializer})
-    def get(self, request: Request) -> Response:
+    def get(self, request: ApiRequest) -> Response:
         rows = sessions_of(request.user)
         return Response({"results": SessionSerializer(rows, many=True).data})
 
@@ -138,7 +138,7 @@ class OneSession(SingleRow):
     model = LogInSession
     serializer_class = SessionSerializer
     conditional = ("DELETE",)
-    scopes: ClassVar[dict[str, Scope]] = {"DELETE": Scope.ADMIN}
+    scopes = {"DELETE": Scope.ADMIN}
     HANDLE = OpenApiParameter("handle", OpenApiTypes.STR, OpenApiParameter.PATH)
 
     def get_object(self) -> LogInSession:
@@ -153,11 +153,11 @@ class OneSession(SingleRow):
         User.objects.select_for_update(no_key=True).get(pk=self.request.user.pk)
 
     @extend_schema(parameters=[HANDLE])
-    def get(self, request: Request, **kwargs: object) -> Response:
+    def get(self, request: ApiRequest, **kwargs: object) -> Response:
         return super().get(request)
 
     @extend_schema(parameters=[HANDLE])
-    def delete(self, request: Request, **kwargs: object) -> Response:
+    def delete(self, request: ApiRequest, **kwargs: object) -> Response:
         with self.matching() as row:
             end_session(request.user, row.handle)
         return Response(status=HTTPStatus.NO_CONTENT)
@@ -168,10 +168,10 @@ class EndSessions(Route):
 
     http_method_names = ["post", "options"]
     model = LogInSession
-    scopes: ClassVar[dict[str, Scope]] = {"POST": Scope.ADMIN}
+    scopes = {"POST": Scope.ADMIN}
 
     @extend_schema(request=None, responses={204: None})
-    def post(self, request: Request) -> Response:
+    def post(self, request: ApiRequest) -> Response:
         LogInSession.objects.filter(user=request.user).delete()
         if request.auth is None:
             logout(request._request)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import render
 
 from annotations.models import Duty, World
-from annotations.people.access import world_view
+from annotations.people.access import WorldRequest, world_view
 from annotations.queueing.agreeing import report_agreement
 from annotations.queueing.queue_progress import QueueProgress, progress_of
 
@@ -16,7 +16,7 @@ MOST_LINES = 6  # people who have a line of their own in the chart
 
 
 @world_view(Duty.VIEW)
-def agreement(request: HttpRequest, world: World) -> HttpResponse:
+def agreement(request: WorldRequest, world: World) -> HttpResponse:
     """Show exact match, Krippendorff's α and Gwet's AC1, each explained, and where people disagree."""
     report = report_agreement(world)
     overall = report.overall
@@ -33,7 +33,7 @@ def agreement(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.VIEW)
-def progress(request: HttpRequest, world: World) -> HttpResponse:
+def progress(request: WorldRequest, world: World) -> HttpResponse:
     """Show the items that each person has done, day by day."""
     done = progress_of(world)
     return render(

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import asdict
+from typing import Any
 
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.models import Assignment
 from annotations.queueing.agreeing import report_agreement
 from annotations.queueing.queue_progress import progress_of
 from annotations.web.rest.fields import FiniteField
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import Figures
 
 
-class EstimateSerializer(serializers.Serializer):
+class EstimateSerializer(serializers.Serializer[Any]):
     """A coefficient with its 95 % interval; null where the answers do not define it, as ``meaning`` says."""
 
     value = FiniteField(allow_null=True)
@@ -24,7 +25,7 @@ class EstimateSerializer(serializers.Serializer):
     meaning = serializers.CharField()
 
 
-class AgreementSerializer(serializers.Serializer):
+class AgreementSerializer(serializers.Serializer[Any]):
     """How two people agree on ``items``: exact match, Krippendorff's α, Gwet's AC1."""
 
     items = serializers.IntegerField()
@@ -33,12 +34,12 @@ class AgreementSerializer(serializers.Serializer):
     ac1 = EstimateSerializer()
 
 
-class AgreementOfSlice(serializers.Serializer):
+class AgreementOfSlice(serializers.Serializer[Any]):
     name = serializers.CharField()
     agreement = AgreementSerializer()
 
 
-class DisagreementSerializer(serializers.Serializer):
+class DisagreementSerializer(serializers.Serializer[Any]):
     """Two answers to the same utterances, such as ``example``."""
 
     first = serializers.CharField()
@@ -47,7 +48,7 @@ class DisagreementSerializer(serializers.Serializer):
     example = serializers.CharField()
 
 
-class AgreementReportSerializer(serializers.Serializer):
+class AgreementReportSerializer(serializers.Serializer[Any]):
     """Agreement on everything that two people have labelled, by task category and by head predicate.
 
     ``is_capped`` where only the newest items were looked at.
@@ -66,11 +67,11 @@ class AgreementOfWorld(Figures):
     model = Assignment
 
     @extend_schema(operation_id="agreement", responses={200: AgreementReportSerializer})
-    def get(self, request: Request, **kwargs: object) -> Response:
+    def get(self, request: ApiRequest, **kwargs: object) -> Response:
         return Response(AgreementReportSerializer(asdict(report_agreement(self.world))).data)
 
 
-class PersonProgressSerializer(serializers.Serializer):
+class PersonProgressSerializer(serializers.Serializer[Any]):
     """Items that somebody has done; ``days`` go with those of the answer."""
 
     person = serializers.CharField()
@@ -78,7 +79,7 @@ class PersonProgressSerializer(serializers.Serializer):
     total = serializers.IntegerField()
 
 
-class ProgressSerializer(serializers.Serializer):
+class ProgressSerializer(serializers.Serializer[Any]):
     """The last days, from the first on which somebody did something."""
 
     days = serializers.ListField(child=serializers.DateField())
@@ -92,5 +93,5 @@ class ProgressOfWorld(Figures):
     model = Assignment
 
     @extend_schema(operation_id="progress", responses={200: ProgressSerializer})
-    def get(self, request: Request, **kwargs: object) -> Response:
+    def get(self, request: ApiRequest, **kwargs: object) -> Response:
         return Response(ProgressSerializer(progress_of(self.world)).data)

@@ -9,7 +9,6 @@ from django.db.models import QuerySet
 from drf_spectacular.utils import extend_schema, extend_schema_field
 from rest_framework import serializers
 from rest_framework.decorators import action
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.label_audit.label_decisions import decide, take_back
@@ -24,17 +23,18 @@ from annotations.models.queueing import (
     finding_status_choices,
 )
 from annotations.web.rest.fields import Fields
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_text
 from annotations.web.rest.routes import RowsViewSet, WorldViewSet
 
 
-class AuditReasonSerializer(serializers.ModelSerializer):
+class AuditReasonSerializer(serializers.ModelSerializer[AuditReason]):
     class Meta:
         model = AuditReason
         fields = ["reason", "sentence", "suggested_form", "score"]
 
 
-class AuditDecisionSerializer(serializers.ModelSerializer):
+class AuditDecisionSerializer(serializers.ModelSerializer[AuditDecision]):
     decided_by = serializers.CharField(source="decided_by.username", default=None)
 
     class Meta:
@@ -42,12 +42,12 @@ class AuditDecisionSerializer(serializers.ModelSerializer):
         fields = ["id", "decision", "form", "reason", "decided_by", "decided_at", "taken_back_at"]
 
 
-class FindingSubjectSerializer(serializers.Serializer):
+class FindingSubjectSerializer(serializers.Serializer[Any]):
     kind = serializers.ChoiceField(choices=["utterance", "paraphrase"])
     id = serializers.IntegerField()
 
 
-class AuditFindingSerializer(serializers.ModelSerializer):
+class AuditFindingSerializer(serializers.ModelSerializer[AuditFinding]):
     """A label that may be wrong, what speaks against it, and every decision about it."""
 
     subject = serializers.SerializerMethodField()
@@ -109,7 +109,7 @@ class AuditFindingViewSet(RowsViewSet):
 
     @extend_schema(request=NewDecision, responses={200: AuditFindingSerializer})
     @action(detail=True, methods=["post"])
-    def decide(self, request: Request, **kwargs: object) -> Response:
+    def decide(self, request: ApiRequest, **kwargs: object) -> Response:
         """Decides about a label in doubt, once. The work queue knows who may."""
         row, sent = self.get_object(), self.read(NewDecision)
         try:
@@ -130,7 +130,7 @@ class AuditDecisionViewSet(WorldViewSet):
 
     @extend_schema(request=None, responses={200: AuditFindingSerializer})
     @action(detail=True, methods=["post"], url_path="take-back")
-    def take_back(self, request: Request, **kwargs: object) -> Response:
+    def take_back(self, request: ApiRequest, **kwargs: object) -> Response:
         """Undoes a decision of the caller; its label is in doubt again."""
         finding = take_back(self.get_object(), request.user)
         return self.show(finding_rows(self.world).get(pk=finding.pk))

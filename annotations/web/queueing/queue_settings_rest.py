@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 from django.db import transaction
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
-from rest_framework.filters import BaseFilterBackend
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.models import Duty, Scope, WorkKind, WorkShare
 from annotations.queueing.enqueuing import DOUBLE_KINDS, set_share, shares_of
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.matching import etag_of, require_match
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import WorldRoute
 
 
-class SharesSerializer(serializers.Serializer):
+class SharesSerializer(serializers.Serializer[Any]):
     """The share of items of each kind that two people do independently of each other, in percent."""
 
     def get_fields(self) -> dict[str, Any]:
@@ -37,21 +36,21 @@ class QueueSettings(WorldRoute):
 
     model = WorkShare
     serializer_class = SharesSerializer
-    filter_backends: ClassVar[list[type[BaseFilterBackend]]] = []
+    filter_backends = []
     pagination_class = None
-    duties: ClassVar[dict[str, Duty]] = {"GET": Duty.MANAGE, "PATCH": Duty.MANAGE}
-    scopes: ClassVar[dict[str, Scope]] = {"GET": Scope.READ}
+    duties = {"GET": Duty.MANAGE, "PATCH": Duty.MANAGE}
+    scopes = {"GET": Scope.READ}
     conditional = ("PATCH",)
 
     @extend_schema(operation_id="queue_settings", responses={200: SharesSerializer})
-    def get(self, request: Request, **kwargs: object) -> Response:
+    def get(self, request: ApiRequest, **kwargs: object) -> Response:
         shown = shares_of(self.world)
         return Response(shown, headers={"ETag": etag_of(None, shown)})
 
     @extend_schema(
         operation_id="set_queue_settings", request=SharesChange, responses={200: SharesSerializer}
     )
-    def patch(self, request: Request, **kwargs: object) -> Response:
+    def patch(self, request: ApiRequest, **kwargs: object) -> Response:
         sent = self.read(SharesChange, partial=True)
         with transaction.atomic():
             self.hold_world()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import django_filters
-from django.http import HttpRequest
 
 from annotations.lists.filtering import Choices, PageFilters, Search
 from annotations.models.queueing import (
@@ -13,9 +12,10 @@ from annotations.models.queueing import (
     finding_status_choices,
     work_kind_choices,
 )
+from annotations.people.access import WorldRequest
 
 
-def member_choices(request: HttpRequest) -> Choices:
+def member_choices(request: WorldRequest) -> Choices:
     """Return the people who have a role in the world."""
     rows = request.world.memberships.order_by("user__username")
     return [(str(key), name) for key, name in rows.values_list("user", "user__username").distinct()]
@@ -38,7 +38,8 @@ class WorkItemFilters(PageFilters):
     def qs(self) -> WorkItemQuerySet:
         rows = super().qs
         is_asked = self.is_bound and self.form.is_valid() and self.form.cleaned_data["state"]
-        return rows if is_asked else rows.open()
+        chosen: WorkItemQuerySet = rows if is_asked else rows.open()
+        return chosen
 
     def by_state(self, rows: WorkItemQuerySet, name: str, value: str) -> WorkItemQuerySet:
         if value == "done":
@@ -67,7 +68,8 @@ class AuditFindingFilters(PageFilters):
     def qs(self) -> AuditFindingQuerySet:
         rows = super().qs
         is_asked = self.is_bound and self.form.is_valid() and self.form.cleaned_data["status"]
-        return rows if is_asked else rows.open()
+        chosen: AuditFindingQuerySet = rows if is_asked else rows.open()
+        return chosen
 
     def by_status(self, rows: AuditFindingQuerySet, name: str, value: str) -> AuditFindingQuerySet:
         return rows.with_status(value)

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
 from django.contrib import messages
-from django.http import HttpRequest, HttpResponse, HttpResponseRedirect
+from django.http import HttpResponse, HttpResponseRedirect
 from django.shortcuts import get_object_or_404, redirect
 from django.utils.http import url_has_allowed_host_and_scheme
 
 from annotations.language.errors import Refusal
 from annotations.models import Duty, Example, World
-from annotations.people.access import WRITE, world_view
+from annotations.people.access import WRITE, PageRequest, WorldRequest, world_view
 from annotations.queueing.sent_examples import send_examples
 from annotations.web.queueing.work_item_forms import AskForm
 
 
 @world_view(Duty.REVIEW, WRITE)
-def example_send(request: HttpRequest, world: World, split: int, pk: int) -> HttpResponse:
+def example_send(request: WorldRequest, world: World, split: int, pk: int) -> HttpResponse:
     """Send the row behind an example to the work queue with a reason, and go back."""
     rows = Example.objects.filter(split__world=world, split=split)
     row = get_object_or_404(rows, pk=pk)
@@ -25,7 +26,7 @@ def example_send(request: HttpRequest, world: World, split: int, pk: int) -> Htt
     return go_back(request, "example", world=world.name, split=split, pk=pk)
 
 
-def send(request: HttpRequest, world: World, examples: Iterable[Example]) -> None:
+def send(request: WorldRequest, world: World, examples: Iterable[Example]) -> None:
     """Send examples to the work queue with the posted reason, and tell the reader the result."""
     form = AskForm(request.POST)
     if not form.is_valid():
@@ -40,10 +41,11 @@ def send(request: HttpRequest, world: World, examples: Iterable[Example]) -> Non
     tell(request, sent.sentence)
 
 
-def go_back(request: HttpRequest, to: str, **keys: object) -> HttpResponse:
+def go_back(request: PageRequest, to: str, **keys: Any) -> HttpResponse:
     """Go to the page of this site that the form names as ``next``, or to a route."""
     address = request.POST.get("next", "")
     is_ours = url_has_allowed_host_and_scheme(address, {request.get_host()}, request.is_secure())
     if is_ours and address.startswith("/"):
         return HttpResponseRedirect(address)
-    return redirect(to, **keys)
+    page: HttpResponse = redirect(to, **keys)
+    return page

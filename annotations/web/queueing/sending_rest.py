@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any, ClassVar
+from typing import Any
 
 from django.db.models import QuerySet
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
-from rest_framework.filters import BaseFilterBackend
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.models import Duty, Example
@@ -17,6 +15,7 @@ from annotations.queueing.sent_examples import send_examples
 from annotations.web.queueing.work_item_forms import LONGEST_QUESTION
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.idempotency import once
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import WorldRoute
 
 
@@ -26,7 +25,7 @@ class WhatToLookAt(Fields):
     reason = LineField(max_length=LONGEST_QUESTION)
 
 
-class SentSerializer(serializers.Serializer):
+class SentSerializer(serializers.Serializer[Any]):
     """What became of the examples: different texts, the rows behind them, and how many are in the queue now."""
 
     utterances = serializers.IntegerField()
@@ -39,7 +38,7 @@ class Sending(WorldRoute):
     """Sends what is behind examples to the work queue."""
 
     http_method_names = ["post", "options"]
-    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.REVIEW}
+    duties = {"POST": Duty.REVIEW}
 
     def send(self, examples: Iterable[Example]) -> Response:
         """Send examples for the reason in the body. Raises Refusal where they are too many."""
@@ -52,12 +51,12 @@ class SendExample(Sending):
     """Sends what is behind an example of a split to the work queue."""
 
     model = Example
-    filter_backends: ClassVar[list[type[BaseFilterBackend]]] = []
+    filter_backends = []
 
     def rows(self) -> QuerySet[Example]:
         return Example.objects.filter(split__world=self.world, split=self.kwargs["split"])
 
     @extend_schema(request=WhatToLookAt, responses={200: SentSerializer})
     @once
-    def post(self, request: Request, **kwargs: Any) -> Response:
+    def post(self, request: ApiRequest, **kwargs: Any) -> Response:
         return self.send([self.get_object()])

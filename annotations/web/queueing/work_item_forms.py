@@ -12,6 +12,7 @@ from annotations.language.errors import LanguageError
 from annotations.language.limits import MAX_FORM
 from annotations.models import Label, User, Verdict, World
 from annotations.queueing.enqueuing import DOUBLE_KINDS
+from annotations.web.forms import choice_field, row_field
 
 MOST_ASSIGNED = 100
 LONGEST_QUESTION = 200  # characters that say what somebody is to look at
@@ -26,12 +27,12 @@ class AskForm(forms.Form):
 class AssignForm(forms.Form):
     """The member who is to do an item."""
 
-    person = forms.ModelChoiceField(queryset=None, empty_label=None)
+    person = forms.ModelChoiceField(User.objects.none(), empty_label=None)
 
     def __init__(self, world: World, *args: Any, **kwargs: Any):
         super().__init__(*args, **kwargs)
         members = User.objects.filter(memberships__world=world, is_active=True).distinct()
-        self.fields["person"].queryset = members.order_by("username")
+        row_field(self, "person").queryset = members.order_by("username")
 
 
 class AssignManyForm(AssignForm):
@@ -69,10 +70,10 @@ class SettleForm(forms.Form):
         self.labels = {str(label.pk): label for label in labels}
         taken = [(key, f"What {label.annotator} says") for key, label in self.labels.items()]
         others = [(self.UNKNOWN, "No form says this"), (self.OTHER, "Another form")]
-        self.fields["choice"].choices = taken + others
+        choice_field(self, "choice").choices = taken + others
 
     def clean(self) -> dict[str, Any]:
-        cleaned = super().clean()
+        cleaned = self.cleaned_data
         if cleaned.get("choice") == self.OTHER:
             try:
                 cleaned["form"] = canonical_label(cleaned.get("form", ""))
@@ -81,7 +82,7 @@ class SettleForm(forms.Form):
         return cleaned
 
     @property
-    def decision(self) -> dict[str, str]:
+    def decision(self) -> dict[str, Any]:
         choice = self.cleaned_data["choice"]
         if label := self.labels.get(choice):
             return {"verdict": label.verdict, "form": label.form, "reason": label.reason}

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 from django.contrib import messages
 from django.db.models import Prefetch
-from django.http import Http404, HttpRequest, HttpResponse
+from django.http import Http404, HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.urls import reverse
 from django.views.decorators.cache import never_cache
@@ -18,7 +19,13 @@ from annotations.language.errors import Refusal
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.models import Assignment, Duty, WorkItem, WorkKind, World
 from annotations.models.queueing import OCCUPYING
-from annotations.people.access import READ_AND_WRITE, WRITE, demand, world_view
+from annotations.people.access import (
+    READ_AND_WRITE,
+    WRITE,
+    WorldRequest,
+    demand,
+    world_view,
+)
 from annotations.queueing.enqueuing import ASKABLE, ask_about, set_share, shares_of
 from annotations.queueing.finishing import finish, give_back, skip
 from annotations.queueing.giving import (
@@ -50,7 +57,7 @@ SORTS = {
 }
 
 
-def shown_parts() -> Prefetch:
+def shown_parts() -> Prefetch[Any]:
     """Return the people who have an item or have done it, for lists."""
     parts = Assignment.objects.filter(outcome__in=OCCUPYING)
     return Prefetch("assignments", parts.select_related("person"), "parts")
@@ -58,7 +65,7 @@ def shown_parts() -> Prefetch:
 
 @never_cache
 @world_view(Duty.VIEW)
-def queue(request: HttpRequest, world: World) -> HttpResponse:
+def queue(request: WorldRequest, world: World) -> HttpResponse:
     """Show the reader's current item and the list of all items."""
     listing = Listing(
         request, WorkItemFilters, world.work_items.present().prefetch_related(shown_parts()), SORTS
@@ -75,7 +82,7 @@ def queue(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.VIEW, WRITE)
-def queue_next(request: HttpRequest, world: World) -> HttpResponse:
+def queue_next(request: WorldRequest, world: World) -> HttpResponse:
     """Assign the next item to the reader, and open its page."""
     assignment = next_item(request.user, world)
     if assignment is None:
@@ -86,7 +93,7 @@ def queue_next(request: HttpRequest, world: World) -> HttpResponse:
 
 @never_cache
 @world_view(Duty.VIEW)
-def queue_item(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def queue_item(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show one item: why it is there, who does it, and two labels beside each other if they differ."""
     return _item_page(request, _item_of(world, pk))
 
@@ -98,7 +105,7 @@ def _item_of(world: World, pk: int) -> WorkItem:
 
 
 def _item_page(
-    request: HttpRequest, item: WorkItem, form: SettleForm | None = None, status: int = 200
+    request: WorldRequest, item: WorkItem, form: SettleForm | None = None, status: int = 200
 ) -> HttpResponse:
     parts = item.assignments.select_related("person", "label")
     mine = parts.held().filter(person=request.user).first()
@@ -130,7 +137,7 @@ def page_of(item: WorkItem) -> str:
 
 
 @world_view(Duty.VIEW, WRITE)
-def queue_settle(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def queue_settle(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Decide between two labels, with one of them or with another answer."""
     item = _item_of(world, pk)
     form = SettleForm(labels_to_compare(item, request.user), request.POST)
@@ -140,7 +147,9 @@ def queue_settle(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     if not form.is_valid():
         return _item_page(request, item, form, status=422)
     try:
-        answer(item.utterance, by=request.user, version=item.utterance.version, **form.decision)
+        utterance = item.utterance
+        assert utterance is not None  # else there is nothing to settle
+        answer(utterance, by=request.user, version=utterance.version, **form.decision)
     except Refusal as error:
         messages.error(request, str(error))
         return redirect("queue_item", world=world.name, pk=pk)
@@ -158,7 +167,7 @@ def _finish(part: Assignment) -> None:
 
 
 @world_view(Duty.REVIEW, WRITE)
-def queue_ask(request: HttpRequest, world: World, kind: str, pk: int) -> HttpResponse:
+def queue_ask(request: WorldRequest, world: World, kind: str, pk: int) -> HttpResponse:
     """Ask for a look at an utterance, a template or a paraphrase, with a reason."""
     if kind not in ASKABLE:
         raise Http404("Nobody can be asked about that.")
@@ -182,7 +191,7 @@ STEPS: dict[str, tuple[Callable[[Assignment], object], str]] = {
 
 
 @world_view(Duty.VIEW, WRITE)
-def queue_act(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def queue_act(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Take an item, give it back, skip it or end it; admins give it to somebody or withdraw it."""
     item = _item_of(world, pk)
     step = request.POST.get("step", "")
@@ -196,24 +205,24 @@ def queue_act(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     return redirect("queue_item", world=world.name, pk=pk)
 
 
-def _act(request: HttpRequest, item: WorkItem, step: str) -> str:
+def _act(request: WorldRequest, item: WorkItem, step: str) -> str:
     """Carry out a step of an admin, or of the person who holds the item. Return a sentence about it."""
     if step in ("assign", "withdraw"):
         demand(request, Duty.MANAGE)
         if step == "assign":
             return _assign(request, item)
-        for part in item.assignments.held():
-            withdraw(part)
+        for assignment in item.assignments.held():
+            withdraw(assignment)
         return "Withdrawn. Others can take it now."
-    part = item.assignments.held().filter(person=request.user).first()
-    if part is None or step not in STEPS:
+    held = item.assignments.held().filter(person=request.user).first()
+    if held is None or step not in STEPS:
         raise NoLongerYours("This is not yours now. Take it first.")
     verb, sentence = STEPS[step]
-    verb(part)
+    verb(held)
     return sentence
 
 
-def _assign(request: HttpRequest, item: WorkItem) -> str:
+def _assign(request: WorldRequest, item: WorkItem) -> str:
     form = AssignForm(item.world, request.POST)
     if not form.is_valid():
         raise NotForThem("Choose a person of this world.")
@@ -223,7 +232,7 @@ def _assign(request: HttpRequest, item: WorkItem) -> str:
 
 
 @world_view(Duty.MANAGE, WRITE)
-def queue_assign(request: HttpRequest, world: World) -> HttpResponse:
+def queue_assign(request: WorldRequest, world: World) -> HttpResponse:
     """Give somebody the first free items of the list that the filters of the URL leave."""
     form = AssignManyForm(world, request.POST)
     if not form.is_valid():
@@ -236,7 +245,7 @@ def queue_assign(request: HttpRequest, world: World) -> HttpResponse:
     return _back_to_list(request, world)
 
 
-def _back_to_list(request: HttpRequest, world: World) -> HttpResponse:
+def _back_to_list(request: WorldRequest, world: World) -> HttpResponse:
     response = redirect("queue", world=world.name)
     if query := request.GET.urlencode():
         response["Location"] += f"?{query}"
@@ -244,7 +253,7 @@ def _back_to_list(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.MANAGE, READ_AND_WRITE)
-def queue_settings(request: HttpRequest, world: World) -> HttpResponse:
+def queue_settings(request: WorldRequest, world: World) -> HttpResponse:
     """Set the share of items, by kind, that two people do independently."""
     form = SharesForm(posted(request), initial=shares_of(world))
     if request.method == "POST" and form.is_valid():

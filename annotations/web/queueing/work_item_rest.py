@@ -11,7 +11,6 @@ from django.shortcuts import get_object_or_404
 from drf_spectacular.utils import OpenApiResponse, extend_schema, extend_schema_field
 from rest_framework import serializers
 from rest_framework.decorators import action
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.label_audit.label_decisions import end_item
@@ -23,10 +22,12 @@ from annotations.queueing.enqueuing import ASKABLE, ask_about
 from annotations.queueing.finishing import finish, give_back, skip
 from annotations.queueing.giving import assign, assign_first, next_item, take, withdraw
 from annotations.queueing.item_answers import answer, labels_to_compare
+from annotations.web.forms import row_field
 from annotations.web.queueing.queueing_filters import WorkItemFilters
 from annotations.web.queueing.work_item_forms import LONGEST_QUESTION, MOST_ASSIGNED, AssignForm
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.idempotency import once
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import PreconditionRequired, refusal_of_text
 from annotations.web.rest.routes import RowsViewSet
 
@@ -34,7 +35,7 @@ PARTS = Prefetch("assignments", Assignment.objects.select_related("person"))
 STATES = ("open", "free", "taken", "done")
 
 
-class AssignmentSerializer(serializers.ModelSerializer):
+class AssignmentSerializer(serializers.ModelSerializer[Assignment]):
     person = serializers.CharField(source="person.username", default=None)
 
     class Meta:
@@ -42,7 +43,7 @@ class AssignmentSerializer(serializers.ModelSerializer):
         fields = ["person", "outcome", "leased_until", "taken_at", "done_at"]
 
 
-class WorkSubjectSerializer(serializers.Serializer):
+class WorkSubjectSerializer(serializers.Serializer[Any]):
     """What an item is about; ``version`` is that of an utterance."""
 
     kind = serializers.ChoiceField(choices=["utterance", "template", "paraphrase"])
@@ -50,7 +51,7 @@ class WorkSubjectSerializer(serializers.Serializer):
     version = serializers.IntegerField(required=False)
 
 
-class WorkItemSerializer(serializers.ModelSerializer):
+class WorkItemSerializer(serializers.ModelSerializer[WorkItem]):
     """An item with the people who have it or had it; what they answered is not shown."""
 
     subject = serializers.SerializerMethodField()
@@ -72,7 +73,7 @@ class WorkItemSerializer(serializers.ModelSerializer):
         return {"kind": "paraphrase", "id": item.paraphrase_id}
 
 
-class ComparedLabelSerializer(serializers.ModelSerializer):
+class ComparedLabelSerializer(serializers.ModelSerializer[Label]):
     annotator = serializers.CharField(source="annotator.username", default=None)
 
     class Meta:
@@ -141,7 +142,7 @@ class PersonAndCount(PersonSerializer):
     count = serializers.IntegerField(min_value=1, max_value=MOST_ASSIGNED)
 
 
-class GivenSerializer(serializers.Serializer):
+class GivenSerializer(serializers.Serializer[Any]):
     """How many items the person has beside those that they had."""
 
     given = serializers.IntegerField()
@@ -149,7 +150,7 @@ class GivenSerializer(serializers.Serializer):
 
 def person_called(world: World, name: str) -> User:
     """Return the member whom admins may give an item. Raises Refusal where there is none."""
-    members = AssignForm(world).fields["person"].queryset
+    members: Any = row_field(AssignForm(world), "person").queryset
     person: User | None = members.filter(username=name).first()
     if person is None:
         said = "Choose a person of this world."
@@ -176,7 +177,7 @@ class WorkItemViewSet(RowsViewSet):
 
     @extend_schema(request=WhatToAsk, responses={201: WorkItemSerializer})
     @once
-    def create(self, request: Request, **kwargs: object) -> Response:
+    def create(self, request: ApiRequest, **kwargs: object) -> Response:
         """Asks for a look at a row."""
         sent = self.read(WhatToAsk)
         subject = get_object_or_404(ASKABLE[sent["kind"]](self.world), pk=sent["id"])
@@ -210,7 +211,7 @@ class WorkItemViewSet(RowsViewSet):
         },
     )
     @action(detail=False, methods=["post"])
-    def next(self, request: Request, **kwargs: object) -> Response:
+    def next(self, request: ApiRequest, **kwargs: object) -> Response:
         """Gives the caller the item they hold, or the most urgent one that is free."""
         given = next_item(request.user, self.world)
         if given is None:
@@ -226,7 +227,7 @@ class WorkItemViewSet(RowsViewSet):
         },
     )
     @action(detail=True, methods=["post"])
-    def finish(self, request: Request, **kwargs: object) -> Response:
+    def finish(self, request: ApiRequest, **kwargs: object) -> Response:
         """Ends the caller's part of an item, with a label where it is about an utterance."""
         assignment = self.held()
         try:
@@ -239,21 +240,21 @@ class WorkItemViewSet(RowsViewSet):
         operation_id="work_item_give_back", request=None, responses={200: WorkItemSerializer}
     )
     @action(detail=True, methods=["post"], url_path="give-back")
-    def give_back(self, request: Request, **kwargs: object) -> Response:
+    def give_back(self, request: ApiRequest, **kwargs: object) -> Response:
         """Returns an item that the caller holds, for others."""
         give_back(self.held())
         return self.shown()
 
     @extend_schema(operation_id="work_item_skip", request=None, responses={200: WorkItemSerializer})
     @action(detail=True, methods=["post"])
-    def skip(self, request: Request, **kwargs: object) -> Response:
+    def skip(self, request: ApiRequest, **kwargs: object) -> Response:
         """Returns an item that the caller holds; they do not get it again."""
         skip(self.held())
         return self.shown()
 
     @extend_schema(operation_id="work_item_take", request=None, responses={200: WorkItemSerializer})
     @action(detail=True, methods=["post"])
-    def take(self, request: Request, **kwargs: object) -> Response:
+    def take(self, request: ApiRequest, **kwargs: object) -> Response:
         """Gives the caller this very item."""
         take(request.user, self.get_object())
         return self.shown()
@@ -264,7 +265,7 @@ class WorkItemViewSet(RowsViewSet):
         responses={200: WorkItemSerializer},
     )
     @action(detail=True, methods=["post"])
-    def assign(self, request: Request, **kwargs: object) -> Response:
+    def assign(self, request: ApiRequest, **kwargs: object) -> Response:
         """Gives an item to a member, without end."""
         item = self.get_object()
         person = person_called(self.world, self.read(PersonSerializer)["person"])
@@ -275,7 +276,7 @@ class WorkItemViewSet(RowsViewSet):
         operation_id="work_item_withdraw", request=None, responses={200: WorkItemSerializer}
     )
     @action(detail=True, methods=["post"])
-    def withdraw(self, request: Request, **kwargs: object) -> Response:
+    def withdraw(self, request: ApiRequest, **kwargs: object) -> Response:
         """Takes an item from whoever has it, for others."""
         for assignment in self.get_object().assignments.held():
             withdraw(assignment)
@@ -293,11 +294,11 @@ class WorkItemViewSet(RowsViewSet):
         pagination_class=None,
     )
     @once
-    def assign_many(self, request: Request, **kwargs: object) -> Response:
+    def assign_many(self, request: ApiRequest, **kwargs: object) -> Response:
         """Gives a member the most urgent free items among those that the filters of the page choose."""
         sent = self.read(PersonAndCount)
         person = person_called(self.world, sent["person"])
-        rows = self.filter_queryset(self.get_queryset())
+        rows: Any = self.filter_queryset(self.get_queryset())
         return Response({"given": assign_first(rows, person, sent["count"], request.user)})
 
 

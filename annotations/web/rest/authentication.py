@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import cast
+
 from django.http import HttpRequest
 from drf_spectacular.extensions import OpenApiAuthenticationExtension
 from rest_framework.authentication import BaseAuthentication, get_authorization_header
@@ -17,7 +19,7 @@ class TokenAuthentication(BaseAuthentication):
     keyword = "Bearer"
 
     def authenticate(self, request: Request | HttpRequest) -> tuple[User, ApiToken] | None:
-        words = get_authorization_header(request).split()
+        words = get_authorization_header(cast(Request, request)).split()
         if not words or words[0].lower() != self.keyword.lower().encode():
             return None
         if len(words) != 2:
@@ -31,7 +33,7 @@ class TokenAuthentication(BaseAuthentication):
         return self.keyword
 
 
-class TokenScheme(OpenApiAuthenticationExtension):
+class TokenScheme(OpenApiAuthenticationExtension):  # type: ignore[no-untyped-call]
     """How the OpenAPI schema describes the token."""
 
     target_class = "annotations.web.rest.authentication.TokenAuthentication"

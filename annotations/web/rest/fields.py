@@ -12,7 +12,7 @@ from rest_framework import serializers
 from annotations.web.rest.problem_details import ProblemItemSerializer
 
 
-class Fields(serializers.Serializer):
+class Fields(serializers.Serializer[Any]):
     """What a body may hold. A name that is none of it is refused rather than overlooked."""
 
     def to_internal_value(self, data: Any) -> Any:
@@ -53,12 +53,12 @@ class AttributesField(serializers.DictField):
 class FiniteField(serializers.FloatField):
     """A number; null where it is infinite or none, which JSON cannot write."""
 
-    def to_representation(self, value: Any) -> float | None:
+    def to_representation(self, value: Any) -> Any:
         return float(value) if value is not None and math.isfinite(value) else None
 
 
 @cache
-def with_problems(serializer: type[serializers.Serializer]) -> type[serializers.Serializer]:
+def with_problems(serializer: Any) -> type[serializers.Serializer[Any]]:
     """Return the serializer of a row together with what the checker says of it."""
     name = f"Written{serializer.__name__}"
     doc = "The row as it is stored, and what the checker says of it."

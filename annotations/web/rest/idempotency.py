@@ -12,11 +12,11 @@ from typing import Any
 from django.core.cache import cache
 from django.core.serializers.json import DjangoJSONEncoder
 from rest_framework.exceptions import ValidationError
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.editing.once_keys import REMEMBERED_SECONDS
 from annotations.language.errors import Refusal
+from annotations.web.rest.permissions import ApiRequest
 
 HEADER = "Idempotency-Key"
 LONGEST = 255
@@ -29,7 +29,7 @@ def once(method: Method) -> Method:
     """Wrap a method of a route: it carries out a request with the same key only once a day."""
 
     @wraps(method)
-    def answer(view: Any, request: Request, **kwargs: Any) -> Response:
+    def answer(view: Any, request: ApiRequest, **kwargs: Any) -> Response:
         slot = slot_of(request)
         if not slot:
             return method(view, request, **kwargs)
@@ -44,11 +44,11 @@ def once(method: Method) -> Method:
         cache.set(slot, {"sent": sent, **_kept(response)}, REMEMBERED_SECONDS)
         return response
 
-    answer.takes_key = True
+    answer.takes_key = True  # type: ignore[attr-defined]  # of a function
     return answer
 
 
-def slot_of(request: Request) -> str:
+def slot_of(request: ApiRequest) -> str:
     """Return the cache key for the answer to this request; empty without an idempotency key. Raises ValidationError."""
     key = request.headers.get(HEADER, "")
     if len(key) > LONGEST:
@@ -57,7 +57,7 @@ def slot_of(request: Request) -> str:
     return f"api:{hashlib.sha256(where.encode()).hexdigest()}" if key else ""
 
 
-def fingerprint_of(request: Request) -> str:
+def fingerprint_of(request: ApiRequest) -> str:
     """Return a hash of what was sent, files with their contents."""
     digest = hashlib.sha256(request.META.get("QUERY_STRING", "").encode())
     files = [(name, file) for name, some in request.FILES.lists() for file in some]

@@ -9,11 +9,11 @@ from typing import Any
 
 from django.core.serializers.json import DjangoJSONEncoder
 from django.utils.http import parse_etags
-from rest_framework.request import Request
 
 from annotations.editing.edits import Overtaken
 from annotations.language.errors import Refusal
 from annotations.models import Editable
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import PreconditionRequired
 
 ANY = "*"
@@ -27,7 +27,7 @@ def etag_of(row: Any, shown: Mapping[str, Any]) -> str:
     return f'"{hashlib.sha256(text.encode()).hexdigest()[:20]}"'
 
 
-def require_match(request: Request, row: Any, shown: Mapping[str, Any]) -> None:
+def require_match(request: ApiRequest, row: Any, shown: Mapping[str, Any]) -> None:
     """Refuse a write to a version of ``row`` that is not the present one; ``*`` stands for any.
 
     Raises PreconditionRequired without a version, and Overtaken for another one.

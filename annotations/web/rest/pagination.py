@@ -25,9 +25,7 @@ class Keyset(BasePagination):
     the default.
     """
 
-    def paginate_queryset(
-        self, queryset: QuerySet[Any], request: Request, view: Any = None
-    ) -> list[Any]:
+    def paginate_queryset(self, queryset: Any, request: Request, view: Any = None) -> list[Any]:
         self.address = request.build_absolute_uri()
         order = self._order(request, view.sorts)
         cursors = {name: self._cursor(request, queryset, order, name) for name in PLACES}

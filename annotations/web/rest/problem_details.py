@@ -22,7 +22,7 @@ from annotations.web.not_found import say_missing, where_to_look
 CONTENT_TYPE = "application/problem+json"
 
 
-class ProblemItemSerializer(serializers.Serializer):
+class ProblemItemSerializer(serializers.Serializer[Any]):
     """One thing that is wrong: in which field, or where in which file, and what to do about it."""
 
     field = serializers.CharField(required=False)
@@ -34,7 +34,7 @@ class ProblemItemSerializer(serializers.Serializer):
     hint = serializers.CharField(required=False)
 
 
-class ProblemSerializer(serializers.Serializer):
+class ProblemSerializer(serializers.Serializer[Any]):
     """Why a request was refused. ``current`` is the row as it is now where it has changed since."""
 
     type = serializers.CharField()
@@ -55,7 +55,7 @@ class PreconditionRequired(exceptions.APIException):
     )
 
 
-def refusal_of_form(form: forms.Form) -> Refusal:
+def refusal_of_form(form: forms.BaseForm) -> Refusal:
     """Return what is wrong with a form of the pages, with the places that its checker knows."""
     checked = getattr(form, "checked", None)
     found = [each for each in checked.problems if each.is_error] if checked else []
@@ -138,6 +138,6 @@ def _problems_in(errors: Any, field: str = "") -> Iterator[dict[str, Any]]:
         yield {"field": field, "message": str(errors)} if field else {"message": str(errors)}
 
 
-def _with_field(problem: Problem, form: forms.Form) -> dict[str, Any]:
+def _with_field(problem: Problem, form: forms.BaseForm) -> dict[str, Any]:
     item = as_json(problem)
     return {"field": item["file"], **item} if item["file"] in form.fields else item

@@ -9,13 +9,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from http import HTTPStatus
-from typing import Any, ClassVar
+from typing import Any
 
-from django import forms
 from django.db import transaction
 from django.db.models import Model, QuerySet
 from django.http import Http404
-from rest_framework.filters import BaseFilterBackend
 from rest_framework.generics import GenericAPIView
 from rest_framework.mixins import ListModelMixin
 from rest_framework.request import Request
@@ -31,19 +29,20 @@ from annotations.web.rest.idempotency import once, slot_of
 from annotations.web.rest.matching import etag_of, require_match
 from annotations.web.rest.pagination import Keyset
 from annotations.web.rest.parsing import BoundedJSONParser
-from annotations.web.rest.permissions import HasDuty, HasScope, asked_of
+from annotations.web.rest.permissions import ApiRequest, HasDuty, HasScope, asked_of
 from annotations.web.rest.problem_details import refusal_of_form
 
 
-class Route(GenericAPIView):
+class Route(GenericAPIView[Any]):
     """A route outside of any world. ``duties`` says what each method, or action of a view set, needs, which
     decides the scope of a token; reading needs ``Duty.VIEW``."""
 
     permission_classes = [HasScope]
-    duties: ClassVar[Mapping[str, Duty]] = {}
+    duties: Mapping[str, Duty] = {}
     parser_classes = [BoundedJSONParser]
-    conditional: ClassVar[tuple[str, ...]] = ()  # what needs If-Match
-    model: ClassVar[type[Model]]
+    conditional: tuple[str, ...] = ()  # what needs If-Match
+    model: type[Model]
+    request: ApiRequest
 
     @property
     def duty(self) -> Duty:
@@ -73,7 +72,7 @@ class WorldRoute(Route):
 
     def initial(self, request: Request, *args: Any, **kwargs: Any) -> None:
         super().initial(request, *args, **kwargs)
-        request.world = self.world  # filters look there for the choices of the world
+        self.request.world = self.world  # filters look there for the choices of the world
 
     def hold_world(self) -> None:
         """Read and lock the world until the end of the transaction. Raises Http404 if it is gone."""
@@ -123,19 +122,19 @@ class Tagged(Route):
 class ManyRows(ListModelMixin, Tagged):
     """A list, filtered, sorted and paged by its address."""
 
-    pagination_class = Keyset
-    sorts: ClassVar[dict[str, str]] = {"id": "pk"}
+    pagination_class: type[Keyset] | None = Keyset
+    sorts: Mapping[str, str] = {"id": "pk"}
 
-    def get(self, request: Request, **kwargs: Any) -> Response:
+    def get(self, request: ApiRequest, **kwargs: Any) -> Response:
         return self.list(request)
 
 
 class SingleRow(Tagged):
     """One row, with the tag of its version."""
 
-    filter_backends: ClassVar[list[type[BaseFilterBackend]]] = []
+    filter_backends = []
 
-    def get(self, request: Request, **kwargs: Any) -> Response:
+    def get(self, request: ApiRequest, **kwargs: Any) -> Response:
         return self.show(self.get_object())
 
 
@@ -156,7 +155,7 @@ class SiteViewSet(ViewSetMixin, Tagged):
 
     lookup_value_converter = "int"
     pagination_class = Keyset
-    sorts: ClassVar[dict[str, str]] = {"id": "pk"}
+    sorts: Mapping[str, str] = {"id": "pk"}
 
     def filter_queryset(self, rows: QuerySet[Any]) -> QuerySet[Any]:
         """Filter lists: a single row is there whatever the address asks."""
@@ -170,7 +169,7 @@ class WorldViewSet(SiteViewSet, WorldRoute):
 class Retrieved(Tagged):
     """The action that shows one row."""
 
-    def retrieve(self, request: Request, **kwargs: Any) -> Response:
+    def retrieve(self, request: ApiRequest, **kwargs: Any) -> Response:
         return self.show(self.get_object())
 
 
@@ -178,17 +177,17 @@ class RowsViewSet(ListModelMixin, Retrieved, WorldViewSet):
     """A kind of row of a world that is listed, and shown one by one."""
 
 
-class Noun:
+class Noun(Tagged):
     """What a kind of editable row says of itself: how it is read from a request and stored.
 
     ``new_serializer`` reads a new row and ``change_serializer`` what may be changed of one.
     """
 
-    new_serializer: ClassVar[type[BaseSerializer[Any]]]
-    change_serializer: ClassVar[type[BaseSerializer[Any]]]
+    new_serializer: type[BaseSerializer[Any]]
+    change_serializer: type[BaseSerializer[Any]]
     world: World
 
-    def form_of(self, row: Any | None, sent: Mapping[str, Any]) -> forms.Form:
+    def form_of(self, row: Any | None, sent: Mapping[str, Any]) -> Any:
         """Return the form of the page, bound to what was sent over the values of ``row``."""
         raise NotImplementedError
 
@@ -204,7 +203,7 @@ class Noun:
         """Return the checker's remarks on a row that was stored."""
         return ()
 
-    def valid_form(self, row: Any | None, sent: Mapping[str, Any]) -> forms.Form:
+    def valid_form(self, row: Any | None, sent: Mapping[str, Any]) -> Any:
         form = self.form_of(row, sent)
         if not form.is_valid():
             raise refusal_of_form(form)
@@ -220,13 +219,11 @@ class Noun:
 class EditableViewSet(Noun, RowsViewSet):
     """Rows that annotators add, change and delete; the history of a row keeps what it was."""
 
-    duties: ClassVar[Mapping[str, Duty]] = dict.fromkeys(
-        ("create", "partial_update", "destroy"), Duty.ANNOTATE
-    )
+    duties = dict.fromkeys(("create", "partial_update", "destroy"), Duty.ANNOTATE)
     conditional = ("partial_update", "destroy")
 
     @once
-    def create(self, request: Request, **kwargs: Any) -> Response:
+    def create(self, request: ApiRequest, **kwargs: Any) -> Response:
         """Adds one."""
         form = self.valid_form(None, self.read(self.new_serializer))
         row = add(self.unsaved(form), request.user, slot_of(request))
@@ -234,7 +231,7 @@ class EditableViewSet(Noun, RowsViewSet):
         response["Location"] = request.build_absolute_uri(f"{request.path}{row.pk}/")
         return response
 
-    def partial_update(self, request: Request, **kwargs: Any) -> Response:
+    def partial_update(self, request: ApiRequest, **kwargs: Any) -> Response:
         """Changes one."""
         row = self.matched()
         form = self.valid_form(row, self.read(self.change_serializer, partial=True))
@@ -242,7 +239,7 @@ class EditableViewSet(Noun, RowsViewSet):
         saved = change(row, values, request.user, row.version, again=False)
         return self.written(saved, form)
 
-    def destroy(self, request: Request, **kwargs: Any) -> Response:
+    def destroy(self, request: ApiRequest, **kwargs: Any) -> Response:
         """Deletes one; its history can bring it back."""
         row = self.matched()
         delete(row, request.user, row.version)
@@ -252,5 +249,5 @@ class EditableViewSet(Noun, RowsViewSet):
 class Figures(WorldRoute):
     """Figures of a whole world, worked out when they are asked for."""
 
-    filter_backends: ClassVar[list[type[BaseFilterBackend]]] = []
+    filter_backends = []
     pagination_class = None

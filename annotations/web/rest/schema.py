@@ -76,7 +76,7 @@ class Schema(AutoSchema):
         """Return what a noun answers a write with: the row, and what the checker says of it."""
         writes = ("POST", "PATCH", "create", "partial_update")
         if self._asked in writes and hasattr(self.view, "new_serializer"):
-            return with_problems(self.view.serializer_class)
+            return with_problems(getattr(self.view, "serializer_class", None))
         return super().get_response_serializers()
 
     def get_tags(self) -> list[str]:

@@ -53,7 +53,7 @@ class SchemaFile(SpectacularAPIView):
         answer["Content-Disposition"] = f'inline; filename="{name}"'
         answer["ETag"] = tag
         answer["Cache-Control"] = "no-cache"  # kept, and asked about before it is used again
-        return get_conditional_response(request._request, etag=tag, response=answer)
+        return get_conditional_response(request._request, etag=tag, response=answer) or answer
 
     def perform_content_negotiation(self, request: Request, force: bool = False) -> Any:
         """Choose by ``format`` of the address, and without one by the header Accept."""
@@ -67,6 +67,7 @@ class SchemaFile(SpectacularAPIView):
 
     def _make(self, request: Request) -> tuple[bytes, str]:
         """Return the schema in the type that was asked for, and its tag."""
-        schema = self.generator_class().get_schema(public=True)
-        content: bytes = request.accepted_renderer.render(schema, renderer_context={})
+        generator: Any = self.generator_class()
+        schema = generator.get_schema(public=True)
+        content: Any = request.accepted_renderer.render(schema, renderer_context={})
         return content, f'"{hashlib.sha256(content).hexdigest()[:20]}"'

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from django.http import StreamingHttpResponse
 from django.shortcuts import get_object_or_404
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework import serializers
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.exporting.split_export import FIELDS, SplitFormat, export_pieces
@@ -17,6 +18,7 @@ from annotations.models import Example, Split
 from annotations.models.splits import Source, part_choices
 from annotations.people.allowances import may_take_long
 from annotations.web.rest.negotiation import CONTENT_TYPES, AnyType
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import WorldRoute
 
 FOUND_WRONG = OpenApiParameter(
@@ -36,7 +38,7 @@ HASH = OpenApiParameter(
 )
 
 
-class ExportedExampleSerializer(serializers.ModelSerializer):
+class ExportedExampleSerializer(serializers.ModelSerializer[Example]):
     """One line of a JSON Lines export."""
 
     class Meta:
@@ -44,17 +46,17 @@ class ExportedExampleSerializer(serializers.ModelSerializer):
         fields = FIELDS
 
 
-class ManifestQuery(serializers.Serializer):
+class ManifestQuery(serializers.Serializer[Any]):
     """Which examples of a split; all of them where nothing is asked."""
 
     part = serializers.ChoiceField(choices=part_choices(), required=False)
-    source = serializers.ChoiceField(choices=Source.choices, required=False)
+    source = serializers.ChoiceField(choices=Source.choices, required=False)  # type: ignore[assignment]  # the name of the column
 
 
 class ExportQuery(ManifestQuery):
     """What may be asked of an export. Text needs ``part`` and ``source``: it is one pair file."""
 
-    def get_fields(self) -> dict[str, serializers.Field]:
+    def get_fields(self) -> dict[str, Any]:
         # "as" is a word of Python and cannot be a class attribute.
         as_ = serializers.ChoiceField(choices=SplitFormat.choices, default=SplitFormat.JSONL)
         return {"as": as_, **super().get_fields()}
@@ -68,7 +70,7 @@ class ExportQuery(ManifestQuery):
         return query
 
 
-class ManifestSerializer(serializers.Serializer):
+class ManifestSerializer(serializers.Serializer[Any]):
     """What an export is. ``counts`` are examples by source and part; ``content_hash`` is that of the split."""
 
     format = serializers.CharField()
@@ -109,7 +111,7 @@ class SplitManifest(OfSplit):
         parameters=[ManifestQuery],
         responses={200: ManifestSerializer},
     )
-    def get(self, request: Request, **kwargs: object) -> Response:
+    def get(self, request: ApiRequest, **kwargs: object) -> Response:
         return Response(manifest_of(self.split(), **self.asked(ManifestQuery)))
 
 
@@ -133,11 +135,11 @@ class SplitExport(OfSplit):
             (200, "application/zip"): OpenApiTypes.BINARY,
         },
     )
-    def get(self, request: Request, **kwargs: object) -> StreamingHttpResponse:
+    def get(self, request: ApiRequest, **kwargs: object) -> StreamingHttpResponse:
         split, chosen = self.split(), self.asked(ExportQuery)
         as_, part, source = chosen["as"], chosen.get("part"), chosen.get("source")
         pieces = export_pieces(split, as_, part, source)
-        response = StreamingHttpResponse(pieces, content_type=CONTENT_TYPES[as_])
+        response = StreamingHttpResponse(pieces, content_type=CONTENT_TYPES[SplitFormat(as_)])
         name = "-".join(filter(None, [split.name, source, part]))
         response[FOUND_WRONG.name] = str(examples_before(split).count())
         response[HASH.name] = split.content_hash

@@ -31,7 +31,7 @@ class SplitForm(forms.Form):
 
     def clean(self) -> dict[str, Any]:
         """Refuse shares that do not sum to 100 %."""
-        cleaned = super().clean()
+        cleaned = self.cleaned_data
         shares = [cleaned[part] for part in self.SHARES if part in cleaned]
         if len(shares) == len(self.SHARES) and abs(sum(shares) - 100) > 1e-4:
             self.add_error(

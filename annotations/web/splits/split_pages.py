@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from django.contrib import messages
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 
 from annotations.label_audit.label_changes import examples_before
@@ -11,7 +13,7 @@ from annotations.language.corpus import Criterion
 from annotations.language.errors import LanguageError
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.models import Duty, Example, Split, World
-from annotations.people.access import READ_AND_WRITE, WRITE, world_view
+from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
 from annotations.people.allowances import may_take_long
 from annotations.rows.occurrences import command_of_example, logical_form_of, paraphrase_of_example
 from annotations.splits.freezing import as_items, freeze_split, plan_split, unresolved_prompts
@@ -42,7 +44,7 @@ MOST_COMPARED = 500
 
 
 @world_view(Duty.VIEW)
-def splits(request: HttpRequest, world: World) -> HttpResponse:
+def splits(request: WorldRequest, world: World) -> HttpResponse:
     """List the splits with the number of their pairs by part and source."""
     listing = Listing(request, SplitFilters, world.splits.select_related("created_by"), SPLIT_SORTS)
     counts = counts_of(listing.rows)
@@ -52,11 +54,11 @@ def splits(request: HttpRequest, world: World) -> HttpResponse:
 
 @may_take_long
 @world_view(Duty.ANNOTATE, READ_AND_WRITE)
-def split_new(request: HttpRequest, world: World) -> HttpResponse:
+def split_new(request: WorldRequest, world: World) -> HttpResponse:
     """Show the form that freezes a split; its other button only previews the counts."""
     initial = {"name": f"{world.name}-{world.splits.count() + 1}"}
     form = SplitForm(posted(request), initial=initial)
-    context = {"form": form}
+    context: dict[str, Any] = {"form": form}
     if form.is_bound and form.is_valid():
         try:
             if "freeze" not in request.POST:
@@ -74,13 +76,13 @@ def split_new(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.VIEW)
-def split(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def split(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show one split: its parts, the overlap between them, its examples."""
     row = get_object_or_404(
         Split.objects.select_related("created_by", "follows", "world"), world=world, pk=pk
     )
     newest, counts = last_of(row), counts_of([row])[row.pk]
-    context = {
+    context: dict[str, Any] = {
         "split": row,
         "newest": newest if newest != row else None,
         "counts": counts,
@@ -94,7 +96,7 @@ def split(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 @world_view(Duty.VIEW)
-def split_changes(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def split_changes(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Preview freezing a split anew. The page of a large split loads this part later."""
     row = get_object_or_404(Split.objects.select_related("world", "follows"), world=world, pk=pk)
     context = {"split": row, **_changes_of(row)}
@@ -112,7 +114,7 @@ def _changes_of(row: Split) -> dict[str, object]:
 
 @may_take_long
 @world_view(Duty.ANNOTATE, WRITE)
-def split_renew(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def split_renew(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Freeze a split anew from the corpus of today, and show the new one."""
     row = get_object_or_404(Split.objects.select_related("world", "follows"), world=world, pk=pk)
     try:
@@ -125,7 +127,7 @@ def split_renew(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 @world_view(Duty.VIEW)
-def example(request: HttpRequest, world: World, split: int, pk: int) -> HttpResponse:
+def example(request: WorldRequest, world: World, split: int, pk: int) -> HttpResponse:
     """Show one example of a split, and the command and paraphrase that it was copied from."""
     rows = Example.objects.filter(split__world=world, split=split).select_related("split__world")
     row = get_object_or_404(rows, pk=pk)
@@ -139,7 +141,7 @@ def example(request: HttpRequest, world: World, split: int, pk: int) -> HttpResp
 
 
 @world_view(Duty.VIEW)
-def near_duplicates(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def near_duplicates(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """List near duplicates of training utterances: a part of the split's page, loaded when opened."""
     row = get_object_or_404(Split.objects.select_related("world"), world=world, pk=pk)
     context: dict[str, object] = {"most": MOST_SHOWN}

@@ -12,7 +12,6 @@ from django.shortcuts import get_object_or_404
 from drf_spectacular.utils import extend_schema, extend_schema_field
 from rest_framework import serializers
 from rest_framework.decorators import action
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.language.corpus import DEFAULT_PROPORTIONS, Criterion
@@ -24,6 +23,7 @@ from annotations.splits.renewing import changes_since, freeze_anew
 from annotations.splits.split_statistics import counts_of, near_duplicates_of
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import Figures, RowsRoute, RowsViewSet
 from annotations.web.splits.split_filters import (
@@ -35,17 +35,17 @@ from annotations.web.splits.split_filters import (
 from annotations.web.splits.split_forms import SplitForm
 
 
-class PartCountSerializer(serializers.Serializer):
+class PartCountSerializer(serializers.Serializer[Any]):
     """How many pairs of a source each part has, and how many different forms all of them."""
 
-    source = serializers.CharField()
+    source = serializers.CharField()  # type: ignore[assignment]  # the name of the column
     train = serializers.IntegerField()
     validation = serializers.IntegerField()
     test = serializers.IntegerField()
     forms = serializers.IntegerField()
 
 
-class SplitSerializer(serializers.ModelSerializer):
+class SplitSerializer(serializers.ModelSerializer[Split]):
     """A copy of texts that nothing changes. ``content_hash`` is the SHA-256 of all its examples."""
 
     counts = serializers.SerializerMethodField()
@@ -60,7 +60,8 @@ class SplitSerializer(serializers.ModelSerializer):
             *("follows", "created_by", "created_at"),
         ]
 
-    def get_counts(self, row: Split) -> PartCountSerializer(many=True):
+    @extend_schema_field(PartCountSerializer(many=True))
+    def get_counts(self, row: Split) -> Any:
         counts = self.context["counts"][row.pk]
         return PartCountSerializer(counts, many=True).data
 
@@ -94,13 +95,14 @@ class SplitViewSet(RowsViewSet):
     def get_serializer(self, rows: Any = None, **options: Any) -> serializers.BaseSerializer[Any]:
         serializer = super().get_serializer(rows, **options)
         if rows is not None:
-            serializer.context["counts"] = counts_of(rows if options.get("many") else [rows])
+            context: Any = serializer.context
+            context["counts"] = counts_of(rows if options.get("many") else [rows])
         return serializer
 
     @extend_schema(request=NewSplit)
     @may_take_long
     @once
-    def create(self, request: Request, **kwargs: object) -> Response:
+    def create(self, request: ApiRequest, **kwargs: object) -> Response:
         """Freezes a split from the corpus of today."""
         sent = self.read(NewSplit)
         shares = dict(zip(SplitForm.SHARES, sent.pop("proportions"), strict=True))
@@ -115,7 +117,7 @@ class SplitViewSet(RowsViewSet):
     @may_take_long
     @action(detail=True, methods=["post"])
     @once
-    def renew(self, request: Request, **kwargs: object) -> Response:
+    def renew(self, request: ApiRequest, **kwargs: object) -> Response:
         """Freezes a split anew from the corpus of today; the old one stays as it was."""
         return self._frozen(freeze_anew(self.get_object(), request.user))
 
@@ -127,7 +129,7 @@ class SplitViewSet(RowsViewSet):
         return Response(shown, status=HTTPStatus.CREATED, headers=location)
 
 
-class ExampleSerializer(serializers.ModelSerializer):
+class ExampleSerializer(serializers.ModelSerializer[Example]):
     """An utterance with its form, as it was when the split was frozen."""
 
     class Meta:
@@ -162,7 +164,7 @@ class FiguresOfSplit(Figures):
         return make(get_object_or_404(self.rows(), pk=self.kwargs["pk"]))
 
 
-class NearDuplicateSerializer(serializers.Serializer):
+class NearDuplicateSerializer(serializers.Serializer[Any]):
     """An utterance and the closest one of training; ``similarity`` is a fraction of 1."""
 
     utterance = serializers.CharField()
@@ -170,7 +172,7 @@ class NearDuplicateSerializer(serializers.Serializer):
     similarity = serializers.FloatField()
 
 
-class NearDuplicatesSerializer(serializers.Serializer):
+class NearDuplicatesSerializer(serializers.Serializer[Any]):
     """Of a part: ``shared`` of its ``pairs`` training nearly has; the most similar ones are in ``examples``."""
 
     part = serializers.CharField(source="leak.part")
@@ -183,7 +185,7 @@ class NearDuplicatesSerializer(serializers.Serializer):
         return [asdict(one) for one in each.duplicates[:MOST_SHOWN]]
 
 
-class NearDuplicatesTable(serializers.Serializer):
+class NearDuplicatesTable(serializers.Serializer[Any]):
     results = NearDuplicatesSerializer(many=True)
 
 
@@ -191,12 +193,12 @@ class NearDuplicatesOfSplit(FiguresOfSplit):
     """Lists utterances of validation and test that training nearly has."""
 
     @extend_schema(operation_id="near_duplicates", responses={200: NearDuplicatesTable})
-    def get(self, request: Request, **kwargs: object) -> Response:
+    def get(self, request: ApiRequest, **kwargs: object) -> Response:
         found = self.figures(near_duplicates_of)
         return Response(NearDuplicatesTable({"results": found}).data)
 
 
-class PartChangesSerializer(serializers.Serializer):
+class PartChangesSerializer(serializers.Serializer[Any]):
     """Examples of one part; ``moved`` ones come from another part."""
 
     part = serializers.CharField()
@@ -206,7 +208,7 @@ class PartChangesSerializer(serializers.Serializer):
     moved = serializers.IntegerField()
 
 
-class RelabelledSerializer(serializers.Serializer):
+class RelabelledSerializer(serializers.Serializer[Any]):
     """An utterance with its label in the split and that of today."""
 
     utterance = serializers.CharField()
@@ -215,7 +217,7 @@ class RelabelledSerializer(serializers.Serializer):
     now = serializers.CharField()
 
 
-class SplitChangesSerializer(serializers.Serializer):
+class SplitChangesSerializer(serializers.Serializer[Any]):
     """What ``renew/`` would change; some of the labels that differ are in ``relabelled``."""
 
     parts = PartChangesSerializer(many=True)
@@ -230,5 +232,5 @@ class ChangesOfSplit(FiguresOfSplit):
     """Says what freezing a split anew would change."""
 
     @extend_schema(operation_id="split_changes", responses={200: SplitChangesSerializer})
-    def get(self, request: Request, **kwargs: object) -> Response:
+    def get(self, request: ApiRequest, **kwargs: object) -> Response:
         return Response(SplitChangesSerializer(self.figures(changes_since)).data)

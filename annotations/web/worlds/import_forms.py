@@ -102,7 +102,7 @@ class WorldArchiveForm(forms.Form):
 class ImportForm(forms.Form):
     """The files of a generator, as they are or in one zip archive."""
 
-    files = FilesField(
+    files = FilesField(  # type: ignore[assignment]  # of the same name as those that were sent
         label="Files",
         help_text="The grammar, template and ontology files of one generator: choose all of them, "
         "or one zip archive with them.",
@@ -118,7 +118,7 @@ class ImportForm(forms.Form):
 
 def uploads_of(world: World, form: ImportForm) -> list[Any]:
     """Return the files to import: those that were sent and, if asked for, the world's other files."""
-    sent = form.cleaned_data["files"]
+    sent: list[Any] = form.cleaned_data["files"]
     if not form.cleaned_data["keeps_others"]:
         return sent
     gathered = files_of(sent, form.cleaned_data["encoding"])

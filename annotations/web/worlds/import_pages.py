@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from django.contrib import messages
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import redirect, render
 
 from annotations.generation.generating import start_generation
@@ -13,7 +13,7 @@ from annotations.importing.import_jobs import start_generator_import, start_pair
 from annotations.jobs.requesting import keep_report
 from annotations.language.errors import LanguageError
 from annotations.models import Duty, Job, JobKind, World
-from annotations.people.access import READ_AND_WRITE, WRITE, world_view
+from annotations.people.access import READ_AND_WRITE, WRITE, PageRequest, WorldRequest, world_view
 from annotations.people.allowances import may_take_long, takes_files
 from annotations.web.background.report_presentation import shown_report
 from annotations.web.forms import posted
@@ -22,7 +22,7 @@ from annotations.web.worlds.import_forms import ImportForm, PairsForm, uploads_o
 
 @takes_files
 @world_view(Duty.MANAGE, READ_AND_WRITE)
-def import_files(request: HttpRequest, world: World) -> HttpResponse:
+def import_files(request: WorldRequest, world: World) -> HttpResponse:
     """Import the uploaded files of a generator, all of them or nothing."""
     initial = {"keeps_others": "part" in request.GET}
     form = ImportForm(posted(request), request.FILES or None, initial=initial)
@@ -45,7 +45,7 @@ def import_files(request: HttpRequest, world: World) -> HttpResponse:
 
 @takes_files
 @world_view(Duty.MANAGE, READ_AND_WRITE)
-def import_pair_files(request: HttpRequest, world: World) -> HttpResponse:
+def import_pair_files(request: WorldRequest, world: World) -> HttpResponse:
     """Import the uploaded pairs of a published corpus as frozen splits and paraphrases."""
     form = PairsForm(posted(request), request.FILES or None)
     report = None
@@ -68,14 +68,14 @@ def import_pair_files(request: HttpRequest, world: World) -> HttpResponse:
 
 
 def _done(
-    request: HttpRequest, world: World, kind: JobKind, report: dict[str, Any]
+    request: WorldRequest, world: World, kind: JobKind, report: dict[str, Any]
 ) -> HttpResponse:
     """Show the report of an import as that of a job, so that it can be reloaded and found again."""
     return redirect("job", pk=keep_report(kind, world.name, request.user, {}, report).pk)
 
 
 def _page(
-    request: HttpRequest, template: str, form: Any, report: dict[str, Any] | None
+    request: PageRequest, template: str, form: Any, report: dict[str, Any] | None
 ) -> HttpResponse:
     is_refused = bool(form.errors) or bool(report and report["is_refused"])
     context = {"form": form, **(report or {})}
@@ -84,7 +84,7 @@ def _page(
 
 @may_take_long
 @world_view(Duty.ANNOTATE, WRITE)
-def generate(request: HttpRequest, world: World) -> HttpResponse:
+def generate(request: WorldRequest, world: World) -> HttpResponse:
     """Expand all templates into commands and forms."""
     try:
         started = start_generation(world, request.user)

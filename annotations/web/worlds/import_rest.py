@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from http import HTTPStatus
-from typing import Any, ClassVar
+from typing import Any, TypeVar
 
 from django import forms
 from django.http import HttpResponse, StreamingHttpResponse
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework import serializers
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.exporting.generator_export import GeneratorPart
@@ -27,15 +26,17 @@ from annotations.web.background.job_rest import JobSerializer, address_of_job
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.negotiation import AnyType
 from annotations.web.rest.parsing import FilesParser
-from annotations.web.rest.permissions import ForSiteAdmins
+from annotations.web.rest.permissions import ApiRequest, ForSiteAdmins
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import Route, WorldRoute
 from annotations.web.worlds.downloads import archive_of, file_of
 from annotations.web.worlds.import_forms import ImportForm, PairsForm, WorldArchiveForm, uploads_of
 from annotations.world_archive.import_job import start_world_import
 
+AnyForm = TypeVar("AnyForm", bound=forms.Form)
 
-class DoneSerializer(serializers.Serializer):
+
+class DoneSerializer(serializers.Serializer[Any]):
     """What came of it, or the job that will say so: one of both is null."""
 
     job = JobSerializer(allow_null=True)
@@ -45,11 +46,13 @@ class DoneSerializer(serializers.Serializer):
 class EncodingChoice(serializers.ChoiceField):
     def __init__(self) -> None:
         super().__init__(
-            choices=ENCODINGS, required=False, help_text="Of files that are not UTF-8."
+            choices=list(ENCODINGS),
+            required=False,
+            help_text="Of files that are not UTF-8.",
         )
 
 
-class ImportedFiles(serializers.Serializer):
+class ImportedFiles(serializers.Serializer[Any]):
     """The files of a generator, as they are or in one zip archive."""
 
     files = serializers.ListField(child=serializers.FileField(allow_empty_file=True), min_length=1)
@@ -58,7 +61,7 @@ class ImportedFiles(serializers.Serializer):
     brings_back = serializers.BooleanField(default=False)
 
 
-class ImportedPairs(serializers.Serializer):
+class ImportedPairs(serializers.Serializer[Any]):
     """The pair files of a published corpus in one zip archive; splits are named after ``name``."""
 
     name = serializers.SlugField(max_length=60)
@@ -70,7 +73,7 @@ class ImportedPairs(serializers.Serializer):
     brings_back = serializers.BooleanField(default=False)
 
 
-class ImportedWorldFile(serializers.Serializer):
+class ImportedWorldFile(serializers.Serializer[Any]):
     """The archive that ``download/`` of a world gives, and what the world is to be called here."""
 
     name = serializers.CharField(max_length=60)
@@ -82,6 +85,11 @@ class Doing(Route):
 
     model = Job
     http_method_names = ["post", "options"]
+
+    @property
+    def sent(self) -> Any:
+        """The fields beside the files, as a form of the pages takes them."""
+        return self.request.data
 
     def answer(self, start: Callable[[], Any]) -> Response:
         """Start the work and say what came of it. Raises Refusal, with every problem and its place."""
@@ -99,7 +107,7 @@ class Doing(Route):
             raise Refusal(sentence, "not_imported", status, problems)
         return Response({"job": None, "report": report})
 
-    def valid(self, form: forms.Form) -> forms.Form:
+    def valid(self, form: AnyForm) -> AnyForm:
         if not form.is_valid():
             raise refusal_of_form(form)
         return form
@@ -118,8 +126,8 @@ class ImportWorld(Doing):
         responses={200: DoneSerializer, 202: DoneSerializer},
     )
     @once
-    def post(self, request: Request) -> Response:
-        sent = self.valid(WorldArchiveForm(request.data, request.FILES)).cleaned_data
+    def post(self, request: ApiRequest) -> Response:
+        sent = self.valid(WorldArchiveForm(self.sent, request.FILES)).cleaned_data
         return self.answer(lambda: start_world_import(sent["name"], sent["archive"], request.user))
 
 
@@ -128,15 +136,15 @@ class ImportGenerator(Doing, WorldRoute):
     """Imports the files of a generator, all of them or nothing."""
 
     parser_classes = [FilesParser]
-    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.MANAGE}
+    duties = {"POST": Duty.MANAGE}
 
     @extend_schema(
         request={"multipart/form-data": ImportedFiles},
         responses={200: DoneSerializer, 202: DoneSerializer},
     )
     @once
-    def post(self, request: Request, **kwargs: object) -> Response:
-        form = self.valid(ImportForm(request.data, request.FILES))
+    def post(self, request: ApiRequest, **kwargs: object) -> Response:
+        form = self.valid(ImportForm(self.sent, request.FILES))
         files = uploads_of(self.world, form)
         choices = form.cleaned_data["brings_back"], form.cleaned_data["encoding"]
         return self.answer(
@@ -149,15 +157,15 @@ class ImportPairs(Doing, WorldRoute):
     """Imports the pairs of a published corpus as frozen splits and paraphrases."""
 
     parser_classes = [FilesParser]
-    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.MANAGE}
+    duties = {"POST": Duty.MANAGE}
 
     @extend_schema(
         request={"multipart/form-data": ImportedPairs},
         responses={200: DoneSerializer, 202: DoneSerializer},
     )
     @once
-    def post(self, request: Request, **kwargs: object) -> Response:
-        sent = self.valid(PairsForm(request.data, request.FILES)).cleaned_data
+    def post(self, request: ApiRequest, **kwargs: object) -> Response:
+        sent = self.valid(PairsForm(self.sent, request.FILES)).cleaned_data
         choices = sent["brings_back"], sent["encoding"], sent["notation"]
         values = sent["name"], sent["archive"], request.user, *choices
         return self.answer(lambda: start_pairs_import(self.world, *values))
@@ -167,11 +175,11 @@ class ImportPairs(Doing, WorldRoute):
 class Generate(Doing, WorldRoute):
     """Expands all templates into commands and forms."""
 
-    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.ANNOTATE}
+    duties = {"POST": Duty.ANNOTATE}
 
     @extend_schema(request=None, responses={200: DoneSerializer, 202: DoneSerializer})
     @once
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def post(self, request: ApiRequest, **kwargs: object) -> Response:
         return self.answer(lambda: start_generation(self.world, request.user))
 
 
@@ -183,7 +191,7 @@ class Archive(WorldRoute):
     content_negotiation_class = AnyType
 
     @extend_schema(responses={(200, "application/zip"): OpenApiTypes.BINARY})
-    def get(self, request: Request, **kwargs: object) -> StreamingHttpResponse:
+    def get(self, request: ApiRequest, **kwargs: object) -> StreamingHttpResponse:
         return archive_of(self.world, request.user)
 
 
@@ -202,5 +210,5 @@ class ArchivePart(WorldRoute):
             (200, "text/plain"): OpenApiTypes.STR,
         },
     )
-    def get(self, request: Request, **kwargs: str) -> HttpResponse:
+    def get(self, request: ApiRequest, **kwargs: str) -> HttpResponse:
         return file_of(self.world, kwargs["part"])

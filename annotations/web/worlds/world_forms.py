@@ -8,7 +8,7 @@ from django.db import IntegrityError, transaction
 from annotations.models import World
 
 
-class WorldForm(forms.ModelForm):
+class WorldForm(forms.ModelForm):  # type: ignore[type-arg]  # generic in the stubs alone
     """A new world. Its name is used in URLs and never changes."""
 
     class Meta:
@@ -24,7 +24,8 @@ class WorldForm(forms.ModelForm):
         """Create the world of a valid form. Return None, with an error, if the name was taken meanwhile."""
         try:
             with transaction.atomic():
-                return self.save()
+                created: World = self.save()
         except IntegrityError:
             self.add_error("name", "There is a world of this name already. Choose another name.")
             return None
+        return created

@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from django import forms
 from django.contrib import messages
 from django.core.exceptions import ValidationError
-from django.http import HttpRequest, HttpResponse, StreamingHttpResponse
+from django.http import HttpResponse, StreamingHttpResponse
 from django.shortcuts import redirect, render
 
 from annotations.language.errors import LanguageError
 from annotations.models import Duty, Job, World
-from annotations.people.access import READ_AND_WRITE, demand_site_admin, site_view, world_view
+from annotations.people.access import (
+    READ_AND_WRITE,
+    PageRequest,
+    WorldRequest,
+    demand_site_admin,
+    site_view,
+    world_view,
+)
 from annotations.people.allowances import may_take_long, takes_files
 from annotations.web.forms import posted
 from annotations.web.sent_texts import MOST_NAMED
@@ -30,7 +39,7 @@ class NameForm(forms.Form):
         widget=forms.TextInput(attrs={"autocomplete": "off", "autocapitalize": "none"}),
     )
 
-    def __init__(self, world: World, *args: object) -> None:
+    def __init__(self, world: World, *args: Any) -> None:
         super().__init__(*args)
         self.world = world
 
@@ -38,11 +47,11 @@ class NameForm(forms.Form):
         name = self.cleaned_data["name"]
         if name != self.world.name:
             raise ValidationError(f"Type {self.world.name} to delete it.")
-        return name
+        return str(name)
 
 
 @site_view(READ_AND_WRITE)
-def world_new(request: HttpRequest) -> HttpResponse:
+def world_new(request: PageRequest) -> HttpResponse:
     """Create an empty world; its files are imported next."""
     form = WorldForm(posted(request))
     if form.is_bound and form.is_valid() and (created := form.create()):
@@ -52,7 +61,7 @@ def world_new(request: HttpRequest) -> HttpResponse:
 
 @takes_files
 @site_view(READ_AND_WRITE)
-def world_import(request: HttpRequest) -> HttpResponse:
+def world_import(request: PageRequest) -> HttpResponse:
     """Create a world from the archive of another one."""
     form = WorldArchiveForm(posted(request), request.FILES or None)
     if form.is_bound and form.is_valid():
@@ -75,20 +84,20 @@ def world_import(request: HttpRequest) -> HttpResponse:
 
 @may_take_long
 @world_view(Duty.VIEW)
-def download(request: HttpRequest, world: World) -> StreamingHttpResponse:
+def download(request: WorldRequest, world: World) -> StreamingHttpResponse:
     """Download the whole world as one archive, packed while it is sent."""
     return archive_of(world, request.user)
 
 
 @may_take_long
 @world_view(Duty.VIEW)
-def download_part(request: HttpRequest, world: World, part: str) -> HttpResponse:
+def download_part(request: WorldRequest, world: World, part: str) -> HttpResponse:
     """Download a part of a world."""
     return file_of(world, part)
 
 
 @world_view(Duty.MANAGE, READ_AND_WRITE)
-def world_delete(request: HttpRequest, world: World) -> HttpResponse:
+def world_delete(request: WorldRequest, world: World) -> HttpResponse:
     """Preview the deletion of a world, and delete it when its name has been typed."""
     demand_site_admin(request)
     form = NameForm(world, request.POST if request.method == "POST" else None)

@@ -8,21 +8,20 @@ from django.db.models import QuerySet
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.exceptions import PermissionDenied
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.models import Duty, Job, World
 from annotations.web.background.job_rest import JobSerializer, address_of_job
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
-from annotations.web.rest.permissions import ChangedBySiteAdmins, ForSiteAdmins
+from annotations.web.rest.permissions import ApiRequest, ChangedBySiteAdmins, ForSiteAdmins
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import ManyRows, RowRoute, Tagged
 from annotations.web.worlds.world_forms import WorldForm
 from annotations.worlds.world_deletion import request_deletion, start_deletion
 
 
-class WorldSerializer(serializers.ModelSerializer):
+class WorldSerializer(serializers.ModelSerializer[World]):
     """A world, and what the caller may do in it."""
 
     duties = serializers.SerializerMethodField()
@@ -57,7 +56,7 @@ class WorldShowing(Tagged):
     serializer_class = WorldSerializer
 
     def get_serializer_context(self) -> dict[str, object]:
-        context = super().get_serializer_context()
+        context = dict(super().get_serializer_context())
         if getattr(self, "swagger_fake_view", False):
             return context
         duties = World.objects.visible_to(self.request.user).duties_by_world(self.request.user)
@@ -78,7 +77,7 @@ class Worlds(WorldShowing, ManyRows):
 
     @extend_schema(request=NewWorld, responses={201: WorldSerializer})
     @once
-    def post(self, request: Request) -> Response:
+    def post(self, request: ApiRequest) -> Response:
         form = WorldForm(self.read(NewWorld))
         created = form.create() if form.is_valid() else None
         if created is None:
@@ -98,7 +97,7 @@ class OneWorld(WorldShowing, RowRoute):
         return self.world
 
     @extend_schema(request=WorldChange, responses={200: WorldSerializer})
-    def patch(self, request: Request, **kwargs: object) -> Response:
+    def patch(self, request: ApiRequest, **kwargs: object) -> Response:
         with self.matching() as row:
             sent = self.read(WorldChange, partial=True)
             form = WorldForm(
@@ -110,7 +109,7 @@ class OneWorld(WorldShowing, RowRoute):
         return self.show(row)
 
     @extend_schema(request=None, responses={202: JobSerializer, 204: None})
-    def delete(self, request: Request, **kwargs: object) -> Response:
+    def delete(self, request: ApiRequest, **kwargs: object) -> Response:
         """Delete the world with all that is in it: at once where it is small, otherwise by a job."""
         if not request.user.is_superuser:
             raise PermissionDenied(ForSiteAdmins.message)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from django.contrib import messages
 from django.db.models import OuterRef, Subquery
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.utils.http import url_has_allowed_host_and_scheme
 from django.views.decorators.cache import never_cache
@@ -13,7 +13,7 @@ from annotations.jobs import cancel_job
 from annotations.language.errors import Refusal
 from annotations.lists.listing import Listing, Sort
 from annotations.models import Duty, World
-from annotations.people.access import WRITE, world_view
+from annotations.people.access import WRITE, PageRequest, WorldRequest, world_view
 from parser_service.analyses.state import analysis_of
 from parser_service.models import TrainingRun
 from parser_service.runs.analysis_requests import analysis_jobs, request_analysis
@@ -25,7 +25,7 @@ SORTS = {"position": Sort("Text", "position")}
 
 @never_cache
 @world_view(Duty.VIEW)
-def analysis_state(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def analysis_state(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show the progress of the analysis, for a page that waits for it."""
     run = get_object_or_404(world.runs, pk=pk)
     context = {"run": run, "analysis": analysis_of(run), "is_update": True}
@@ -33,7 +33,7 @@ def analysis_state(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 @world_view(Duty.REVIEW, WRITE)
-def analysis_start(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def analysis_start(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Start an analysis of the run, unless one is queued or running. A complete one is repeated."""
     run = get_object_or_404(world.runs.select_related("world"), pk=pk)
     analysis = analysis_of(run)
@@ -47,7 +47,7 @@ def analysis_start(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 @world_view(Duty.REVIEW, WRITE)
-def analysis_cancel(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def analysis_cancel(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Stop the analysis; what it has found stays."""
     run = get_object_or_404(world.runs.select_related("world"), pk=pk)
     job = analysis_jobs(run).active().first()
@@ -59,7 +59,7 @@ def analysis_cancel(request: HttpRequest, world: World, pk: int) -> HttpResponse
     return _back(request, run)
 
 
-def _back(request: HttpRequest, run: TrainingRun) -> HttpResponse:
+def _back(request: PageRequest, run: TrainingRun) -> HttpResponse:
     """Go back to the page that the form names as ``next``, or to the run."""
     address = request.POST.get("next", "")
     if url_has_allowed_host_and_scheme(address, {request.get_host()}, request.is_secure()):
@@ -68,7 +68,7 @@ def _back(request: HttpRequest, run: TrainingRun) -> HttpResponse:
 
 
 @world_view(Duty.VIEW)
-def probes(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def probes(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """List the probes that were answered, each beside the answer to the utterance that it was made of."""
     run = get_object_or_404(TrainingRun.objects.for_table(), world=world, pk=pk)
     first = run.predictions.best().filter(example=OuterRef("base")).values("logical_form")[:1]

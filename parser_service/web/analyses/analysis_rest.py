@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 from django.db.models import OuterRef, QuerySet, Subquery
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework import serializers
 from rest_framework.exceptions import ValidationError
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.web.background.job_rest import JobSerializer
 from annotations.web.rest.fields import FiniteField
+from annotations.web.rest.permissions import ApiRequest
 from parser_service.analyses.state import analysis_of
 from parser_service.analyses.stored_findings import findings_of
 from parser_service.analyses.target import parts_of
@@ -22,7 +22,7 @@ from parser_service.web.analyses.probe_filters import ProbeFilters
 from parser_service.web.runs.run_rest import OfRun
 
 
-class FindingsSerializer(serializers.Serializer):
+class FindingsSerializer(serializers.Serializer[Any]):
     """What is known of ``part`` by name of the analysis: forms that attract unlike inputs, what refusing to
     answer saves, flip rates by kind of edit, deciding words. ``job`` is the last analysis."""
 
@@ -38,7 +38,7 @@ class RunFindings(OfRun):
     """Shows what the analysis of a run has found; a POST to ``analysis/`` asks for it."""
 
     model = RunAnalysis
-    filter_backends: ClassVar[list[Any]] = []
+    filter_backends = []
     pagination_class = None
 
     @extend_schema(
@@ -48,7 +48,7 @@ class RunFindings(OfRun):
         ],
         responses={200: FindingsSerializer},
     )
-    def get(self, request: Request, **kwargs: object) -> Response:
+    def get(self, request: ApiRequest, **kwargs: object) -> Response:
         run = self.run()
         parts = parts_of(run)
         part = request.query_params.get("part") or next(iter(parts), "")
@@ -63,7 +63,7 @@ class RunFindings(OfRun):
         return Response(FindingsSerializer(answer).data)
 
 
-class ProbeSerializer(serializers.ModelSerializer):
+class ProbeSerializer(serializers.ModelSerializer[Probe]):
     """A text beyond the split, made of ``base`` by another word where it has one; ``before`` is the answer to
     that. ``is_expected`` is null where no answer is expected."""
 
@@ -87,7 +87,7 @@ class RunProbes(OfRun):
     model = Probe
     serializer_class = ProbeSerializer
     filterset_class = ProbeFilters
-    sorts: ClassVar[dict[str, str]] = {"position": "position"}
+    sorts = {"position": "position"}
 
     def rows(self) -> QuerySet[Probe]:
         run = self.run()

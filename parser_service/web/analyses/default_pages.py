@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 from urllib.parse import urlencode
 
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, render
 
 from annotations.models import Duty, World
-from annotations.people.access import world_view
+from annotations.people.access import WorldRequest, world_view
 from parser_service.analyses.probes.summaries import paper_texts, runs_beside, summaries_of
 from parser_service.analyses.refusal_curves import FACTS, curve_chart, place_of, points_of
 from parser_service.analyses.state import analysis_of
@@ -20,7 +20,7 @@ from parser_service.web.page_of_run import head_of
 
 
 @world_view(Duty.VIEW)
-def defaults(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def defaults(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show the findings on one part and source; ``bound`` is the position of the slider."""
     run = get_object_or_404(TrainingRun.objects.for_table(), world=world, pk=pk)
     parts = parts_of(run)

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, render
 
 from annotations.models import Duty, World
-from annotations.people.access import world_view
+from annotations.people.access import WorldRequest, world_view
 from parser_service.analyses.probes.probe_kinds import PROBE_KINDS
 from parser_service.analyses.probes.summaries import paper_texts, runs_beside
 from parser_service.analyses.state import analysis_of
@@ -34,7 +34,7 @@ class KindOfEdit:
 
 
 @world_view(Duty.VIEW)
-def sensitivity(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def sensitivity(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show flip rates, deciding words and pairs of one run; the flip rates of those that ``run`` names too."""
     run = get_object_or_404(TrainingRun.objects.for_table(), world=world, pk=pk)
     others = [each for each in asked_runs(request.GET, world) if each.pk != run.pk]

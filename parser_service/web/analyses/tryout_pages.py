@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from django.http import HttpRequest, HttpResponse, QueryDict
+from django.http import HttpResponse, QueryDict
 from django.shortcuts import render
 from django.urls import reverse
 from django.views.decorators.cache import never_cache
@@ -13,7 +13,7 @@ from django_htmx.http import replace_url
 
 from annotations.lists.paging import number_in
 from annotations.models import Duty, Example, World
-from annotations.people.access import WRITE, world_view
+from annotations.people.access import WRITE, WorldRequest, world_view
 from parser_service.analyses.tryout_answers import MOST_TEXT, ask, request_answers
 from parser_service.analysis.probe_texts import PAPER_PROBES
 from parser_service.models import TrainingRun, Tryout
@@ -51,7 +51,7 @@ class TriedAnswer:
 
 
 @world_view(Duty.VIEW)
-def tryout(request: HttpRequest, world: World) -> HttpResponse:
+def tryout(request: WorldRequest, world: World) -> HttpResponse:
     """Show the text and the runs that the URL names; the answers come when the page has loaded."""
     key = number_in(request.GET.get("example", ""))
     example = Example.objects.filter(split__world=world, pk=key).first() if key else None
@@ -74,7 +74,7 @@ def tryout(request: HttpRequest, world: World) -> HttpResponse:
 
 @never_cache
 @world_view(Duty.VIEW, WRITE)
-def tryout_ask(request: HttpRequest, world: World) -> HttpResponse:
+def tryout_ask(request: WorldRequest, world: World) -> HttpResponse:
     """Ask the chosen runs about the text, and show what they have answered.
 
     With ``waiting`` in the URL nothing new is asked: the page looks for answers that were not there yet.
@@ -110,7 +110,7 @@ def _answers_of(row: Tryout, world: World) -> list[TriedAnswer]:
     return shown
 
 
-def _address(request: HttpRequest, world: World) -> str:
+def _address(request: WorldRequest, world: World) -> str:
     """Return the URL of the page with the text and the runs."""
     query = QueryDict(mutable=True)
     query.setlist("run", request.POST.getlist("run"))

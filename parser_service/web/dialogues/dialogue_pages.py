@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from django.contrib import messages
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 
 from annotations.language.dialogue import Phase
@@ -14,7 +14,7 @@ from annotations.language.forms import to_corpus
 from annotations.language.predicates import gloss
 from annotations.models import Duty, World
 from annotations.models.corpus import MOST_CHARACTERS
-from annotations.people.access import READ_AND_WRITE, WRITE, world_view
+from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
 from annotations.people.audit_log import note
 from parser_service.dialogues.conversation import AnsweredMeanwhile, keep, reply, start, state_of
 from parser_service.dialogues.dialogue_json import asked_of, plan_of
@@ -29,7 +29,7 @@ MOST_DECIDED = 20
 
 
 @world_view(Duty.VIEW, READ_AND_WRITE)
-def dialogues(request: HttpRequest, world: World) -> HttpResponse:
+def dialogues(request: WorldRequest, world: World) -> HttpResponse:
     """List the last dialogues; a POST starts one."""
     text = request.POST.get("utterance", "")
     context: dict[str, Any] = {"text": text, "most_text": MOST_CHARACTERS}
@@ -50,7 +50,7 @@ def dialogues(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.VIEW, READ_AND_WRITE)
-def dialogue(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def dialogue(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show a dialogue and the form so far. A POST answers."""
     row = get_object_or_404(Dialogue, world=world, pk=pk)
     trouble = ""
@@ -70,7 +70,7 @@ def dialogue(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 @world_view(Duty.ANNOTATE, WRITE)
-def dialogue_keep(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def dialogue_keep(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Make a labelled utterance of a dialogue that ended with a form."""
     row = get_object_or_404(Dialogue, world=world, pk=pk)
     try:
@@ -97,7 +97,7 @@ def _context_of(row: Dialogue) -> dict[str, Any]:
 
 
 @world_view(Duty.VIEW)
-def offered_entities(request: HttpRequest, world: World) -> HttpResponse:
+def offered_entities(request: WorldRequest, world: World) -> HttpResponse:
     """Show what waits for an annotator, and what was decided last."""
     rows = OfferedEntity.objects.filter(world=world).select_related("decided_by")
     decided = rows.exclude(state=OfferState.WAITING).order_by("-decided_at")
@@ -109,7 +109,7 @@ def offered_entities(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.ANNOTATE, WRITE)
-def offered_entity_decide(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def offered_entity_decide(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Confirm an offered entity, or refuse it."""
     row = get_object_or_404(OfferedEntity, world=world, pk=pk)
     try:

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from http import HTTPStatus
+from typing import Any
 
 from django.db.models import QuerySet
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.decorators import action
 from rest_framework.mixins import ListModelMixin
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.models import Duty
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import WorldViewSet
 from parser_service.dialogues.conversation import AnsweredMeanwhile, keep, reply, start
 from parser_service.dialogues.dialogue_json import as_json
@@ -38,12 +39,12 @@ class DialogueAnswer(Fields):
     version = serializers.IntegerField(min_value=1, required=False)
 
 
-class TurnSerializer(serializers.Serializer):
+class TurnSerializer(serializers.Serializer[Any]):
     who = serializers.ChoiceField(choices=["person", "robot"])
     text = serializers.CharField(allow_blank=True)
 
 
-class AskedSerializer(serializers.Serializer):
+class AskedSerializer(serializers.Serializer[Any]):
     """The slot that the dialogue asks for. ``phrases`` are unknown words of the utterance."""
 
     entity_class = serializers.CharField(allow_blank=True)
@@ -52,7 +53,7 @@ class AskedSerializer(serializers.Serializer):
     phrases = serializers.ListField(child=serializers.CharField())
 
 
-class OfferSerializer(serializers.Serializer):
+class OfferSerializer(serializers.Serializer[Any]):
     """An entity that the ontology may learn, or another word (``alias``) for one that it has."""
 
     entity_class = serializers.CharField()
@@ -60,7 +61,7 @@ class OfferSerializer(serializers.Serializer):
     alias = serializers.CharField(allow_blank=True)
 
 
-class DialogueSerializer(serializers.Serializer):
+class DialogueSerializer(serializers.Serializer[Any]):
     """A dialogue: ``prompt`` is what the robot says, ``phase`` what it waits for or how it ended."""
 
     id = serializers.IntegerField()
@@ -82,7 +83,7 @@ class DialogueSerializer(serializers.Serializer):
     version = serializers.IntegerField()
 
 
-class DialogueRow(serializers.ModelSerializer):
+class DialogueRow(serializers.ModelSerializer[Dialogue]):
     """A dialogue in a list."""
 
     class Meta:
@@ -106,21 +107,21 @@ class DialogueViewSet(ListModelMixin, WorldViewSet):
 
     @extend_schema(request=NewDialogue, responses={201: DialogueSerializer})
     @once
-    def create(self, request: Request, **kwargs: object) -> Response:
+    def create(self, request: ApiRequest, **kwargs: object) -> Response:
         """Starts a dialogue about an utterance."""
         sent = self.read(NewDialogue)
         row = start(self.world, sent["utterance"], request.user)
         return self.show(row, HTTPStatus.CREATED)
 
     @extend_schema(responses=DialogueSerializer)
-    def retrieve(self, request: Request, **kwargs: object) -> Response:
+    def retrieve(self, request: ApiRequest, **kwargs: object) -> Response:
         """Shows a dialogue."""
         return self.show(self.get_object())
 
     @extend_schema(request=DialogueAnswer, responses=DialogueSerializer)
     @action(detail=True, methods=["post"])
     @once
-    def answer(self, request: Request, **kwargs: object) -> Response:
+    def answer(self, request: ApiRequest, **kwargs: object) -> Response:
         """Answers what a dialogue asks. One that is over stays as it is."""
         row = self.get_object()
         sent = self.read(DialogueAnswer)
@@ -130,7 +131,7 @@ class DialogueViewSet(ListModelMixin, WorldViewSet):
 
     @extend_schema(request=None, responses=DialogueSerializer)
     @action(detail=True, methods=["post"])
-    def keep(self, request: Request, **kwargs: object) -> Response:
+    def keep(self, request: ApiRequest, **kwargs: object) -> Response:
         """Makes a labelled utterance of a dialogue that ended with a form."""
         row = self.get_object()
         keep(row, request.user)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import Any
 
 from django.db.models import QuerySet
 from django.shortcuts import get_object_or_404
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
-from rest_framework.filters import BaseFilterBackend
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.language.errors import LanguageError
@@ -20,6 +18,7 @@ from annotations.suggesting import MOST_COMMAND
 from annotations.web.description.template_rest import category_called
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.idempotency import once
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_text
 from annotations.web.rest.routes import WorldRoute
 from parser_service.labelling.label_candidates import candidates_for
@@ -40,7 +39,7 @@ class WrongAnswer(Fields):
     reason = LineField(max_length=MOST_CHARACTERS, allow_blank=True, default="")
 
 
-class ReportedSerializer(serializers.Serializer):
+class ReportedSerializer(serializers.Serializer[Any]):
     """What became of it, in a sentence."""
 
     sentence = serializers.CharField()
@@ -54,7 +53,7 @@ class ReportWrong(WorldRoute):
 
     @extend_schema(request=WrongAnswer, responses={200: ReportedSerializer})
     @once
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def post(self, request: ApiRequest, **kwargs: object) -> Response:
         sent = self.read(WrongAnswer)
         run = get_object_or_404(self.world.runs.all(), pk=sent["run"]) if sent["run"] else None
         about = sent["utterance"], say_parser(run), request.user, sent["form"], sent["reason"]
@@ -72,7 +71,7 @@ class PatternToComplete(Fields):
     command = LineField(max_length=MOST_COMMAND, allow_blank=True, default="")
 
 
-class SuggestedFormSerializer(serializers.Serializer):
+class SuggestedFormSerializer(serializers.Serializer[Any]):
     """A form, its English sentence, the pattern of the template that it was made from, and which parsers
     answer it."""
 
@@ -82,11 +81,11 @@ class SuggestedFormSerializer(serializers.Serializer):
     is_guess = serializers.BooleanField()
     parsers = serializers.SerializerMethodField()
 
-    def get_parsers(self, form: object) -> list[str]:
+    def get_parsers(self, form: Any) -> list[str]:
         return [each.parser for each in form.answers]
 
 
-class SuggestionsSerializer(serializers.Serializer):
+class SuggestionsSerializer(serializers.Serializer[Any]):
     """Forms, the likely one first. While ``waits_for`` names a parser, a worker asks it: ask again."""
 
     forms = SuggestedFormSerializer(many=True)
@@ -100,25 +99,25 @@ class SuggestForms(WorldRoute):
 
     http_method_names = ["post", "options"]
     model = TaskCategory
-    filter_backends: ClassVar[list[type[BaseFilterBackend]]] = []
-    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.ANNOTATE}
+    filter_backends = []
+    duties = {"POST": Duty.ANNOTATE}
 
     @extend_schema(request=PatternToComplete, responses={200: SuggestionsSerializer})
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def post(self, request: ApiRequest, **kwargs: object) -> Response:
         sent = self.read(PatternToComplete)
         category = category_called(self.world, sent["task_category"])
         asked = category, sent["pattern"].strip(), sent["command"], request.user
         return Response(SuggestionsSerializer(suggest_with_parsers(self.world, *asked)).data)
 
 
-class LabelCandidateSerializer(serializers.Serializer):
+class LabelCandidateSerializer(serializers.Serializer[Any]):
     """A form, and which sources give it: the answer now, the grammar, parsers, the nearest utterance."""
 
     form = serializers.CharField()
     sources = serializers.ListField(child=serializers.CharField())
 
 
-class LabelCandidates(serializers.Serializer):
+class LabelCandidates(serializers.Serializer[Any]):
     """The likely form first."""
 
     results = LabelCandidateSerializer(many=True)
@@ -128,13 +127,13 @@ class CandidatesOfUtterance(WorldRoute):
     """Lists the forms that an utterance may have, as people who label it are offered them."""
 
     model = Utterance
-    filter_backends: ClassVar[list[type[BaseFilterBackend]]] = []
-    duties: ClassVar[dict[str, Duty]] = {"GET": Duty.ANNOTATE}
-    scopes: ClassVar[dict[str, Scope]] = {"GET": Scope.READ}
+    filter_backends = []
+    duties = {"GET": Duty.ANNOTATE}
+    scopes = {"GET": Scope.READ}
 
     def rows(self) -> QuerySet[Utterance]:
         return self.world.utterances.select_related("world")
 
     @extend_schema(operation_id="utterance_candidates", responses={200: LabelCandidates})
-    def get(self, request: Request, **kwargs: object) -> Response:
+    def get(self, request: ApiRequest, **kwargs: object) -> Response:
         return Response(LabelCandidates({"results": candidates_for(self.get_object())}).data)

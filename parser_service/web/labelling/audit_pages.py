@@ -6,7 +6,7 @@ from typing import Any
 
 from django.contrib import messages
 from django.db.models import Q
-from django.http import HttpRequest, HttpResponse, JsonResponse
+from django.http import HttpResponse, JsonResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.urls import reverse
 from django.views.decorators.cache import never_cache
@@ -27,7 +27,7 @@ from annotations.models import (
     WorkKind,
     World,
 )
-from annotations.people.access import WRITE, world_view
+from annotations.people.access import WRITE, WorldRequest, world_view
 from annotations.queueing.giving import NotForThem, kinds_for
 from annotations.rows.occurrences import examples_of_pair
 from annotations.web.queueing.queueing_filters import AuditFindingFilters
@@ -51,7 +51,7 @@ KEYS = (
 
 @never_cache
 @world_view(Duty.VIEW)
-def audit(request: HttpRequest, world: World) -> HttpResponse:
+def audit(request: WorldRequest, world: World) -> HttpResponse:
     """List the labels in doubt, and show one of them: the first, or the one that the URL names."""
     rows = world.audit_findings.prefetch_related("reasons")
     listing = Listing(request, AuditFindingFilters, rows, SORTS)
@@ -70,7 +70,7 @@ def audit(request: HttpRequest, world: World) -> HttpResponse:
 
 @never_cache
 @world_view(Duty.VIEW)
-def audit_item(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def audit_item(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Return one finding alone, for the page that lists them; without a script, that page."""
     finding = get_object_or_404(world.audit_findings, pk=pk)
     if not request.htmx:
@@ -81,18 +81,20 @@ def audit_item(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 @world_view(Duty.REVIEW, WRITE)
-def audit_start(request: HttpRequest, world: World) -> HttpResponse:
+def audit_start(request: WorldRequest, world: World) -> HttpResponse:
     """Start an audit of the labels, or show the one that is queued or running."""
     form = AuditForm(request.POST)
     if not form.is_valid():
-        problems = " ".join(f"{name}: {' '.join(each)}" for name, each in form.errors.items())
+        problems = " ".join(
+            f"{name}: {' '.join(map(str, each))}" for name, each in form.errors.items()
+        )
         messages.error(request, f"The audit was not started. {problems}")
         return redirect("audit", world=world.name)
     return redirect("job", pk=request_audit(world, request.user, form.cleaned_data).pk)
 
 
 @world_view(Duty.VIEW, WRITE)
-def audit_decide(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def audit_decide(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Keep, correct or exclude, and go on to the next label of the list."""
     finding = get_object_or_404(world.audit_findings, pk=pk)
     sent = request.POST
@@ -111,7 +113,7 @@ def audit_decide(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 @world_view(Duty.VIEW, WRITE)
-def audit_take_back(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def audit_take_back(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Undo a decision of this person, and show its label again."""
     made = get_object_or_404(AuditDecision.objects.filter(finding__world=world), pk=pk)
     try:
@@ -122,14 +124,14 @@ def audit_take_back(request: HttpRequest, world: World, pk: int) -> HttpResponse
 
 
 @world_view(Duty.VIEW, WRITE)
-def audit_check(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def audit_check(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Say what is wrong with a form while somebody writes it."""
     finding = get_object_or_404(world.audit_findings, pk=pk)
     text, form = finding.anonymized_text, request.POST.get("form", "")
     return JsonResponse(check_label(world, text, form, may_be_unknown=True))
 
 
-def _find_asked(request: HttpRequest, world: World, listing: Listing) -> AuditFinding | None:
+def _find_asked(request: WorldRequest, world: World, listing: Listing) -> AuditFinding | None:
     """Return the finding that the URL names, or the first of the list. Raises Http404 for one of another
     world."""
     if name := request.GET.get("finding", ""):
@@ -137,7 +139,7 @@ def _find_asked(request: HttpRequest, world: World, listing: Listing) -> AuditFi
     return next(iter(listing.rows), None)
 
 
-def _context_of(request: HttpRequest, finding: AuditFinding | None) -> dict[str, Any]:
+def _context_of(request: WorldRequest, finding: AuditFinding | None) -> dict[str, Any]:
     """Return the context of one finding; ``state`` holds the filters of the list, for its forms."""
     state = request.GET.copy()
     state.pop("finding", None)
@@ -157,13 +159,13 @@ def _context_of(request: HttpRequest, finding: AuditFinding | None) -> dict[str,
     }
 
 
-def _last_decisions(request: HttpRequest, world: World) -> Any:
+def _last_decisions(request: WorldRequest, world: World) -> Any:
     rows = AuditDecision.objects.valid().filter(finding__world=world, decided_by=request.user)
     return rows.select_related("finding").order_by("-pk")[:LAST_SHOWN]
 
 
 def _refuse(
-    request: HttpRequest, world: World, finding: AuditFinding, sentence: str
+    request: WorldRequest, world: World, finding: AuditFinding, sentence: str
 ) -> HttpResponse:
     """Show why a decision was refused. What the reviewer wrote stays on the page."""
     if not request.htmx:
@@ -174,7 +176,7 @@ def _refuse(
     return reswap(retarget(reselect(response, "#audit-problem"), "#audit-problem"), "outerHTML")
 
 
-def _to(request: HttpRequest, world: World, finding: AuditFinding | None) -> HttpResponse:
+def _to(request: WorldRequest, world: World, finding: AuditFinding | None) -> HttpResponse:
     """Go to ``finding`` in the list that the filters of the URL leave."""
     query = request.GET.copy()
     query.pop("finding", None)

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from http import HTTPStatus
-from typing import ClassVar
+from typing import Any
 
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
-from rest_framework.filters import BaseFilterBackend
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.language.label_errors import LEAST_FOLDS, MOST_FOLDS
@@ -16,6 +14,7 @@ from annotations.models import AuditFinding, Duty, JobKind
 from annotations.web.background.job_rest import JobSerializer, address_of_job
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import WorldRoute
 from parser_service.label_audit.audit_job import request_audit
@@ -33,7 +32,7 @@ class NewAudit(Fields):
     to_queue = serializers.IntegerField(min_value=0, max_value=MOST_QUEUED, default=50)
 
 
-class PrecisionSerializer(serializers.Serializer):
+class PrecisionSerializer(serializers.Serializer[Any]):
     """What became of the labels that people have looked at; ``share`` of them were wrong, a fraction of 1
     with its 95 % interval."""
 
@@ -44,7 +43,7 @@ class PrecisionSerializer(serializers.Serializer):
     interval = serializers.ListField(child=serializers.FloatField(), min_length=2, max_length=2)
 
 
-class AuditSerializer(serializers.Serializer):
+class AuditSerializer(serializers.Serializer[Any]):
     """The last audit, and how right audits were; null before the first one, and the first decision."""
 
     job = JobSerializer(allow_null=True)
@@ -55,11 +54,11 @@ class LabelAudit(WorldRoute):
     """Shows how far the last label audit is, and starts one; what it finds is in ``audit-findings/``."""
 
     model = AuditFinding
-    filter_backends: ClassVar[list[type[BaseFilterBackend]]] = []
-    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.REVIEW}
+    filter_backends = []
+    duties = {"POST": Duty.REVIEW}
 
     @extend_schema(operation_id="audit", responses={200: AuditSerializer})
-    def get(self, request: Request, **kwargs: object) -> Response:
+    def get(self, request: ApiRequest, **kwargs: object) -> Response:
         job = self.world.jobs.filter(kind=JobKind.AUDIT).select_related("created_by").first()
         precision = precision_of(self.world)
         shown = {
@@ -70,7 +69,7 @@ class LabelAudit(WorldRoute):
 
     @extend_schema(operation_id="start_audit", request=NewAudit, responses={202: JobSerializer})
     @once
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def post(self, request: ApiRequest, **kwargs: object) -> Response:
         form = AuditForm(self.read(NewAudit))
         if not form.is_valid():
             raise refusal_of_form(form)

@@ -6,7 +6,7 @@ from http import HTTPStatus
 from typing import Any
 
 from django.contrib import messages
-from django.http import HttpRequest, HttpResponse, JsonResponse
+from django.http import HttpResponse, JsonResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.template.loader import render_to_string
 from django.urls import reverse
@@ -20,7 +20,7 @@ from annotations.language.errors import Refusal
 from annotations.lists.listing import Listing
 from annotations.lists.paging import number_in
 from annotations.models import Duty, Entity, Label, Origin, Utterance, Verdict, World
-from annotations.people.access import WRITE, world_view
+from annotations.people.access import WRITE, PageRequest, WorldRequest, world_view
 from annotations.queueing.giving import ItemFilter, next_item
 from annotations.queueing.item_answers import (
     answer,
@@ -38,7 +38,7 @@ MOST_WITHOUT = 50
 
 @never_cache
 @world_view(Duty.ANNOTATE)
-def label_page(request: HttpRequest, world: World) -> HttpResponse:
+def label_page(request: WorldRequest, world: World) -> HttpResponse:
     """Show the next utterance that the filters of the URL leave, or the one that it names."""
     listing = _listing(request, world)
     row = _find_asked(request, world, listing)
@@ -53,14 +53,14 @@ def label_page(request: HttpRequest, world: World) -> HttpResponse:
 
 @never_cache
 @world_view(Duty.ANNOTATE)
-def label_item(request: HttpRequest, world: World) -> HttpResponse:
+def label_item(request: WorldRequest, world: World) -> HttpResponse:
     """Return the next utterance alone; ``without`` are the keys of those that the page has already."""
     row = _find_asked(request, world, _listing(request, world))
     return render(request, "parser_service/labelling/_label_item.html", _item(request, row))
 
 
 @world_view(Duty.ANNOTATE, WRITE)
-def label_answer(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def label_answer(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Store an answer. 409 if the utterance has changed meanwhile, 422 if the answer is not valid."""
     row = get_object_or_404(world.utterances, pk=pk)
     sent = request.POST
@@ -75,7 +75,7 @@ def label_answer(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 @world_view(Duty.ANNOTATE, WRITE)
-def label_take_back(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def label_take_back(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Undo an answer of this person, and show its utterance again."""
     stored = get_object_or_404(Label.objects.of_world(world), pk=pk)
     try:
@@ -86,7 +86,7 @@ def label_take_back(request: HttpRequest, world: World, pk: int) -> HttpResponse
 
 
 @world_view(Duty.ANNOTATE, WRITE)
-def label_send(request: HttpRequest, world: World) -> HttpResponse:
+def label_send(request: WorldRequest, world: World) -> HttpResponse:
     """Add the utterance of a review, unless the world has it, and open it for labelling."""
     text = " ".join(request.POST.get("text", "").split())
     collected = collect(world, [text], Origin.REVIEW, request.user)
@@ -98,14 +98,14 @@ def label_send(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.ANNOTATE, WRITE)
-def label_check(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def label_check(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Say what is wrong with a form while somebody writes it."""
     row = get_object_or_404(world.utterances, pk=pk)
     return JsonResponse(check_label(world, row.anonymized_text, request.POST.get("form", "")))
 
 
 @world_view(Duty.ANNOTATE, WRITE)
-def label_mend(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def label_mend(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Say which words of an utterance name which entity; the words become an alias of it."""
     row = get_object_or_404(world.utterances, pk=pk)
     words, name = request.POST.get("words", "").strip(), request.POST.get("entity", "")
@@ -131,11 +131,11 @@ def status_of(refusal: Refusal) -> int:
     return HTTPStatus.CONFLICT if is_conflict else HTTPStatus.UNPROCESSABLE_ENTITY
 
 
-def _listing(request: HttpRequest, world: World) -> Listing:
+def _listing(request: WorldRequest, world: World) -> Listing:
     return Listing(request, UtteranceFilters, world.utterances.all(), SORTS)
 
 
-def _find_asked(request: HttpRequest, world: World, listing: Listing) -> Utterance | None:
+def _find_asked(request: WorldRequest, world: World, listing: Listing) -> Utterance | None:
     """Return the utterance that the URL names; without a filter the next one of the person's queue.
 
     Raises Http404 for one of another world.
@@ -147,11 +147,13 @@ def _find_asked(request: HttpRequest, world: World, listing: Listing) -> Utteran
     if not listing.chips:
         part = next_item(request.user, world, ItemFilter(labels_only=True, without=without))
         return part.item.utterance if part else None
-    rows = listing.matching if request.GET.get("status") else listing.matching.unlabelled()
+    rows: Any = listing.matching
+    if not request.GET.get("status"):
+        rows = rows.unlabelled()
     return next_utterance(rows, request.user, without)
 
 
-def _item(request: HttpRequest, row: Utterance | None) -> dict[str, Any]:
+def _item(request: PageRequest, row: Utterance | None) -> dict[str, Any]:
     """Return the context of the utterance; ``part`` says why the queue asks for it, ``given`` is what
     the person has answered where others are still asked."""
     if row is None:
@@ -161,7 +163,7 @@ def _item(request: HttpRequest, row: Utterance | None) -> dict[str, Any]:
     return {"row": row, "candidates": candidates_for(row), "part": part, "given": given}
 
 
-def _strip(request: HttpRequest, world: World) -> dict[str, Any]:
+def _strip(request: WorldRequest, world: World) -> dict[str, Any]:
     """Return the context of the strip above: progress, and the person's last answers."""
     return {
         "progress": progress_of(world, request.user),
@@ -170,7 +172,7 @@ def _strip(request: HttpRequest, world: World) -> dict[str, Any]:
 
 
 def _reply(
-    request: HttpRequest,
+    request: WorldRequest,
     world: World,
     row: Utterance,
     refusal: str = "",

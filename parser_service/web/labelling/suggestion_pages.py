@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import render
 
 from annotations.models import Duty, World
-from annotations.people.access import WRITE, world_view
+from annotations.people.access import WRITE, WorldRequest, world_view
 from annotations.suggesting import MOST_COMMAND
 from annotations.web.description.template_forms import TemplateForm
 from parser_service.labelling.pattern_suggestions import suggest_with_parsers
 
 
 @world_view(Duty.ANNOTATE, WRITE)
-def template_suggestions(request: HttpRequest, world: World) -> HttpResponse:
+def template_suggestions(request: WorldRequest, world: World) -> HttpResponse:
     """Suggest forms for the typed pattern, which was written for ``command``.
 
     A page that waits for a parser asks again with ``waiting``: it gets nothing new before the answer is

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 from django.contrib import messages
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.views.decorators.cache import never_cache
 
 from annotations.language.errors import Refusal
 from annotations.lists.paging import number_in
 from annotations.models import Duty, World
-from annotations.people.access import WRITE, world_view
+from annotations.people.access import WRITE, WorldRequest, world_view
 from annotations.people.audit_log import note
 from parser_service.models import Promotion, TrainingRun
 from parser_service.promotions.promoting import (
@@ -30,7 +31,7 @@ MOST_LISTED = 100  # runs that may be promoted, and decisions of the history
 
 
 @world_view(Duty.VIEW)
-def promotions(request: HttpRequest, world: World) -> HttpResponse:
+def promotions(request: WorldRequest, world: World) -> HttpResponse:
     """Show the promoted run, proposals, the runs that may take its place, and what was decided before."""
     present = (
         world.promotions.promoted()
@@ -67,7 +68,7 @@ def promotions(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.MANAGE, WRITE)
-def promotion_promote(request: HttpRequest, world: World) -> HttpResponse:
+def promotion_promote(request: WorldRequest, world: World) -> HttpResponse:
     """Promote a run."""
     run = get_object_or_404(
         TrainingRun.objects.select_related("world"),
@@ -80,7 +81,7 @@ def promotion_promote(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.MANAGE, WRITE)
-def promotion_roll_back(request: HttpRequest, world: World) -> HttpResponse:
+def promotion_roll_back(request: WorldRequest, world: World) -> HttpResponse:
     """Roll back to the run that was promoted before the present one."""
     reason, before = request.POST.get("reason", ""), previous_run(world)
     note(request, f"run {before.pk}" if before else "")
@@ -88,7 +89,7 @@ def promotion_roll_back(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.MANAGE, WRITE)
-def promotion_decline(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def promotion_decline(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Decline a proposal; the present run goes on answering."""
     proposal = get_object_or_404(Promotion, world=world, pk=pk)
     return _decide(request, world, lambda: decline(world, proposal.pk, request.user))
@@ -96,9 +97,9 @@ def promotion_decline(request: HttpRequest, world: World, pk: int) -> HttpRespon
 
 @never_cache
 @world_view(Duty.VIEW)
-def parser_state(request: HttpRequest, world: World) -> HttpResponse:
+def parser_state(request: WorldRequest, world: World) -> HttpResponse:
     """Say which run the parse server answers with: a part of other pages, which ask for it by themselves."""
-    context = {"promoted": promoted_run(world)}
+    context: dict[str, Any] = {"promoted": promoted_run(world)}
     try:
         held = {each["world"]: each for each in client().parsers()}
         context["held"] = held.get(world.name, {})
@@ -107,7 +108,7 @@ def parser_state(request: HttpRequest, world: World) -> HttpResponse:
     return render(request, "parser_service/promotions/_parser_state.html", context)
 
 
-def _decide(request: HttpRequest, world: World, verb: Callable[[], object]) -> HttpResponse:
+def _decide(request: WorldRequest, world: World, verb: Callable[[], object]) -> HttpResponse:
     try:
         verb()
     except Refusal as error:

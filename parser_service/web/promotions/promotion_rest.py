@@ -10,18 +10,18 @@ from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.decorators import action
 from rest_framework.mixins import ListModelMixin
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.models import Duty
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import WorldViewSet
 from parser_service.models import Promotion
 from parser_service.promotions.promoting import MOST_REASON, decline, promote, roll_back
 
 
-class PromotionSerializer(serializers.ModelSerializer):
+class PromotionSerializer(serializers.ModelSerializer[Promotion]):
     """A run that was promoted, or proposed for it. ``evidence`` holds its scores and those of the run
     before it, as they were then; ``decided_by`` is null where a rule decided."""
 
@@ -62,7 +62,7 @@ class PromotionViewSet(ListModelMixin, WorldViewSet):
 
     @extend_schema(request=NewPromotion, responses={201: PromotionSerializer})
     @once
-    def create(self, request: Request, **kwargs: object) -> Response:
+    def create(self, request: ApiRequest, **kwargs: object) -> Response:
         """Lets a run answer from now on."""
         sent = self.read(NewPromotion)
         run = get_object_or_404(self.world.runs.select_related("world"), pk=sent["run"])
@@ -72,7 +72,7 @@ class PromotionViewSet(ListModelMixin, WorldViewSet):
     @extend_schema(request=RollBackReason, responses={201: PromotionSerializer})
     @action(detail=False, methods=["post"], url_path="roll-back")
     @once
-    def roll_back(self, request: Request, **kwargs: object) -> Response:
+    def roll_back(self, request: ApiRequest, **kwargs: object) -> Response:
         """Lets the run answer again that did before the present one."""
         reason = self.read(RollBackReason)["reason"]
         row = roll_back(self.world, request.user, reason)
@@ -80,7 +80,7 @@ class PromotionViewSet(ListModelMixin, WorldViewSet):
 
     @extend_schema(request=None, responses={200: PromotionSerializer})
     @action(detail=True, methods=["post"])
-    def decline(self, request: Request, **kwargs: object) -> Response:
+    def decline(self, request: ApiRequest, **kwargs: object) -> Response:
         """Declines a proposal; the present run goes on answering."""
         row = self.get_object()
         decline(self.world, row.pk, request.user)

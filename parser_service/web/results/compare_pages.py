@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import render
 
 from annotations.language.corpus import Criterion
 from annotations.lists.listing import FilteredList
 from annotations.models import Duty, World
-from annotations.people.access import world_view
+from annotations.people.access import PageRequest, WorldRequest, world_view
 from parser_service.analyses.state import analysis_of
 from parser_service.models import Prediction, TrainingRun
 from parser_service.models.evaluations import ShownScore
@@ -33,7 +33,7 @@ class ComparedFilters(FilteredList):
 
     further = PredictionFilters.further
 
-    def __init__(self, request: HttpRequest) -> None:
+    def __init__(self, request: PageRequest) -> None:
         self.query = request.GET
         self.filters = PredictionFilters(request.GET, Prediction.objects.none(), request=request)
         self.form = self.filters.form
@@ -59,7 +59,7 @@ class ComparedFilters(FilteredList):
 
 
 @world_view(Duty.VIEW)
-def compare(request: HttpRequest, world: World) -> HttpResponse:
+def compare(request: WorldRequest, world: World) -> HttpResponse:
     """Compare the runs that the URL names on the slice that it chooses, or offer runs to choose from."""
     part = request.GET.get("part", "")
     part = part if part in PARTS else default_part(world, named_keys(request.GET))
@@ -80,7 +80,7 @@ def compare(request: HttpRequest, world: World) -> HttpResponse:
 
 
 def comparison_of(
-    request: HttpRequest, world: World, choice: RunChoice, filters: ComparedFilters
+    request: WorldRequest, world: World, choice: RunChoice, filters: ComparedFilters
 ) -> dict[str, Any]:
     """Return what the page says about the runs."""
     compared = compare_on(world, choice.runs, choice.part, filters.filters)
@@ -119,13 +119,13 @@ def scores_by_form(choice: RunChoice) -> list[tuple[str, TrainingRun, Sequence[S
     return [(letter, run, scores[run]) for letter, run in zip(LETTERS, choice.runs, strict=False)]
 
 
-def confused_run(request: HttpRequest, runs: Sequence[TrainingRun]) -> int:
+def confused_run(request: PageRequest, runs: Sequence[TrainingRun]) -> int:
     """Return the place of the run whose confusions are shown."""
     key = request.GET.get("confusion", "")
     return next((place for place, run in enumerate(runs) if str(run.pk) == key), 0)
 
 
-def url_with_runs(request: HttpRequest, runs: Sequence[TrainingRun]) -> str:
+def url_with_runs(request: PageRequest, runs: Sequence[TrainingRun]) -> str:
     """Return the address of this page with other runs."""
     query = request.GET.copy()
     query.setlist("run", [str(run.pk) for run in runs])

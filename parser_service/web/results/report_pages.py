@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from django.contrib import messages
-from django.http import HttpRequest, HttpResponse, HttpResponseBase, StreamingHttpResponse
+from django.http import HttpResponse, HttpResponseBase, StreamingHttpResponse
 from django.shortcuts import get_object_or_404, redirect
 from django.urls import reverse
 from django.views.decorators.cache import never_cache
 
 from annotations.models import Duty, World
-from annotations.people.access import world_view
+from annotations.people.access import WorldRequest, world_view
 from annotations.people.allowances import may_take_long
 from parser_service.models import TrainingRun
 from parser_service.reports.comparison_report import comparison_report
@@ -26,7 +26,7 @@ from parser_service.web.results.compare_pages import ComparedFilters
 @never_cache
 @may_take_long
 @world_view(Duty.VIEW)
-def run_report(request: HttpRequest, world: World, pk: int) -> HttpResponseBase:
+def run_report(request: WorldRequest, world: World, pk: int) -> HttpResponseBase:
     """Download the report of a run; ``part`` says on which part of its split."""
     runs = TrainingRun.objects.for_table().select_related("world", "split", "created_by")
     run = get_object_or_404(runs, world=world, pk=pk)
@@ -49,7 +49,7 @@ def as_download(pieces: Iterator[str], name: str) -> HttpResponse | StreamingHtt
 @never_cache
 @may_take_long
 @world_view(Duty.VIEW)
-def compare_report(request: HttpRequest, world: World) -> HttpResponseBase:
+def compare_report(request: WorldRequest, world: World) -> HttpResponseBase:
     """Download the comparison that the compare page shows at the same address."""
     part = request.GET.get("part", "")
     part = part if part in PARTS else default_part(world, named_keys(request.GET))

@@ -4,33 +4,33 @@ from __future__ import annotations
 
 import csv
 
-from django.http import HttpRequest, HttpResponse, JsonResponse
+from django.http import HttpResponse, JsonResponse
 from django.shortcuts import render
 from django.views.decorators.cache import never_cache
 
 from annotations.exporting.split_export import formula_safe
 from annotations.models import Duty, World
-from annotations.people.access import world_view
+from annotations.people.access import WorldRequest, world_view
 from parser_service.results.export import HEADER, as_json, rows_of
 from parser_service.results.latex import as_latex
 from parser_service.results.result_choices import read_choices, scored_splits
 
 
 @world_view(Duty.VIEW)
-def results(request: HttpRequest, world: World) -> HttpResponse:
+def results(request: WorldRequest, world: World) -> HttpResponse:
     """Show the accuracy tables, one per protocol."""
     return render(request, "parser_service/results/results.html", results_of(request, world))
 
 
 @never_cache
 @world_view(Duty.VIEW)
-def results_table(request: HttpRequest, world: World) -> HttpResponse:
+def results_table(request: WorldRequest, world: World) -> HttpResponse:
     """Show the tables alone; the page refreshes itself with them."""
     return render(request, "parser_service/results/_results_table.html", results_of(request, world))
 
 
 @world_view(Duty.VIEW)
-def results_csv(request: HttpRequest, world: World) -> HttpResponse:
+def results_csv(request: WorldRequest, world: World) -> HttpResponse:
     """Download what the tables show, one figure per line."""
     choices = read_choices(request.GET, world, scored_splits(world))
     response = HttpResponse(
@@ -44,7 +44,7 @@ def results_csv(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.VIEW)
-def results_latex(request: HttpRequest, world: World) -> HttpResponse:
+def results_latex(request: WorldRequest, world: World) -> HttpResponse:
     """Download the tables for a paper."""
     choices = read_choices(request.GET, world, scored_splits(world))
     return HttpResponse(
@@ -55,7 +55,7 @@ def results_latex(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.VIEW)
-def results_json(request: HttpRequest, world: World) -> HttpResponse:
+def results_json(request: WorldRequest, world: World) -> HttpResponse:
     """Download the choices of the page and what its tables show."""
     choices = read_choices(request.GET, world, scored_splits(world))
     shown = as_json(world, choices, choices.tables(world))
@@ -68,7 +68,7 @@ def as_attachment(world: World, ending: str) -> dict[str, str]:
     return {"Content-Disposition": f'attachment; filename="{world.name}-results.{ending}"'}
 
 
-def results_of(request: HttpRequest, world: World) -> dict[str, object]:
+def results_of(request: WorldRequest, world: World) -> dict[str, object]:
     """Return the tables that the address chooses, and its choices."""
     splits = scored_splits(world)
     choices = read_choices(request.GET, world, splits)

@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import django_filters
 from django.db.models import Case, OuterRef, Q, QuerySet, Subquery, When
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.language.corpus import KNOWN, harmonic_mean
 from annotations.lists.filtering import Key
 from annotations.models import Split
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import RowsViewSet, WorldRoute
 from parser_service.models import Evaluation
 from parser_service.results.export import as_json
 from parser_service.results.result_choices import read_choices, scored_splits
 
 
-class EvaluationSerializer(serializers.ModelSerializer):
+class EvaluationSerializer(serializers.ModelSerializer[Evaluation]):
     """Exact match of a run on one source of one part; fractions of 1, the interval at 95 %. Of a split by form
     ``accuracy`` is that on unseen forms, except of the part ``known``; ``harmonic_mean`` is that of it and of
     ``accuracy_known``. Both are null for other splits and where known forms were not held out."""
@@ -36,7 +38,7 @@ class EvaluationSerializer(serializers.ModelSerializer):
             *("accuracy_known", "harmonic_mean"),
         ]
 
-    def get_harmonic_mean(self, score: Evaluation) -> float | None:
+    def get_harmonic_mean(self, score: Any) -> float | None:
         known = score.accuracy_known
         return None if known is None else harmonic_mean(score.accuracy, known)
 
@@ -75,6 +77,6 @@ class Results(WorldRoute):
     model = Split
 
     @extend_schema(responses={200: OpenApiTypes.OBJECT})
-    def get(self, request: Request, **kwargs: object) -> Response:
+    def get(self, request: ApiRequest, **kwargs: object) -> Response:
         choices = read_choices(request.query_params, self.world, scored_splits(self.world))
         return Response(as_json(self.world, choices, choices.tables(self.world)))

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from typing import Any
 
 from django.contrib import messages
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.utils.http import url_has_allowed_host_and_scheme
 
 from annotations.language.errors import LanguageError
 from annotations.models import Duty, World
-from annotations.people.access import READ_AND_WRITE, WRITE, world_view
+from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
 from parser_service.models import Slice
 from parser_service.slices.saving import delete_slice, rename_slice, save_slice
 from parser_service.slices.selecting import describe_query
@@ -21,7 +21,7 @@ DELETED = "deleted_slice"  # in the session, until the page has offered to resto
 
 
 @world_view(Duty.VIEW, methods=READ_AND_WRITE, write_duty=Duty.REVIEW)
-def slices(request: HttpRequest, world: World) -> HttpResponse:
+def slices(request: WorldRequest, world: World) -> HttpResponse:
     """List the saved slices; save one that another page chose."""
     if request.method == "POST":
         return _save(request, world)
@@ -34,7 +34,7 @@ def slices(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.REVIEW, methods=WRITE)
-def slice_rename(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def slice_rename(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Give a slice another name."""
     saved = get_object_or_404(Slice, world=world, pk=pk)
     try:
@@ -45,7 +45,7 @@ def slice_rename(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 @world_view(Duty.REVIEW, methods=WRITE)
-def slice_delete(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def slice_delete(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Delete a slice; the next page offers to restore it."""
     saved = get_object_or_404(Slice, world=world, pk=pk)
     delete_slice(saved)
@@ -60,7 +60,7 @@ def sentence_of(error: LanguageError) -> str:
     return f"{text[:1].upper()}{text[1:]}."
 
 
-def _save(request: HttpRequest, world: World) -> HttpResponse:
+def _save(request: WorldRequest, world: World) -> HttpResponse:
     try:
         saved = save_slice(
             world, request.POST.get("name", ""), request.POST.get("query", ""), request.user

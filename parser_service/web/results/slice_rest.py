@@ -7,12 +7,12 @@ from http import HTTPStatus
 from django.db.models import QuerySet
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.models import Duty
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.idempotency import once
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import RowsViewSet
 from parser_service.models import Slice
 from parser_service.models.reviews import LONGEST_SLICE_NAME
@@ -21,7 +21,7 @@ from parser_service.slices.saving import delete_slice, rename_slice, save_slice
 LONGEST_QUERY = 5_000
 
 
-class SliceSerializer(serializers.ModelSerializer):
+class SliceSerializer(serializers.ModelSerializer[Slice]):
     """A saved filter over predictions; ``query`` holds parameters of a list of predictions."""
 
     created_by = serializers.CharField(source="created_by.username", default=None)
@@ -53,20 +53,20 @@ class SliceViewSet(RowsViewSet):
 
     @extend_schema(request=NewSlice, responses={201: SliceSerializer})
     @once
-    def create(self, request: Request, **kwargs: object) -> Response:
+    def create(self, request: ApiRequest, **kwargs: object) -> Response:
         """Saves a slice."""
         sent = self.read(NewSlice)
         saved = save_slice(self.world, sent["name"], sent["query"], request.user)
         return self.show(saved, HTTPStatus.CREATED)
 
     @extend_schema(request=SliceName, responses={200: SliceSerializer})
-    def partial_update(self, request: Request, **kwargs: object) -> Response:
+    def partial_update(self, request: ApiRequest, **kwargs: object) -> Response:
         """Renames a slice."""
         with self.matching() as saved:
             rename_slice(saved, self.read(SliceName)["name"])
         return self.show(saved)
 
-    def destroy(self, request: Request, **kwargs: object) -> Response:
+    def destroy(self, request: ApiRequest, **kwargs: object) -> Response:
         """Deletes a slice."""
         with self.matching() as saved:
             delete_slice(saved)

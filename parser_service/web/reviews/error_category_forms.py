@@ -7,10 +7,11 @@ from typing import Any
 from django import forms
 
 from annotations.models import World
+from annotations.web.forms import row_field
 from parser_service.models import ErrorCategory
 
 
-class CategoryForm(forms.ModelForm):
+class CategoryForm(forms.ModelForm):  # type: ignore[type-arg]  # generic in the stubs alone
     """What an error category is called, what belongs in it, and which slice proposes it."""
 
     class Meta:
@@ -24,18 +25,21 @@ class CategoryForm(forms.ModelForm):
 
     def __init__(self, world: World, *args: Any, **kwargs: Any):
         super().__init__(*args, **kwargs)
-        self.fields["slice"].queryset = world.slices.all()
-        self.fields["slice"].empty_label = "none"
+        row_field(self, "slice").queryset = world.slices.all()
+        row_field(self, "slice").empty_label = "none"
 
 
 class DeletionForm(forms.Form):
     """Where the reviews of a category go that is deleted."""
 
     move_to = forms.ModelChoiceField(
-        queryset=None, required=False, empty_label="choose a category", label="Move its reviews to"
+        ErrorCategory.objects.none(),
+        required=False,
+        empty_label="choose a category",
+        label="Move its reviews to",
     )
 
     def __init__(self, category: ErrorCategory, *args: Any, **kwargs: Any):
         super().__init__(*args, **kwargs)
         others = category.world.error_categories.exclude(pk=category.pk)
-        self.fields["move_to"].queryset = others
+        row_field(self, "move_to").queryset = others

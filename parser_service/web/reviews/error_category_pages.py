@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 from django.contrib import messages
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 
 from annotations.language.errors import Refusal
 from annotations.lists.paging import number_in
 from annotations.models import Duty, World
-from annotations.people.access import READ_AND_WRITE, WRITE, world_view
+from annotations.people.access import READ_AND_WRITE, WRITE, PageRequest, WorldRequest, world_view
 from annotations.web.forms import posted
 from parser_service.models import ErrorCategory, Review
 from parser_service.reviews.category_counts import agreement_of_reviewers, count_categories
@@ -29,7 +29,7 @@ STEPS = {"up": -1, "down": 1}
 
 
 @world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.MANAGE)
-def error_categories(request: HttpRequest, world: World) -> HttpResponse:
+def error_categories(request: WorldRequest, world: World) -> HttpResponse:
     """List the error categories with their counts, of all runs or of the one that the address names."""
     form = CategoryForm(world, posted(request))
     if request.method == "POST" and form.is_valid():
@@ -46,7 +46,7 @@ def error_categories(request: HttpRequest, world: World) -> HttpResponse:
     return render(request, "parser_service/reviews/error_categories.html", context, status=status)
 
 
-def _counts_of(request: HttpRequest, world: World) -> dict[str, Any]:
+def _counts_of(request: WorldRequest, world: World) -> dict[str, Any]:
     """Return the counts of each category; ``run`` is whose they are, ``shown`` whose errors they lead to."""
     categories = list(ensure_categories(world).values())
     reviewed = Review.objects.filter(run__in=world.runs.all()).order_by().values("run")
@@ -63,7 +63,7 @@ def _counts_of(request: HttpRequest, world: World) -> dict[str, Any]:
 
 
 @world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.MANAGE)
-def error_category(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def error_category(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show one category; an admin renames it, describes it or lets a slice propose it."""
     category = get_object_or_404(world.error_categories.select_related("slice"), pk=pk)
     form = CategoryForm(world, posted(request), instance=category)
@@ -81,7 +81,7 @@ def error_category(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 def _category_page(
-    request: HttpRequest, category: ErrorCategory, form: CategoryForm, deletion: DeletionForm
+    request: PageRequest, category: ErrorCategory, form: CategoryForm, deletion: DeletionForm
 ) -> HttpResponse:
     name = ErrorCategory.objects.values_list("name", flat=True).get(pk=category.pk)
     context = {
@@ -96,7 +96,7 @@ def _category_page(
 
 
 @world_view(Duty.MANAGE, WRITE)
-def error_category_move(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def error_category_move(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Put a category one place up or down; its key on the review page follows."""
     category = get_object_or_404(world.error_categories, pk=pk)
     move_category(category, STEPS.get(request.POST.get("step", ""), 0))
@@ -104,7 +104,7 @@ def error_category_move(request: HttpRequest, world: World, pk: int) -> HttpResp
 
 
 @world_view(Duty.MANAGE, WRITE)
-def error_category_delete(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def error_category_delete(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Delete a category and move its reviews to another one."""
     category = get_object_or_404(world.error_categories.select_related("world"), pk=pk)
     deletion = DeletionForm(category, request.POST)

@@ -10,12 +10,12 @@ from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework import serializers
 from rest_framework.decorators import action
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.models import Duty
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.idempotency import once
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import RowsViewSet
 from parser_service.models import ErrorCategory
@@ -34,7 +34,7 @@ MOVE_TO = OpenApiParameter(
 )
 
 
-class ErrorCategorySerializer(serializers.ModelSerializer):
+class ErrorCategorySerializer(serializers.ModelSerializer[ErrorCategory]):
     """A kind of error. Errors in ``slice`` are proposed for it."""
 
     slice = serializers.IntegerField(source="slice_id", allow_null=True)
@@ -81,7 +81,7 @@ class ErrorCategoryViewSet(RowsViewSet):
 
     @extend_schema(request=CategoryChange, responses={201: ErrorCategorySerializer})
     @once
-    def create(self, request: Request, **kwargs: object) -> Response:
+    def create(self, request: ApiRequest, **kwargs: object) -> Response:
         """Adds an error category behind the others."""
         ensure_categories(self.world)
         values = self.valid(self.read(CategoryChange))
@@ -93,7 +93,7 @@ class ErrorCategoryViewSet(RowsViewSet):
         self.hold_world()
 
     @extend_schema(request=CategoryChange, responses={200: ErrorCategorySerializer})
-    def partial_update(self, request: Request, **kwargs: object) -> Response:
+    def partial_update(self, request: ApiRequest, **kwargs: object) -> Response:
         """Changes an error category."""
         with self.matching() as row:
             values = self.valid(self.read(CategoryChange, partial=True), self.get_object())
@@ -101,7 +101,7 @@ class ErrorCategoryViewSet(RowsViewSet):
         return self.show(row)
 
     @extend_schema(parameters=[MOVE_TO])
-    def destroy(self, request: Request, **kwargs: object) -> Response:
+    def destroy(self, request: ApiRequest, **kwargs: object) -> Response:
         """Deletes an error category; another one may get its reviews."""
         with self.matching() as row:
             form = DeletionForm(row, request.query_params)
@@ -112,7 +112,7 @@ class ErrorCategoryViewSet(RowsViewSet):
 
     @extend_schema(request=CategoryStep, responses={200: ErrorCategorySerializer})
     @action(detail=True, methods=["post"])
-    def move(self, request: Request, **kwargs: object) -> Response:
+    def move(self, request: ApiRequest, **kwargs: object) -> Response:
         """Puts an error category one place up or down."""
         move_category(self.get_object(), self.read(CategoryStep)["step"])
         return self.show(self.get_object())

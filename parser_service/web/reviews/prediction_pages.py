@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, render
 
 from annotations.lists.listing import Listing, Sort
 from annotations.models import Duty, World
-from annotations.people.access import WRITE, world_view
+from annotations.people.access import WRITE, PageRequest, WorldRequest, world_view
 from annotations.web.queueing.sending_pages import go_back, send
 from parser_service.models import TrainingRun
 from parser_service.slices.prediction_filters import PredictionFilters
@@ -22,7 +22,7 @@ SORTS = {
 
 
 @world_view(Duty.VIEW)
-def predictions(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def predictions(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """List the first answer to every example, filtered by the URL."""
     run = get_object_or_404(TrainingRun.objects.for_table(), world=world, pk=pk)
     listing = listing_of(request, run)
@@ -36,13 +36,13 @@ def predictions(request: HttpRequest, world: World, pk: int) -> HttpResponse:
     return render(request, "parser_service/reviews/predictions.html", context)
 
 
-def listing_of(request: HttpRequest, run: TrainingRun) -> Listing:
+def listing_of(request: PageRequest, run: TrainingRun) -> Listing:
     rows = run.predictions.best().select_related("example")
     return Listing(request, PredictionFilters, rows, SORTS, of_run=run)
 
 
 @world_view(Duty.REVIEW, WRITE)
-def predictions_send(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def predictions_send(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Put what is behind the answers that pass the filters of the URL into the work queue."""
     run = get_object_or_404(TrainingRun.objects.for_table(), world=world, pk=pk)
     rows = listing_of(request, run).matching.order_by("example_id")

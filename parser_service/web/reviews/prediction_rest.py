@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 import django_filters
 from django.db.models import QuerySet
@@ -10,26 +10,26 @@ from django_filters.rest_framework import DjangoFilterBackend
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema, extend_schema_field
 from rest_framework import serializers
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.lists.filtering import Key
 from annotations.web.queueing.sending_rest import Sending, SentSerializer, WhatToLookAt
 from annotations.web.rest.fields import FiniteField
 from annotations.web.rest.idempotency import once
+from annotations.web.rest.permissions import ApiRequest
 from parser_service.models import Prediction
 from parser_service.slices.prediction_filters import PredictionFilters
 from parser_service.web.runs.run_rest import OfRun
 
 
-class PredictionSerializer(serializers.ModelSerializer):
+class PredictionSerializer(serializers.ModelSerializer[Prediction]):
     """A ranked candidate of a run for an example, whose ``label`` is the annotated form. ``is_cut``: the
     parser read only the beginning of the utterance."""
 
     run = serializers.IntegerField(source="run_id")
     example = serializers.IntegerField(source="example_id")
     utterance = serializers.CharField(source="example.utterance")
-    label = serializers.CharField(source="example.logical_form")
+    label = serializers.CharField(source="example.logical_form")  # type: ignore[assignment]  # the name of the column
     score = FiniteField(allow_null=True)
 
     class Meta:
@@ -44,7 +44,7 @@ class PredictionSerializer(serializers.ModelSerializer):
 class FiltersOfRun(DjangoFilterBackend):
     """Tells the filters whose answers the rows are, which makes some of them quick."""
 
-    def get_filterset_kwargs(self, request: Request, queryset: Any, view: Any) -> dict[str, Any]:
+    def get_filterset_kwargs(self, request: ApiRequest, queryset: Any, view: Any) -> dict[str, Any]:
         return {**super().get_filterset_kwargs(request, queryset, view), "of_run": view.run()}
 
 
@@ -61,7 +61,7 @@ class Predictions(OfRun):
 
     model = Prediction
     serializer_class = PredictionSerializer
-    filter_backends: ClassVar[list[Any]] = [FiltersOfRun]
+    filter_backends = [FiltersOfRun]
     filterset_class = PredictionQuery
     sorts = {"example": "example_id", "utterance": "example__utterance"}
 
@@ -74,7 +74,7 @@ class SendPredictions(Sending, Predictions):
 
     @extend_schema(request=WhatToLookAt, responses={200: SentSerializer})
     @once
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def post(self, request: ApiRequest, **kwargs: object) -> Response:
         rows = self.filter_queryset(self.get_queryset()).order_by("example_id")
         return self.send(row.example for row in rows.iterator(chunk_size=500))
 

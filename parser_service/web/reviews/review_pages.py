@@ -9,7 +9,7 @@ from typing import Any
 
 from django.contrib import messages
 from django.db.models import Count, Exists, Max, Min, OuterRef, Q, QuerySet
-from django.http import Http404, HttpRequest, HttpResponse, QueryDict
+from django.http import Http404, HttpResponse, QueryDict
 from django.shortcuts import get_object_or_404, redirect, render
 from django.urls import reverse
 from django.views.decorators.cache import never_cache
@@ -18,7 +18,7 @@ from annotations.language.errors import Refusal
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.lists.paging import number_in
 from annotations.models import Duty, Example, World
-from annotations.people.access import WRITE, world_view
+from annotations.people.access import WRITE, WorldRequest, world_view
 from parser_service.models import Prediction, TrainingRun
 from parser_service.parsers.registry import title_of
 from parser_service.reviews.cases import read_case
@@ -53,7 +53,7 @@ SORTS = {"position": Sort("No.", "example_id", is_number=True)}
 
 @never_cache
 @world_view(Duty.VIEW)
-def review(request: HttpRequest, world: World) -> HttpResponse:
+def review(request: WorldRequest, world: World) -> HttpResponse:
     """Show the example that the address names, or the first that its filters leave."""
     runs = runs_asked(request, world)
     if not runs:
@@ -61,8 +61,7 @@ def review(request: HttpRequest, world: World) -> HttpResponse:
     listing = ReviewListing(request, runs)
     if start := request.GET.get("from"):
         found = listing.first_from(number_in(start))
-        example = str(found) if found else ""
-        return redirect(f"{request.path}{listing.url(example=example)}")
+        return redirect(f"{request.path}{listing.url(example=str(found) if found else '')}")
     example = example_asked(request, listing, runs[0].split_id)
     context = {
         "runs": runs,
@@ -83,7 +82,7 @@ def review(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.REVIEW, WRITE)
-def review_tag(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def review_tag(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Tag the answer of one run, accept what is proposed, or take the reader's tag back."""
     sent = request.POST
     steps: dict[str, Callable[..., Any]] = {"accept": accept, "take_back": take_back}
@@ -102,7 +101,7 @@ def review_tag(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 @world_view(Duty.REVIEW, WRITE)
-def review_note(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def review_note(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Keep the reader's note on the answer of one run; an empty one is removed."""
     note = request.POST.get("note", "")
     return _change(
@@ -111,7 +110,7 @@ def review_note(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 @world_view(Duty.REVIEW, WRITE)
-def review_doubt(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def review_doubt(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Send the label of the example to the work queue."""
     sent = request.POST
 
@@ -123,7 +122,7 @@ def review_doubt(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 def _change(
-    request: HttpRequest,
+    request: WorldRequest,
     world: World,
     pk: int,
     change: Callable[[TrainingRun, Example], Any],
@@ -149,7 +148,7 @@ def _change(
 
 
 def _back(
-    request: HttpRequest, world: World, run: TrainingRun, example: Example, problem: str, said: str
+    request: WorldRequest, world: World, run: TrainingRun, example: Example, problem: str, said: str
 ) -> HttpResponse:
     """Go back to the example, without a script."""
     if problem or said:
@@ -163,7 +162,7 @@ def _back(
 
 
 def _context_of(
-    request: HttpRequest, listing: ReviewListing, runs: list[TrainingRun], example: Example
+    request: WorldRequest, listing: ReviewListing, runs: list[TrainingRun], example: Example
 ) -> dict[str, Any]:
     """Return what one example is shown with; ``state`` is the list that it is in, for its forms."""
     case = read_case(runs, example, request.user)
@@ -186,7 +185,7 @@ def _context_of(
     }
 
 
-def runs_asked(request: HttpRequest, world: World) -> list[TrainingRun]:
+def runs_asked(request: WorldRequest, world: World) -> list[TrainingRun]:
     """Return the runs that the address names, in its order; without any the one that pages open on.
 
     Those of another split than the first are left out. Raises Http404 where the world has no such run.
@@ -224,7 +223,7 @@ def runs_to_add(runs: Sequence[TrainingRun]) -> list[tuple[int, str]]:
 class ReviewListing(Listing):
     """The examples that the filters leave, in the order of the split, as the first run answers them."""
 
-    def __init__(self, request: HttpRequest, runs: Sequence[TrainingRun]):
+    def __init__(self, request: WorldRequest, runs: Sequence[TrainingRun]):
         rows = runs[0].predictions.best()
         super().__init__(request, ReviewFilters, rows, SORTS, runs=runs, of_run=runs[0])
         self.runs = [str(run.pk) for run in runs]
@@ -287,7 +286,7 @@ class PlaceInList:
         return f"{self.number:,} of {self.total:,}" if self.is_inside else f"{self.total:,}"
 
 
-def example_asked(request: HttpRequest, listing: ReviewListing, split: int) -> Example | None:
+def example_asked(request: WorldRequest, listing: ReviewListing, split: int) -> Example | None:
     """Return the example that the address names, or the first of the list. Raises Http404 for one of
     another split."""
     key = request.GET.get("example")

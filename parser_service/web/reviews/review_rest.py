@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 import django_filters
 from django.db.models import QuerySet
 from django.shortcuts import get_object_or_404
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.language.errors import Refusal
@@ -18,6 +17,7 @@ from annotations.language.limits import MAX_FORM
 from annotations.lists.filtering import Key
 from annotations.models import Duty, Example, User
 from annotations.web.rest.fields import Fields, LineField
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import RowRoute, RowsViewSet
 from parser_service.models import Review, TrainingRun
 from parser_service.reviews.label_doubts import LONGEST_DOUBT, doubt_label
@@ -25,7 +25,7 @@ from parser_service.reviews.tagging import LONGEST_NOTE, accept, tag, take_back,
 from parser_service.reviews.world_categories import ensure_categories
 
 
-class ReviewSerializer(serializers.ModelSerializer):
+class ReviewSerializer(serializers.ModelSerializer[Review]):
     """Why an answer is wrong, as one reviewer or the machine says; ``answer`` is what was reviewed."""
 
     run = serializers.IntegerField(source="run_id")
@@ -74,7 +74,7 @@ class ReviewedAnswer:
     own: Review | None
 
 
-class ReviewedAnswerSerializer(serializers.Serializer):
+class ReviewedAnswerSerializer(serializers.Serializer[Any]):
     """The caller's review of an answer; null where they have said nothing."""
 
     own = ReviewSerializer(allow_null=True)
@@ -94,7 +94,7 @@ class ReviewChange(Fields):
 class AnswerRoute(RowRoute):
     model = Review
     serializer_class = ReviewedAnswerSerializer
-    duties: ClassVar[dict[str, Duty]] = {"PATCH": Duty.REVIEW, "POST": Duty.REVIEW}
+    duties = {"PATCH": Duty.REVIEW, "POST": Duty.REVIEW}
 
     def get_object(self) -> ReviewedAnswer:
         run = get_object_or_404(self.world.runs.all(), pk=self.kwargs["run"])
@@ -114,13 +114,13 @@ class ReviewOfAnswer(AnswerRoute):
         User.objects.select_for_update(no_key=True).get(pk=self.request.user.pk)
 
     @extend_schema(request=ReviewChange, responses={200: ReviewedAnswerSerializer})
-    def patch(self, request: Request, **kwargs: object) -> Response:
+    def patch(self, request: ApiRequest, **kwargs: object) -> Response:
         with self.matching() as answer:
             sent = self.read(ReviewChange, partial=True)
             self._review(answer, sent, request)
         return self.show(self.get_object())
 
-    def _review(self, answer: ReviewedAnswer, sent: dict[str, Any], request: Request) -> None:
+    def _review(self, answer: ReviewedAnswer, sent: dict[str, Any], request: ApiRequest) -> None:
         about = (answer.run, answer.example)
         if sent.get("accept"):
             accept(*about, request.user)
@@ -144,7 +144,7 @@ class DoubtSerializer(Fields):
     right_form = serializers.CharField(max_length=MAX_FORM, default="", allow_blank=True)
 
 
-class DoubtedSerializer(serializers.Serializer):
+class DoubtedSerializer(serializers.Serializer[Any]):
     """What became of it, as a sentence."""
 
     said = serializers.CharField()
@@ -156,7 +156,7 @@ class DoubtLabel(AnswerRoute):
     http_method_names = ["post", "options"]
 
     @extend_schema(request=DoubtSerializer, responses={200: DoubtedSerializer})
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def post(self, request: ApiRequest, **kwargs: object) -> Response:
         example = self.get_object().example
         sent = self.read(DoubtSerializer)
         said = doubt_label(example, sent["reason"], request.user, sent["right_form"])

@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from django.contrib import messages
-from django.http import Http404, HttpRequest, HttpResponse, QueryDict
+from django.http import Http404, HttpResponse, QueryDict
 from django.shortcuts import redirect, render
 
 from annotations.language.errors import Refusal
 from annotations.language.plans import ActionName, behavior_tree_schema_text, plan_schema_text
 from annotations.lists.paging import number_in
 from annotations.models import Duty, World
-from annotations.people.access import READ_AND_WRITE, world_view
+from annotations.people.access import READ_AND_WRITE, WorldRequest, world_view
 from parser_service.robots.action_naming import (
     actions_of,
     names_of,
@@ -41,7 +41,7 @@ class ActionRow:
 
 
 @world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.ANNOTATE)
-def robot(request: HttpRequest, world: World) -> HttpResponse:
+def robot(request: WorldRequest, world: World) -> HttpResponse:
     """Show the names of the actions; annotators change them, all at once."""
     actions, version = actions_of(world), version_of(world)
     trouble = ""
@@ -65,7 +65,7 @@ def robot(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.VIEW)
-def plan_schema_file(request: HttpRequest, world: World, name: str) -> HttpResponse:
+def plan_schema_file(request: WorldRequest, world: World, name: str) -> HttpResponse:
     """Return a schema of plans as a file."""
     if name not in SCHEMAS:
         raise Http404("There is no such schema.")

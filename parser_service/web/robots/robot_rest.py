@@ -11,7 +11,6 @@ from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.decorators import action
 from rest_framework.mixins import ListModelMixin
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.language.errors import LanguageError
@@ -20,6 +19,7 @@ from annotations.language.limits import MAX_FORM
 from annotations.language.plans import make_plan, to_behavior_tree
 from annotations.models import Duty, Scope
 from annotations.web.rest.fields import Fields
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_text
 from annotations.web.rest.routes import WorldRoute, WorldViewSet
 from parser_service.dialogues.entity_offers import confirm, refuse
@@ -58,7 +58,7 @@ class PlanRoute(WorldRoute):
             (200, "application/xml"): OpenApiTypes.STR,
         },
     )
-    def post(self, request: Request, world: str) -> HttpResponseBase:
+    def post(self, request: ApiRequest, world: str) -> HttpResponseBase:
         sent = self.read(PlanQuery)
         try:
             form = read_form(sent["form"])
@@ -92,7 +92,7 @@ class ActionNamesRoute(WorldRoute):
     duties = {"POST": Duty.ANNOTATE}
 
     @extend_schema(operation_id="action_names", responses=ActionNamesSerializer)
-    def get(self, request: Request, world: str) -> Response:
+    def get(self, request: ApiRequest, world: str) -> Response:
         names = {
             action: {"name": each.name, "arguments": write_arguments(each)}
             for action, each in sorted(names_of(self.world).items())
@@ -104,7 +104,7 @@ class ActionNamesRoute(WorldRoute):
         request=ActionNamesSerializer,
         responses=ActionNamesSerializer,
     )
-    def post(self, request: Request, world: str) -> Response:
+    def post(self, request: ApiRequest, world: str) -> Response:
         sent = self.read(ActionNamesSerializer)
         names = {
             action: read_name(action, each["name"], each["arguments"])
@@ -115,7 +115,7 @@ class ActionNamesRoute(WorldRoute):
         return self.get(request, world)
 
 
-class OfferedEntitySerializer(serializers.ModelSerializer):
+class OfferedEntitySerializer(serializers.ModelSerializer[OfferedEntity]):
     """An entity, or another word (``alias``) for one, that came up in dialogues ``times`` times."""
 
     decided_by = serializers.CharField(source="decided_by.username", default=None)
@@ -147,7 +147,7 @@ class OfferedEntityViewSet(ListModelMixin, WorldViewSet):
 
     @extend_schema(request=DecisionSerializer, responses=OfferedEntitySerializer)
     @action(detail=True, methods=["post"])
-    def decide(self, request: Request, **kwargs: object) -> Response:
+    def decide(self, request: ApiRequest, **kwargs: object) -> Response:
         """Confirms an offered entity, or refuses it; once."""
         row = self.get_object()
         decide = {"confirm": confirm, "refuse": refuse}[self.read(DecisionSerializer)["decision"]]

@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from django.contrib import messages
-from django.http import HttpRequest, HttpResponse, JsonResponse
+from django.http import HttpResponse, JsonResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.views.decorators.cache import never_cache
 
 from annotations.language.english import say_count
 from annotations.language.errors import Refusal
 from annotations.models import Duty, Split, World
-from annotations.people.access import WRITE, world_view
+from annotations.people.access import WRITE, WorldRequest, world_view
 from parser_service.models import TrainingRun
 from parser_service.parsers.conditions import SETTINGS, Protocol, Setting
 from parser_service.results.learning_curves import LearningCurves, curves_url, learning_curves
@@ -34,14 +34,14 @@ class CurveChoices:
 
 
 @world_view(Duty.VIEW)
-def learning_curves_page(request: HttpRequest, world: World) -> HttpResponse:
+def learning_curves_page(request: WorldRequest, world: World) -> HttpResponse:
     """Show the curves of one column of the accuracy table."""
     return render(request, "parser_service/runs/learning_curves.html", context_of(request, world))
 
 
 @never_cache
 @world_view(Duty.VIEW)
-def learning_curves_table(request: HttpRequest, world: World) -> HttpResponse:
+def learning_curves_table(request: WorldRequest, world: World) -> HttpResponse:
     """Show the table alone; the page refreshes itself with it."""
     context = context_of(request, world)
     return render(request, "parser_service/runs/_learning_curves_table.html", context)
@@ -49,15 +49,16 @@ def learning_curves_table(request: HttpRequest, world: World) -> HttpResponse:
 
 @never_cache
 @world_view(Duty.VIEW)
-def learning_curves_data(request: HttpRequest, world: World) -> JsonResponse:
+def learning_curves_data(request: WorldRequest, world: World) -> JsonResponse:
     """Return the points as the chart reads them."""
     shown = context_of(request, world)["shown"]
-    is_some = isinstance(shown, LearningCurves)
-    return JsonResponse(shown.chart if is_some else {"series": [], "done": True})
+    if isinstance(shown, LearningCurves):
+        return JsonResponse(shown.chart)
+    return JsonResponse({"series": [], "done": True})
 
 
 @world_view(Duty.MANAGE, WRITE)
-def learning_curve_start(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def learning_curve_start(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Start the missing runs of a run's learning curve, and show it."""
     run = get_object_or_404(TrainingRun, world=world, pk=pk)
     try:
@@ -84,7 +85,7 @@ def tested_with(run: TrainingRun) -> list[str]:
     return [each.test_source for each in SETTINGS if each.train_sources == run.train_sources]
 
 
-def context_of(request: HttpRequest, world: World) -> dict[str, object]:
+def context_of(request: WorldRequest, world: World) -> dict[str, object]:
     """Return the curves that the address chooses, and what else may be chosen; no curves without runs."""
     splits = scored_splits(world)
     choices = read_choices(request, world, splits)
@@ -113,7 +114,7 @@ def context_of(request: HttpRequest, world: World) -> dict[str, object]:
     }
 
 
-def read_choices(request: HttpRequest, world: World, splits: list[Split]) -> CurveChoices | None:
+def read_choices(request: WorldRequest, world: World, splits: list[Split]) -> CurveChoices | None:
     """Read the address; what it leaves out or misspells is that of the newest run on the split."""
     asked = request.GET
     newest = world.runs.scored_or_active().order_by("-id").select_related("split")

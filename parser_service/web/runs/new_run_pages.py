@@ -9,21 +9,20 @@ from statistics import median
 from typing import Any
 
 from django.contrib import messages
-from django.http import HttpRequest, HttpResponse, QueryDict
+from django.http import HttpResponse, QueryDict
 from django.shortcuts import get_object_or_404, redirect, render
 from django.utils.http import urlencode
 from django.views.decorators.cache import never_cache
 
-from annotations.language.corpus import KNOWN
+from annotations.language.corpus import KNOWN, Part
 from annotations.language.errors import Refusal
 from annotations.lists.paging import number_in
 from annotations.models import Duty, Example, Split, World
-from annotations.models.splits import Part
-from annotations.people.access import READ_AND_WRITE, WRITE, world_view
+from annotations.models.background import Status
+from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
 from annotations.web.forms import posted
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.models.evaluations import ShownScore, shown_scores
-from parser_service.models.runs import Status
 from parser_service.parsers.conditions import PARAPHRASED, TrainSources
 from parser_service.parsers.pretrained_files import find_gaps
 from parser_service.parsers.registry import (
@@ -53,7 +52,7 @@ SOURCES = {"gen": "commands", "para": "paraphrases"}
 
 
 @world_view(Duty.MANAGE, READ_AND_WRITE)
-def run_new(request: HttpRequest, world: World) -> HttpResponse:
+def run_new(request: WorldRequest, world: World) -> HttpResponse:
     """Show the form that starts runs, and start them. If another parser than the one shown was chosen,
     its form opens instead."""
     choices = choices_in(request.GET, world)
@@ -85,7 +84,7 @@ def context_of(world: World, form: RunForm, choices: RunChoices) -> dict[str, ob
     }
 
 
-def start(request: HttpRequest, world: World, form: RunForm) -> list[TrainingRun]:
+def start(request: WorldRequest, world: World, form: RunForm) -> list[TrainingRun]:
     """Start the runs of the form, one per seed, and return them, new or already there. Where
     they are refused, return none and put the reason into the form."""
     try:
@@ -114,7 +113,7 @@ def in_words(answers: list[tuple[TrainingRun, bool]]) -> str:
 
 @never_cache
 @world_view(Duty.MANAGE)
-def split_runs(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def split_runs(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """List what was trained on the split before: a part of the page of a split that follows one."""
     row = get_object_or_404(Split.objects.select_related("follows"), world=world, pk=pk)
     context = {"split": row, "rows": retrainable(row)}
@@ -122,7 +121,7 @@ def split_runs(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 
 @world_view(Duty.MANAGE, WRITE)
-def run_retrain(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def run_retrain(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Start the configuration of a run on the newest split that follows its own."""
     run = get_object_or_404(
         TrainingRun.objects.select_related("split", "world"), world=world, pk=pk

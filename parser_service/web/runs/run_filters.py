@@ -7,11 +7,11 @@ from decimal import Decimal
 import django_filters
 from django import forms
 from django.db.models import Q, QuerySet
-from django.http import HttpRequest
 
 from annotations.lists.filtering import Choices, PageFilters, Search
 from annotations.lists.paging import number_in
 from annotations.models import Split
+from annotations.people.access import WorldRequest
 from parser_service.models import TrainingRun
 from parser_service.models.runs import TrainingRunQuerySet, status_choices
 from parser_service.parsers.registry import PARSERS
@@ -21,7 +21,7 @@ def parser_choices() -> Choices:
     return [(name, entry.title) for name, entry in PARSERS.items()]
 
 
-def split_choices(request: HttpRequest) -> Choices:
+def split_choices(request: WorldRequest) -> Choices:
     """Return the splits of the world that the page is about."""
     names = Split.objects.filter(world=request.world).values_list("name", flat=True)
     return [(name, name) for name in names]

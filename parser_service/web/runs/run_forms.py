@@ -7,7 +7,8 @@ from typing import Any
 from django import forms
 
 from annotations.language.errors import Refusal
-from annotations.models import World
+from annotations.models import Split, World
+from annotations.web.forms import choice_field, row_field
 from parser_service.parsers.conditions import Protocol, TrainSources
 from parser_service.parsers.hyperparameters.fields import ConfigField
 from parser_service.parsers.pretrained_files import missing_weights
@@ -39,7 +40,7 @@ class RunForm(forms.Form):
     """What to train, on what. ``config`` holds the hyperparameters, and ``asked_seeds`` the seeds,
     once the form is valid."""
 
-    split = forms.ModelChoiceField(queryset=None, empty_label=None)
+    split = forms.ModelChoiceField(Split.objects.none(), empty_label=None)
     train_sources = forms.ChoiceField(label="Train on", choices=list(SOURCE_LABELS.items()))
     protocol = forms.ChoiceField(help_text="What training may know besides its pairs.")
     seed = forms.IntegerField(min_value=0, max_value=LARGEST_SEED, initial=0)
@@ -62,8 +63,8 @@ class RunForm(forms.Form):
     def __init__(self, world: World, parser: str, *args: Any, **kwargs: Any):
         super().__init__(*args, **kwargs)
         self.parser = parser
-        self.fields["split"].queryset = world.splits.all()
-        self.fields["protocol"].choices = [
+        row_field(self, "split").queryset = world.splits.all()
+        choice_field(self, "protocol").choices = [
             (name, PROTOCOL_LABELS[Protocol(name)]) for name in entry(parser).protocols
         ]
         self.fields["protocol"].initial = entry(parser).protocols[0]
@@ -130,7 +131,7 @@ class RunForm(forms.Form):
         return 100.0 if share is None else share
 
     def clean(self) -> dict[str, Any]:
-        cleaned = super().clean()
+        cleaned = self.cleaned_data
         self.config = {
             name.removeprefix(PREFIX): value
             for name, value in cleaned.items()
@@ -171,7 +172,7 @@ def say_default(declared: ConfigField) -> str:
 
 def field_for(declared: ConfigField) -> forms.Field:
     """Return a form field for one hyperparameter, with its default and its bounds."""
-    common = {
+    common: dict[str, Any] = {
         "label": LABELS.get(declared.name, declared.name.replace("_", " ").capitalize()),
         "initial": declared.default,
         "help_text": f"{declared.description} {say_default(declared)}".rstrip(),
@@ -184,7 +185,7 @@ def field_for(declared: ConfigField) -> forms.Field:
         # A text that names something by default is never left empty: it would name nothing.
         required = bool(declared.default) or declared.is_required
         return forms.CharField(required=required, max_length=declared.longest, **common)
-    bounds = {"min_value": declared.minimum, "max_value": declared.maximum}
+    bounds: dict[str, Any] = {"min_value": declared.minimum, "max_value": declared.maximum}
     if declared.type is int:
         return forms.IntegerField(**common, **bounds)
     return forms.FloatField(widget=forms.NumberInput(attrs={"step": "any"}), **common, **bounds)

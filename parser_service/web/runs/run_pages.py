@@ -5,17 +5,17 @@ from __future__ import annotations
 from typing import Any
 
 from django.contrib import messages
-from django.http import HttpRequest, HttpResponse, JsonResponse
+from django.http import HttpResponse, JsonResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.views.decorators.cache import never_cache
 
 from annotations.language.errors import Refusal
 from annotations.lists.listing import Listing, Sort
 from annotations.models import Duty, World
-from annotations.people.access import WRITE, world_view
+from annotations.models.background import Status
+from annotations.people.access import WRITE, WorldRequest, world_view
 from parser_service.analyses.state import analysis_of
 from parser_service.models import TrainingRun
-from parser_service.models.runs import Status
 from parser_service.parsers.registry import PARSERS, title_of
 from parser_service.promotions.promoting import promoted_run
 from parser_service.results.learning_curves import curves_url
@@ -37,26 +37,26 @@ SORTS = {
 
 
 @world_view(Duty.VIEW)
-def runs(request: HttpRequest, world: World) -> HttpResponse:
+def runs(request: WorldRequest, world: World) -> HttpResponse:
     """List all runs, newest first."""
     return render(request, "parser_service/runs/runs.html", {"listing": runs_of(request, world)})
 
 
 @never_cache
 @world_view(Duty.VIEW)
-def runs_table(request: HttpRequest, world: World) -> HttpResponse:
+def runs_table(request: WorldRequest, world: World) -> HttpResponse:
     """Show the table alone; the page refreshes itself with it."""
     return render(
         request, "parser_service/runs/_runs_table.html", {"listing": runs_of(request, world)}
     )
 
 
-def runs_of(request: HttpRequest, world: World) -> Listing:
+def runs_of(request: WorldRequest, world: World) -> Listing:
     return Listing(request, RunFilters, world.runs.for_table(), SORTS)
 
 
 @world_view(Duty.VIEW)
-def run(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def run(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show one run: progress, curves, log and results."""
     context = state_of(world, pk)
     context["newest"], context["again"] = retrained(context["run"])
@@ -66,7 +66,7 @@ def run(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 @never_cache
 @world_view(Duty.VIEW)
-def run_state(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def run_state(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show the part of a run's page that changes while it runs."""
     context = {**state_of(world, pk), "is_update": True}
     return render(request, "parser_service/runs/_run_state.html", context)
@@ -74,7 +74,7 @@ def run_state(request: HttpRequest, world: World, pk: int) -> HttpResponse:
 
 @never_cache
 @world_view(Duty.VIEW)
-def run_charts(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def run_charts(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show the curves, for a page that was opened before there were any."""
     return render(request, "parser_service/runs/_run_charts.html", state_of(world, pk))
 
@@ -103,7 +103,7 @@ def state_of(world: World, pk: int) -> dict[str, Any]:
 
 @never_cache
 @world_view(Duty.VIEW)
-def run_curves(request: HttpRequest, world: World, pk: int) -> JsonResponse:
+def run_curves(request: WorldRequest, world: World, pk: int) -> JsonResponse:
     """Return loss or accuracy by epoch as the charts read them."""
     run = get_object_or_404(TrainingRun, world=world, pk=pk)
     draw = CURVES.get(request.GET.get("show", ""), loss_curves)
@@ -111,7 +111,7 @@ def run_curves(request: HttpRequest, world: World, pk: int) -> JsonResponse:
 
 
 @world_view(Duty.MANAGE, WRITE)
-def run_cancel(request: HttpRequest, world: World, pk: int) -> HttpResponse:
+def run_cancel(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Cancel a run."""
     run = get_object_or_404(TrainingRun, world=world, pk=pk)
     try:

@@ -10,7 +10,6 @@ from django.shortcuts import get_object_or_404
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.decorators import action
-from rest_framework.request import Request
 from rest_framework.response import Response
 
 from annotations.language.errors import Refusal
@@ -18,6 +17,7 @@ from annotations.models import Duty, Scope
 from annotations.web.background.job_rest import JobSerializer
 from annotations.web.rest.fields import Fields, FiniteField
 from annotations.web.rest.idempotency import once
+from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import RowsRoute, RowsViewSet
 from parser_service.analyses.state import analysis_of
@@ -37,7 +37,7 @@ from parser_service.web.runs.run_filters import RunFilters
 from parser_service.web.runs.run_forms import PREFIX, RunForm
 
 
-class RunSerializer(serializers.ModelSerializer):
+class RunSerializer(serializers.ModelSerializer[TrainingRun]):
     """One parser trained once. ``config`` holds every hyperparameter."""
 
     config = serializers.DictField()
@@ -71,7 +71,7 @@ class NewRuns(Fields):
     seeds = serializers.IntegerField(min_value=1, max_value=MOST_SEEDS, default=1)
 
 
-class StartedRunsSerializer(serializers.Serializer):
+class StartedRunsSerializer(serializers.Serializer[Any]):
     """The runs of a request; ``new`` of them were not there before."""
 
     new = serializers.IntegerField()
@@ -114,7 +114,7 @@ class RunViewSet(RowsViewSet):
         request=NewRuns, responses={201: StartedRunsSerializer, 200: StartedRunsSerializer}
     )
     @once
-    def create(self, request: Request, **kwargs: object) -> Response:
+    def create(self, request: ApiRequest, **kwargs: object) -> Response:
         """Starts runs, one for each seed."""
         form = self._form(self.read(NewRuns))
         if not form.is_valid():
@@ -137,7 +137,7 @@ class RunViewSet(RowsViewSet):
 
     @extend_schema(request=None, responses={200: RunSerializer})
     @action(detail=True, methods=["post"])
-    def cancel(self, request: Request, **kwargs: object) -> Response:
+    def cancel(self, request: ApiRequest, **kwargs: object) -> Response:
         """Cancels a run that waits or runs; it stops within seconds."""
         run = self.get_object()
         lifecycle.cancel(run)
@@ -146,7 +146,7 @@ class RunViewSet(RowsViewSet):
     @extend_schema(request=None, responses={201: StartedRunsSerializer, 200: StartedRunsSerializer})
     @action(detail=True, methods=["post"])
     @once
-    def retrain(self, request: Request, **kwargs: object) -> Response:
+    def retrain(self, request: ApiRequest, **kwargs: object) -> Response:
         """Trains the same configuration on the split that follows the run's own."""
         run = self.get_object()
         return self.answer_started([start_again(run, request.user)])
@@ -156,7 +156,7 @@ class RunViewSet(RowsViewSet):
     )
     @action(detail=True, methods=["post"], url_path="learning-curve")
     @once
-    def learning_curve(self, request: Request, **kwargs: object) -> Response:
+    def learning_curve(self, request: ApiRequest, **kwargs: object) -> Response:
         """Trains the run's configuration on shares of its training pairs, as far as that is not done."""
         run, seeds = self.get_object(), self.read(CurveSeeds)["seeds"]
         new = start_learning_curve(run, request.user, seeds)
@@ -164,7 +164,7 @@ class RunViewSet(RowsViewSet):
 
     @extend_schema(request=None, responses={202: JobSerializer})
     @action(detail=True, methods=["post"])
-    def analysis(self, request: Request, **kwargs: object) -> Response:
+    def analysis(self, request: ApiRequest, **kwargs: object) -> Response:
         """Lets a worker analyse the errors of a run, again where that was done; the answer is its job."""
         state = analysis_of(self.get_object())
         if not state.is_possible:
@@ -177,11 +177,14 @@ class RunViewSet(RowsViewSet):
 
 def refusal_of_run(form: RunForm) -> Refusal:
     """Return what is wrong with the form, its hyperparameters by their names in the body."""
-    refusal = refusal_of_form(form)
+    refusal, problems = refusal_of_form(form), []
     for problem in refusal.problems:
         if problem.get("field", "").startswith(PREFIX):
-            problem["field"] = f"config.{problem['field'].removeprefix(PREFIX)}"
-    return refusal
+            field = f"config.{problem['field'].removeprefix(PREFIX)}"
+            problems.append({**problem, "field": field})
+        else:
+            problems.append(dict(problem))
+    return Refusal(refusal.message, refusal.code, problems=problems)
 
 
 class OfRun(RowsRoute):
@@ -192,7 +195,7 @@ class OfRun(RowsRoute):
         return get_object_or_404(self.world.runs.all(), pk=self.kwargs["pk"])
 
 
-class RunEventSerializer(serializers.ModelSerializer):
+class RunEventSerializer(serializers.ModelSerializer[RunEvent]):
     """A line of a run's log."""
 
     class Meta:
@@ -210,7 +213,7 @@ class RunLog(OfRun):
         return self.run().events.all()
 
 
-class EpochSerializer(serializers.ModelSerializer):
+class EpochSerializer(serializers.ModelSerializer[EpochMetric]):
     """A point of a run's curves. The unit of the losses is the parser's."""
 
     train_loss = FiniteField()
@@ -232,7 +235,7 @@ class RunCurves(OfRun):
         return self.run().epochs.all()
 
 
-class CheckpointSerializer(serializers.ModelSerializer):
+class CheckpointSerializer(serializers.ModelSerializer[Checkpoint]):
     """What a run keeps of its parser; ``sha256`` covers the files of the folder."""
 
     class Meta:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from http import HTTPStatus
-from typing import Any, ClassVar
+from typing import Any
 
 from django.conf import settings
 from django.http import HttpResponseBase, StreamingHttpResponse
@@ -13,7 +13,6 @@ from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
 from rest_framework import serializers
 from rest_framework.exceptions import ValidationError
-from rest_framework.filters import BaseFilterBackend
 from rest_framework.negotiation import DefaultContentNegotiation
 from rest_framework.parsers import BaseParser
 from rest_framework.renderers import BaseRenderer
@@ -28,7 +27,7 @@ from annotations.web.background.job_rest import JobSerializer, address_of_job
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.parsing import BoundedJSONParser
-from annotations.web.rest.permissions import HasDuty
+from annotations.web.rest.permissions import ApiRequest, HasDuty
 from annotations.web.rest.routes import WorldRoute
 from annotations.web.rest.streaming import JSON_LINES, BrokenOff
 from parser_service.serving.batch_requests import request_batch
@@ -44,9 +43,10 @@ class JsonLinesToo(DefaultContentNegotiation):
     """Takes any header ``Accept``: what was sent decides whether JSON or JSON lines are answered."""
 
     def select_renderer(
-        self, request: Request, renderers: list[BaseRenderer], format_suffix: str | None = None
+        self, request: Request, renderers: Iterable[BaseRenderer], format_suffix: str | None = None
     ) -> tuple[BaseRenderer, str]:
-        return renderers[0], renderers[0].media_type
+        renderer = next(iter(renderers))
+        return renderer, renderer.media_type
 
 
 class JsonLinesParser(BaseParser):
@@ -54,7 +54,7 @@ class JsonLinesParser(BaseParser):
 
     media_type = JSON_LINES
 
-    def parse(self, stream: Any, media_type: Any = None, parser_context: Any = None) -> bytes:
+    def parse(self, stream: Any, media_type: Any = None, parser_context: Any = None) -> Any:
         return bytes(stream.read())
 
 
@@ -66,14 +66,14 @@ class ParseQuery(Fields):
     run = serializers.IntegerField(default=None, min_value=1, max_value=MOST_KEY, allow_null=True)
 
 
-class BatchQuery(serializers.Serializer):
+class BatchQuery(serializers.Serializer[Any]):
     """The same for JSON lines, in the address."""
 
     beam = serializers.IntegerField(default=5, min_value=1, max_value=MOST_CANDIDATES)
     run = serializers.IntegerField(default=None, min_value=1, max_value=MOST_KEY, allow_null=True)
 
 
-class SpanSerializer(serializers.Serializer):
+class SpanSerializer(serializers.Serializer[Any]):
     """The characters ``start`` to ``end`` of the utterance name an entity."""
 
     start = serializers.IntegerField()
@@ -84,7 +84,7 @@ class SpanSerializer(serializers.Serializer):
     value = serializers.CharField()
 
 
-class OpenSlotSerializer(serializers.Serializer):
+class OpenSlotSerializer(serializers.Serializer[Any]):
     """A slot to ask about. ``choices`` are those that the utterance names (``is_named``), the likely one
     first, or else entities of the class; ``phrases`` are unknown words that may be meant."""
 
@@ -98,7 +98,7 @@ class OpenSlotSerializer(serializers.Serializer):
     phrases = serializers.ListField(child=serializers.CharField())
 
 
-class CandidateSerializer(serializers.Serializer):
+class CandidateSerializer(serializers.Serializer[Any]):
     """A form, with class tokens and with the entities of the utterance (``grounded``)."""
 
     form = serializers.CharField()
@@ -114,7 +114,7 @@ class CandidateSerializer(serializers.Serializer):
     )
 
 
-class ParseSerializer(serializers.Serializer):
+class ParseSerializer(serializers.Serializer[Any]):
     """The answer to an utterance; candidates are ranked, the best first."""
 
     world = serializers.CharField()
@@ -159,14 +159,14 @@ class ParseRoute(APIView):
             ),
         },
     )
-    def post(self, request: Request, world: str) -> HttpResponseBase:
+    def post(self, request: ApiRequest, world: str) -> HttpResponseBase:
         if isinstance(request.data, bytes):
             return self._answer_lines(request, request.data)
         query = ParseQuery(data=request.data)
         query.is_valid(raise_exception=True)
         return Response(client().parse(self.world.name, **query.validated_data))
 
-    def _answer_lines(self, request: Request, lines: bytes) -> HttpResponseBase:
+    def _answer_lines(self, request: ApiRequest, lines: bytes) -> HttpResponseBase:
         query = BatchQuery(data=request.query_params)
         query.is_valid(raise_exception=True)
         count = len(numbered_lines(lines))
@@ -191,8 +191,8 @@ class ParseJobs(WorldRoute):
 
     parser_classes = [JsonLinesParser]
     model = Job
-    filter_backends: ClassVar[list[type[BaseFilterBackend]]] = []
-    duties: ClassVar[dict[str, Duty]] = {"POST": Duty.VIEW}
+    filter_backends = []
+    duties = {"POST": Duty.VIEW}
     http_method_names = ["post", "options"]
 
     @extend_schema(
@@ -202,7 +202,7 @@ class ParseJobs(WorldRoute):
         responses={202: JobSerializer},
     )
     @once
-    def post(self, request: Request, **kwargs: object) -> Response:
+    def post(self, request: ApiRequest, **kwargs: object) -> Response:
         query = BatchQuery(data=request.query_params)
         query.is_valid(raise_exception=True)
         if not isinstance(request.data, bytes) or not request.data.strip():

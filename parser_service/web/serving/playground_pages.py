@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from django.http import HttpRequest, HttpResponse, QueryDict
+from django.http import HttpResponse, QueryDict
 from django.shortcuts import render
 from django.urls import reverse
 from django.views.decorators.cache import never_cache
@@ -17,7 +17,7 @@ from annotations.language.errors import Refusal
 from annotations.lists.paging import number_in
 from annotations.models import Duty, World
 from annotations.models.corpus import MOST_CHARACTERS
-from annotations.people.access import WRITE, world_view
+from annotations.people.access import WRITE, WorldRequest, world_view
 from parser_service.analysis.probe_texts import PAPER_PROBES
 from parser_service.labelling.wrong_answer_reports import report_wrong, say_parser
 from parser_service.models import TrainingRun
@@ -46,7 +46,7 @@ class SpannedText:
 
 
 @world_view(Duty.VIEW)
-def playground(request: HttpRequest, world: World) -> HttpResponse:
+def playground(request: WorldRequest, world: World) -> HttpResponse:
     """Show the text and the run that the address names; the answer comes when the page has loaded."""
     runs = world.runs.succeeded().select_related("split").order_by("-pk")
     promoted = promoted_run(world)
@@ -65,7 +65,7 @@ def playground(request: HttpRequest, world: World) -> HttpResponse:
 
 @never_cache
 @world_view(Duty.VIEW, WRITE)
-def playground_ask(request: HttpRequest, world: World) -> HttpResponse:
+def playground_ask(request: WorldRequest, world: World) -> HttpResponse:
     """Ask the parse server about the text, and show its answer."""
     text, run = _text_of(request.POST), number_in(request.POST.get("run", ""))
     context: dict[str, Any] = {"text": text, "run": run}
@@ -86,7 +86,7 @@ def playground_ask(request: HttpRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.VIEW, WRITE)
-def playground_wrong(request: HttpRequest, world: World) -> HttpResponse:
+def playground_wrong(request: WorldRequest, world: World) -> HttpResponse:
     """Send an utterance that was answered wrongly to the work queue, with the right form if one is given."""
     sent = request.POST
     run = TrainingRun.objects.filter(world=world, pk=number_in(sent.get("run", ""))).first()
