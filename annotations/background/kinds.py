@@ -54,16 +54,14 @@ def _last_queue(worker: str) -> str | None:
 
 
 def _claim_oldest(worker: str, queue: str) -> BackgroundWork | None:
-    while waiting := [oldest for kind in kinds() if (oldest := _oldest(kind, queue))]:
-        oldest = min(waiting, key=lambda work: work.queued_at)
+    while True:
+        queued = (kind.model.objects.queued().filter(queue=queue) for kind in kinds())
+        waiting = [work for rows in queued if (work := rows.order_by("queued_at", "id").first())]
+        if not waiting:
+            return None
+        oldest = min(waiting, key=attrgetter("queued_at"))
         if claimed := claim(worker, queue, type(oldest), oldest):
             return claimed
-    return None
-
-
-def _oldest(kind: Kind, queue: str) -> BackgroundWork | None:
-    waiting = kind.model.objects.queued().filter(queue=queue)
-    return waiting.order_by("queued_at", "id").first()
 
 
 def carry_out(work: BackgroundWork, give_up: Callable[[], None] | None = None) -> None:

@@ -72,6 +72,9 @@ _USUAL_NAMES = (
 FORM_NAMES = ("logical_form", "form", "parse", "lambda", "semantics")
 _BETWEEN_WORDS = re.compile(r"[.\s_-]")
 _CROWD_COLUMN = re.compile(r"(Answer\.(?:utterance|custom))(\d+)")
+# The apostrophe with which exports keep spreadsheets from reading a formula.
+_FORMULA_GUARD = re.compile(r"\A'(?=[=+@-])")
+_RULER = re.compile(r":?-{2,}:?")  # a cell of the line below the head of a table in Markdown
 
 # The first bytes of what is no text, with what to do about it.
 SIGNATURES = {
@@ -159,8 +162,11 @@ def decode_upload(data: bytes, source: str, encoding: str = "") -> tuple[str, st
     if encoding not in ENCODINGS:
         hint = f"use {', '.join(ENCODINGS)}"
         raise LanguageError(f"there is no encoding {encoding[:40]!r} here", place, hint)
+    codec = encoding
+    if encoding == "utf-16" and not by_mark:  # the zeros say which half is first
+        codec = "utf-16-be" if data[:1] == b"\0" else "utf-16-le"
     try:
-        text = data.decode(_codec(data, encoding)).removeprefix("\ufeff")
+        text = data.decode(codec).removeprefix("\ufeff")
     except UnicodeDecodeError as error:
         hint = "choose another encoding, or save the file as UTF-8"
         line = data[: error.start].count(b"\n") + 1
@@ -172,13 +178,6 @@ def decode_upload(data: bytes, source: str, encoding: str = "") -> tuple[str, st
     if not text.strip():
         raise LanguageError("the file is empty", place, "send one with utterances")
     return text.replace("\r\n", "\n").replace("\r", "\n"), encoding
-
-
-def _codec(data: bytes, encoding: str) -> str:
-    """Return the name that Python has for ``encoding``; UTF-16 without a mark says by its zeros which half is first."""
-    if encoding == "utf-16" and not data.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return "utf-16-be" if data[:1] == b"\0" else "utf-16-le"
-    return encoding
 
 
 def _encoding_of(data: bytes) -> str:
@@ -394,8 +393,12 @@ def _read_table(text: str, source: str, format: UploadFormat, has_head: bool | N
             message = f"the row has {len(cells)} cells, and the head {width}"
             problems.append(error_at(Position(source, line), message, hint))
             continue
-        values = {name: _cell(cell) for name, cell in zip(names, cells, strict=False)}
-        if any(values.values()) and not _is_ruler(values.values()):
+        values = {
+            name: _FORMULA_GUARD.sub("", cell[:LONGEST_VALUE])
+            for name, cell in zip(names, cells, strict=False)
+        }
+        given = [value.strip() for value in values.values() if value.strip()]
+        if not all(map(_RULER.fullmatch, given)):
             records.append(UploadRow(line, values))
     sheet = _sheet(format, records, names, problems)
     return replace(_melt_crowd(sheet), has_head=has_head)
@@ -430,18 +433,6 @@ def _rows_of(
             message = f"a cell has more than {csv.field_size_limit():,} characters"
         return rows, [error_at(Position(source, begins + skipped), message, hint)]
     return rows, []
-
-
-def _cell(text: str) -> str:
-    """Return a cell without the apostrophe with which exports keep spreadsheets from reading a formula."""
-    text = text[:LONGEST_VALUE]
-    return text[1:] if text[:1] == "'" and text[1:2] in ("=", "+", "-", "@") else text
-
-
-def _is_ruler(cells: Iterable[str]) -> bool:
-    """Whether a row is the line below the head of a table in Markdown."""
-    given = [cell.strip() for cell in cells if cell.strip()]
-    return all(re.fullmatch(r":?-{2,}:?", cell) for cell in given)
 
 
 def _looks_like_head(rows: Sequence[Sequence[str]]) -> bool:
