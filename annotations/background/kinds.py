@@ -38,19 +38,12 @@ def claim_in_turn(worker: str, queues: Sequence[str]) -> BackgroundWork | None:
 
     The queue that ``worker`` took its last work from comes last, so that a full queue starves no other.
     """
-    last = _last_queue(worker)
+    of_worker = (kind.model.objects.filter(worker=worker) for kind in kinds())
+    begun = [work for rows in of_worker if (work := rows.order_by("-started_at").first())]
+    last = max(begun, key=attrgetter("started_at")).queue if begun else None
     at = queues.index(last) + 1 if last in queues else 0
     claims = (_claim_oldest(worker, queue) for queue in [*queues[at:], *queues[:at]])
     return next(filter(None, claims), None)
-
-
-def _last_queue(worker: str) -> str | None:
-    begun = [
-        work
-        for kind in kinds()
-        if (work := kind.model.objects.filter(worker=worker).order_by("-started_at").first())
-    ]
-    return max(begun, key=attrgetter("started_at")).queue if begun else None
 
 
 def _claim_oldest(worker: str, queue: str) -> BackgroundWork | None:

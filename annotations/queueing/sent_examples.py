@@ -73,7 +73,8 @@ def send_examples(world: World, examples: Iterable[Example], reason: str, by: Us
     with transaction.atomic():
         subjects = find_subjects(world, texts.values())
         missing = [text for text in texts if text not in subjects]
-        possible = [text for text in missing if _can_be_utterance(text)]
+        read = ((text, *read_text(text, Position())) for text in missing)
+        possible = [text for text, said, problem in read if said and problem is None]
         collected: list[Utterance] = []
         if possible:
             collect(world, possible, Origin.REVIEW, by)
@@ -137,8 +138,3 @@ FINDERS: tuple[Callable[[World, Mapping[str, Example]], Behind], ...] = (
     _templates,
     _utterances,
 )
-
-
-def _can_be_utterance(text: str) -> bool:
-    said, problem = read_text(text, Position())
-    return bool(said) and problem is None

@@ -255,10 +255,13 @@ def recognise(text: str) -> UploadFormat:
     if re.match(r"[\[{]\s*([\[{\"\]}]|-?\d|true|false|null|\Z)", start):
         first = start.split("\n", 1)[0].strip()
         rest = start[len(first) :].strip()
-        if not _goes_on_as_text(first):
-            return UploadFormat.JSONL if _is_json(first) and rest else UploadFormat.JSON
+        end = _end_of_json(first)
+        if end < 0 or not first[end:].strip()[:1].isalnum():  # else text: “[1] bring me the plum”
+            return UploadFormat.JSONL if end == len(first) and rest else UploadFormat.JSON
     lines = [line for line in text.split("\n") if line.strip()]
-    is_quoted = all(line[:1] == '"' and _is_json(line.strip()) for line in lines[:20])
+    is_quoted = all(
+        line[:1] == '"' and _end_of_json(line.strip()) == len(line.strip()) for line in lines[:20]
+    )
     if lines and is_quoted and lines[0].strip('" ').lower() not in TEXT_NAMES:
         return UploadFormat.JSONL
     if _period_of_forms(lines):
@@ -269,21 +272,12 @@ def recognise(text: str) -> UploadFormat:
     return UploadFormat.TEXT
 
 
-def _is_json(line: str) -> bool:
+def _end_of_json(line: str) -> int:
+    """Return where the value of JSON that ``line`` begins with ends; -1 where it begins with none."""
     try:
-        json.loads(line)
+        return json.JSONDecoder().raw_decode(line)[1]
     except (ValueError, RecursionError):
-        return False
-    return True
-
-
-def _goes_on_as_text(line: str) -> bool:
-    """Whether a line begins with a value of JSON, and words follow: ``[1] bring me the plum``."""
-    try:
-        _, end = json.JSONDecoder().raw_decode(line)
-    except (ValueError, RecursionError):
-        return False
-    return line[end:].strip()[:1].isalnum()
+        return -1
 
 
 # --- tables ---------------------------------------------------------------------------------------
@@ -314,7 +308,11 @@ def delimiter_of(text: str) -> str:
         is_prose = delimiter in ",;" and any(
             cell[:1] == " " and not cell.strip().isdigit() for row in rows for cell in row[1:]
         )
-        if not is_prose and (delimiter != "," or _has_cells(rows, sample)):
+        if is_prose:
+            continue
+        is_quoted = re.search(r'(?:^|,)"[^"\n]*"(?:,|$)', sample[:10_000], re.MULTILINE)
+        has_labels = all(re.fullmatch(r"[\w.-]+", row[0]) for row in rows)
+        if delimiter != "," or is_quoted or has_labels or _has_numbers(rows):
             return delimiter
     first = next((line for line in sample.split("\n") if line.strip()), "")
     is_one_column = first.strip().strip('"').lower() in TEXT_NAMES
@@ -334,13 +332,6 @@ def _names_a_text(rows: Sequence[Sequence[str]], delimiter: str) -> bool:
     other_names = {*TEXT_NAMES, *FORM_NAMES, *_USUAL_NAMES}
     is_named = all(name.strip().lower() in other_names for name in rows[0])
     return is_named or _has_numbers(rows)
-
-
-def _has_cells(rows: Sequence[Sequence[str]], sample: str) -> bool:
-    """Whether something other than commas says that rows have cells."""
-    is_quoted = re.search(r'(?:^|,)"[^"\n]*"(?:,|$)', sample[:10_000], re.MULTILINE)
-    has_labels = all(re.fullmatch(r"[\w.-]+", row[0]) for row in rows)
-    return bool(is_quoted) or has_labels or _has_numbers(rows)
 
 
 def _has_numbers(rows: Sequence[Sequence[str]]) -> bool:

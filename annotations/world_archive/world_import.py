@@ -150,14 +150,11 @@ class _Loader:
         World.objects.filter(pk=self._world.pk).update(description=description)
         for table in tables():
             self._changed = []
-            keys: list[int] = []
-            self._keys[table.name] = keys
+            keys = self._keys[table.name] = []
             if table.name not in self._manifest.rows:
                 continue
             for rows in batches(self._rows(table), BATCH):
                 self._store(table, rows, Position(table.path, len(keys) + 1))
-                keys += [row.pk for row in rows]
-                self._link(table, rows)
                 self._progress.check()
                 self._done += len(rows)
                 total = max(1, sum(self._manifest.rows.values()))
@@ -173,12 +170,19 @@ class _Loader:
         return {name: len(keys) for name, keys in self._keys.items()}
 
     def _store(self, table: ArchiveTable, rows: list[models.Model], place: Position) -> None:
+        """Store rows, then write their references to earlier rows of the same table."""
         try:
             with transaction.atomic():
                 table.model._default_manager.bulk_create(rows)
         except IntegrityError as error:
             with transaction.atomic():
                 raise self._clash(table, rows, place) from error
+        self._keys[table.name] += [row.pk for row in rows]
+        for row, name, number in self._links:
+            setattr(row, f"{name}_id", self._key(number, table.name, True, Position(table.path)))
+        self._links.clear()
+        if names := [name for name, other in table.references.items() if other == table.name]:
+            table.model._default_manager.bulk_update(rows, names)
 
     def _clash(
         self, table: ArchiveTable, rows: list[models.Model], place: Position
@@ -204,15 +208,6 @@ class _Loader:
                 return LanguageError("this row cannot stand beside the rows before it", here)
             keys.append(row.pk)
         return LanguageError("these rows cannot stand beside each other", place)
-
-    def _link(self, table: ArchiveTable, rows: list[models.Model]) -> None:
-        """Write the references of stored rows to earlier rows of the same table."""
-        names = {name for name, other in table.references.items() if other == table.name}
-        for row, name, number in self._links:
-            setattr(row, f"{name}_id", self._key(number, table.name, True, Position(table.path)))
-        self._links.clear()
-        if names:
-            table.model._default_manager.bulk_update(rows, names)
 
     def _rows(self, table: ArchiveTable) -> Iterator[models.Model]:
         path = self._manifest.prefix + table.path
