@@ -55,16 +55,12 @@ def ago(moment: Any) -> SafeString:
     if moment is None:
         return format_html("")
     absolute = timezone.localtime(moment)
+    seconds = (timezone.now() - moment).total_seconds()
+    units = ((86400, "d"), (3600, "h"), (60, "min"))
+    ages = (f"{int(seconds // size)} {unit} ago" for size, unit in units if seconds >= size)
     return format_html(
         '<time datetime="{}" title="{}">{}</time>',
         absolute.isoformat(),
         f"{absolute:%Y-%m-%d %H:%M:%S %Z}",
-        _age((timezone.now() - moment).total_seconds()),
+        next(ages, "just now"),
     )
-
-
-def _age(seconds: float) -> str:
-    for size, unit in ((86400, "d"), (3600, "h"), (60, "min")):
-        if seconds >= size:
-            return f"{int(seconds // size)} {unit} ago"
-    return "just now"

@@ -38,32 +38,23 @@ def claim_in_turn(worker: str, queues: Sequence[str]) -> BackgroundWork | None:
 
     The queue that ``worker`` took its last work from comes last, so that a full queue starves no other.
     """
-    last = _last_queue(worker)
+    of_worker = (kind.model.objects.filter(worker=worker) for kind in kinds())
+    begun = [work for rows in of_worker if (work := rows.order_by("-started_at").first())]
+    last = max(begun, key=attrgetter("started_at")).queue if begun else None
     at = queues.index(last) + 1 if last in queues else 0
     claims = (_claim_oldest(worker, queue) for queue in [*queues[at:], *queues[:at]])
     return next(filter(None, claims), None)
 
 
-def _last_queue(worker: str) -> str | None:
-    begun = [
-        work
-        for kind in kinds()
-        if (work := kind.model.objects.filter(worker=worker).order_by("-started_at").first())
-    ]
-    return max(begun, key=attrgetter("started_at")).queue if begun else None
-
-
 def _claim_oldest(worker: str, queue: str) -> BackgroundWork | None:
-    while waiting := [oldest for kind in kinds() if (oldest := _oldest(kind, queue))]:
-        oldest = min(waiting, key=lambda work: work.queued_at)
+    while True:
+        queued = (kind.model.objects.queued().filter(queue=queue) for kind in kinds())
+        waiting = [work for rows in queued if (work := rows.order_by("queued_at", "id").first())]
+        if not waiting:
+            return None
+        oldest = min(waiting, key=attrgetter("queued_at"))
         if claimed := claim(worker, queue, type(oldest), oldest):
             return claimed
-    return None
-
-
-def _oldest(kind: Kind, queue: str) -> BackgroundWork | None:
-    waiting = kind.model.objects.queued().filter(queue=queue)
-    return waiting.order_by("queued_at", "id").first()
 
 
 def carry_out(work: BackgroundWork, give_up: Callable[[], None] | None = None) -> None:

@@ -87,7 +87,9 @@ class Lease:
         except Fenced as error:
             # The block may go on for a moment after it has ended the work itself.
             if not self.work.is_ended:
-                self._lose(str(error))
+                logger.warning("%s", error)
+                self.is_lost = True
+                self._stopping.set()
         except DatabaseError as error:
             if not self._is_away:
                 logger.warning("The lease of %s cannot be extended now: %s", self.work, error)
@@ -96,8 +98,3 @@ class Lease:
             if time.monotonic() - extended > LEASE.total_seconds():
                 self.outage = DatabaseAway(error, extended)
         return extended
-
-    def _lose(self, reason: str) -> None:
-        logger.warning("%s", reason)
-        self.is_lost = True
-        self._stopping.set()

@@ -69,25 +69,21 @@ def outlasting(write: Callable[P, R]) -> Callable[P, R]:
             try:
                 result = write(*args, **kwargs)
             except OUTAGES as error:
+                if not is_outage(error):
+                    raise
                 if since is None:
                     since = time.monotonic()
                     logger.warning("A write will be tried again: %s", error)
-                _wait_or_give_up(error, since, LEASE.total_seconds())
+                if time.monotonic() - since > LEASE.total_seconds():
+                    raise DatabaseAway(error, since) from error
+                connection.close()
+                time.sleep(TRY_EVERY)
             else:
                 if since is not None:
                     logger.warning("Written after %.1f s.", time.monotonic() - since)
                 return result
 
     return trying
-
-
-def _wait_or_give_up(error: Exception, since: float, patience: float) -> None:
-    if not is_outage(error):
-        raise error
-    if time.monotonic() - since > patience:
-        raise DatabaseAway(error, since) from error
-    connection.close()
-    time.sleep(TRY_EVERY)
 
 
 def attempts(patience: float) -> Iterator[float]:

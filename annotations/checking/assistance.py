@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import asdict
 from functools import partial
@@ -22,12 +22,11 @@ from annotations.language.assistance import (
     usage_of,
     with_repairs,
 )
-from annotations.language.errors import LanguageError, Offsets, Problem, Repair
+from annotations.language.errors import LanguageError, Offsets, Problem
 from annotations.language.forms import to_reading
 from annotations.language.grammar import Grammar
 from annotations.language.symbols import SlotPlace
-from annotations.language.templates import BoundedCache, SemanticTemplate
-from annotations.models import SemanticTemplate as StoredTemplate
+from annotations.language.templates import BoundedCache
 from annotations.models import TaskCategory, World
 from annotations.rows.from_rows import grammar_of, predicates_of, ready_templates, template_of
 from annotations.rows.stored_problems import as_stored
@@ -72,15 +71,13 @@ def _usage(world: World, grammar: Grammar) -> Usage:
     """Return how the templates that are ready say slots; counted once while they stay as they are."""
 
     def count() -> tuple[Usage, Grammar]:
-        return usage_of(list(_readable(ready_templates(world))), grammar), grammar
+        templates = []
+        for row in ready_templates(world):
+            with suppress(LanguageError):
+                templates.append(template_of(row))
+        return usage_of(templates, grammar), grammar
 
     return _USAGES.get((world.pk, world.revision, id(grammar)), count)[0]
-
-
-def _readable(rows: Iterable[StoredTemplate]) -> Iterator[SemanticTemplate]:
-    for row in rows:
-        with suppress(LanguageError):
-            yield template_of(row)
 
 
 def completion_tag(category: TaskCategory) -> str:
@@ -112,22 +109,23 @@ def shown_problem(problem: Problem, sides: Sides) -> dict[str, Any]:
     return {
         **stored,
         "at": at,
-        "repairs": [_repair(each, sides) for each in problem.repairs],
+        "repairs": [
+            {
+                "label": repair.label,
+                "edits": [
+                    {
+                        "field": edit.source,
+                        "from": utf16_index(sides.text(edit.source), edit.start),
+                        "to": utf16_index(sides.text(edit.source), edit.end),
+                        "text": edit.text,
+                    }
+                    for edit in repair.edits
+                ],
+            }
+            for repair in problem.repairs
+        ],
         "task_category": problem.task_category,
     }
-
-
-def _repair(repair: Repair, sides: Sides) -> dict[str, Any]:
-    edits = [
-        {
-            "field": edit.source,
-            "from": utf16_index(sides.text(edit.source), edit.start),
-            "to": utf16_index(sides.text(edit.source), edit.end),
-            "text": edit.text,
-        }
-        for edit in repair.edits
-    ]
-    return {"label": repair.label, "edits": edits}
 
 
 def _places(places: Iterable[SlotPlace], text: str) -> list[list[int]]:

@@ -132,22 +132,22 @@ def consequences_of_production(edit: ProductionEdit) -> WorldConsequences:
 
 def assist_production(edit: ProductionEdit) -> dict[str, Any]:
     """Return what the editor shows while somebody types, as ``assist`` does for a template."""
-    problems = check_production(edit).problems
-    return {"problems": [_as_json(each, edit) for each in problems], "slots": []}
-
-
-def _as_json(problem: Problem, edit: ProductionEdit) -> dict[str, Any]:
-    column = problem.position.column if problem.position.source == EXPANSION_FIELD else 1
-    return {
-        "field": EXPANSION_FIELD,
-        "line": 1,
-        "column": column,
-        "at": utf16_index(edit.expansion, column - 1),
-        "severity": str(problem.severity),
-        "message": problem.message,
-        "hint": problem.hint,
-        "repairs": [],
-    }
+    problems: list[dict[str, Any]] = []
+    for problem in check_production(edit).problems:
+        column = problem.position.column if problem.position.source == EXPANSION_FIELD else 1
+        problems.append(
+            {
+                "field": EXPANSION_FIELD,
+                "line": 1,
+                "column": column,
+                "at": utf16_index(edit.expansion, column - 1),
+                "severity": str(problem.severity),
+                "message": problem.message,
+                "hint": problem.hint,
+                "repairs": [],
+            }
+        )
+    return {"problems": problems, "slots": []}
 
 
 def _size(grammar: Grammar) -> str:

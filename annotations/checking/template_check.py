@@ -67,9 +67,14 @@ def check_template(
     world: World, category: TaskCategory | None, pattern: str, form: str
 ) -> CheckedTemplate:
     """Check a template for ``category`` of ``world`` and expand some of it, within ``CHECK_STEPS``."""
-    too_long = tuple(_too_long(name, text) for name, text in (("pattern", pattern), ("form", form)))
-    if any(too_long):
-        return CheckedTemplate(tuple(filter(None, too_long)))
+    too_long: list[Problem] = []
+    for field, text in (("pattern", pattern), ("form", form)):
+        try:
+            require_length(text, field, MOST_CHARACTERS[field], Position(field))
+        except LanguageError as error:
+            too_long.append(error.problem)
+    if too_long:
+        return CheckedTemplate(tuple(too_long))
     try:
         declared = predicates_of(world)
         grammar = grammar_of(category) if category else Grammar(())
@@ -99,14 +104,6 @@ def recall_check(world: World, row: StoredTemplate) -> CheckedTemplate:
     if template is None:
         return CheckedTemplate(problems or unread)
     return CheckedTemplate(problems, template, gloss=gloss(template.form, predicates_of(world)))
-
-
-def _too_long(source: str, text: str) -> Problem | None:
-    try:
-        require_length(text, source, MOST_CHARACTERS[source], Position(source))
-    except LanguageError as error:
-        return error.problem
-    return None
 
 
 @dataclass(frozen=True, slots=True)

@@ -58,22 +58,20 @@ def history_of_row(
     some = list(entries[: MOST_SHOWN + 1])
     shown = some[:MOST_SHOWN]
     pairs = pairwise([*some, None] if len(some) <= MOST_SHOWN else some)
-    versions = tuple(_version(kind, entry, older, newest) for entry, older in pairs)
-    return RowHistory(versions, shown[-1].history_id if len(some) > MOST_SHOWN else None)
-
-
-def _version(kind: EditableKind, entry: Any, older: Any, newest: int | None) -> Version:
-    is_first = entry.history_change_reason == AS_IMPORTED
-    return Version(
-        entry=entry.history_id,
-        number=entry.version,
-        what=what_happened(entry),
-        author=entry.history_user,
-        moment=None if is_first else entry.history_date,
-        changes=tuple(_changes(kind, entry, older)),
-        is_deletion=entry.history_type == DELETED,
-        is_current=entry.history_id == newest,
+    versions = tuple(
+        Version(
+            entry=entry.history_id,
+            number=entry.version,
+            what=what_happened(entry),
+            author=entry.history_user,
+            moment=None if entry.history_change_reason == AS_IMPORTED else entry.history_date,
+            changes=tuple(_changes(kind, entry, older)),
+            is_deletion=entry.history_type == DELETED,
+            is_current=entry.history_id == newest,
+        )
+        for entry, older in pairs
     )
+    return RowHistory(versions, shown[-1].history_id if len(some) > MOST_SHOWN else None)
 
 
 def _changes(kind: EditableKind, entry: Any, older: Any) -> Iterator[FieldChange]:

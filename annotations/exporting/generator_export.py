@@ -47,7 +47,9 @@ def files_of_part(world: World, part: str) -> dict[str, str]:
             grammar: dict[str, list[str]] = defaultdict(list)
             for category in TaskCategory.objects.filter(grammar__world=world):
                 *imports, own = category.rule_sources
-                grammar[own] += [_import_line(entry) for entry in imports]
+                lines = grammar[own]
+                for source, alias in map(split_entry, imports):
+                    lines.append(f'; import "{source}"' + (f" as ${alias}" if alias else ""))
             for row in Production.objects.filter(grammar__world=world):
                 grammar[row.source].append(f"${row.nonterminal} = {row.expansion}")
             return _texts(grammar)
@@ -66,11 +68,6 @@ def files_of_part(world: World, part: str) -> dict[str, str]:
 
 def _texts(lines: Mapping[str, list[str]]) -> dict[str, str]:
     return {name: "\n".join(some) + "\n" for name, some in lines.items()}
-
-
-def _import_line(entry: str) -> str:
-    source, alias = split_entry(entry)
-    return f'; import "{source}" as ${alias}' if alias else f'; import "{source}"'
 
 
 def complete(world: World, uploads: Mapping[str, bytes]) -> dict[str, bytes]:

@@ -79,7 +79,15 @@ def export_lines(
             "A pair file holds one part of one source: say which part and source.",
             "part_and_source_needed",
         )
-    return WRITERS[SplitFormat(as_)](split, part, source)
+    match SplitFormat(as_):
+        case SplitFormat.TXT:
+            pairs = _rows(split, part, source, ("utterance", "written_form", "logical_form"))
+            return write_pairs((utterance, written or form) for utterance, written, form in pairs)
+        case SplitFormat.CSV:
+            return csv_lines(FIELDS, _rows(split, part, source))
+    encode = json.JSONEncoder(ensure_ascii=False).encode
+    rows = _rows(split, part, source)
+    return (encode(dict(zip(FIELDS, row, strict=True))) + "\n" for row in rows)
 
 
 def export_split(split: Split, as_: str, target: Path) -> dict[str, int]:
@@ -130,26 +138,11 @@ def _rows(
     return split.examples.filter(**chosen).values_list(*fields).iterator(chunk_size=CHUNK)
 
 
-def _pair_lines(split: Split, part: str | None, source: str | None) -> Iterator[str]:
-    rows = _rows(split, part, source, ("utterance", "written_form", "logical_form"))
-    return write_pairs((utterance, written or form) for utterance, written, form in rows)
-
-
-def _json_lines(split: Split, part: str | None, source: str | None) -> Iterator[str]:
-    encode = json.JSONEncoder(ensure_ascii=False).encode
-    for row in _rows(split, part, source):
-        yield encode(dict(zip(FIELDS, row, strict=True))) + "\n"
-
-
 class _Line:
     """A file that keeps the one line written to it; ``csv`` writes to nothing less than a file."""
 
     def write(self, text: str) -> None:
         self.text = text
-
-
-def _csv_lines(split: Split, part: str | None, source: str | None) -> Iterator[str]:
-    return csv_lines(FIELDS, _rows(split, part, source))
 
 
 def csv_lines(fields: Iterable[str], rows: Iterable[Iterable[Any]]) -> Iterator[str]:
@@ -181,10 +174,3 @@ def _pair_archive(split: Split, part: str | None, source: str | None) -> Iterato
         manifest = json.dumps(manifest_of(split, part, source), ensure_ascii=False, indent=2)
         archive.writestr(MANIFEST, f"{manifest}\n")
     yield target.take()
-
-
-WRITERS = {
-    SplitFormat.TXT: _pair_lines,
-    SplitFormat.JSONL: _json_lines,
-    SplitFormat.CSV: _csv_lines,
-}

@@ -18,7 +18,7 @@ from annotations.generation.coverage import count_coverage, store_coverage
 from annotations.generation.template_problems import store_template_problems
 from annotations.language.errors import Problem, warning_at
 from annotations.language.forms import depth, head_predicate, read_form
-from annotations.language.templates import BoundedCache, Expansion, Generated, SemanticTemplate
+from annotations.language.templates import BoundedCache, Expansion, Generated
 from annotations.models.description import ProblemSubject
 from annotations.rows.from_rows import AnnotatedCategory
 from annotations.rows.staging import Staging
@@ -184,8 +184,7 @@ class GeneratedWorld:
         if removed := unused.count():
             unused.delete()
         changes += Changes(removed=removed)
-        problems = [*self._conflicts(), *self._left_out()]
-        store_problems(self._world, ProblemSubject.COMMANDS, problems)
+        store_problems(self._world, ProblemSubject.COMMANDS, list(self._problems()))
         store_template_problems(self._world, self._categories, self._generated)
         store_coverage(self._world, self._coverage)
         revision, generations = counters
@@ -194,8 +193,10 @@ class GeneratedWorld:
         )
         return changes
 
-    def _conflicts(self) -> Iterator[Problem]:
-        templates = self._templates()
+    def _problems(self) -> Iterator[Problem]:
+        """Yield conflicts, and what is left out; a template of several categories is mentioned once."""
+        values = [category.value for category in self._categories]
+        templates = {value.name: value.templates for value in values}
         for conflict in self._generated.conflicts:
             *losing, (winner, kept) = conflict.candidates
             for loser, form in losing:
@@ -205,18 +206,11 @@ class GeneratedWorld:
                     f'"{conflict.command}" gets {kept} here and {form} at {of_set[loser].position}',
                     "the later form is kept; correct the one that is wrong",
                 )
-
-    def _left_out(self) -> Iterator[Problem]:
-        """Yield what is left out; a template that several categories use is mentioned once."""
-        templates = self._templates()
         problems: dict[Problem, None] = {}
         for each in self._generated.left_out:
             place = templates[each.task_category][each.template_index].position
             problems[warning_at(place, each.problem.message, each.problem.hint)] = None
         yield from problems
-
-    def _templates(self) -> Mapping[str, Sequence[SemanticTemplate]]:
-        return {category.value.name: category.value.templates for category in self._categories}
 
 
 def _measure(text: str) -> tuple[str, int]:

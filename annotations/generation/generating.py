@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,7 +15,6 @@ from annotations.jobs.weight import MOST_COMMANDS
 from annotations.language.errors import LanguageError
 from annotations.language.templates import (
     DEFAULT_LIMIT,
-    Conflict,
     Generated,
     generate,
     generation_size,
@@ -42,12 +40,24 @@ class GenerationReport:
 
         def by_category(figure: str) -> dict[str, Any]:
             values = (getattr(column, figure) for column in self.columns)
-            return dict(zip(names, map(_round, values), strict=True))
+            rounded = (round(each, 4) if isinstance(each, float) else each for each in values)
+            return dict(zip(names, rounded, strict=True))
 
         return {
             "commands": by_category("commands"),
             "forms": by_category("forms"),
-            "conflicts": [self._conflict(each) for each in self.generated.conflicts],
+            "conflicts": [
+                {
+                    "task_category": each.task_category,
+                    "command": each.command,
+                    "kept": each.kept,
+                    "candidates": [
+                        {"template": str(self._place(each.task_category, index)), "form": form}
+                        for index, form in each.candidates
+                    ],
+                }
+                for each in self.generated.conflicts
+            ],
             "outside_grammar": len(self.generated.outside_grammar),
             "left_out": [
                 {
@@ -63,19 +73,9 @@ class GenerationReport:
             "changes": self.changes.as_json(),
         }
 
-    def _conflict(self, conflict: Conflict) -> dict[str, Any]:
-        return {
-            "task_category": conflict.task_category,
-            "command": conflict.command,
-            "kept": conflict.kept,
-            "candidates": [
-                {"template": str(self._place(conflict.task_category, index)), "form": form}
-                for index, form in conflict.candidates
-            ],
-        }
-
     def _place(self, task_category: str, index: int) -> object:
-        return _templates(self.categories)[task_category][index].position
+        values = (category.value for category in self.categories)
+        return next(each.templates for each in values if each.name == task_category)[index].position
 
 
 def start_generation(world: models.World, by: models.User) -> models.Job | GenerationReport:
@@ -138,11 +138,3 @@ def _generate_once(world: models.World, limit: int, progress: Progress) -> Gener
             report = GenerationReport(generated, tuple(complexity(world)), categories, changes)
             progress.conclude(report.as_json())
     return report
-
-
-def _templates(categories: tuple[AnnotatedCategory, ...]) -> Mapping[str, Any]:
-    return {category.value.name: category.value.templates for category in categories}
-
-
-def _round(value: float | None) -> float | None:
-    return round(value, 4) if isinstance(value, float) else value

@@ -25,10 +25,26 @@ def store_template_problems(
 
     A row of which the same is said keeps its remarks as they are, with their places.
     """
+    declared = predicates_of(world)
+    remarks: dict[models.SemanticTemplate, list[StoredRemark]] = defaultdict(list)
+    for category in categories:
+        value = category.value
+        try:
+            checker = checker_of(value.grammar, declared, value.name)
+        except LanguageError:
+            continue
+        for row in category.template_rows:
+            if row not in remarks:  # else checked against the grammar of an earlier category
+                remarks[row] = _check(row, checker)
+        for index, problem in shared_problems(value, generated):
+            remark = as_stored(problem)
+            of_row = remarks[category.template_rows[index]]
+            if remark not in of_row:
+                of_row.append(remark)
     changed = []
-    for row, remarks in _remarks(world, categories, generated).items():
-        if _texts_of(row.problems) != _texts_of(remarks):
-            row.problems = remarks
+    for row, of_row in remarks.items():
+        if _texts_of(row.problems) != _texts_of(of_row):
+            row.problems = of_row
             changed.append(row)
     models.SemanticTemplate.objects.bulk_update(changed, ["problems"], batch_size=BATCH)
 
@@ -67,29 +83,6 @@ def _check(
     template, unread = read_sides(row.pattern, row.form)
     problems = problems_of(checker, template, budget) if template else unread
     return [as_stored(problem) for problem in problems]
-
-
-def _remarks(
-    world: models.World, categories: Sequence[AnnotatedCategory], generated: Generated
-) -> dict[models.SemanticTemplate, list[StoredRemark]]:
-    declared = predicates_of(world)
-    remarks: dict[models.SemanticTemplate, list[StoredRemark]] = defaultdict(list)
-    for category in categories:
-        value = category.value
-        try:
-            checker = checker_of(value.grammar, declared, value.name)
-        except LanguageError:
-            continue
-        for row in category.template_rows:
-            if row in remarks:  # checked against the grammar of the first category
-                continue
-            remarks[row] = _check(row, checker)
-        for index, problem in shared_problems(value, generated):
-            remark = as_stored(problem)
-            of_row = remarks[category.template_rows[index]]
-            if remark not in of_row:
-                of_row.append(remark)
-    return remarks
 
 
 def _texts_of(remarks: Iterable[StoredRemark]) -> set[tuple[str, str, str]]:

@@ -128,11 +128,15 @@ def flatten(paths: Mapping[str, bytes]) -> GatheredFiles:
             if (other := _follow(path, paths, problems)) not in (data, None)
         ]
         may_differ = bool(different) and is_prose(data, first)
-        problems += [
-            _second(path, first)
-            for path, other in different
-            if not (may_differ and is_prose(other, path))
-        ]
+        for path, other in different:
+            if may_differ and is_prose(other, path):
+                continue
+            if path.count("/") > first.count("/"):
+                sentence = f"{first} has this name too, and is nearer to the top; left out"
+                problems.append(warning_at(Position(path), sentence, "import one folder at a time"))
+            else:
+                sentence = f"two of the files have this name; the other is {first}"
+                problems.append(error_at(Position(path), sentence, "rename one"))
     return GatheredFiles(files, tuple(problems))
 
 
@@ -154,12 +158,3 @@ def _follow(path: str, paths: Mapping[str, bytes], problems: list[Problem]) -> b
     hint = "send that file as well, or the file itself in the place of the link"
     problems.append(error_at(Position(path), f"this is a link to {at}, which is not here", hint))
     return None
-
-
-def _second(path: str, first: str) -> Problem:
-    if path.count("/") > first.count("/"):
-        sentence = f"{first} has this name too, and is nearer to the top; left out"
-        return warning_at(Position(path), sentence, "import one folder at a time")
-    return error_at(
-        Position(path), f"two of the files have this name; the other is {first}", "rename one"
-    )

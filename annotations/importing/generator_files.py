@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from annotations.importing.predicates_file import PREDICATES_FILE, read_predicates
@@ -58,7 +58,13 @@ def read_generator(
     """
     ontology, ontology_problems = read_ontology(files)
     texts = read_generator_files(files)
-    problems = [*known_problems, *texts.problems, *_warn_of_unread(files)]
+    problems = [*known_problems, *texts.problems]
+    known = {*ONTOLOGY_FILES, *TRIPLE_FILES, PREDICATES_FILE}
+    for name in files:
+        is_read = name.lower() in known or is_grammar_name(name) or is_template_name(name)
+        if not is_read and not name.lower().startswith("readme"):
+            hint = f"known are *.txt, {', '.join(ONTOLOGY_FILES)} and {PREDICATES_FILE}"
+            problems.append(warning_at(Position(name), "not a generator file; ignored", hint))
     declared, further = _read_declared(files)
     problems += further
     predicates = dict(declared or {})
@@ -108,13 +114,3 @@ def _examine(
     inferred = infer_signatures(forms)
     known = {**(inferred if declared is None else declared), **edited}
     return inferred, list(set_problems(categories, generated, known))
-
-
-def _warn_of_unread(files: Iterable[str]) -> Iterator[Problem]:
-    """Yield a warning for each file that is not a generator's; a README needs none."""
-    known = {*ONTOLOGY_FILES, *TRIPLE_FILES, PREDICATES_FILE}
-    for name in files:
-        is_read = name.lower() in known or is_grammar_name(name) or is_template_name(name)
-        if not is_read and not name.lower().startswith("readme"):
-            hint = f"known are *.txt, {', '.join(ONTOLOGY_FILES)} and {PREDICATES_FILE}"
-            yield warning_at(Position(name), "not a generator file; ignored", hint)

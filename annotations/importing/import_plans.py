@@ -59,16 +59,15 @@ def differences_of(
         plans["templates"] = plan_templates(grammar, generator, brings_back)
     if ontology:
         plans["entities"] = plan_entities(ontology, generator, brings_back)
-    removals = {name: _list_removed(planned) for name, planned in plans.items()}
+    removals = {
+        name: tuple(
+            f"{row.source}: {row}" for row in sorted(planned.removed, key=lambda row: row.position)
+        )
+        for name, planned in plans.items()
+    }
     plans["predicates"] = plan_predicates(world, generator, brings_back)
     left_out = {name: _list_left_out(planned) for name, planned in plans.items()}
     return Differences(productions, RowTexts(**removals), RowTexts(**left_out))
-
-
-def _list_removed(changes: RowPlan[Any]) -> tuple[str, ...]:
-    """Return each removed row with its file, in the order of the rows."""
-    rows = sorted(changes.removed, key=lambda row: row.position)
-    return tuple(f"{row.source}: {row}" for row in rows)
 
 
 def _list_left_out(changes: RowPlan[Any]) -> tuple[str, ...]:

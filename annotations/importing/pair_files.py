@@ -69,8 +69,8 @@ def read_pair_folder(
     triples: list[GroundedTriple] = []
     problems: list[Problem] = []
     is_foreign = notation == Notation.LAMBDA
-    contents = _foreign_contents if is_foreign else _contents
-    gathered = convert(GatheredFiles(dict(contents(folder, most_bytes, problems))), encoding)
+    contents = dict(_contents(folder, is_foreign, most_bytes, problems))
+    gathered = convert(GatheredFiles(contents), encoding)
     problems += gathered.problems
     for path, data in gathered.files.items():
         directory, _, name = path.lower().rpartition("/")
@@ -104,21 +104,14 @@ def read_pair_folder(
     return PairFolder(pairs, tuple(triples), tuple(sorted(problems)))
 
 
-def _foreign_contents(
-    folder: Path, most_bytes: int, problems: list[Problem]
-) -> Iterator[tuple[str, bytes]]:
-    """Yield name → bytes of every file directly in the folder."""
-    try:
-        yield from read_folder(folder, "[!.]*", most_bytes).items()
-    except LanguageError as error:
-        problems.append(error.problem)
-
-
 def _contents(
-    folder: Path, most_bytes: int, problems: list[Problem]
+    folder: Path, is_foreign: bool, most_bytes: int, problems: list[Problem]
 ) -> Iterator[tuple[str, bytes]]:
     """Yield path inside the folder → bytes, for every file that may be one of a corpus."""
     try:
+        if is_foreign:
+            yield from read_folder(folder, "[!.]*", most_bytes).items()
+            return
         for name, data in read_folder(folder, _TRIPLES, most_bytes).items():
             if name.lower() in TRIPLE_FILES:
                 yield name, data

@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
+from operator import attrgetter
 from pathlib import Path
 
 from django.db.models import Max
@@ -201,8 +202,5 @@ def plan_paraphrases(
                     position=following + len(new),
                 )
             )
-    return respect(RowPlan(Paraphrase, (), new, [], [], []), world, _key_of_paraphrase, brings_back)
-
-
-def _key_of_paraphrase(row: Paraphrase) -> tuple[str, str, str]:
-    return row.prompt, row.utterance, row.grounded_form
+    key_of = attrgetter("prompt", "utterance", "grounded_form")
+    return respect(RowPlan(Paraphrase, (), new, [], [], []), world, key_of, brings_back)

@@ -68,17 +68,16 @@ def read_predicates(
 
 def write_predicates(predicates: Iterable[Predicate]) -> str:
     """Return the file that reads back as equal predicates, one a line."""
-    rows = [json.dumps(_row(predicate), ensure_ascii=False) for predicate in predicates]
-    return "[\n  " + ",\n  ".join(rows) + "\n]\n"
-
-
-def _row(predicate: Predicate) -> dict[str, Any]:
-    return {
-        "name": predicate.name,
-        "kind": str(predicate.kind),
-        "signatures": [list(map(str, each.arguments)) for each in predicate.signatures],
-        "gloss": predicate.gloss,
-    }
+    rows = [
+        {
+            "name": predicate.name,
+            "kind": str(predicate.kind),
+            "signatures": [list(map(str, each.arguments)) for each in predicate.signatures],
+            "gloss": predicate.gloss,
+        }
+        for predicate in predicates
+    ]
+    return "[\n  " + ",\n  ".join(json.dumps(row, ensure_ascii=False) for row in rows) + "\n]\n"
 
 
 def _predicate(row: Any, place: Position) -> Predicate:

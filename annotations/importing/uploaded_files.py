@@ -131,11 +131,6 @@ def _visible_path(path: str) -> str:
     return "" if any(part.startswith(".") and part not in (".", "..") for part in parts) else path
 
 
-def _path_in_world(path: str) -> str:
-    """Do as ``_visible_path``, for the files of the generator inside the archive of a world."""
-    return _visible_path(path) if f"/{GENERATOR_FOLDER}" in f"/{path}" else ""
-
-
 def _all(uploads: Iterable[UploadedFile]) -> Iterator[tuple[str, bytes]]:
     for upload in uploads:
         if is_archive(upload):
@@ -158,11 +153,12 @@ def _generator_files(upload: UploadedFile) -> Iterator[tuple[str, bytes]]:
     """
     with _open(upload, _may_be_read) as archive:
         is_of_world = bool(manifests_in(archive))
-        place = _path_in_world if is_of_world else _visible_path
         members = {
             each.filename: each
             for each in archive.infolist()
-            if not each.is_dir() and place(each.filename)
+            if not each.is_dir()
+            and _visible_path(each.filename)
+            and (not is_of_world or f"/{GENERATOR_FOLDER}" in f"/{each.filename}")
         }
         folders = {path: dirname(f"/{path}") for path in members}  # some begin with a slash
         top = commonpath(list(folders.values())) if members else ""

@@ -33,16 +33,12 @@ def _sweep_folders() -> None:
     jobs = {job.pk: job for job in Job.objects.filter(pk__in=keys)}
     for folder in folders:
         job = jobs.get(int(folder.name)) if folder.name.isdigit() else None
-        if _is_needless(folder, job):
+        if job is None:  # files on their way, or of a world that was deleted
+            is_needless = _is_old(folder) or not folder.name.startswith("incoming-")
+        else:
+            is_needless = _is_old(folder) if job.is_waiting_for_answer else job.is_ended
+        if is_needless:
             shutil.rmtree(folder, ignore_errors=True)
-
-
-def _is_needless(folder: Path, job: Job | None) -> bool:
-    if job is None:  # files on their way, or of a world that was deleted
-        return _is_old(folder) or not folder.name.startswith("incoming-")
-    if job.is_waiting_for_answer:
-        return _is_old(folder)
-    return job.is_ended
 
 
 def _is_old(path: Path, kept_for: timedelta = KEPT_FOR) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from django.db import transaction
 from django.utils import timezone
@@ -171,9 +172,19 @@ def doubt(
         reason: a sentence of the reviewer.
         suggested: the right label, canonical text, if the reviewer says one.
     """
-    about = {"utterance" if isinstance(subject, Utterance) else "paraphrase": subject}
-    values = {
-        **_texts_of(subject),
+    values: dict[str, Any]
+    if isinstance(subject, Utterance):
+        about: dict[str, Any] = {"utterance": subject}
+        values = {"text": subject.text, "anonymized_text": subject.anonymized_text}
+    else:
+        about, command = {"paraphrase": subject}, subject.command
+        anonymized = anonymizer_of(subject.world).anonymize(subject.utterance)
+        values = {
+            "text": subject.utterance,
+            "anonymized_text": anonymized.command,
+            "source_command": command.anonymized_text if command else subject.prompt,
+        }
+    values |= {
         "form": subject.logical_form,
         "suggested_form": suggested,
         "rank": FIRST,
@@ -199,15 +210,3 @@ def doubt(
         )
         enqueue(subject.world, WorkKind.AUDIT, [WantedItem(subject, sentence)], by)
     return finding
-
-
-def _texts_of(subject: Paraphrase | Utterance) -> dict[str, str]:
-    """Return the columns of a finding that say what was said, and the command behind it."""
-    if isinstance(subject, Utterance):
-        return {"text": subject.text, "anonymized_text": subject.anonymized_text}
-    command, text = subject.command, subject.utterance
-    return {
-        "text": text,
-        "anonymized_text": anonymizer_of(subject.world).anonymize(text).command,
-        "source_command": command.anonymized_text if command else subject.prompt,
-    }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -83,7 +83,12 @@ def collect(
         stored = _store(world, wanted, origin, by, upload, forms or {})
     added, known = stored
     request_proposals(world, by)
-    return CollectedTexts(added, tuple(_repetitions(wanted, known)))
+    repeated = []
+    for text in wanted:
+        if text in known:
+            repeated.append(text)
+        known.add(text)
+    return CollectedTexts(added, tuple(repeated))
 
 
 def _read(texts: Iterable[str]) -> tuple[list[str], tuple[Problem, ...]]:
@@ -194,12 +199,3 @@ def find_known(world: World, texts: list[str]) -> set[str]:
         rows = Utterance.objects.filter(world=world, text__in=some)
         known.update(rows.values_list("text", flat=True))
     return known
-
-
-def _repetitions(texts: list[str], known: set[str]) -> Iterator[str]:
-    """Yield the texts that were not stored, in their order."""
-    seen = set(known)
-    for text in texts:
-        if text in seen:
-            yield text
-        seen.add(text)

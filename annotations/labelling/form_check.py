@@ -51,7 +51,7 @@ def check_label(
     sides, checker = Sides(STAND_IN, text), template_checker(Grammar(()), declared)
     reading = sentence = ""
     if len(text) > MAX_FORM:
-        problems: tuple[Problem, ...] = (_refusal(text, may_be_unknown),)
+        problems = tuple(_check_as_label(text, anonymized_text, may_be_unknown))
     else:
         template, unread = read_sides(STAND_IN, text)
         remarks = checker.problems(template) if template else unread
@@ -68,21 +68,24 @@ def check_label(
     }
 
 
-def _refusal(text: str, may_be_unknown: bool) -> Problem:
-    """Return why ``text`` cannot be a label."""
-    try:
-        _read(text, may_be_unknown)
-    except LanguageError as error:
-        return error.problem
-    raise ValueError("this is a label")
-
-
 def _check_as_label(text: str, anonymized_text: str, may_be_unknown: bool) -> Iterator[Problem]:
-    """Yield what is wrong with a form that can be read."""
+    """Yield why the form cannot be a label, or each class token in it that the utterance does not have."""
     try:
-        yield from _check_slots(_read(text, may_be_unknown), text, anonymized_text)
+        form = _read(text, may_be_unknown)
     except LanguageError as error:
         yield error.problem
+        return
+    tokens_said = CLASS_TOKEN.findall(anonymized_text)
+    said = {token.rstrip("0123456789") for token in tokens_said}
+    tokens = (
+        part.token_class for part in walk(form) if isinstance(part, Constant) and part.token_class
+    )
+    for name in dict.fromkeys(tokens):
+        if name not in said:
+            match = re.search(rf"\b{name}\d*\b", text)
+            place = Offsets(text, PLACE.source).position(match.start()) if match else PLACE
+            hint = "leave it out, or say which words name it"
+            yield warning_at(place, f"the utterance names no {name}", hint)
 
 
 def _read(text: str, may_be_unknown: bool) -> Form:
@@ -97,27 +100,3 @@ def _read(text: str, may_be_unknown: bool) -> Form:
                     "nonterminals and wildcards stand in templates only", PLACE, hint
                 )
     return form
-
-
-def _check_slots(form: Form, text: str, anonymized_text: str) -> Iterator[Problem]:
-    """Yield a problem for each class token of the form that the utterance does not have."""
-    tokens_said = CLASS_TOKEN.findall(anonymized_text)
-    said = {token.rstrip("0123456789") for token in tokens_said}
-    tokens = (
-        part.token_class for part in walk(form) if isinstance(part, Constant) and part.token_class
-    )
-    for name in dict.fromkeys(tokens):
-        if name not in said:
-            message = f"the utterance names no {name}"
-            yield warning_at(
-                _place_of(name, text), message, "leave it out, or say which words name it"
-            )
-
-
-def _place_of(token_class: str, text: str) -> Position:
-    """Return where ``text`` has a token of this class first."""
-    match = re.search(rf"\b{token_class}\d*\b", text)
-    if match is None:
-        return PLACE
-    place = Offsets(text).position(match.start())
-    return Position(PLACE.source, place.line, place.column)

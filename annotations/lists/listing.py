@@ -89,18 +89,13 @@ class FilteredList:
     def chips(self) -> list[Chip]:
         """The active filters, each with the URL that removes it."""
         self.form.is_valid()  # fills cleaned_data with what is valid
-        values = self.form.cleaned_data
-        return [
-            Chip(
-                str(self.form.fields[name].label), self._label(name, value), self.url(**{name: ""})
-            )
-            for name, value in values.items()
-            if value not in (None, "", [])
-        ]
-
-    def _label(self, name: str, value: Any) -> str:
-        choices = dict(getattr(self.form.fields[name], "choices", ()))
-        return str(choices.get(value, value))
+        chips: list[Chip] = []
+        for name, value in self.form.cleaned_data.items():
+            if value not in (None, "", []):
+                field = self.form.fields[name]
+                label = dict(getattr(field, "choices", ())).get(value, value)
+                chips.append(Chip(str(field.label), str(label), self.url(**{name: ""})))
+        return chips
 
     def url(self, **changes: str) -> str:
         """Return the URL of the first page of this list with ``changes``; an empty value is removed."""
@@ -181,14 +176,13 @@ class Listing(FilteredList):
     @cached_property
     def columns(self) -> dict[str, Column]:
         """The head of the column of each sort: a click sorts by it, or reverses the order."""
-        return {name: self._column(name, sort) for name, sort in self.sorts.items()}
-
-    def _column(self, name: str, sort: Sort) -> Column:
-        is_current = name == self.sort_name
-        next_sort = f"-{name}" if is_current and not self.is_descending else name
-        is_down = self.order.startswith("-")
-        direction = ("descending" if is_down else "ascending") if is_current else ""
-        return Column(sort.title, self.url(sort=next_sort), direction, sort.is_number)
+        columns: dict[str, Column] = {}
+        current = "descending" if self.order.startswith("-") else "ascending"
+        for name, sort in self.sorts.items():
+            is_current = name == self.sort_name
+            url = self.url(sort=f"-{name}" if is_current and not self.is_descending else name)
+            columns[name] = Column(sort.title, url, current if is_current else "", sort.is_number)
+        return columns
 
     @property
     def summary(self) -> str:

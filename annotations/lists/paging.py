@@ -42,9 +42,13 @@ def page_of(
     cursor = read_cursor(rows.model, order, before or after)
     descending = order.startswith("-") != backwards
     field = order.lstrip("-")
-    chosen = rows.filter(_beyond(field, cursor, descending)) if cursor else rows
+    if cursor:
+        step, (value, key) = "lt" if descending else "gt", cursor
+        rows = rows.filter(
+            Q(**{f"{field}__{step}": value}) | Q(**{field: value, f"pk__{step}": key})
+        )
     sign = "-" if descending else ""
-    shown = list(chosen.order_by(f"{sign}{field}", f"{sign}pk")[: size + 1])
+    shown = list(rows.order_by(f"{sign}{field}", f"{sign}pk")[: size + 1])
     more, shown = len(shown) > size, shown[:size]
     if backwards:
         shown.reverse()
@@ -103,9 +107,3 @@ def field_of(model: type[Model], path: str) -> Any:
     first, _, rest = path.partition("__")
     field: Any = model._meta.get_field(first)
     return field_of(field.related_model, rest) if rest else field
-
-
-def _beyond(field: str, cursor: tuple[Any, int], descending: bool) -> Q:
-    value, key = cursor
-    step = "lt" if descending else "gt"
-    return Q(**{f"{field}__{step}": value}) | Q(**{field: value, f"pk__{step}": key})

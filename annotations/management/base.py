@@ -97,7 +97,8 @@ class ReportingCommand(BaseCommand):
         except DatabaseError as error:
             raise CommandError(database_sentence(error)) from error
         except LanguageError as error:
-            raise CommandError(_sentence(error)) from error
+            placeless = f"{error.message} ({error.hint})" if error.hint else error.message
+            raise CommandError(str(error) if error.source else placeless) from error
         except Refusal as refusal:
             raise CommandError(refusal.message) from refusal
         except OSError as error:
@@ -110,13 +111,6 @@ class ReportingCommand(BaseCommand):
     def _print(self, report: Mapping[str, Any], as_json: bool) -> None:
         text = json.dumps(report, ensure_ascii=False) if as_json else self.describe(report)
         self.stdout.write(text)
-
-
-def _sentence(error: LanguageError) -> str:
-    """Return the problem with its position, where it has one."""
-    if error.source:
-        return str(error)
-    return f"{error.message} ({error.hint})" if error.hint else error.message
 
 
 def _show(problem: Problem, folder: Path) -> str:

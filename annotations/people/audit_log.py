@@ -136,6 +136,10 @@ def record(request: HttpRequest, response: HttpResponse) -> AuditEntry | None:
     name = world.name if world else match.kwargs.get("world")
     # None where the request has just deleted it.
     world = World.objects.filter(name=name).first() if name else None
+    # What a view has noted, else the kind and key of the row that the address names.
+    names = ("kind", "split", "subject", "pk", "object_id")
+    row = " ".join(str(match.kwargs[each]) for each in names if each in match.kwargs)
+    subject = str(getattr(request, "audit_note", "") or row)
     return AuditEntry.objects.create(
         world=world,
         world_name=world.name if world else "",
@@ -143,7 +147,7 @@ def record(request: HttpRequest, response: HttpResponse) -> AuditEntry | None:
         who_name=request.user.get_username(),
         through=token.name if isinstance(token, ApiToken) else "",
         what=_what(request, match)[:80],
-        subject=_subject(request, match)[:MOST_SUBJECT_CHARACTERS],
+        subject=subject[:MOST_SUBJECT_CHARACTERS],
     )
 
 
@@ -208,14 +212,3 @@ def _what(request: HttpRequest, match: ResolverMatch) -> str:
     if "admin" in match.namespaces:
         return f"site administration: {words}"
     return WHAT.get(name, words)
-
-
-def _subject(request: HttpRequest, match: ResolverMatch) -> str:
-    """Return what a view has noted, else the kind and key of the row that the address names."""
-    if sentence := getattr(request, "audit_note", ""):
-        return str(sentence)
-    keys = match.kwargs
-    names = (
-        str(keys[name]) for name in ("kind", "split", "subject", "pk", "object_id") if name in keys
-    )
-    return " ".join(names)

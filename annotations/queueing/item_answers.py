@@ -73,7 +73,7 @@ def answer(
             given = answer_waiting(stored, by) or stored.accepted_label
             if given and given.annotator == by and given.says(verdict, text, reason):
                 return given
-            assignment = _reopen(stored, by) or _take_assignment(stored, by)
+            assignment = _take_unasked(stored, by)
         if assignment is None and verdict != Verdict.SKIP:
             label_answers.require_may_settle(stored, by)
         is_blind = assignment is not None and assignment.item.is_for_two
@@ -102,14 +102,23 @@ def _still_theirs(assignment: Assignment | None) -> Assignment | None:
     return None if stored.outcome == Outcome.DONE else stored
 
 
-def _reopen(utterance: Utterance, by: User) -> Assignment | None:
-    """Take back what ``by`` has answered to an item that is still open, and return their assignment."""
+def _take_unasked(utterance: Utterance, by: User) -> Assignment | None:
+    """Return an assignment for an answer of ``by`` to which nothing has led them.
+
+    It is theirs to an item that is still open, its answer taken back, or else that of a free item.
+    """
     done = Assignment.objects.done().filter(person=by, item__in=WorkItem.objects.open())
     assignment = done.filter(item__utterance=utterance, label__isnull=False).first()
-    if assignment is None or assignment.label is None:
-        return None
-    take_answer_back(assignment.label, by)
-    return Assignment.objects.select_related("item").get(pk=assignment.pk)
+    if assignment is not None and assignment.label is not None:
+        take_answer_back(assignment.label, by)
+        return Assignment.objects.select_related("item").get(pk=assignment.pk)
+    free = WorkItem.objects.open().filter(utterance=utterance).exclude(kind=WorkKind.AUDIT)
+    for item in free.order_by("-priority", "id"):
+        try:
+            return take(by, item, after_skip=True)
+        except NotForThem:
+            continue
+    return None
 
 
 def take_answer_back(label: Label, by: User) -> Utterance:
@@ -128,14 +137,3 @@ def take_answer_back(label: Label, by: User) -> Utterance:
         if assignment := ended.first():
             take_back(assignment)
         return utterance
-
-
-def _take_assignment(utterance: Utterance, by: User) -> Assignment | None:
-    """Take the free item about an utterance that somebody answers without having been asked."""
-    free = WorkItem.objects.open().filter(utterance=utterance).exclude(kind=WorkKind.AUDIT)
-    for item in free.order_by("-priority", "id"):
-        try:
-            return take(by, item, after_skip=True)
-        except NotForThem:
-            continue
-    return None

@@ -73,8 +73,13 @@ def send_examples(world: World, examples: Iterable[Example], reason: str, by: Us
     with transaction.atomic():
         subjects = find_subjects(world, texts.values())
         missing = [text for text in texts if text not in subjects]
-        possible = [text for text in missing if _can_be_utterance(text)]
-        collected = _collect(world, possible, by)
+        read = ((text, *read_text(text, Position())) for text in missing)
+        possible = [text for text, said, problem in read if said and problem is None]
+        collected: list[Utterance] = []
+        if possible:
+            collect(world, possible, Origin.REVIEW, by)
+            for some in batches(sorted(set(map(normalise_line, possible))), BATCH):
+                collected += world.utterances.filter(text__in=some)
         behind = {(type(row), row.pk): row for row in (*subjects.values(), *collected)}
         wanted = [WantedItem(row, f"{by} asks: {reason}") for row in behind.values()]
         queued = enqueue(world, WorkKind.REQUESTED, wanted, by)
@@ -133,17 +138,3 @@ FINDERS: tuple[Callable[[World, Mapping[str, Example]], Behind], ...] = (
     _templates,
     _utterances,
 )
-
-
-def _can_be_utterance(text: str) -> bool:
-    said, problem = read_text(text, Position())
-    return bool(said) and problem is None
-
-
-def _collect(world: World, texts: list[str], by: User) -> list[Utterance]:
-    """Store texts as new utterances, and return these."""
-    if not texts:
-        return []
-    collect(world, texts, Origin.REVIEW, by)
-    said = sorted(set(map(normalise_line, texts)))
-    return [row for some in batches(said, BATCH) for row in world.utterances.filter(text__in=some)]

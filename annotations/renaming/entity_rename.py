@@ -56,7 +56,7 @@ class EntityRename:
             raise LanguageError("this is its name already", hint="write another one")
 
     def changes(self, new: str) -> Iterator[tuple[str, RenamedRows]]:
-        yield "entity", [*self._of_itself(new), *(() if self.is_alias else self._of_others(new))]
+        yield "entity", self._entities(new)
         if not self.is_alias:
             productions = Production.objects.filter(grammar__world=self.world)
             yield (
@@ -101,22 +101,22 @@ class EntityRename:
             ),
         )
 
-    def _of_itself(self, new: str) -> RenamedRows:
+    def _entities(self, new: str) -> RenamedRows:
+        """Return the entity itself, and others whose attributes name it."""
         if self.is_alias:
             aliases = [new if alias == self.name.text else alias for alias in self.row.aliases]
             return [(self.row, {"aliases": list(dict.fromkeys(aliases))})]
+        others = self.row.ontology.entities.exclude(pk__in=[row.pk for row in self.rows])
         return [
-            (row, {"text": new, "aliases": [each for each in row.aliases if each != new]})
-            for row in self.rows
+            *(
+                (row, {"text": new, "aliases": [each for each in row.aliases if each != new]})
+                for row in self.rows
+            ),
+            *differing(
+                (row, {"attributes": rename_in_attributes(row.attributes, self.name, new)})
+                for row in others
+            ),
         ]
-
-    def _of_others(self, new: str) -> RenamedRows:
-        mine = {row.pk for row in self.rows}
-        rows = self.row.ontology.entities.exclude(pk__in=mine)
-        return differing(
-            (row, {"attributes": rename_in_attributes(row.attributes, self.name, new)})
-            for row in rows
-        )
 
     def _template(self, row: SemanticTemplate, new: str) -> dict[str, Any]:
         pattern = rename_in_conditions(row.pattern, self.name, new)

@@ -69,14 +69,9 @@ class NonterminalRename:
             raise LanguageError(f"there is a ${new} already", hint="choose another name")
 
     def changes(self, new: str) -> Iterator[tuple[str, RenamedRows]]:
-        yield "production", self._productions(new)
-        yield "template", self._templates(new)
-        yield "task category", self._task_categories(new)
-
-    def _productions(self, new: str) -> RenamedRows:
-        old = self.old
-        naming = Q(nonterminal=old) | Q(expansion__contains=f"${old}")
-        return differing(
+        old, token = self.old, f"${self.old}"
+        lines = self.grammar.productions.filter(Q(nonterminal=old) | Q(expansion__contains=token))
+        renamed_lines = (
             (
                 line,
                 {
@@ -84,31 +79,28 @@ class NonterminalRename:
                     "expansion": rename_nonterminal_in_pattern(line.expansion, old, new),
                 },
             )
-            for line in self.grammar.productions.filter(naming)
+            for line in lines
         )
-
-    def _templates(self, new: str) -> RenamedRows:
-        token = f"${self.old}"
-        naming = Q(pattern__contains=token) | Q(form__contains=token)
-        return differing(
+        yield "production", differing(renamed_lines)
+        templates = self.grammar.templates.filter(
+            Q(pattern__contains=token) | Q(form__contains=token)
+        )
+        renamed_templates = (
             (
                 row,
                 {
-                    "pattern": rename_nonterminal_in_pattern(row.pattern, self.old, new),
-                    "form": rename_nonterminal_in_form(row.form, self.old, new),
+                    "pattern": rename_nonterminal_in_pattern(row.pattern, old, new),
+                    "form": rename_nonterminal_in_form(row.form, old, new),
                 },
             )
-            for row in self.grammar.templates.filter(naming)
+            for row in templates
         )
-
-    def _task_categories(self, new: str) -> RenamedRows:
-        return differing(
-            (
-                row,
-                {"rule_sources": [_rename_alias(each, self.old, new) for each in row.rule_sources]},
-            )
+        yield "template", differing(renamed_templates)
+        renamed_categories = (
+            (row, {"rule_sources": [_rename_alias(each, old, new) for each in row.rule_sources]})
             for row in self.grammar.task_categories.all()
         )
+        yield "task category", differing(renamed_categories)
 
 
 class PredicateRename:

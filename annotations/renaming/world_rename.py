@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -57,7 +57,12 @@ class TouchedRows:
             for change in self.changes
             if not isinstance(change[0], Label) or change[0].counts
         ]
-        return [example for change in shown[:MOST_EXAMPLES] for example in _texts(*change)]
+        return [
+            TextChange(before, after)
+            for row, values in shown[:MOST_EXAMPLES]
+            for name, after in values.items()
+            if isinstance(before := getattr(row, name), str) and before != after
+        ]
 
 
 def touched_by(row: Editable, old: str, new: str) -> tuple[TouchedRows, ...]:
@@ -111,10 +116,3 @@ COLUMNS = {
     AuditReason: ["suggested_form"],
     AuditDecision: ["form"],
 }
-
-
-def _texts(row: models.Model, values: Mapping[str, Any]) -> Iterator[TextChange]:
-    for name, value in values.items():
-        before, after = getattr(row, name), value
-        if isinstance(before, str) and before != after:
-            yield TextChange(before, after)

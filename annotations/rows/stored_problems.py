@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from operator import attrgetter
 from typing import Any
 
 from annotations import models
@@ -64,17 +65,13 @@ def store_problems(
         models.StoredProblem(world=world, subject=subject, **dict(zip(TEXTS, text, strict=True)))
         for text in texts
     ]
-    return synchronise(stored, wanted, _text_of_row, [])
+    return synchronise(stored, wanted, attrgetter(*TEXTS), [])
 
 
 def _text_of_problem(problem: Problem) -> tuple[object, ...]:
     place = problem.position
     texts = (problem.severity.value, problem.message, problem.hint)
     return (place.source, place.line, place.column, *texts)
-
-
-def _text_of_row(row: models.StoredProblem) -> tuple[object, ...]:
-    return tuple(getattr(row, name) for name in TEXTS)
 
 
 def as_stored(problem: Problem) -> StoredRemark:

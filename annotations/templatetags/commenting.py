@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +11,6 @@ from django.utils.safestring import SafeString
 
 from annotations.commenting import MENTION, SUBJECTS, comments_on, people_of
 from annotations.models import Comment
-from annotations.people.access import WorldRequest
 from annotations.web.editing.comment_forms import CommentForm
 
 register = template.Library()
@@ -25,6 +23,7 @@ def comments_section(context: Any, kind: str, row: Any, form: Any = None) -> dic
     """Show the comments on ``row``, a subject of that ``kind``, and the field for one more."""
     world, request = context["world"], context["request"]
     comments = comments_on(world, SUBJECTS[kind], row)
+    user, duties = request.user, request.duties
     return {
         "request": request,
         "csrf_token": context.get("csrf_token"),
@@ -33,7 +32,11 @@ def comments_section(context: Any, kind: str, row: Any, form: Any = None) -> dic
         "row": row,
         "comments": comments,
         "count": sum(not each.is_deleted for each in comments),
-        "shown": list(_show(comments, request)),
+        "shown": [
+            ShownComment(each, each.may_be_edited_by(user), each.may_be_deleted_by(user, duties))
+            for each in comments
+            if not each.is_deleted or each.may_be_restored_by(user, duties)
+        ],
         "people": people_of(world).exclude(pk=request.user.pk)[:MOST_NAMES],
         "form": form or CommentForm(),
     }
@@ -46,15 +49,6 @@ class ShownComment:
     comment: Comment
     may_edit: bool
     may_delete: bool
-
-
-def _show(comments: list[Comment], request: WorldRequest) -> Iterator[ShownComment]:
-    """Yield the comments that are there, and the deleted ones that the reader may restore."""
-    for each in comments:
-        if not each.is_deleted or each.may_be_restored_by(request.user, request.duties):
-            may_edit = each.may_be_edited_by(request.user)
-            may_delete = each.may_be_deleted_by(request.user, request.duties)
-            yield ShownComment(each, may_edit, may_delete)
 
 
 @register.filter

@@ -167,19 +167,15 @@ def grounded(utterance: Any) -> SafeString:
     """Show the text of an utterance with the words that name an entity marked by its class."""
     pieces, end = [], 0
     for start, stop, entity_class, entity in utterance.spans:
-        pieces.append((utterance.text[end:start],))
-        pieces.append((_name(utterance.text[start:stop], entity_class, entity),))
+        name = format_html(
+            '<span class="chip" data-class="{0}" title="{2}"><span class="value">{1}</span>{0}</span>',
+            entity_class,
+            utterance.text[start:stop],
+            entity,
+        )
+        pieces += [(utterance.text[end:start],), (name,)]
         end = stop
     return format_html_join("", "{}", [*pieces, (utterance.text[end:],)])
-
-
-def _name(words: str, entity_class: str, entity: str) -> SafeString:
-    return format_html(
-        '<span class="chip" data-class="{0}" title="{2}"><span class="value">{1}</span>{0}</span>',
-        entity_class,
-        words,
-        entity,
-    )
 
 
 @register.simple_tag

@@ -72,6 +72,9 @@ _USUAL_NAMES = (
 FORM_NAMES = ("logical_form", "form", "parse", "lambda", "semantics")
 _BETWEEN_WORDS = re.compile(r"[.\s_-]")
 _CROWD_COLUMN = re.compile(r"(Answer\.(?:utterance|custom))(\d+)")
+# The apostrophe with which exports keep spreadsheets from reading a formula.
+_FORMULA_GUARD = re.compile(r"\A'(?=[=+@-])")
+_RULER = re.compile(r":?-{2,}:?")  # a cell of the line below the head of a table in Markdown
 
 # The first bytes of what is no text, with what to do about it.
 SIGNATURES = {
@@ -159,8 +162,11 @@ def decode_upload(data: bytes, source: str, encoding: str = "") -> tuple[str, st
     if encoding not in ENCODINGS:
         hint = f"use {', '.join(ENCODINGS)}"
         raise LanguageError(f"there is no encoding {encoding[:40]!r} here", place, hint)
+    codec = encoding
+    if encoding == "utf-16" and not by_mark:  # the zeros say which half is first
+        codec = "utf-16-be" if data[:1] == b"\0" else "utf-16-le"
     try:
-        text = data.decode(_codec(data, encoding)).removeprefix("\ufeff")
+        text = data.decode(codec).removeprefix("\ufeff")
     except UnicodeDecodeError as error:
         hint = "choose another encoding, or save the file as UTF-8"
         line = data[: error.start].count(b"\n") + 1
@@ -172,13 +178,6 @@ def decode_upload(data: bytes, source: str, encoding: str = "") -> tuple[str, st
     if not text.strip():
         raise LanguageError("the file is empty", place, "send one with utterances")
     return text.replace("\r\n", "\n").replace("\r", "\n"), encoding
-
-
-def _codec(data: bytes, encoding: str) -> str:
-    """Return the name that Python has for ``encoding``; UTF-16 without a mark says by its zeros which half is first."""
-    if encoding == "utf-16" and not data.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return "utf-16-be" if data[:1] == b"\0" else "utf-16-le"
-    return encoding
 
 
 def _encoding_of(data: bytes) -> str:
@@ -256,10 +255,13 @@ def recognise(text: str) -> UploadFormat:
     if re.match(r"[\[{]\s*([\[{\"\]}]|-?\d|true|false|null|\Z)", start):
         first = start.split("\n", 1)[0].strip()
         rest = start[len(first) :].strip()
-        if not _goes_on_as_text(first):
-            return UploadFormat.JSONL if _is_json(first) and rest else UploadFormat.JSON
+        end = _end_of_json(first)
+        if end < 0 or not first[end:].strip()[:1].isalnum():  # else text: “[1] bring me the plum”
+            return UploadFormat.JSONL if end == len(first) and rest else UploadFormat.JSON
     lines = [line for line in text.split("\n") if line.strip()]
-    is_quoted = all(line[:1] == '"' and _is_json(line.strip()) for line in lines[:20])
+    is_quoted = all(
+        line[:1] == '"' and _end_of_json(line.strip()) == len(line.strip()) for line in lines[:20]
+    )
     if lines and is_quoted and lines[0].strip('" ').lower() not in TEXT_NAMES:
         return UploadFormat.JSONL
     if _period_of_forms(lines):
@@ -270,21 +272,12 @@ def recognise(text: str) -> UploadFormat:
     return UploadFormat.TEXT
 
 
-def _is_json(line: str) -> bool:
+def _end_of_json(line: str) -> int:
+    """Return where the value of JSON that ``line`` begins with ends; -1 where it begins with none."""
     try:
-        json.loads(line)
+        return json.JSONDecoder().raw_decode(line)[1]
     except (ValueError, RecursionError):
-        return False
-    return True
-
-
-def _goes_on_as_text(line: str) -> bool:
-    """Whether a line begins with a value of JSON, and words follow: ``[1] bring me the plum``."""
-    try:
-        _, end = json.JSONDecoder().raw_decode(line)
-    except (ValueError, RecursionError):
-        return False
-    return line[end:].strip()[:1].isalnum()
+        return -1
 
 
 # --- tables ---------------------------------------------------------------------------------------
@@ -315,7 +308,11 @@ def delimiter_of(text: str) -> str:
         is_prose = delimiter in ",;" and any(
             cell[:1] == " " and not cell.strip().isdigit() for row in rows for cell in row[1:]
         )
-        if not is_prose and (delimiter != "," or _has_cells(rows, sample)):
+        if is_prose:
+            continue
+        is_quoted = re.search(r'(?:^|,)"[^"\n]*"(?:,|$)', sample[:10_000], re.MULTILINE)
+        has_labels = all(re.fullmatch(r"[\w.-]+", row[0]) for row in rows)
+        if delimiter != "," or is_quoted or has_labels or _has_numbers(rows):
             return delimiter
     first = next((line for line in sample.split("\n") if line.strip()), "")
     is_one_column = first.strip().strip('"').lower() in TEXT_NAMES
@@ -335,13 +332,6 @@ def _names_a_text(rows: Sequence[Sequence[str]], delimiter: str) -> bool:
     other_names = {*TEXT_NAMES, *FORM_NAMES, *_USUAL_NAMES}
     is_named = all(name.strip().lower() in other_names for name in rows[0])
     return is_named or _has_numbers(rows)
-
-
-def _has_cells(rows: Sequence[Sequence[str]], sample: str) -> bool:
-    """Whether something other than commas says that rows have cells."""
-    is_quoted = re.search(r'(?:^|,)"[^"\n]*"(?:,|$)', sample[:10_000], re.MULTILINE)
-    has_labels = all(re.fullmatch(r"[\w.-]+", row[0]) for row in rows)
-    return bool(is_quoted) or has_labels or _has_numbers(rows)
 
 
 def _has_numbers(rows: Sequence[Sequence[str]]) -> bool:
@@ -394,8 +384,12 @@ def _read_table(text: str, source: str, format: UploadFormat, has_head: bool | N
             message = f"the row has {len(cells)} cells, and the head {width}"
             problems.append(error_at(Position(source, line), message, hint))
             continue
-        values = {name: _cell(cell) for name, cell in zip(names, cells, strict=False)}
-        if any(values.values()) and not _is_ruler(values.values()):
+        values = {
+            name: _FORMULA_GUARD.sub("", cell[:LONGEST_VALUE])
+            for name, cell in zip(names, cells, strict=False)
+        }
+        given = [value.strip() for value in values.values() if value.strip()]
+        if not all(map(_RULER.fullmatch, given)):
             records.append(UploadRow(line, values))
     sheet = _sheet(format, records, names, problems)
     return replace(_melt_crowd(sheet), has_head=has_head)
@@ -430,18 +424,6 @@ def _rows_of(
             message = f"a cell has more than {csv.field_size_limit():,} characters"
         return rows, [error_at(Position(source, begins + skipped), message, hint)]
     return rows, []
-
-
-def _cell(text: str) -> str:
-    """Return a cell without the apostrophe with which exports keep spreadsheets from reading a formula."""
-    text = text[:LONGEST_VALUE]
-    return text[1:] if text[:1] == "'" and text[1:2] in ("=", "+", "-", "@") else text
-
-
-def _is_ruler(cells: Iterable[str]) -> bool:
-    """Whether a row is the line below the head of a table in Markdown."""
-    given = [cell.strip() for cell in cells if cell.strip()]
-    return all(re.fullmatch(r":?-{2,}:?", cell) for cell in given)
 
 
 def _looks_like_head(rows: Sequence[Sequence[str]]) -> bool:

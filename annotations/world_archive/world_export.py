@@ -114,8 +114,11 @@ def _lines(
         known[row.pk] = number
         values = {each.name: getattr(row, each.attname) for each in table.columns}
         for name, other in table.references.items():
+            key = getattr(row, f"{name}_id")
+            values[name] = numbers[other].get(key)
             is_hidden = blind is not None and other == "labels"
-            values[name] = _number(row, name, numbers[other], is_hidden)
+            if key is not None and values[name] is None and not is_hidden:
+                raise ChangedMeanwhile(f"{row._meta.verbose_name} {row.pk} refers to a new {name}")
         if table.subjects:
             values["subject"] = numbers[table.subjects[row.kind]].get(row.subject)
         for name in table.people:
@@ -124,21 +127,14 @@ def _lines(
         yield json.dumps(values, ensure_ascii=False, default=datetime.isoformat) + "\n"
 
 
-def _number(row: Any, name: str, numbers: dict[int, int], may_lack: bool) -> int | None:
-    key = getattr(row, f"{name}_id")
-    if key is not None and key not in numbers:
-        if may_lack:
-            return None
-        raise ChangedMeanwhile(f"{row._meta.verbose_name} {row.pk} refers to a new {name}")
-    return None if key is None else numbers[key]
-
-
 def _readable_files(world: World) -> Iterator[tuple[str, Iterable[str]]]:
     """Yield path → lines of the files for people: those of the generator, and a pair file for each part."""
     for name, text in generator_files(world).items():
         yield f"generator/{name}", [text]
-    if world.paraphrases.accepted().exists():
-        yield f"generator/{TRIPLES_FILE}", _triples(world)
+    triples = world.paraphrases.accepted().values_list("utterance", "prompt", "grounded_form")
+    if triples.exists():
+        rows = triples.iterator(chunk_size=CHUNK)
+        yield f"generator/{TRIPLES_FILE}", ("".join(f"{text}\n" for text in row) for row in rows)
     for split in world.splits.order_by("pk"):
         counted = split.examples.order_by().values_list("source", "part").annotate(Count("pk"))
         for source, part, _ in sorted(counted):
@@ -161,9 +157,3 @@ def _history_lines(kind: EditableKind, entries: Any) -> Iterator[str]:
             **{name: getattr(entry, name) for name in kind.model.edited_fields},
         }
         yield json.dumps(values, ensure_ascii=False, default=datetime.isoformat) + "\n"
-
-
-def _triples(world: World) -> Iterator[str]:
-    rows = world.paraphrases.accepted().values_list("utterance", "prompt", "grounded_form")
-    for row in rows.iterator(chunk_size=CHUNK):
-        yield "".join(f"{text}\n" for text in row)

@@ -137,7 +137,7 @@ class _Loader:
         self._world = world
         self._progress = progress
         self._keys: dict[str, list[int]] = {}
-        self._people: dict[str, int | None] = {}
+        self._people = dict(User.objects.values_list("username", "pk"))
         self._links: list[tuple[models.Model, str, Any]] = []
         self._done = 0
         self._changed: list[tuple[Position, TextChanges]] = []  # lines of the table that is read
@@ -150,14 +150,11 @@ class _Loader:
         World.objects.filter(pk=self._world.pk).update(description=description)
         for table in tables():
             self._changed = []
-            keys: list[int] = []
-            self._keys[table.name] = keys
+            keys = self._keys[table.name] = []
             if table.name not in self._manifest.rows:
                 continue
             for rows in batches(self._rows(table), BATCH):
                 self._store(table, rows, Position(table.path, len(keys) + 1))
-                keys += [row.pk for row in rows]
-                self._link(table, rows)
                 self._progress.check()
                 self._done += len(rows)
                 total = max(1, sum(self._manifest.rows.values()))
@@ -173,12 +170,19 @@ class _Loader:
         return {name: len(keys) for name, keys in self._keys.items()}
 
     def _store(self, table: ArchiveTable, rows: list[models.Model], place: Position) -> None:
+        """Store rows, then write their references to earlier rows of the same table."""
         try:
             with transaction.atomic():
                 table.model._default_manager.bulk_create(rows)
         except IntegrityError as error:
             with transaction.atomic():
                 raise self._clash(table, rows, place) from error
+        self._keys[table.name] += [row.pk for row in rows]
+        for row, name, number in self._links:
+            setattr(row, f"{name}_id", self._key(number, table.name, True, Position(table.path)))
+        self._links.clear()
+        if names := [name for name, other in table.references.items() if other == table.name]:
+            table.model._default_manager.bulk_update(rows, names)
 
     def _clash(
         self, table: ArchiveTable, rows: list[models.Model], place: Position
@@ -188,7 +192,15 @@ class _Loader:
         for number, row in enumerate(rows):
             here = Position(place.source, place.line + number)
             if other := equal_row(row):
-                return self._say_clash(row, keys.index(other.pk) + 1, here)
+                earlier = keys.index(other.pk) + 1
+                changed = {place.line for place, _ in self._changed}
+                is_by_us = not changed.isdisjoint({earlier, here.line})
+                why = " now that what does not show is left out" if is_by_us else ""
+                return LanguageError(
+                    f"the rows in lines {earlier:,} and {here.line:,} are the same{why}: “{str(row)[:60]}”",
+                    here,
+                    "change or delete one of the two in the world that was downloaded, and download it again",
+                )
             try:
                 with transaction.atomic():
                     row.save(force_insert=True)
@@ -196,24 +208,6 @@ class _Loader:
                 return LanguageError("this row cannot stand beside the rows before it", here)
             keys.append(row.pk)
         return LanguageError("these rows cannot stand beside each other", place)
-
-    def _say_clash(self, row: models.Model, earlier: int, here: Position) -> LanguageError:
-        changed = {place.line for place, _ in self._changed}
-        why = " now that what does not show is left out" if {earlier, here.line} & changed else ""
-        return LanguageError(
-            f"the rows in lines {earlier:,} and {here.line:,} are the same{why}: “{str(row)[:60]}”",
-            here,
-            "change or delete one of the two in the world that was downloaded, and download it again",
-        )
-
-    def _link(self, table: ArchiveTable, rows: list[models.Model]) -> None:
-        """Write the references of stored rows to earlier rows of the same table."""
-        names = {name for name, other in table.references.items() if other == table.name}
-        for row, name, number in self._links:
-            setattr(row, f"{name}_id", self._key(number, table.name, True, Position(table.path)))
-        self._links.clear()
-        if names:
-            table.model._default_manager.bulk_update(rows, names)
 
     def _rows(self, table: ArchiveTable) -> Iterator[models.Model]:
         path = self._manifest.prefix + table.path
@@ -251,7 +245,12 @@ class _Loader:
         columns = [each.name for each in table.columns if each.name in values]
         row = table.model(**{name: values[name] for name in columns})
         if table.owner:
-            setattr(row, table.owner, self._owner(table, place))
+            owner = (
+                self._world if table.owner == "world" else getattr(self._world, table.owner, None)
+            )
+            if owner is None:
+                raise LanguageError(f"world.json says that there is no {table.owner}", place)
+            setattr(row, table.owner, owner)
         for name, other in table.references.items():
             if other == table.name:
                 self._links.append((row, name, values.get(name)))
@@ -259,20 +258,12 @@ class _Loader:
             is_optional = table.model._meta.get_field(name).null
             setattr(row, f"{name}_id", self._key(values[name], other, is_optional, place))
         for name in table.people:
-            setattr(row, f"{name}_id", self._person(values.get(name)))
+            setattr(row, f"{name}_id", self._people.get(values.get(name) or ""))
         if table.subjects:
             other = table.subjects[values["kind"]]
             name = "subject"
             setattr(row, name, self._key(values[name], other, True, place))
         return row
-
-    def _owner(self, table: ArchiveTable, place: Position) -> Any:
-        if table.owner == "world":
-            return self._world
-        owner = getattr(self._world, table.owner, None)
-        if owner is None:
-            raise LanguageError(f"world.json says that there is no {table.owner}", place)
-        return owner
 
     def _key(self, number: Any, other: str, is_optional: bool, place: Position) -> int | None:
         keys = self._keys[other]
@@ -283,11 +274,3 @@ class _Loader:
                 f"the row refers to number {number} of {other}, which is not there", place
             )
         return keys[number]
-
-    def _person(self, name: str | None) -> int | None:
-        if name is None:
-            return None
-        if name not in self._people:
-            keys = User.objects.filter(username=name).values_list("pk", flat=True)
-            self._people[name] = keys.first()
-        return self._people[name]

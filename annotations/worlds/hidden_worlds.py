@@ -27,16 +27,14 @@ def sweep_hidden_worlds() -> None:
     """Delete the hidden worlds that no job works on any more."""
     active = set(Job.objects.active().values_list("pk", flat=True))
     for world in World.objects.filter(deletion_requested_at__isnull=False):
-        if _is_forgotten(world, active):
+        if match := _HIDDEN_NAME.fullmatch(world.name):
+            is_forgotten = int(match["job"]) not in active  # it was being imported
+        else:
+            deletions = Job.objects.active().filter(
+                kind=JobKind.DELETE_WORLD, world_name=world.name
+            )
+            requested_at = world.deletion_requested_at
+            is_old = requested_at is not None and requested_at < timezone.now() - KEPT_FOR
+            is_forgotten = is_old and not deletions.exists()
+        if is_forgotten:
             delete_world(world)
-
-
-def _is_forgotten(world: World, active: set[int]) -> bool:
-    """Return whether the hidden ``world`` is neither being imported nor being deleted."""
-    match = _HIDDEN_NAME.fullmatch(world.name)
-    if match:
-        return int(match["job"]) not in active
-    deletions = Job.objects.active().filter(kind=JobKind.DELETE_WORLD, world_name=world.name)
-    requested_at = world.deletion_requested_at
-    is_old = requested_at is not None and requested_at < timezone.now() - KEPT_FOR
-    return is_old and not deletions.exists()

@@ -71,7 +71,9 @@ def count_below(world: World) -> dict[type[models.Model], int]:
     paths = _paths_to_world()
     order = _deletion_order(paths)
     first, *others = (
-        _rows_below(model, world, paths[model])
+        model._base_manager.filter(
+            models.Q(*((path, world.pk) for path in paths[model]), _connector=models.Q.OR)
+        )
         .order_by()
         .annotate(model_number=models.Value(number))
         .values("model_number")
@@ -110,15 +112,6 @@ def _deletion_order(paths: Paths) -> list[type[models.Model]]:
         referring = {relation.related_model for relation in _relations_to(model)}
         sorter.add(model, *((referring & paths.keys()) - {model}))
     return list(sorter.static_order())
-
-
-def _rows_below(
-    model: type[models.Model], world: World, paths: list[str]
-) -> models.QuerySet[models.Model]:
-    belongs = models.Q()
-    for path in paths:
-        belongs |= models.Q(**{path: world.pk})
-    return model._base_manager.filter(belongs)
 
 
 def _batches_of_keys(

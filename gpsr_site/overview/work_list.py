@@ -140,7 +140,12 @@ class WorkList:
             items = tuple(item for item in self._items_of(role) if item not in seen)
             seen.update(items)
             groups.append(WorkGroup(role, items, role in self.own_roles))
-        return [group for group in _merge_own(groups) if group.items or group.is_own]
+        own = [group for group in groups if group.is_own]
+        if own:  # one group, for somebody with several roles
+            items = tuple(item for each in own for item in each.items)
+            others = [group for group in groups if not group.is_own]
+            groups = [WorkGroup(own[0].role, items, True), *others]
+        return [group for group in groups if group.items or group.is_own]
 
     @property
     def items(self) -> list[Task]:
@@ -219,11 +224,3 @@ class WorkList:
 
     def _address(self, page: str) -> str:
         return reverse(page, kwargs={"world": self.world.name})
-
-
-def _merge_own(groups: list[WorkGroup]) -> Iterator[WorkGroup]:
-    """Make one group of the reader's own ones, for somebody with several roles."""
-    own = [group for group in groups if group.is_own]
-    if own:
-        yield WorkGroup(own[0].role, tuple(item for each in own for item in each.items), True)
-    yield from (group for group in groups if not group.is_own)

@@ -9,7 +9,7 @@ from urllib.parse import unquote
 
 from django.conf import settings
 from django.http import HttpRequest
-from django.urls import ResolverMatch, reverse
+from django.urls import reverse
 from django.utils.functional import SimpleLazyObject
 
 from annotations.language.english import say_count
@@ -189,22 +189,14 @@ def frame(request: HttpRequest) -> dict[str, Any]:
 
 def _rail(request: HttpRequest, world: World) -> Iterator[Entry]:
     counts = getattr(request, "counts", None) or counts_of(world)
+    match, current = request.resolver_match, ""
+    if match is not None:  # a page about any kind of row belongs to the list of that kind
+        current = LISTS.get(match.kwargs.get("kind", ""), match.url_name or "")
     for place in PLACES:
-        yield _entry(place, world, counts, _current(request.resolver_match))
-
-
-def _current(match: ResolverMatch | None) -> str:
-    """Return the route that the rail marks; a page about any kind of row belongs to the list of that kind."""
-    if match is None:
-        return ""
-    return LISTS.get(match.kwargs.get("kind", ""), match.url_name or "")
-
-
-def _entry(place: Place, world: World, counts: Counts, current: str) -> Entry:
-    return Entry(
-        label=place.label,
-        url=reverse(place.page, kwargs={"world": world.name}),
-        count=getattr(counts, place.count) if place.count else None,
-        dot=place.waiting.sentence(counts) if place.waiting else "",
-        is_current=current in (place.page, *place.pages_below),
-    )
+        yield Entry(
+            label=place.label,
+            url=reverse(place.page, kwargs={"world": world.name}),
+            count=getattr(counts, place.count) if place.count else None,
+            dot=place.waiting.sentence(counts) if place.waiting else "",
+            is_current=current in (place.page, *place.pages_below),
+        )

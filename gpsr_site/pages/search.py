@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 from urllib.parse import urlencode
 
-from django.db.models import Model, QuerySet
+from django.db.models import Model
 from django.http import HttpRequest, HttpResponse
 from django.shortcuts import render
 from django.urls import reverse
@@ -189,19 +189,15 @@ def groups_of(request: HttpRequest, world: World, words: str) -> Iterator[Group]
         rows = kind.model._default_manager.filter(**{kind.world_path: world})
         matches = kind.filters({"q": words}, queryset=rows, request=request).qs
         count = matches.order_by()[: MOST_COUNTED + 1].count()
-        if count:
-            yield _group(kind, world, words, matches, count)
-
-
-def _group(kind: Kind, world: World, words: str, matches: QuerySet[Any], count: int) -> Group:
-    list_url = reverse(kind.list_name, kwargs={"world": world.name})
-    all_url = f"{list_url}?{urlencode({'q': words})}"
-    hits = tuple(
-        Hit(kind.text(row), kind.note(row), _page_url(kind, world, row))
-        for row in matches[:MOST_SHOWN]
-    )
-    return Group(kind.title, hits, count, all_url)
-
-
-def _page_url(kind: Kind, world: World, row: Model) -> str:
-    return reverse(kind.page_name, kwargs={"world": world.name, "pk": row.pk})
+        if not count:
+            continue
+        hits = tuple(
+            Hit(
+                kind.text(row),
+                kind.note(row),
+                reverse(kind.page_name, kwargs={"world": world.name, "pk": row.pk}),
+            )
+            for row in matches[:MOST_SHOWN]
+        )
+        list_url = reverse(kind.list_name, kwargs={"world": world.name})
+        yield Group(kind.title, hits, count, f"{list_url}?{urlencode({'q': words})}")

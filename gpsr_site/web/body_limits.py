@@ -40,7 +40,10 @@ class LimitBodies:
         self.get_response = get_response
 
     def __call__(self, request: HttpRequest) -> HttpResponse:
-        length = _content_length(request)
+        try:
+            length = int(request.META.get("CONTENT_LENGTH") or 0)
+        except ValueError:
+            length = 0  # Django reads no body then
         if length <= ANONYMOUS_BYTES:
             return self.get_response(request)
         sender = _sender(request)
@@ -62,13 +65,6 @@ class LimitBodies:
     def _refuse(self, request: HttpRequest, limit: int, hint: str) -> HttpResponse:
         sentence = f"This address takes no more than {limit // 1024:,} kB from you. {hint}"
         return refuse(request, 413, "Too much data", sentence)
-
-
-def _content_length(request: HttpRequest) -> int:
-    try:
-        return int(request.META.get("CONTENT_LENGTH") or 0)
-    except ValueError:
-        return 0  # Django reads no body then
 
 
 def _sender(request: HttpRequest) -> User | None:

@@ -47,14 +47,10 @@ def refuse(request: HttpRequest, status: int, title: str, sentence: str) -> Http
         problem = {"type": "about:blank", "title": title, "status": status, "detail": sentence}
         return JsonResponse(problem, status=status, content_type="application/problem+json")
     if status >= 500:
-        return _say_plainly(status, title, sentence)
+        page = format_html(PAGE, style=STYLE, title=title, sentence=sentence)
+        # Made for views, it marks the answer of any function.
+        allowing_the_style: Any = csp_update({"style-src": [f"'sha256-{STYLE_HASH}'"]})
+        response: HttpResponse = allowing_the_style(lambda: HttpResponse(page, status=status))()
+        return response
     page = loader.render_to_string("error.html", {"title": title, "sentence": sentence})
     return HttpResponse(page, status=status)
-
-
-def _say_plainly(status: int, title: str, sentence: str) -> HttpResponse:
-    page = format_html(PAGE, style=STYLE, title=title, sentence=sentence)
-    # Made for views, it marks the answer of any function.
-    allowing_the_style: Any = csp_update({"style-src": [f"'sha256-{STYLE_HASH}'"]})
-    response: HttpResponse = allowing_the_style(lambda: HttpResponse(page, status=status))()
-    return response

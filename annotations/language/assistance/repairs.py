@@ -136,15 +136,16 @@ class _Offering:
         key = _identity(problem)
         if self.template is None:
             return self._rank_of_reading(key, offset, candidate, sides)
-        if key not in self.counts:
-            return self._rank_of_membership(candidate, sides, after)
-        if (
-            Counter(map(_identity, after))[key] >= self.counts[key]
-            or len(after) >= len(self.before)
-            or _errors(after) > _errors(self.before)
-        ):
-            return None
-        return (False, _errors(after), len(after), 0, candidate.rank, candidate.repair.label)
+        outside = 0
+        if key in self.counts:
+            is_gone = Counter(map(_identity, after))[key] < self.counts[key]
+            is_better = len(after) < len(self.before) and _errors(after) <= _errors(self.before)
+            helps = is_gone and is_better
+        else:  # the trial's problems do not say how many commands are outside the grammar
+            outside = self.trial.outside(sides)
+            helps = len(after) <= len(self.before) and outside < self.trial.outside(self.sides)
+        rank = (False, _errors(after), len(after), outside, candidate.rank, candidate.repair.label)
+        return rank if helps else None
 
     def _rank_of_reading(
         self,
@@ -171,15 +172,6 @@ class _Offering:
             candidate.rank,
             candidate.repair.label,
         )
-
-    def _rank_of_membership(
-        self, candidate: RepairCandidate, sides: Sides, after: tuple[Problem, ...]
-    ) -> Rank | None:
-        """Accept what brings commands into the grammar: the trial's problems do not say."""
-        outside = self.trial.outside(sides)
-        if len(after) > len(self.before) or outside >= self.trial.outside(self.sides):
-            return None
-        return (False, _errors(after), len(after), outside, candidate.rank, candidate.repair.label)
 
 
 def _identity(problem: Problem) -> tuple[str, str]:

@@ -81,8 +81,7 @@ def misuse(
     yield from _rename_predicate(form, application, predicates)
     if application.name not in predicates:
         return  # other arguments would not make it known
-    yield from _exchange_arguments(form, application)
-    yield from _exchange_slots(template)
+    yield from _exchange(form, application)
     for argument in application.children:
         start = len(form.text[: argument.start].rstrip())
         label = f"Remove {shorten(form.of(argument))} from {application.name}"
@@ -149,7 +148,8 @@ def _rename_predicate(
         yield candidate(f"Write {other} for {name}", edits, rank + (name in predicates) / 2)
 
 
-def _exchange_arguments(form: FormText, application: TermSpan) -> Iterator[RepairCandidate]:
+def _exchange(form: FormText, application: TermSpan) -> Iterator[RepairCandidate]:
+    """Exchange two arguments, or two slots wherever the form has them."""
     for one, other in combinations(application.children, 2):
         texts = form.of(one), form.of(other)
         edits = [
@@ -157,16 +157,12 @@ def _exchange_arguments(form: FormText, application: TermSpan) -> Iterator[Repai
             TextEdit(FORM, other.start, other.end, texts[0]),
         ]
         yield candidate(f"Exchange {shorten(texts[0])} and {shorten(texts[1])}", edits, 0.2)
-
-
-def _exchange_slots(template: SemanticTemplate) -> Iterator[RepairCandidate]:
-    """Exchange two slots wherever the form has them."""
-    places = places_in_form(template.form_text)
-    texts = {place.key: template.form_text[place.start : place.end] for place in places}
-    for one, other in islice(combinations(texts, 2), MOST_SLOTS):
-        into = {one: texts[other], other: texts[one]}
+    places = places_in_form(form.text)
+    slots = {place.key: form.text[place.start : place.end] for place in places}
+    for first, second in islice(combinations(slots, 2), MOST_SLOTS):
+        into = {first: slots[second], second: slots[first]}
         edits = [TextEdit(FORM, p.start, p.end, into[p.key]) for p in places if p.key in into]
-        label = f"Exchange {shorten(texts[one])} and {shorten(texts[other])}"
+        label = f"Exchange {shorten(slots[first])} and {shorten(slots[second])}"
         yield candidate(label, edits, 0.25)
 
 

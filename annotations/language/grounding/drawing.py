@@ -201,7 +201,15 @@ def holds(condition: Condition, entity: Entity, value_of: Callable[[Wildcard], s
     if sign in _ORDERS:
         number, limit = _number(actual), _number(wanted)
         return number is not None and limit is not None and _ORDERS[sign](number, limit)
-    return _equals(actual, wanted) == (sign == "=")
+    if isinstance(wanted, bool):
+        is_equal = ((actual or "").lower() == "true") == wanted
+    elif wanted is None or actual is None:
+        is_equal = actual is wanted
+    elif isinstance(wanted, float):
+        is_equal = _number(actual) == wanted
+    else:
+        is_equal = actual.lower() == wanted.lower()
+    return is_equal == (sign == "=")
 
 
 def wildcards_in(condition: Condition | None) -> Iterator[Wildcard]:
@@ -213,16 +221,6 @@ def wildcards_in(condition: Condition | None) -> Iterator[Wildcard]:
         yield from wildcards_in(condition.right)
     elif isinstance(condition, Comparison) and isinstance(condition.value, Wildcard):
         yield condition.value
-
-
-def _equals(actual: str | None, wanted: Value) -> bool:
-    if isinstance(wanted, bool):
-        return ((actual or "").lower() == "true") == wanted
-    if wanted is None or actual is None:
-        return actual is wanted
-    if isinstance(wanted, float):
-        return _number(actual) == wanted
-    return actual.lower() == wanted.lower()
 
 
 def _number(value: Value) -> float | None:

@@ -291,15 +291,15 @@ def _find(anonymized: Anonymized) -> Iterator[tuple[str, bool, bool]]:
             is_name = _is_capitalised(word) and not (start == at == 0)
             first = at + 1 if is_determiner else at
             following = words[first : first + _LONGEST] if is_determiner or is_name else []
-            phrase = list(takewhile(_may_be_of_name, following))
+            phrase = list(
+                takewhile(
+                    lambda each: each.casefold() not in _NO_NAMES and each[0].isalnum(), following
+                )
+            )
             if phrase:
                 before = words[at - 1].casefold() if at else ""
                 yield " ".join(phrase), before in PLACE_PREPOSITIONS, _is_capitalised(phrase[0])
             at = max(at + 1, first + len(phrase))
-
-
-def _may_be_of_name(word: str) -> bool:
-    return word.casefold() not in _NO_NAMES and word[0].isalnum()
 
 
 def _is_capitalised(word: str) -> bool:

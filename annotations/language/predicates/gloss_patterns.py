@@ -49,7 +49,19 @@ class GlossAlternative:
 @lru_cache(maxsize=1 << 12)
 def read_pattern(pattern: str) -> tuple[GlossAlternative, ...]:
     """Return the alternatives of a pattern. Any text is a pattern: what is not a slot is plain text."""
-    return tuple(_alternative(part.strip()) for part in pattern.split("|"))
+    alternatives: list[GlossAlternative] = []
+    for part in map(str.strip, pattern.split("|")):
+        text = part.removeprefix("=").strip()
+        pieces: list[str | PatternSlot] = []
+        end = 0
+        for match in _SLOT.finditer(text):
+            place = None if match["place"] == "*" else int(match["place"]) - 1
+            slot = PatternSlot(place, match["kind"] or "", match["value"] or "")
+            pieces += [text[end : match.start()], slot]
+            end = match.end()
+        spoken = tuple(piece for piece in (*pieces, text[end:]) if piece)
+        alternatives.append(GlossAlternative(spoken, is_nested=part.startswith("=")))
+    return tuple(alternatives)
 
 
 def default_pattern(name: str, is_action: bool, signatures: tuple[Signature, ...]) -> str:
@@ -64,21 +76,6 @@ def pattern_of_name(name: str, is_action: bool, signatures: tuple[Signature, ...
     if is_action:
         return " | ".join(_action(words, arity, signatures) for arity in arities)
     return " | ".join(dict.fromkeys(_description(name, words, arity) for arity in arities))
-
-
-def _alternative(text: str) -> GlossAlternative:
-    is_nested = text.startswith("=")
-    pieces: list[str | PatternSlot] = []
-    end = 0
-    text = text.removeprefix("=").strip()
-    for match in _SLOT.finditer(text):
-        place = None if match["place"] == "*" else int(match["place"]) - 1
-        pieces += [
-            text[end : match.start()],
-            PatternSlot(place, match["kind"] or "", match["value"] or ""),
-        ]
-        end = match.end()
-    return GlossAlternative(tuple(piece for piece in (*pieces, text[end:]) if piece), is_nested)
 
 
 def _action(words: str, arity: int, signatures: tuple[Signature, ...]) -> str:

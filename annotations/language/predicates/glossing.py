@@ -123,19 +123,13 @@ def _open(form: Lambda, scope: _Scope) -> tuple[tuple[Form, ...], _Scope]:
 def _action(form: Form, scope: _Scope, is_nested: bool) -> str:
     if not isinstance(form, Application):
         return _phrase(form, scope)
-    form, scope = _gather(form, scope)
+    if about := tuple(each for each in form.arguments if scope.describes(each)):
+        # ``(follow (person $1) (at $1 …))`` becomes ``(follow $1)``; the descriptions go into the scope.
+        others = tuple(each for each in form.arguments if each not in about)
+        form = replace(form, arguments=(about[0].arguments[0], *others))
+        scope = replace(scope, conjuncts=about)
     chosen = _choose(form, scope.patterns, is_nested)
     return _fill(chosen, form.arguments, scope)
-
-
-def _gather(form: Application, scope: _Scope) -> tuple[Application, _Scope]:
-    """Turn ``(follow (person $1) (at $1 …))`` into ``(follow $1)``; the descriptions go into the scope."""
-    about = tuple(each for each in form.arguments if scope.describes(each))
-    if not about:
-        return form, scope
-    others = tuple(each for each in form.arguments if each not in about)
-    gathered = replace(form, arguments=(about[0].arguments[0], *others))
-    return gathered, replace(scope, conjuncts=about)
 
 
 def _choose(form: Application, patterns: Mapping[str, str], is_nested: bool) -> GlossAlternative:

@@ -264,14 +264,7 @@ class _Target:
         }
         shared = [(key_of(left), key_of(right)) for left, right in a_to_b.items()]
         of_b = {right: of_a[left] for left, right in shared if left in of_a}
-        self._name_added(b, of_b, of_near)
-        of_a = {**{left: of_b[right] for left, right in shared if right in of_b}, **of_a}
-        return solve(exchange(a.form, of_a), exchange(b.form, of_b), exchange(near.form, of_near))
-
-    def _name_added(
-        self, b: TemplateExample, of_b: dict[Key, Slot], of_near: Mapping[Key, Slot]
-    ) -> None:
-        """Give the slots that only b has those of the target that the near template lacks, by label in order."""
+        # Slots that only b has become those of the target that the near template lacks, by label in order.
         taken = {key_of(slot) for slot in of_near.values()}
         free: defaultdict[str, list[Slot]] = defaultdict(list)
         for key, slot in self.slots.items():
@@ -285,6 +278,8 @@ class _Target:
                 of_b[key_of(unit.slot)] = free[unit.label].pop(0)
             elif unit.slot in aligned:
                 of_b[key_of(unit.slot)] = self.slots[key_of(aligned[unit.slot])]
+        of_a = {**{left: of_b[right] for left, right in shared if right in of_b}, **of_a}
+        return solve(exchange(a.form, of_a), exchange(b.form, of_b), exchange(near.form, of_near))
 
 
 def _words(unit: Unit) -> set[str]:

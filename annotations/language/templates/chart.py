@@ -120,21 +120,20 @@ class _Unifier:
     def of_rule(self, rule: int, start: int, end: int) -> dict[Bindings, None]:
         """Return the distinct bindings of a rule that spans the words from ``start`` to ``end``."""
         key = (rule, start, end)
-        if key not in self._known:
-            self._known[key] = self._compute(rule, start, end)
-        return self._known[key]
-
-    def _compute(self, rule: int, start: int, end: int) -> dict[Bindings, None]:
+        if key in self._known:
+            return self._known[key]
         described = self.chart.rules[rule]
-        if self.tracked.isdisjoint(described.names):
-            return {(): None}
         results: dict[Bindings, None] = {}
-        for alternative in self.chart.candidates(rule, start):
-            results.update(self._of_alternative(alternative, start, end))
-        if described.name in self.tracked:
-            own = ((described.name, self.chart.words[start:end]),)
-            joined = (_unite(bindings, own) for bindings in results)
-            results = {bindings: None for bindings in joined if bindings is not None}
+        if self.tracked.isdisjoint(described.names):
+            results[()] = None
+        else:
+            for alternative in self.chart.candidates(rule, start):
+                results.update(self._of_alternative(alternative, start, end))
+            if described.name in self.tracked:
+                own = ((described.name, self.chart.words[start:end]),)
+                joined = (_unite(bindings, own) for bindings in results)
+                results = {bindings: None for bindings in joined if bindings is not None}
+        self._known[key] = results
         return results
 
     def _of_alternative(

@@ -78,7 +78,10 @@ def compose(
         wanted = (f"{each}{TEMPLATE_SUFFIX}".lower() for each in of_files)
         own = tuple(templates[name] for name in wanted if name in templates)
         compositions.append(Composition(names[file], file, own))
-    return tuple(sorted(compositions, key=_order))
+    numbered = [each for each in compositions if each.name.isdecimal()]
+    named = [each for each in compositions if not each.name.isdecimal()]
+    numbered.sort(key=lambda each: (int(each.name), each.name))
+    return (*numbered, *sorted(named, key=lambda each: each.name))
 
 
 def is_template_name(name: str) -> bool:
@@ -99,11 +102,6 @@ def _category_name(base: str, bases: Iterable[str]) -> str:
     rivals = (_NUMBERED.fullmatch(other) for other in bases)
     claims = sum(rival is not None and rival["number"] == match["number"] for rival in rivals)
     return match["number"] if claims == 1 else base
-
-
-def _order(composition: Composition) -> tuple[bool, int, str]:
-    name = composition.name
-    return (not name.isdecimal(), int(name) if name.isdecimal() else 0, name)
 
 
 @dataclass(frozen=True, slots=True)

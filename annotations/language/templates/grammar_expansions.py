@@ -88,8 +88,9 @@ class GrammarExpansions:
         Raises:
             TooManyCombinations: the budget is spent.
         """
-        enumerated = self.commands if self._is_worth_enumerating(len(commands)) else None
-        if enumerated is not None:
+        is_enumerated = "commands" in self.__dict__
+        worth = min(MOST_ENUMERATED, ENUMERATED_FOR_ONE * len(commands))
+        if (is_enumerated or self.grammar.size() <= worth) and self.commands is not None:
             return self._command_set.intersection(commands)
         judged = {} if len(self._judged) > self._most_kept else self._judged
         for command in commands:
@@ -119,11 +120,6 @@ class GrammarExpansions:
     @cached_property
     def _recognizer(self) -> Recognizer:
         return Recognizer(self.grammar)
-
-    def _is_worth_enumerating(self, n_commands: int) -> bool:
-        if "commands" in self.__dict__:
-            return True
-        return self.grammar.size() <= min(MOST_ENUMERATED, ENUMERATED_FOR_ONE * n_commands)
 
 
 def _key(template: SemanticTemplate) -> tuple[str, str]:

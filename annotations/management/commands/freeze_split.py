@@ -40,30 +40,22 @@ class Command(ReportingCommand):
         self, *, world: str, name: str, criterion: str, seed: int, parts: str, **options: Any
     ) -> Mapping[str, Any]:
         chosen = find_world(world)
-        criteria = _criteria(criterion)
+        criteria = list(dict.fromkeys(each.strip() for each in criterion.split(",")))
+        for each in criteria:
+            if each not in set(Criterion):
+                raise CommandError(f"“{each}” is no criterion. There are: {', '.join(Criterion)}.")
         names = {each: name if len(criteria) == 1 else f"{name}-{each}" for each in criteria}
-        shares = _shares(parts)
+        try:
+            shares = [float(each) / 100 for each in parts.split(",")]
+        except ValueError:
+            sentence = f"“{parts}” is not three percentages, such as 70,10,20."
+            raise CommandError(sentence) from None
         with transaction.atomic():
             splits = [freeze_split(chosen, names[each], each, seed, shares) for each in criteria]
         return {"world": world, "splits": _describe(splits)}
 
     def audit_subject(self, report: Mapping[str, Any], options: Mapping[str, Any]) -> str:
         return ", ".join(each["name"] for each in report["splits"])
-
-
-def _criteria(text: str) -> list[str]:
-    criteria = list(dict.fromkeys(each.strip() for each in text.split(",")))
-    for each in criteria:
-        if each not in set(Criterion):
-            raise CommandError(f"“{each}” is no criterion. There are: {', '.join(Criterion)}.")
-    return criteria
-
-
-def _shares(text: str) -> list[float]:
-    try:
-        return [float(each) / 100 for each in text.split(",")]
-    except ValueError:
-        raise CommandError(f"“{text}” is not three percentages, such as 70,10,20.") from None
 
 
 def _describe(splits: Sequence[Split]) -> list[dict[str, Any]]:

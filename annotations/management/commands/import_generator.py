@@ -53,7 +53,16 @@ class Command(ReportingCommand):
             world, folder, may_remove=remove_missing, brings_back=bring_back, encoding=encoding
         )
         if report.is_waiting:
-            raise RefusedReport(report.as_json(), _question(world, report.removals.as_json()))
+            removals = report.removals.as_json().items()
+            lines = [f"  {name}: {text}" for name, texts in removals for text in texts]
+            rest = [f"  and {len(lines) - MOST_LISTED} more"] if len(lines) > MOST_LISTED else []
+            sentences = [
+                f"The files lack rows that “{world}” has:",
+                *lines[:MOST_LISTED],
+                *rest,
+                "Nothing was imported. With --remove-missing these are removed.",
+            ]
+            raise RefusedReport(report.as_json(), sentences)
         if report.is_refused:
             raise RefusedReport.because(report.errors, report.as_json(), folder)
         return report.as_json()
@@ -63,14 +72,3 @@ class Command(ReportingCommand):
 
     def describe(self, report: Mapping[str, Any]) -> str:
         return "\n".join([super().describe(report), *say_left_out(report)])
-
-
-def _question(world: str, removals: Mapping[str, list[str]]) -> list[str]:
-    """Return what would go, a line each, and how to let it go."""
-    lines = [f"  {name}: {text}" for name, texts in removals.items() for text in texts]
-    return [
-        f"The files lack rows that “{world}” has:",
-        *lines[:MOST_LISTED],
-        *([f"  and {len(lines) - MOST_LISTED} more"] if len(lines) > MOST_LISTED else []),
-        "Nothing was imported. With --remove-missing these are removed.",
-    ]
