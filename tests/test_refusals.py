@@ -21,7 +21,6 @@ MODULES = [
 ]
 # Modules that check what a programmer gives them.
 CHECK_ARGUMENTS = (
-    "annotations/labelling/form_check.py",
     "parser_service/analysis/",
     "parser_service/slices/selecting.py",
     "parser_service/parsers/linear.py",

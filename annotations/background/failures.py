@@ -46,7 +46,7 @@ def failure_sentence(error: Exception, noun: str = "job") -> str:
     if is_out_of_memory(error):
         return f"The memory ran out. Run the {noun} on another machine, or split it up."
     return (
-        f"The program has a fault: {type(error).__name__}: {error}. The worker's log shows where; "
+        f"The program has a fault ({type(error).__name__}). The worker's log shows what and where; "
         f"report it with the number of this {noun}."
     )
 

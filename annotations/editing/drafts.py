@@ -18,7 +18,7 @@ MOST_FIELDS = 50
 
 
 def read_draft(sent: Any) -> dict[str, Any]:
-    """Return the values of a ``Draft`` in ``sent``, parsed JSON. Raises ValueError, a sentence.
+    """Return the values of a ``Draft`` in ``sent``, parsed JSON. Raises Refusal.
 
     ``sent`` has ``fields`` (name → text), ``version`` (a number or null) and ``device``.
     """

@@ -54,7 +54,7 @@ def export_pieces(
 ) -> Iterator[bytes]:
     """Return the chosen examples of ``split`` as a file in pieces, none of them large.
 
-    ``as_`` is a ``SplitFormat``. Raises ValueError for ``txt`` without ``part`` and ``source``.
+    ``as_`` is a ``SplitFormat``. Raises Refusal for ``txt`` without ``part`` and ``source``.
     """
     match SplitFormat(as_):
         case SplitFormat.PARQUET:
@@ -72,7 +72,7 @@ def export_lines(
     """Return the chosen examples of ``split`` as lines of text, each with its line end.
 
     ``as_`` is a ``SplitFormat`` of text. ``txt`` is one pair file, so it needs ``part`` and ``source``; of an
-    imported split it is the file that came in, byte for byte. Raises ValueError without them.
+    imported split it is the file that came in, byte for byte. Raises Refusal without them.
     """
     if as_ == SplitFormat.TXT and not (part and source):
         raise Refusal(

@@ -93,7 +93,7 @@ def keep_report(
 def answer_job(job: Job, by: User) -> Job:
     """Queue the import that ``job`` asked about, now allowed to remove what it said.
 
-    Raises ValueError, a sentence, where the question was answered already.
+    Raises Refusal where the question was answered already.
     """
     with transaction.atomic():
         asked = Job.objects.select_for_update().get(pk=job.pk)
@@ -113,7 +113,7 @@ def answer_job(job: Job, by: User) -> Job:
 
 
 def cancel_job(job: Job) -> None:
-    """Stop a job, or drop an import that asked. Raises ValueError, a sentence, where it has ended."""
+    """Stop a job, or drop an import that asked. Raises Refusal where it has ended."""
     if job.kind == JobKind.DELETE_WORLD:
         raise Refusal(
             "A deletion cannot be stopped: a part of the world may be gone already.",

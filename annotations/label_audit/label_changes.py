@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from http import HTTPStatus
+
 from django.db.models import Exists, OuterRef, QuerySet
 
 from annotations.editing.edits import change, restore
@@ -47,19 +49,19 @@ def change_pair(finding: AuditFinding, made: AuditDecision, by: User) -> None:
 def change_back(finding: AuditFinding, made: AuditDecision, by: User) -> None:
     """Undo what a decision made of the pair.
 
-    Raises ValueError, a sentence, where the pair has changed since, or what it was is not known here.
+    Raises Refusal where the pair has changed since, or what it was is not known here.
     """
     if made.label is not None:
         label_answers.take_back(made.label, by)
         return
     row = finding.paraphrase
     if row is None or row.version != made.version:
-        raise Refusal("This pair has changed since. Restore it from its history.", "changed_since")
+        said = "This pair has changed since. Restore it from its history."
+        raise Refusal(said, "changed_since", HTTPStatus.CONFLICT)
     entry = entry_at(row, row.version - 1)
     if entry is None:
-        raise Refusal(
-            "The history of this paraphrase does not say what it was before.", "history_is_silent"
-        )
+        said = "The history of this paraphrase does not say what it was before."
+        raise Refusal(said, "history_is_silent", HTTPStatus.CONFLICT)
     restore(entry, by)
 
 

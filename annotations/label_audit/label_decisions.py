@@ -57,7 +57,7 @@ def decide(
         NoLongerYours: others are asked what the utterance means.
         NotForThem: the person's role does not let them decide.
         LanguageError: the form cannot be read.
-        ValueError: a sentence where the decision lacks something.
+        Refusal: where the decision lacks something.
     """
     if decision not in dict(decision_choices()):
         raise Refusal(f"There is no decision {decision[:20]!r}.", "no_such_decision")
@@ -87,7 +87,7 @@ def decide(
 def take_back(made: AuditDecision, by: User) -> AuditFinding:
     """Undo a decision of ``by``: the pair is what it was, and its item in the queue is theirs again.
 
-    Raises ValueError, a sentence, where it is somebody else's, was taken back already, or the pair has
+    Raises Refusal where it is somebody else's, was taken back already, or the pair has
     changed since.
     """
     with transaction.atomic():

@@ -41,7 +41,7 @@ def mend_span(
 
     Raises:
         AnsweredMeanwhile: the utterance is not at ``version`` any more.
-        ValueError: a sentence where the words are no name.
+        Refusal: where the words are no name.
     """
     words = " ".join(utterance.text[start:end].split())
     if not 0 <= start < end <= len(utterance.text) or not words:

@@ -106,7 +106,8 @@ def label(
     Raises:
         AnsweredMeanwhile: the utterance is at another version; a skip and a blind answer never clash.
         NoLongerYours: others are still asked about what ``by`` has answered before.
-        LanguageError, ValueError: the form cannot be read; the verdict lacks something (a sentence).
+        LanguageError: the form cannot be read.
+        Refusal: the verdict lacks something.
     """
     text = check_answer(verdict, form, reason)
     decides = not is_blind and verdict != Verdict.SKIP
@@ -155,7 +156,7 @@ def hold_utterance(utterance: Utterance, version: int | None, by: User) -> Utter
 def take_back(row: Label, by: User) -> Utterance:
     """Undo an answer of ``by``. Returns the utterance as it was before it.
 
-    Raises ValueError, a sentence, where it is somebody else's or was taken back already.
+    Raises Refusal where it is somebody else's or was taken back already.
     """
     with transaction.atomic():
         utterance = Utterance.with_deleted.select_for_update().get(pk=row.utterance_id)
@@ -175,7 +176,7 @@ def take_back(row: Label, by: User) -> Utterance:
 def accept(row: Label, by: User) -> Utterance:
     """Let a stored answer decide: with what ``by`` has done two people agree on it.
 
-    Raises ValueError, a sentence, where it was taken back or is a skip.
+    Raises Refusal where it was taken back or is a skip.
     """
     with transaction.atomic():
         utterance = Utterance.with_deleted.select_for_update().get(pk=row.utterance_id)

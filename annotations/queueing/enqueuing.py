@@ -54,7 +54,7 @@ def people_for(kind: str, subject: str, draw: int, shares: dict[str, int]) -> in
 def set_share(world: World, kind: WorkKind, percent: int) -> None:
     """Let two people do ``percent`` of the items of ``kind``, those included that nobody has touched.
 
-    Raises ValueError for a kind that one person does, and for what is no percentage.
+    Raises Refusal for a kind that one person does, and for what is no percentage.
     """
     if kind not in DOUBLE_KINDS or not 0 <= percent <= 100:
         raise Refusal(

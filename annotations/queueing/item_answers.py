@@ -124,7 +124,7 @@ def _take_unasked(utterance: Utterance, by: User) -> Assignment | None:
 def take_answer_back(label: Label, by: User) -> Utterance:
     """Undo an answer; its person holds the item again.
 
-    Raises ValueError, a sentence, where it is somebody else's, and NoLongerYours where others have gone
+    Raises Refusal where it is somebody else's, and NoLongerYours where others have gone
     on from it.
     """
     with transaction.atomic():

@@ -58,7 +58,7 @@ def send_examples(world: World, examples: Iterable[Example], reason: str, by: Us
     Args:
         reason: what is to be looked at, as people read it in the queue.
 
-    Raises ValueError, a sentence, where there are more than ``MOST_SENT`` different texts.
+    Raises Refusal where there are more than ``MOST_SENT`` different texts.
     """
     texts: dict[str, Example] = {}
     rows = examples.iterator(chunk_size=BATCH) if isinstance(examples, QuerySet) else examples

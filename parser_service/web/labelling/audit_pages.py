@@ -105,7 +105,7 @@ def audit_decide(request: WorldRequest, world: World, pk: int) -> HttpResponse:
         messages.error(request, str(error))
         return _to(request, world, finding)
     except Refusal as refusal:
-        return _refuse(request, world, finding, refusal.message)
+        return _refuse(request, world, finding, str(refusal))
     listing = Listing(request, AuditFindingFilters, world.audit_findings.all(), SORTS)
     rows = listing.matching.exclude(pk=pk).order_by("rank", "pk")
     beyond = rows.filter(Q(rank__gt=finding.rank) | Q(rank=finding.rank, pk__gt=pk))
@@ -119,7 +119,7 @@ def audit_take_back(request: WorldRequest, world: World, pk: int) -> HttpRespons
     try:
         take_back(made, request.user)
     except Refusal as refusal:
-        messages.error(request, refusal.message)
+        messages.error(request, str(refusal))
     return _to(request, world, made.finding)
 
 

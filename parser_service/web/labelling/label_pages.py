@@ -70,7 +70,7 @@ def label_answer(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     try:
         answer(row, verdict, form, request.user, int(version or 0), seconds, reason)
     except Refusal as refusal:
-        return _reply(request, world, row, refusal.message, status_of(refusal))
+        return _reply(request, world, row, str(refusal), status_of(refusal))
     return _reply(request, world, row)
 
 
@@ -81,7 +81,7 @@ def label_take_back(request: WorldRequest, world: World, pk: int) -> HttpRespons
     try:
         row = take_answer_back(stored, request.user)
     except Refusal as refusal:
-        return _reply(request, world, stored.utterance, refusal.message, HTTPStatus.CONFLICT)
+        return _reply(request, world, stored.utterance, str(refusal), HTTPStatus.CONFLICT)
     return _reply(request, world, row, stays=True)
 
 
@@ -121,7 +121,7 @@ def label_mend(request: WorldRequest, world: World, pk: int) -> HttpResponse:
         version = int(_number(request.POST.get("version")) or 0)
         row = mend_span(row, start, start + len(words), entity, request.user, version)
     except Refusal as refusal:
-        return _reply(request, world, row, refusal.message, status_of(refusal))
+        return _reply(request, world, row, str(refusal), status_of(refusal))
     return _reply(request, world, row, stays=True)
 
 

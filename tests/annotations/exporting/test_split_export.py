@@ -8,6 +8,7 @@ import pytest
 
 from annotations.exporting.split_export import FIELDS, export_lines, export_split
 from annotations.generation.generating import generate_pairs
+from annotations.language.errors import Refusal
 from annotations.splits.freezing import freeze_split
 
 
@@ -18,8 +19,9 @@ def split(tiny_world):
 
 
 def test_a_pair_file_needs_a_part_and_a_source(split):
-    with pytest.raises(ValueError, match="which part and source"):
+    with pytest.raises(Refusal) as refused:
         export_lines(split, "txt", part="train")
+    assert refused.value.code == "part_and_source_needed"
 
 
 def test_every_format_gives_every_example_in_one_query(split, django_assert_num_queries):

@@ -14,6 +14,7 @@ from annotations.jobs.files import folder_of, jobs_folder
 from annotations.jobs.kinds import verb_of
 from annotations.jobs.sweeping import sweep
 from annotations.jobs.watching import JobProgress
+from annotations.language.errors import Refusal
 from annotations.models import Job, JobKind, World
 from annotations.models.background import Status
 from annotations.world_archive import world_import
@@ -85,8 +86,9 @@ def test_an_import_that_would_remove_something_asks_first(home, tiny):
     assert (answer.status, answer.report["changes"]["removed"]) == (Status.SUCCEEDED, 4)
     assert home.ontology.entities.count() == 3 and files_left() == []
     job.refresh_from_db()
-    with pytest.raises(ValueError, match="answered already"):
+    with pytest.raises(Refusal) as refused:
         answer_job(job, None)
+    assert (refused.value.code, refused.value.status) == ("already_answered", 409)
 
 
 def test_an_import_that_asks_is_dropped(home, tiny):
@@ -135,8 +137,9 @@ def test_deletion(home, tiny):
 
 def test_a_deletion_is_not_stopped(home):
     request_deletion(home)
-    with pytest.raises(ValueError, match="cannot be stopped"):
+    with pytest.raises(Refusal) as refused:
         cancel_job(request_job(JobKind.DELETE_WORLD, "home", None))
+    assert (refused.value.code, refused.value.status) == ("deletion_goes_on", 409)
 
 
 @pytest.mark.parametrize("kind", [JobKind.IMPORT_GENERATOR, JobKind.GENERATE])

@@ -7,7 +7,7 @@ import pytest
 from annotations.editing.edits import change
 from annotations.label_audit.label_changes import examples_before
 from annotations.label_audit.label_decisions import DecidedMeanwhile, decide, take_back
-from annotations.language.errors import LanguageError
+from annotations.language.errors import LanguageError, Refusal
 from annotations.models import (
     AuditDecision,
     AuditFinding,
@@ -97,14 +97,16 @@ def test_taken_back_it_is_as_before(decision, name, findings, annotator, request
     assert state_of(row) == before
     assert finding_of(row) in findings.open()
     assert finding_of(row).decision is None and AuditDecision.objects.count() == 1
-    with pytest.raises(ValueError, match="taken back already"):
+    with pytest.raises(Refusal) as refused:
         take_back(made, annotator)
+    assert (refused.value.code, refused.value.status) == ("already_taken_back", 409)
 
 
 def test_only_who_decided_takes_it_back(findings, girls, annotator, berta):
     made = decide(finding_of(girls), KEEP, annotator)
-    with pytest.raises(ValueError, match="Only the person"):
+    with pytest.raises(Refusal) as refused:
         take_back(made, berta)
+    assert (refused.value.code, refused.value.status) == ("not_their_decision", 409)
     assert finding_of(girls).status == KEEP
 
 
@@ -115,8 +117,9 @@ def test_nothing_that_others_did_since_is_undone(findings, girls, women, annotat
     kept = decide(finding_of(women), KEEP, annotator)
     answer(women, Verdict.FORM, GO, berta, women.version)
     for made in (corrected, kept):
-        with pytest.raises(ValueError, match="changed since"):
+        with pytest.raises(Refusal) as refused:
             take_back(made, annotator)
+        assert (refused.value.code, refused.value.status) == ("changed_since", 409)
     assert [state_of(girls)[1], state_of(women)[1]] == [GO, GO]
 
 
@@ -130,7 +133,7 @@ def test_the_second_decision_is_refused(findings, girls, annotator, berta):
 def test_nothing_is_decided_about_a_deleted_utterance(findings, women, annotator):
     made = decide(finding_of(women), KEEP, annotator)
     delete_utterances([women.pk], annotator)
-    with pytest.raises(ValueError):
+    with pytest.raises(Refusal):
         take_back(made, annotator)
     AuditFinding.objects.filter(utterance=women).update(status=FindingStatus.OPEN)
     AuditDecision.objects.all().delete()

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from annotations.labelling.collecting import collect
 from annotations.labelling.label_answers import AnsweredMeanwhile, accept, label, take_back
-from annotations.language.errors import LanguageError
+from annotations.language.errors import LanguageError, Refusal
 from annotations.models import Label, Utterance, Verdict
 
 BRING = '(bring (λ$1:e (is_a $1 "<object>")))'
@@ -76,11 +76,13 @@ def test_what_is_no_answer_is_refused(utterance, annotator, verdict, form, sente
 
 def test_only_the_person_takes_an_answer_back_and_once(utterance, annotator, admin):
     row = label(utterance, Verdict.UNKNOWN, "", annotator, 1)
-    with pytest.raises(ValueError, match="Only the person"):
+    with pytest.raises(Refusal) as refused:
         take_back(row, admin)
+    assert (refused.value.code, refused.value.status) == ("not_their_answer", 409)
     take_back(row, annotator)
-    with pytest.raises(ValueError, match="already"):
+    with pytest.raises(Refusal) as refused:
         take_back(row, annotator)
+    assert (refused.value.code, refused.value.status) == ("already_taken_back", 409)
 
 
 ANSWERS = st.tuples(

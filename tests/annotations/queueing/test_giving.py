@@ -10,6 +10,7 @@ from django.db.models import Count, Q
 from django.utils import timezone
 
 from annotations.labelling.label_answers import NoLongerYours, label
+from annotations.language.errors import Refusal
 from annotations.models import Assignment, Label, Verdict, WorkItem, WorkKind
 from annotations.models.queueing import Outcome
 from annotations.queueing.enqueuing import WantedItem, enqueue, refill, set_share
@@ -111,8 +112,9 @@ def test_an_answer_is_taken_back_with_its_item(world, queue, annotator):
     held.item.utterance.refresh_from_db()
     assert held.item.utterance.status == "unlabelled"
     assert next_item(annotator, world).item_id == held.item_id
-    with pytest.raises(ValueError, match="taken back already"):
+    with pytest.raises(Refusal) as refused:
         take_answer_back(label, annotator)
+    assert refused.value.code == "already_taken_back"
 
 
 def test_a_skip_is_taken_back(world, queue, annotator):
@@ -198,8 +200,9 @@ def test_shares_change_what_nobody_has_touched(world, queue, annotator):
     assert WorkItem.objects.get(pk=held.item_id).people == 1
     set_share(world, WorkKind.UNLABELLED, 0)
     assert set(queue.values_list("people", "places")) == {(1, 1), (1, 0)}
-    with pytest.raises(ValueError, match="two people"):
+    with pytest.raises(Refusal) as refused:
         set_share(world, WorkKind.ADJUDICATION, 50)
+    assert refused.value.code == "no_such_share"
 
 
 def test_the_share_is_about_as_large_as_it_says(world, annotator):

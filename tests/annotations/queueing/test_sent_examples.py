@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from annotations.language.errors import Refusal
 from annotations.models import Example, Utterance, WorkItem
 from annotations.queueing import sent_examples
 from annotations.queueing.sent_examples import send_examples
@@ -103,8 +104,9 @@ def test_too_many_are_refused_with_a_sentence_and_nothing_is_stored(
 ):
     monkeypatch.setattr(sent_examples, "MOST_SENT", 2)
     examples = [make_example(split, f"where is cup {number}") for number in range(3)]
-    with pytest.raises(ValueError, match="more than 2 different utterances"):
+    with pytest.raises(Refusal) as refused:
         send(world, reviewer, *examples)
+    assert refused.value.code == "nothing_to_send"
     assert not WorkItem.objects.exists() and not Utterance.objects.exists()
 
 

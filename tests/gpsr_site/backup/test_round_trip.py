@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 from django.db import connection, connections, transaction
 
+from annotations.language.errors import Refusal
 from annotations.models import ApiToken, LogInSession, SemanticTemplate, User, World
 from annotations.models.worlds import Role
 from gpsr_site.backup.backup_manifest import NAME
@@ -215,8 +216,9 @@ def outside(name, data):
 def test_a_damaged_backup_changes_nothing(change, small, var, tmp_path):
     before = backup_of(tmp_path / "one.zip")
     damaged = changed(tmp_path / "one.zip", tmp_path / "two.zip", change)
-    with pytest.raises(ValueError, match="was changed or damaged"):
+    with pytest.raises(Refusal) as refused:
         restore(damaged, replace=True)
+    assert refused.value.code == "backup_damaged"
     assert backup_of(tmp_path / "three.zip") == before
 
 
@@ -276,8 +278,9 @@ def test_a_backup_of_another_version_is_refused(small, tmp_path):
         tmp_path / "two.zip",
         lambda name, data: data.replace(newest, newest + b"9") if name == NAME else data,
     )
-    with pytest.raises(ValueError, match="Install that version, restore, then upgrade"):
+    with pytest.raises(Refusal) as refused:
         restore(other, replace=True)
+    assert refused.value.code == "other_version"
 
 
 @pytest.mark.parametrize("content", [b"", b"PK\x03\x04", b"no zip at all"])

@@ -10,6 +10,7 @@ import pytest
 from django.db import OperationalError
 from safetensors import SafetensorError
 
+from annotations.language.errors import Refusal
 from parser_service.models import TrainingRun
 from parser_service.parsers import registry
 from parser_service.parsers.interface import Parser
@@ -83,10 +84,10 @@ def test_what_a_parser_refuses_becomes_the_failure_of_the_run(split):
 @pytest.mark.parametrize(
     ("error", "sentence"),
     [
-        (ValueError("There is no pair. Add one."), "There is no pair. Add one."),
+        (Refusal("There is no pair. Add one."), "There is no pair. Add one."),
         (OSError(errno.ENOSPC, "No space left"), "The disk is full."),
         (MemoryError(), "The memory ran out."),
-        (KeyError("x"), "The program has a fault: KeyError: 'x'."),
+        (KeyError("x"), "The program has a fault (KeyError)."),
     ],
 )
 def test_a_failure_says_what_happened_and_what_to_do(error, sentence):
