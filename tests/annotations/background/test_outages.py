@@ -132,10 +132,11 @@ def test_an_outage_longer_than_the_lease_says_how_long_it_was(run, monkeypatch, 
     assert said.startswith(("The database was away for 1 s", "The database was away for 2 s"))
 
 
-def test_a_fault_of_the_database_fails_the_work(run):
+def test_a_fault_of_the_database_fails_the_work(run, caplog):
     hand_back_after(run, FAULTS["no table"])
     assert run.status == "failed"
-    assert "no such table" in run.failure
+    assert "OperationalError" in run.failure
+    assert "no such table" in caplog.text
 
 
 @pytest.mark.skipif(connection.vendor != "sqlite", reason="only SQLite locks everybody out")
