@@ -49,8 +49,8 @@ ROOMS = {
     ),
     "annotations/language": (
         "errors", "limits", "text", "decoding", "english", "symbols", "forms", "grammar", "ontology", "predicates",
-        "templates", "assistance", "suggestions", "grounding", "dialogue", "plans", "names", "corpus", "agreement",
-        "label_errors",
+        "templates", "assistance", "suggestions", "grounding", "dialogue", "plans", "names", "corpus",
+        "paraphrases", "agreement", "label_errors",
     ),
     "parser_service/neural": (
         "device", "weights", "pretrained", "training", "word_vectors", "sentence_encoder", "seq2seq",

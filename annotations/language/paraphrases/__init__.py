@@ -1,0 +1,39 @@
+"""Paraphrases of prompts: what to tell their writers, what to tell moderators, and what a language model writes."""
+
+from __future__ import annotations
+
+from annotations.language.paraphrases.known_words import KnownWords
+from annotations.language.paraphrases.prompt_entities import entities_of
+from annotations.language.paraphrases.rewrite_checks import (
+    Named,
+    RewriteFault,
+    RewriteWarning,
+    check_rewrite,
+    lost_entities,
+)
+from annotations.language.paraphrases.submission_flags import (
+    Flag,
+    FlagCode,
+    FreeCommand,
+    Rewrite,
+    check_flags,
+    free_command_flags,
+    rewrite_flags,
+)
+
+__all__ = [
+    "Flag",
+    "FlagCode",
+    "FreeCommand",
+    "KnownWords",
+    "Named",
+    "Rewrite",
+    "RewriteFault",
+    "RewriteWarning",
+    "check_flags",
+    "check_rewrite",
+    "entities_of",
+    "free_command_flags",
+    "lost_entities",
+    "rewrite_flags",
+]
