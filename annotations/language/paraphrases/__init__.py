@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from annotations.language.paraphrases.known_words import KnownWords
+from annotations.language.paraphrases.model_replies import rewrites_in
 from annotations.language.paraphrases.prompt_entities import entities_of
 from annotations.language.paraphrases.rewrite_checks import (
     Named,
@@ -10,6 +11,13 @@ from annotations.language.paraphrases.rewrite_checks import (
     RewriteWarning,
     check_rewrite,
     lost_entities,
+)
+from annotations.language.paraphrases.rewrite_requests import (
+    INSTRUCTIONS,
+    LONGEST_INSTRUCTIONS,
+    check_instructions,
+    instructions_version,
+    rewrite_request,
 )
 from annotations.language.paraphrases.submission_flags import (
     Flag,
@@ -22,6 +30,8 @@ from annotations.language.paraphrases.submission_flags import (
 )
 
 __all__ = [
+    "INSTRUCTIONS",
+    "LONGEST_INSTRUCTIONS",
     "Flag",
     "FlagCode",
     "FreeCommand",
@@ -31,9 +41,13 @@ __all__ = [
     "RewriteFault",
     "RewriteWarning",
     "check_flags",
+    "check_instructions",
     "check_rewrite",
     "entities_of",
     "free_command_flags",
+    "instructions_version",
     "lost_entities",
     "rewrite_flags",
+    "rewrite_request",
+    "rewrites_in",
 ]
