@@ -29,6 +29,10 @@ class ServerRefusal(Refusal):
     code = "language_model_refused"
 
 
+class NoAnswer(ServerRefusal):
+    """This question cannot be answered; others may be."""
+
+
 class NoReply(Exception):
     """Nothing came that can be read; it may next time. A part of a sentence, and the seconds ``after`` which
     the server wants to be asked again, None where it does not say."""
