@@ -86,20 +86,18 @@ def _texts_of(value: Any) -> Iterator[str]:
 
 def _in_lines(text: str) -> Iterator[str]:
     lines = [line for line in text.split("\n") if line.strip() and not line.startswith("```")]
-    items = [line for line in lines if _ITEM.match(line)]
+    items = [line[item.end() :] for line in lines if (item := _ITEM.match(line))]
     if items:
-        yield from (_ITEM.sub("", line, count=1) for line in items)
+        yield from items
     else:
         yield from (line for line in lines if not line.rstrip(" *_").endswith(":"))
 
 
 def _plain(text: str) -> str:
     """Return an item without a label, emphasis and quotation marks around it."""
-    plain = (
-        _LABEL.sub("", text.strip(), count=1).strip()
-        if _LABEL.match(text.strip())
-        else text.strip()
-    )
+    plain = text.strip()
+    if label := _LABEL.match(plain):
+        plain = plain[label.end() :]
     while len(plain) > 1 and (
         _QUOTES.get(plain[0]) == plain[-1] or (plain[0] == plain[-1] and plain[0] in "*_")
     ):
