@@ -40,7 +40,8 @@ def rewrites_in(reply: str) -> tuple[str, ...]:
     text = _without_thought(normalise(reply[:LONGEST_REPLY]))
     written = _in_json(text)
     found = list(_in_lines(text)) if written is None else written
-    plain = (normalise_line(_plain(each)) for each in found)
+    # What is far too long is not looked into: marks around it would come off one by one.
+    plain = (normalise_line(_plain(each)) for each in found if len(each) <= 2 * LONGEST_REWRITE)
     return tuple(
         dict.fromkeys(each for each in plain if len(each) <= LONGEST_REWRITE and folded_words(each))
     )

@@ -73,7 +73,7 @@ def test_any_reply_is_read(reply: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "part", ["[", "{", '["', "1. ", "<think>", "*", "(1", "“", "a) ", '{"a":[']
+    "part", ["[", "{", '["', "1. ", "<think>", "*", "(1", "“", "a) ", '"', "*_", '{"a":[']
 )
 def test_no_reply_takes_long(part: str) -> None:
     reply = part * (LONGEST_REPLY // len(part))
