@@ -45,7 +45,7 @@ ROOMS = {
         "queueing", "people", "worlds",
     ),
     "annotations/models": (
-        "people", "worlds", "background", "editing", "description", "corpus", "splits", "queueing",
+        "people", "worlds", "background", "editing", "description", "campaigns", "corpus", "splits", "queueing",
     ),
     "annotations/language": (
         "errors", "limits", "text", "decoding", "english", "symbols", "forms", "grammar", "ontology", "predicates",
