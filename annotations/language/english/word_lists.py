@@ -167,6 +167,7 @@ ARGUMENT_QUESTIONS = _arguments.texts_by_name("questions")
 
 _paraphrases = WordFile("paraphrases")
 COURTESY_WORDS = frozenset(_paraphrases.words("courtesy"))
+CHECK_WORDS = _paraphrases.words("checks")
 DESCRIBED_CLASSES = frozenset(_paraphrases.words("described"))
 
 
