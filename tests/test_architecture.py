@@ -80,6 +80,7 @@ ROOMS = {
     "parser_service": (
         "parsers", "neural", "analysis", "models", "promotions", "runs", "robots", "serving", "dialogues",
         "labelling", "results", "slices", "reviews", "analyses", "reports", "benchmarking", "label_audit",
+        "paraphrasing",
     ),
     "parser_service/web": (
         "page_of_run", "runs", "results", "reviews", "analyses", "labelling", "promotions", "robots", "serving",

@@ -102,8 +102,12 @@ def finish(contributor: Contributor, had_model_help: bool) -> Contributor:
     return contributor
 
 
-def flags_of(submission: Submission) -> Sequence[Flag]:
-    """Return the flags of a submission as it stands, compared with what was submitted before it."""
+def flags_of(submission: Submission, names: Sequence[Named] | None = None) -> Sequence[Flag]:
+    """Return the flags of a submission as it stands, compared with what was submitted before it.
+
+    Args:
+        names: what a rewrite has to keep; the entities of its prompt unless given.
+    """
     if not submission.text:
         return ()
     prompt, contributor = submission.prompt, submission.contributor
@@ -120,7 +124,7 @@ def flags_of(submission: Submission) -> Sequence[Flag]:
     rewrite = Rewrite(
         submission.text,
         prompt.shown,
-        named_in(prompt),
+        named_in(prompt) if names is None else names,
         submission.seconds,
         submission.was_pasted,
         own_texts,

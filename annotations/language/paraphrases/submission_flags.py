@@ -89,10 +89,10 @@ def _rewrite_flags(rewrite: Rewrite, knows: Knows) -> Iterator[Flag]:
     is_reordered = sorted(_bare(rewrite.text).split()) == sorted(_bare(rewrite.prompt).split())
     if is_reordered or _is_same(rewrite.text, rewrite.prompt):
         yield Flag(FlagCode.COPY, rewrite.prompt)
-    repeated = next((each for each in rewrite.own if _is_same(rewrite.text, each)), None)
-    if repeated is None:
-        said = _bare(rewrite.text)
-        repeated = next((each for each in rewrite.others if _bare(each) == said), None)
+    said = _bare(rewrite.text)
+    # Equal and not alike: who says two prompts with other entities in one way repeats nothing.
+    earlier = (*rewrite.own, *rewrite.others)
+    repeated = next((each for each in earlier if _bare(each) == said), None)
     if repeated is not None:
         yield Flag(FlagCode.REPEAT, repeated)
     if rewrite.seconds is not None and rewrite.seconds < _least_seconds(rewrite):

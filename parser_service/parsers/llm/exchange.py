@@ -127,7 +127,7 @@ class Exchange:
         while piece := response.read(PIECE):
             body += piece
             if len(body) > MOST_BYTES:
-                raise ServerRefusal(
+                raise NoAnswer(
                     f"The server at {self._server.name} answers with more than {MOST_BYTES:,} bytes, which is "
                     "no answer of a language model. Look at the address in GPSR_LLM_URL."
                 )

@@ -79,9 +79,10 @@ class Dialect:
 
     def _messages(self, question: Question) -> list[Message]:
         """Return the messages; the person says first what a system message would say."""
-        first, second, *others = question.messages
+        first = question.messages[0]
         if self.takes_system or first["role"] != "system":
             return list(question.messages)
+        _, second, *others = question.messages
         return [{**second, "content": f"{first['content']}\n\n{second['content']}"}, *others]
 
     def forget_schema(self, detail: str) -> None:
