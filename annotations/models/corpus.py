@@ -5,7 +5,7 @@ from __future__ import annotations
 from django.db import models
 from django.utils import timezone
 
-from annotations.models.campaigns import Contributor
+from annotations.models.campaigns import Contributor, ContributorKind
 from annotations.models.description import SemanticTemplate
 from annotations.models.editing import Editable
 from annotations.models.people import User
@@ -121,6 +121,11 @@ class Paraphrase(Editable):
 
     def __str__(self) -> str:
         return self.utterance
+
+    @property
+    def is_by_model(self) -> bool:
+        """Whether a language model wrote it."""
+        return self.contributor is not None and self.contributor.kind == ContributorKind.MODEL
 
 
 class Origin(models.TextChoices):
