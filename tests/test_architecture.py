@@ -37,7 +37,7 @@ ROOMS = {
     "annotations": (
         "language", "models", "background", "jobs", "rows", "splits", "markdown", "form_presentation", "figures",
         "people", "lists", "generation", "checking", "suggesting", "importing", "exporting", "worlds", "world_archive",
-        "editing", "renaming", "commenting", "labelling", "queueing", "utterances", "campaigns", "label_audit", "web",
+        "editing", "renaming", "commenting", "labelling", "queueing", "utterances", "label_audit", "campaigns", "web",
         "templatetags",
     ),
     "annotations/web": (
