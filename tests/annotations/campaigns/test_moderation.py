@@ -120,12 +120,12 @@ def test_a_rewrite_that_asks_for_something_else_gets_that_form(submissions, admi
     with pytest.raises(LanguageError):
         accept_with_form(submissions[0], "( go", admin)
     assert reread(submissions[0]).status == "pending"
-    accept_with_form(submissions[0], "(go {room})", admin)
+    accept_with_form(submissions[0], '(go "<room>")', admin)
     made = Paraphrase.objects.get()
     assert made.logical_form == '( go " <room> " )'
     assert made.command is None
     with pytest.raises(Refusal) as refused:
-        accept_with_form(submissions[3], "(go {room})", admin)
+        accept_with_form(submissions[3], '(go "<room>")', admin)
     assert refused.value.code == "no_rewrite"
 
 
