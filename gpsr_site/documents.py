@@ -1,8 +1,8 @@
 """The documents that come with the code: the Markdown files of ``docs/``, as HTML for pages of the site.
 
-The site serves them itself, so that they can be read where there is no network. They are found by
-listing the folder: no address leads to another file. What is listed and rendered once is kept while
-the process runs.
+The site serves them itself, so that they can be read where there is no network. They are found by listing the
+folder, so no address leads to another file. The list and each rendered document are kept while the process
+runs.
 """
 
 from __future__ import annotations
@@ -111,7 +111,7 @@ def _images(folder: Path) -> dict[str, Path]:
 
 
 class _Renderer(RendererHTML):
-    """Lets what is wider than the window be scrolled, by keyboard too."""
+    """Renders tables and code so that wide ones scroll, by keyboard as well."""
 
     def table_open(self, tokens: Sequence[Token], at: int, options: Any, env: Any) -> str:
         table = self.renderToken(tokens, at, options, env)

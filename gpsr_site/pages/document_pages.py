@@ -1,4 +1,4 @@
-"""The pages that show the documents of ``docs/``. They hold nothing of anybody: who may reach the site reads them."""
+"""The pages that show the documents of ``docs/``. They hold nobody's data, so everybody may read them."""
 
 from __future__ import annotations
 
