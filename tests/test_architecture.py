@@ -75,7 +75,7 @@ ROOMS = {
     ),
     "gpsr_site": (
         "private_files", "sqlite", "settings", "broker", "consumer", "celery", "logs", "web", "wsgi",
-        "accounts", "overview", "pages", "urls", "processes", "backup", "management",
+        "accounts", "overview", "documents", "pages", "urls", "templatetags", "processes", "backup", "management",
     ),
     "parser_service": (
         "parsers", "neural", "analysis", "models", "promotions", "runs", "robots", "serving", "dialogues",

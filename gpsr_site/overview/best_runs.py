@@ -81,9 +81,9 @@ class BestRuns:
 def best_runs(world: World) -> BestRuns | None:
     """Find the best runs on the validation part of a split, on paraphrases where it has any.
 
-    The split is the one that was scored last; one by logical form only where there is no other,
-    because most parsers have no answer for a form that training never showed: there the best has the highest
-    harmonic mean of unseen and known forms. Two queries; None where nothing has been scored.
+    The split is the one that was scored last. One by logical form is taken only if there is no other, because
+    most parsers cannot answer a form that training never showed. The best run there has the highest harmonic
+    mean of unseen and known forms. Two queries; None if nothing has been scored.
     """
     scores = Evaluation.objects.filter(
         run__world=world,

@@ -1,4 +1,4 @@
-"""What the API answers instead of what was asked for: ``application/problem+json`` (RFC 9457)."""
+"""Refusals of the API: ``application/problem+json`` (RFC 9457)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The OpenAPI schema as a file: made once for each process, whoever asks."""
+"""The OpenAPI schema as a file, made once for each process."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ def error_categories(request: WorldRequest, world: World) -> HttpResponse:
 
 
 def _counts_of(request: WorldRequest, world: World) -> dict[str, Any]:
-    """Return the counts of each category; ``run`` is whose they are, ``shown`` whose errors they lead to."""
+    """Return the counts of each category in the reviews of ``run``; they lead to the errors of ``shown``."""
     categories = list(ensure_categories(world).values())
     reviewed = Review.objects.filter(run__in=world.runs.all()).order_by().values("run")
     runs = world.runs.filter(pk__in=reviewed)

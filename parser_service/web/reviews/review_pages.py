@@ -243,7 +243,8 @@ class ReviewListing(Listing):
 
     @property
     def first_fields(self) -> list[Any]:
-        """The filters that one sees at once; where the runs differ is asked by a button of its own."""
+        """The filters that are always in sight; ``where the runs differ`` is not among them, since it has a
+        button."""
         return [field for field in super().first_fields if field.name != "differ"]
 
     @cached_property
@@ -251,7 +252,7 @@ class ReviewListing(Listing):
         return self.url(differ="" if self.query.get("differ") else "1")
 
     def first_from(self, example: int) -> int | None:
-        """Return the first example of the list at or behind ``example``; the first of all where none is."""
+        """Return the first example of the list at or behind ``example``, or else the first of all."""
         keys = self.matching.order_by("example_id").values_list("example_id", flat=True)
         return keys.filter(example_id__gte=example).first() or keys.first()
 

@@ -110,7 +110,7 @@ class ReviewOfAnswer(AnswerRoute):
     conditional = ("PATCH",)
 
     def hold(self) -> None:
-        """Hold the reviewer: each has one review of an answer, which may not be there yet."""
+        """Lock the reviewer, since their one review of the answer may not be stored yet."""
         User.objects.select_for_update(no_key=True).get(pk=self.request.user.pk)
 
     @extend_schema(request=ReviewChange, responses={200: ReviewedAnswerSerializer})

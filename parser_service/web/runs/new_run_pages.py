@@ -147,8 +147,8 @@ class RunChoices:
 
 
 def choices_in(query: QueryDict, world: World) -> RunChoices:
-    """Read the choices from an address: ``like`` names a run to ask for again, everything else is
-    called as its field. What no field knows is left out."""
+    """Read the choices from an address: ``like`` names a run to repeat. The other parameters have the names
+    of the fields; unknown ones are ignored."""
     like = number_in(query.get("like", ""))
     run = world.runs.filter(pk=like).first() if like else None
     parser = query.get("parser", run.parser if run else recommended_parser(world))
