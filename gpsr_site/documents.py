@@ -24,6 +24,8 @@ from markdown_it import MarkdownIt
 from markdown_it.renderer import RendererHTML
 from markdown_it.token import Token
 
+from annotations.markdown import align_by_class
+
 INDEX = "index"
 # What a document of each folder is called in a link.
 SHELVES = {"guides": "Guide", "reference": "Reference", "design": "Design", "research": "Research"}
@@ -138,10 +140,7 @@ def _read(name: str, path: Path) -> Document:
     headings = tuple(_mark_headings(tokens))
     for token in _with_children(tokens):
         _lead_to_pages(token, name)
-        if (
-            str(token.attrs.pop("style", "")) == "text-align:right"
-        ):  # styles of elements are refused
-            token.attrJoin("class", "number")
+        align_by_class(token)
     html: str = _MARKDOWN.renderer.render(tokens, _MARKDOWN.options, {})
     return Document(name, headings, mark_safe(html))
 
