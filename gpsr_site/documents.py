@@ -24,7 +24,7 @@ from markdown_it import MarkdownIt
 from markdown_it.renderer import RendererHTML
 from markdown_it.token import Token
 
-from annotations.markdown import align_by_class
+from annotations import markdown
 
 INDEX = "index"
 # What a document of each folder is called in a link.
@@ -140,7 +140,7 @@ def _read(name: str, path: Path) -> Document:
     headings = tuple(_mark_headings(tokens))
     for token in _with_children(tokens):
         _lead_to_pages(token, name)
-        align_by_class(token)
+        markdown.align_by_class(token)
     html: str = _MARKDOWN.renderer.render(tokens, _MARKDOWN.options, {})
     return Document(name, headings, mark_safe(html))
 
