@@ -77,7 +77,7 @@ def test_no_other_encoding_can_be_chosen(world, adam):
 
 def test_the_commands_take_it_too(db, tmp_path, capsys):
     (tmp_path / "a.txt").write_bytes(RULES.encode("utf-16"))
-    with pytest.raises(CommandError, match="as utf-16 it reads"):
+    with pytest.raises(CommandError, match="utf-16"):
         call_command("import_generator", tmp_path, "--world", "theirs")
     capsys.readouterr()
     call_command(

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from annotations.labelling.collecting import MOST_AT_ONCE, _read, collect
 from annotations.labelling.entity_spans import mend_span
+from annotations.language.errors import Refusal
 from annotations.models import Entity
 
 
@@ -57,5 +58,6 @@ def test_a_mended_span_becomes_an_alias_for_all(tiny_world, annotator):
     assert mended.anonymized_text == "bring my <object>"
     assert second.anonymized_text == "where is the <object>"
     assert mended.version == second.version == 2
-    with pytest.raises(ValueError, match="Select"):
+    with pytest.raises(Refusal) as refused:
         mend_span(mended, 5, 5, tea, annotator, 2)
+    assert refused.value.code == "no_words_selected"

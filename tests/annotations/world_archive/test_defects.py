@@ -198,7 +198,7 @@ def test_a_bomb(members):
 @pytest.mark.parametrize("name", ["Upper", "", "x" * 61, "home"])
 def test_a_name_that_no_new_world_can_have(members, name):
     before = counts()
-    with pytest.raises(LanguageError, match=r"cannot be the name|already"):
+    with pytest.raises(LanguageError, match=f"“{name}”"):
         import_world(name, pack_members(members))
     assert counts() == before
 
@@ -208,6 +208,6 @@ def test_a_name_that_is_taken_in_the_meantime(members, monkeypatch):
         World.objects.create(name="again")
 
     monkeypatch.setattr(world_import, "_check_world", check_slowly)
-    with pytest.raises(LanguageError, match="there is a world “again” already"):
+    with pytest.raises(LanguageError, match="“again”"):
         import_world("again", pack_members(members))
     assert set(World.objects.values_list("name", flat=True)) == {"again", "home"}

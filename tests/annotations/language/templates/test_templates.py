@@ -5,6 +5,7 @@ import pytest
 from annotations.language.errors import LanguageError, Position
 from annotations.language.forms import read_form
 from annotations.language.grammar import Grammar, read_productions
+from annotations.language.limits import MAX_NESTING
 from annotations.language.predicates import infer_signatures
 from annotations.language.symbols import Nonterminal, Wildcard
 from annotations.language.templates import (
@@ -100,7 +101,7 @@ def test_a_line_that_is_no_template_is_an_error_with_its_place(line, column, wor
 def test_five_thousand_parentheses_are_refused_on_either_side():
     deep = "(" * 2_000 + ")" * 2_000
     for line in (f"{deep} = (go)", f"go = {deep}"):
-        with pytest.raises(LanguageError, match="deep"):
+        with pytest.raises(LanguageError, match=rf"\b{MAX_NESTING}\b"):
             read_template(line)
 
 
