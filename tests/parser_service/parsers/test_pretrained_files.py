@@ -69,7 +69,7 @@ def test_all_that_is_missing_is_said_at_once(encoders):
 @pytest.mark.parametrize("name", ["another_weights.hdf5", "another_options.json"])
 def test_an_elmo_with_two_files_of_a_kind_is_not_guessed(encoders, name):
     (encoders / "elmo" / name).touch()
-    with pytest.raises(Refusal, match="with one file") as refused:
+    with pytest.raises(Refusal, match=f"{encoders}/elmo") as refused:
         find_elmo("elmo", encoders)
     assert refused.value.code == "pretrained_weights_missing"
 
@@ -77,7 +77,7 @@ def test_an_elmo_with_two_files_of_a_kind_is_not_guessed(encoders, name):
 def test_the_installations_folder_is_looked_in(encoders, monkeypatch):
     names = Names(encoder="makers/bert")
     monkeypatch.setattr(pretrained_files, "_encoders", None)
-    with pytest.raises(Refusal, match="no weights of makers/bert") as refused:
+    with pytest.raises(Refusal, match="makers/bert") as refused:
         refuse_missing_weights(names)
     assert refused.value.code == "requirement_missing"
     monkeypatch.setattr(pretrained_files, "_encoders", encoders)
