@@ -159,16 +159,17 @@ def test_prompts_without_a_command_are_reported(folder, tmp_path, world, capsys)
 
 
 @pytest.mark.parametrize(
-    ("column", "sentence"),
+    ("column", "code", "named"),
     [
-        ("gen-gen:command:domain:some", "'some' is not one of all, training"),
-        ("gen-gen:command:strict:training", "matters under domain alone"),
-        ("gen-gen:command:domain:all:more", "has to be TRAIN-TEST:CRITERION:PROTOCOL"),
+        ("gen-gen:command:domain:some", "unknown_name", "'some'.* all, training"),
+        ("gen-gen:command:strict:training", "column_unreadable", "domain"),
+        ("gen-gen:command:domain:all:more", "column_unreadable", "TRAIN-TEST:CRITERION:PROTOCOL"),
     ],
 )
-def test_only_known_ways_to_declare_are_taken(folder, tmp_path, column, sentence):
-    with pytest.raises(CommandError, match=sentence):
+def test_only_known_ways_to_declare_are_taken(folder, tmp_path, column, code, named):
+    with pytest.raises(CommandError, match=named) as refused:
         run(folder, tmp_path / "cells.json", columns=column, criteria=None, protocols=None)
+    assert refused.value.__cause__.code == code
 
 
 def test_new_splits_may_be_those_of_one_criterion_alone():

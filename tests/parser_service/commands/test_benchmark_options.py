@@ -56,15 +56,16 @@ def test_a_file_of_cells_that_cannot_be_read_is_named(folder, tmp_path):
 def test_a_broken_pair_file_is_named_with_its_line(folder, tmp_path):
     with (folder / "gen" / "val.txt").open("a") as file:
         file.write("one line too many\n")
-    with pytest.raises(CommandError, match=r"val\.txt:19:1: .*not a multiple of 2"):
+    with pytest.raises(CommandError, match=r"val\.txt:19:1: .*\b2\b"):
         run(folder, tmp_path / "cells.json")
 
 
 def test_a_file_that_holds_something_else_is_not_overwritten(folder, tmp_path):
     file = tmp_path / "notes.json"
     file.write_text('{"note": 1}')
-    with pytest.raises(CommandError, match="holds something other than cells"):
+    with pytest.raises(CommandError, match=r"notes\.json") as refused:
         run(folder, file)
+    assert refused.value.__cause__.code == "not_a_cells_file"
     assert file.read_text() == '{"note": 1}'
 
 
@@ -77,7 +78,7 @@ def test_a_file_that_holds_something_else_is_not_overwritten(folder, tmp_path):
     ],
 )
 def test_an_abbreviated_option_is_refused_and_not_taken_for_the_settings_module(command):
-    with pytest.raises(CommandError, match="unrecognized arguments: --set gen-gen"):
+    with pytest.raises(CommandError, match="--set gen-gen"):
         call_command(*command.split(), "--set", "gen-gen")
 
 

@@ -10,7 +10,7 @@ from annotations.labelling.collecting import collect
 from annotations.labelling.label_answers import label
 from annotations.language.errors import Refusal
 from annotations.models import FindingStatus, Paraphrase, Verdict
-from parser_service.reviews.label_doubts import CHANGED, doubt_label
+from parser_service.reviews.label_doubts import doubt_label
 from tests.sample_world import make_paraphrase
 
 GO = '( go " <room> " )'
@@ -85,7 +85,7 @@ def test_a_generated_command_leads_to_its_template(run, reviewer):
     assert (item.kind, item.template) == ("requested", command.template)
     assert "1 was there already" in doubt_label(example, "Odd again.", reviewer)
     example.logical_form = "UNKNOWN"
-    with pytest.raises(Refusal, match=CHANGED) as refused:
+    with pytest.raises(Refusal) as refused:
         doubt_label(example, "Odd.", reviewer)
     assert refused.value.code == "label_changed"
 

@@ -74,20 +74,20 @@ def test_a_model_that_takes_too_long_ends_in_a_sentence(shelf, tiny, monkeypatch
     monkeypatch.setattr(service.parser.batcher, "_patience", 0.3)
     tiny.seconds = 30
     began = time.monotonic()
-    with pytest.raises(NotServed, match=r"has not answered within 0.3 s") as caught:
+    with pytest.raises(NotServed, match=r"\b0\.3 s") as caught:
         ask(shelf, "bring me the bowl please")
     assert caught.value.status == 503 and time.monotonic() - began < 15
 
 
 @pytest.mark.parametrize(
-    ("fault", "sentence"),
-    [(fails(401), "does not let us in"), (fails(500), "does not answer: status 500")],
+    ("fault", "status"),
+    [(fails(401), 401), (fails(500), 500)],
 )
 def test_a_server_that_fails_is_a_sentence_and_a_later_question_is_answered(
-    shelf, tiny, fault, sentence
+    shelf, tiny, fault, status
 ):
     tiny.always = fault
-    with pytest.raises(NotServed, match=sentence):
+    with pytest.raises(NotServed, match=rf"\bstatus {status}\b"):
         ask(shelf, "bring me the bowl please")
     tiny.always = None
     assert ask(shelf, "bring me the bowl please")["is_unknown"] is False
@@ -97,7 +97,7 @@ def test_an_installation_without_a_server_says_so(shelf):
     with installed(ModelServer()):
         other = Shelf(10_000_000, Metrics())
         other.update()
-        with pytest.raises(NotServed, match="GPSR_LLM_URL is not set"):
+        with pytest.raises(NotServed, match="GPSR_LLM_URL"):
             ask(other, "bring me the bowl please")
 
 
@@ -123,8 +123,9 @@ def test_other_parsers_answer_while_it_waits_and_too_many_are_refused(
         thread.start()
     wait_for(lambda: tiny.now == remote.SEATS, "all seats are taken")
     near.parse(["find the object"], 1)
-    with pytest.raises(NotServed, match="8 others wait for a language model already"):
+    with pytest.raises(NotServed, match=rf"\b{remote.SEATS}\b") as refused:
         service.parse(["one too many"], 1)
+    assert refused.value.status == 503
     assert tiny.now == remote.SEATS
     answers_come.set()
     for thread in threads:
