@@ -137,15 +137,17 @@ def test_nothing_is_decided_about_a_deleted_utterance(findings, women, annotator
         take_back(made, annotator)
     AuditFinding.objects.filter(utterance=women).update(status=FindingStatus.OPEN)
     AuditDecision.objects.all().delete()
-    with pytest.raises(DecidedMeanwhile):
+    with pytest.raises(DecidedMeanwhile) as refused:
         decide(finding_of(women), KEEP, annotator)
+    assert refused.value.code == "deleted_since"
 
 
 def test_a_label_that_has_changed_is_not_doubted_any_more(findings, girls, annotator):
     change(girls, {"logical_form": GO}, annotator, girls.version)
     assert finding_of(girls) not in findings.open()
-    with pytest.raises(DecidedMeanwhile):
+    with pytest.raises(DecidedMeanwhile) as refused:
         decide(finding_of(girls), KEEP, annotator)
+    assert refused.value.code == "changed_since"
 
 
 @pytest.mark.parametrize(
