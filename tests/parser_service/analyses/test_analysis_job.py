@@ -73,7 +73,7 @@ def test_refusing_everything_withholds_every_error(analysed):
     assert (curve["count"], curve["correct"], curve["unanswered"]) == (6, 0, 0)
     assert curve["bounds"] == [None, 1.0]
     assert (curve["answered"], curve["wrong"], curve["spared"]) == ([0, 6], [0, 6], [6, 0])
-    assert curve["no_probability"].startswith("The scores of this parser are no probabilities")
+    assert curve["no_probability"]
 
 
 @pytest.mark.parametrize(
@@ -151,7 +151,7 @@ def test_without_its_model_a_run_is_analysed_as_far_as_that_goes(train_one):
     run = train_one("perfect")
     remove_folder(model_folder(run.pk))
     job = done(analysis_jobs(run).get())
-    assert job.status == "failed" and "Bring that folder back" in job.failure
+    assert job.status == "failed" and str(model_folder(run.pk)) in job.failure
     assert "pairs" in findings_of(run, "validation")
     assert analysis_of(run).failure == job.failure
 

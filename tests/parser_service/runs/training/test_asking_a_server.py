@@ -69,7 +69,7 @@ def test_a_server_that_fails_half_way_leaves_no_score_and_the_next_run_goes_on(t
     tiny.faults = [*9 * [says('{"form": "UNKNOWN"}')], *9 * [fails(503, KEY)]]
     failed = asked_run(split)
     assert failed.status == "failed"
-    assert "does not answer: status 503, …. It was asked 3 times" in failed.failure
+    assert "status 503, …" in failed.failure and " 3 " in failed.failure
     assert not failed.predictions.exists() and not failed.evaluations.exists()
     assert KEY not in caplog.text
 
