@@ -67,7 +67,7 @@ def test_freezing_is_all_or_nothing(generated):
     _, failure = run(
         "freeze_split", "home", "--name", "first", "--criterion", "command,logical_form"
     )
-    assert "holds something else" in str(failure)
+    assert "first-logical_form" in str(failure) and failure.returncode == 1
     assert list(Split.objects.values_list("name", flat=True)) == ["first-logical_form"]
 
 
@@ -98,7 +98,7 @@ def test_a_split_is_exported_by_its_short_name(generated, tmp_path):
 def test_a_split_that_is_not_there_is_answered_with_those_that_are(generated, tmp_path):
     run("freeze_split", "home", "--name", "first")
     _, failure = run("export_split", "home", "second", "--output", tmp_path)
-    assert str(failure) == "“home” has no split “second”. It has: first."
+    assert "“second”" in str(failure) and ": first." in str(failure)
 
 
 def test_the_leakage_of_a_split_is_reported_by_part(db, shared_data):
@@ -119,4 +119,4 @@ def test_the_leakage_of_a_split_is_reported_by_part(db, shared_data):
 
 def test_a_split_that_is_not_there_has_no_leakage(generated):
     _, failure = run("leakage", "home", "nowhere")
-    assert "has no split “nowhere”" in str(failure)
+    assert "“nowhere”" in str(failure) and failure.returncode == 1

