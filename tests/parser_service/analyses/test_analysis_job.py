@@ -156,10 +156,10 @@ def test_without_its_model_a_run_is_analysed_as_far_as_that_goes(train_one):
     assert analysis_of(run).failure == job.failure
 
 
-@pytest.mark.parametrize(("arguments", "sentence"), [({"run": 10**9}, "is gone"), ({}, "is gone")])
-def test_a_run_that_is_gone_is_the_failure(arguments, sentence, home):
+@pytest.mark.parametrize("arguments", [{"run": 10**9}, {}])
+def test_a_run_that_is_gone_is_the_failure(arguments, home):
     job = done(request_job(JobKind.ANALYSE, "home", None, arguments))
-    assert job.status == "failed" and sentence in job.failure
+    assert job.status == "failed" and "(" not in job.failure  # no fault of the program
 
 
 def test_a_run_of_another_world_is_not_analysed(train_one, other_world):

@@ -142,17 +142,16 @@ def test_an_utterance_without_an_answer_has_no_candidates(split):
 
 
 @pytest.mark.parametrize(
-    ("options", "sentence"),
+    ("options", "named"),
     [
-        ((), "No run of home has succeeded yet"),
-        (("--run", "99"), "There is no run 99 in home"),
-        (("--beam", "0"), "--beam has to be at least 1"),
+        ((), r"\bhome\b"),
+        (("--run", "99"), r"\b99\b.*\bhome\b"),
+        (("--beam", "0"), r"--beam .*\b1\b"),
     ],
 )
-def test_what_cannot_be_answered_is_a_sentence(split, options, sentence):
-    with pytest.raises(CommandError) as refused:
+def test_what_cannot_be_answered_is_a_sentence(split, options, named):
+    with pytest.raises(CommandError, match=named):
         ask("bring me the red cup", *options)
-    assert sentence in str(refused.value)
 
 
 def test_a_run_that_has_not_succeeded_is_not_asked(split):

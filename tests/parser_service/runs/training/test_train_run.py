@@ -81,16 +81,16 @@ def test_what_a_parser_refuses_becomes_the_failure_of_the_run(split):
 
 
 @pytest.mark.parametrize(
-    ("error", "sentence"),
+    ("error", "named"),
     [
         (Refusal("There is no pair. Add one."), "There is no pair. Add one."),
-        (OSError(errno.ENOSPC, "No space left"), "The disk is full."),
-        (MemoryError(), "The memory ran out."),
-        (KeyError("x"), "The program has a fault (KeyError)."),
+        (OSError(errno.ENOSPC, "No space left"), "GPSR_VAR_DIR"),
+        (MemoryError(), "memory"),
+        (KeyError("x"), "(KeyError)"),
     ],
 )
-def test_a_failure_says_what_happened_and_what_to_do(error, sentence):
-    assert sentence_of(error).startswith(sentence)
+def test_a_failure_says_what_happened_and_what_to_do(error, named):
+    assert named in sentence_of(error)
 
 
 def test_training_that_is_cancelled_stops_long_before_its_end(split):

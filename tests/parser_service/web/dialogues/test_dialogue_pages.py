@@ -105,17 +105,17 @@ def test_actions_get_the_names_of_the_robot(sample, browse):
 
 
 @pytest.mark.parametrize(
-    ("name", "arguments", "sentence"),
+    ("name", "arguments", "named"),
     [
-        ("no name", "", "“no name” is no name for a robot"),
-        ("id", "", "“id” is no name for a robot"),
-        ("", "goal", "“goal” is no pair such as destination=goal."),
-        ("", "a=x, b=x", "“b=x” is there twice."),
+        ("no name", "", "“no name”"),
+        ("id", "", "“id”"),
+        ("", "goal", "“goal”"),
+        ("", "a=x, b=x", "“b=x”"),
     ],
 )
-def test_what_no_robot_can_be_told_is_refused(sample, browse, name, arguments, sentence):
+def test_what_no_robot_can_be_told_is_refused(sample, browse, name, arguments, named):
     answer = browse.post(ROBOT, {"name find": name, "arguments find": arguments, "version": 0})
-    assert answer.status_code == 422 and sentence in text_of(answer)
+    assert answer.status_code == 422 and named in text_of(answer)
     (row,) = [row for row in answer.context["rows"] if row.trouble]
     assert row.is_name_wrong == bool(name)
     assert text_of(answer).count('aria-invalid="true"') == 1
