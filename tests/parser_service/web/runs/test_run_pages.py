@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from datetime import timedelta
 
 import pytest
@@ -151,6 +152,7 @@ def test_a_run_that_waits_asks_for_itself_again(sample, anna):
     page, waiting = answer.content.decode(), answer.context["waiting"]
     assert f'hx-get="/w/home/runs/{run.pk}/state/"' in page
     assert waiting.workers == 0 and waiting.sentence in page
+    assert waiting.sentence != replace(waiting, workers=1).sentence
 
 
 def test_a_queued_run_says_its_place_and_the_likely_times(sample, anna):
