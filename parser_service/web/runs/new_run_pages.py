@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from statistics import median
 from typing import Any
@@ -244,14 +244,11 @@ def parser_groups(world: World, split: Split | None) -> list[ParserGroup]:
         )
         for name, entry in PARSERS.items()
     ]
-    return list(_group(options))
-
-
-def _group(options: list[ParserOption]) -> Iterator[ParserGroup]:
-    for needs, title in TITLES.items():
-        of_group = tuple(each for each in options if each.entry.needs == needs)
-        if of_group:
-            yield ParserGroup(title, of_group)
+    by_need = {
+        title: tuple(each for each in options if each.entry.needs == needs)
+        for needs, title in TITLES.items()
+    }
+    return [ParserGroup(title, of_group) for title, of_group in by_need.items() if of_group]
 
 
 def _seconds(world: World) -> dict[str, float]:

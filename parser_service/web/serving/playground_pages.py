@@ -75,7 +75,10 @@ def playground_ask(request: WorldRequest, world: World) -> HttpResponse:
             context |= {
                 "answer": answer,
                 "heard": SpannedText.heard_in(answer),
-                "bars": _bars(answer),
+                "bars": [
+                    (each, _share(each["score"], answer["score_kind"]))
+                    for each in answer["candidates"]
+                ],
             }
         except ParserAway as error:
             context["away"] = error.message
@@ -97,31 +100,21 @@ def playground_wrong(request: WorldRequest, world: World) -> HttpResponse:
         "answered": sent.get("answered", ""),
         "reason": sent.get("reason", ""),
     }
+    given = context["right_form"].replace("\0", "").strip()
+    is_changed = given.split() != context["answered"].split()
     try:
         context["sent"] = report_wrong(
             world,
             context["text"],
             say_parser(run),
             request.user,
-            _changed(sent),
+            given if is_changed else "",
             context["reason"],
         )
     except Refusal as error:
         context["refused"] = str(error)
     status = 422 if "refused" in context else 200
     return render(request, "parser_service/serving/_playground_wrong.html", context, status=status)
-
-
-def _changed(sent: QueryDict) -> str:
-    """Return the corrected form; empty if it is the wrong answer, unchanged."""
-    given = sent.get("right_form", "").replace("\0", "").strip()
-    return "" if given.split() == sent.get("answered", "").split() else given
-
-
-def _bars(answer: Mapping[str, Any]) -> list[tuple[Mapping[str, Any], float | None]]:
-    """Return each candidate with its score as a share of 1; None where scores only order them."""
-    kind = answer["score_kind"]
-    return [(each, _share(each["score"], kind)) for each in answer["candidates"]]
 
 
 def _share(score: float, kind: str) -> float | None:
