@@ -62,8 +62,8 @@ ROOMS = {
         "sensitivity", "probe_texts",
     ),
     "parser_service/parsers": (
-        "conditions", "hyperparameters", "interface", "storage", "registry", "words", "spreading", "written_forms",
-        "new_forms", "nearest_pairs", "knn", "linear", "oracle", "llm", "pretrained_files",
+        "conditions", "hyperparameters", "interface", "storage", "registry", "words", "spreading", "remembering",
+        "written_forms", "new_forms", "nearest_pairs", "knn", "linear", "oracle", "llm", "pretrained_files",
     ),
     "parser_service/runs": (
         "checkpoints", "orphan_folders", "lifecycle", "requests", "analysis_requests", "training", "curves", "waiting",

@@ -406,18 +406,18 @@ class _TooLong(Exception):
     pass
 
 
-def _give_up(signum: int, frame: FrameType | None) -> None:
-    raise _TooLong
-
-
 def seconds(run: Callable[[], object], repeats: int = 1) -> float:
     """Return the least seconds of processor time of a call; ``LIMIT`` where it was given up.
 
     The engine of ``re`` looks at signals while it searches, so a timer of processor time stops it. Garbage is
     not collected meanwhile: that takes as long as the whole program has objects, whatever the call does.
     """
+
+    def give_up(signum: int, frame: FrameType | None) -> None:
+        raise _TooLong
+
     least = LIMIT
-    previous = signal.signal(signal.SIGVTALRM, _give_up)
+    previous = signal.signal(signal.SIGVTALRM, give_up)
     was_collecting = gc.isenabled()
     gc.disable()
     try:

@@ -55,6 +55,7 @@ CRITERIA = {"command": "command", "source_command": "source", BY_FORM: "form"}
 FIGURES = (HARMONIC, UNSEEN, KNOWN, ACCURACY)
 # Rows are in the order of the registry; parsers that it no longer has come last.
 PLACES = {name: place for place, name in enumerate(PARSERS)}
+ESCAPED = str.maketrans({MARK: r"\textdagger{}", "_": r"\_", "%": r"\%", "#": r"\#"})  # in LaTeX
 Column = tuple[str, str, str]  # setting, criterion, figure
 
 
@@ -151,7 +152,16 @@ def to_markdown(table: AccuracyTable) -> str:
     text = f"### {table.protocol}\n\n" + _lines([head, rule, *_cells(table, _in_markdown)])
     if not table.has_spread:
         return text
-    spreads = _lines([head, rule, *_cells(table, _spread_of)])
+    spreads = _lines(
+        [
+            head,
+            rule,
+            *_cells(
+                table,
+                lambda each: f"{each.spread:.1f}" if each and each.spread is not None else "–",
+            ),
+        ]
+    )
     return f"{text}\n\nStandard deviations between trainings:\n\n{spreads}"
 
 
@@ -161,10 +171,6 @@ def _lines(rows: Sequence[Sequence[str]]) -> str:
 
 def _cells(table: AccuracyTable, write: Callable[[AccuracyFigure | None], str]) -> list[list[str]]:
     return [[f"`{name}`", *map(write, row)] for name, row in table.rows]
-
-
-def _spread_of(figure: AccuracyFigure | None) -> str:
-    return "–" if figure is None or figure.spread is None else f"{figure.spread:.1f}"
 
 
 def to_latex(table: AccuracyTable) -> str:
@@ -178,7 +184,10 @@ def to_latex(table: AccuracyTable) -> str:
     lines = [
         [table.protocol, *heads],
         ["", *_heads(table)],
-        *([rf"\texttt{{{_escape(name)}}}", *map(_in_latex, row)] for name, row in table.rows),
+        *(
+            [rf"\texttt{{{name.translate(ESCAPED)}}}", *map(_in_latex, row)]
+            for name, row in table.rows
+        ),
     ]
     first, second, *body = [rf"{' & '.join(line)} \\" for line in lines]
     begin = rf"\begin{{tabular}}{{l{'r' * len(table.columns)}}}"
@@ -202,15 +211,6 @@ def _in_latex(figure: AccuracyFigure | None) -> str:
     reach = "" if figure.reach is None else rf" $\pm$ {figure.reach:.1f}"
     paper = "" if figure.published is None else rf" \textcolor{{gray}}{{({figure.published:.1f})}}"
     return mean + reach + paper
-
-
-def _escape(name: str) -> str:
-    return (
-        name.replace(MARK, r"\textdagger{}")
-        .replace("_", r"\_")
-        .replace("%", r"\%")
-        .replace("#", r"\#")
-    )
 
 
 def note(figures: pd.DataFrame, part: str, left_out: int) -> str:

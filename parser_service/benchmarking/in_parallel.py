@@ -87,7 +87,13 @@ def _interrupts_blocked() -> Iterator[None]:
 
 def _measure(pickled: bytes, answering: Connection) -> None:
     """Measure a group in a new process. Settings come from the environment, as in the parent."""
-    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+    def end_with_parent() -> None:  # without it, nobody reads the cells
+        if parent := parent_process():
+            parent.join()
+            os._exit(1)
+
+    threading.Thread(target=end_with_parent, daemon=True).start()
     django.setup()
     group: TrialGroup = pickle.loads(pickled)
     # Not every parser tests on as many threads as it trains on, and torch takes all cores by default.
@@ -95,13 +101,6 @@ def _measure(pickled: bytes, answering: Connection) -> None:
         os.environ["OMP_NUM_THREADS"] = str(threads)
     for answer in group.measure():
         answering.send(answer)
-
-
-def _end_with_parent() -> None:
-    """End this process with its parent: without it, nobody reads the cells."""
-    if parent := parent_process():
-        parent.join()
-        os._exit(1)
 
 
 def _refuse_unanswered(child: Child) -> Iterator[str]:

@@ -64,14 +64,15 @@ def _leave(work: BackgroundWork) -> None:
 @worker_process_init.connect
 def begin_child(**_: Any) -> None:
     """Lower the priority of this child, and end it when its parent ends."""
+    parent = os.getppid()
+
+    def leave_with_parent() -> None:
+        while os.getppid() == parent:
+            threading.Event().wait(1)
+        os._exit(1)
+
     os.nice(NICENESS)
-    threading.Thread(target=_leave_with, args=(os.getppid(),), daemon=True).start()
-
-
-def _leave_with(parent: int) -> None:
-    while os.getppid() == parent:
-        threading.Event().wait(1)
-    os._exit(1)
+    threading.Thread(target=leave_with_parent, daemon=True).start()
 
 
 class WorkerTimer(bootsteps.StartStopStep):

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
+from urllib.parse import urlencode
 
 from django.http import HttpResponse, QueryDict
 from django.shortcuts import render
@@ -85,7 +86,9 @@ def playground_ask(request: WorldRequest, world: World) -> HttpResponse:
         except ParserRefused as error:
             context["refused"] = error.message
     response = render(request, "parser_service/serving/_playground_answer.html", context)
-    return replace_url(response, _address(world, text, run))
+    query = urlencode({name: value for name, value in (("text", text), ("run", run)) if value})
+    address = reverse("playground", kwargs={"world": world.name})
+    return replace_url(response, f"{address}?{query}" if query else address)
 
 
 @world_view(Duty.VIEW, WRITE)
@@ -121,17 +124,6 @@ def _share(score: float, kind: str) -> float | None:
     if kind == ScoreKind.LOG_PROBABILITY:
         return math.exp(min(score, 0.0))
     return min(max(score, 0.0), 1.0) if kind else None
-
-
-def _address(world: World, text: str, run: int) -> str:
-    """Return the URL of the page with the text and the run."""
-    query = QueryDict(mutable=True)
-    if text:
-        query["text"] = text
-    if run:
-        query["run"] = str(run)
-    path = reverse("playground", kwargs={"world": world.name})
-    return f"{path}?{query.urlencode()}" if query else path
 
 
 def _text_of(query: QueryDict) -> str:
