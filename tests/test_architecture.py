@@ -57,7 +57,7 @@ ROOMS = {
         "ranker", "t5",
     ),
     "parser_service/analysis": (
-        "arrays", "encoded_labels", "answer_forms", "intervals", "calibration_folds", "clustered", "scores", "outcomes",
+        "arrays", "encoded_labels", "answer_forms", "intervals", "clustered", "scores", "outcomes",
         "comparing", "slicing", "confusions", "categories", "attractors", "risk_coverage", "probabilities", "edits",
         "sensitivity", "probe_texts",
     ),

@@ -152,16 +152,11 @@ def to_markdown(table: AccuracyTable) -> str:
     text = f"### {table.protocol}\n\n" + _lines([head, rule, *_cells(table, _in_markdown)])
     if not table.has_spread:
         return text
-    spreads = _lines(
-        [
-            head,
-            rule,
-            *_cells(
-                table,
-                lambda each: f"{each.spread:.1f}" if each and each.spread is not None else "–",
-            ),
-        ]
-    )
+
+    def spread(figure: AccuracyFigure | None) -> str:
+        return "–" if figure is None or figure.spread is None else f"{figure.spread:.1f}"
+
+    spreads = _lines([head, rule, *_cells(table, spread)])
     return f"{text}\n\nStandard deviations between trainings:\n\n{spreads}"
 
 

@@ -196,13 +196,7 @@ class RankerTraining:
             turn = self.step // REENCODE_EVERY
             self.model.glosses.refresh(self.model.encoder, turn, check)
         random = Random(f"{self.seed} step {self.step}")
-        # A share of the utterances name other entities of the same classes: the form stays the same.
-        texts = [
-            self.fill(example.pattern, random)
-            if self.fill and random.random() < self.config.grounding
-            else example.utterance
-            for example in batch
-        ]
+        texts = [self._text(example, random) for example in batch]
         meant = [example.form for example in batch]
         vectors, by_gloss = self.model.glosses.read(self.model.encoder, texts, meant)
         targets = torch.tensor(meant, device=vectors.device)
@@ -219,6 +213,13 @@ class RankerTraining:
         self.optimizer.step()
         self.average.update(self.step + 1)
         return loss.item()
+
+    def _text(self, example: RankedExample, random: Random) -> str:
+        """Return the utterance, in a share of cases with other entities of the same classes: its form does
+        not depend on which ones it names."""
+        if self.fill and random.random() < self.config.grounding:
+            return self.fill(example.pattern, random)
+        return example.utterance
 
     def _set_rates(self) -> None:
         """Set the learning rates of this step: linear growth, then linear decay."""

@@ -106,11 +106,19 @@ def audit_decide(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     form, reason = sent.get("form", ""), sent.get("reason", "")
     try:
         decide(finding, sent.get("decision", ""), request.user, form, reason)
-    except (AnsweredMeanwhile, DecidedMeanwhile, NoLongerYours, NotForThem) as error:
-        messages.error(request, str(error))
-        return _to(request, world, finding)
     except Refusal as refusal:
-        return _refuse(request, world, finding, str(refusal))
+        is_over = isinstance(
+            refusal, AnsweredMeanwhile | DecidedMeanwhile | NoLongerYours | NotForThem
+        )
+        if is_over or not request.htmx:
+            messages.error(request, str(refusal))
+            return _to(request, world, finding)
+        # What the reviewer wrote stays on the page.
+        shown = {"sentence": str(refusal)}
+        response = render(
+            request, "parser_service/labelling/_audit_problem.html", shown, status=422
+        )
+        return reswap(retarget(reselect(response, "#audit-problem"), "#audit-problem"), "outerHTML")
     listing = Listing(request, AuditFindingFilters, world.audit_findings.all(), SORTS)
     rows = listing.matching.exclude(pk=pk).order_by("rank", "pk")
     beyond = rows.filter(Q(rank__gt=finding.rank) | Q(rank=finding.rank, pk__gt=pk))
@@ -154,18 +162,6 @@ def _context_of(request: WorldRequest, finding: AuditFinding | None) -> dict[str
         "may_decide": may_decide and is_open,
         "is_outdated": finding.status == FindingStatus.OPEN and not is_open,
     }
-
-
-def _refuse(
-    request: WorldRequest, world: World, finding: AuditFinding, sentence: str
-) -> HttpResponse:
-    """Show why a decision was refused. What the reviewer wrote stays on the page."""
-    if not request.htmx:
-        messages.error(request, sentence)
-        return _to(request, world, finding)
-    context = {"sentence": sentence}
-    response = render(request, "parser_service/labelling/_audit_problem.html", context, status=422)
-    return reswap(retarget(reselect(response, "#audit-problem"), "#audit-problem"), "outerHTML")
 
 
 def _to(request: WorldRequest, world: World, finding: AuditFinding | None) -> HttpResponse:
