@@ -115,8 +115,8 @@ def _table(protocol: str, figures: pd.DataFrame) -> AccuracyTable:
 
 
 def _row_name(row: tuple[str, str, str, bool], rows: Sequence[tuple[str, str, str, bool]]) -> str:
-    """The parser, with what distinguishes this one of its configurations if there are several, and what it was
-    measured on if that is not the usual."""
+    """Return the name of the parser, with the hyperparameters that tell its configurations apart, and what it
+    was measured on where that is not the usual."""
     parser, configuration, declared, on_new = row
     values = [json.loads(other) for each, other, *_ in rows if each == parser]
     mine = json.loads(configuration)

@@ -7,7 +7,6 @@ import pickle
 import signal
 import threading
 from collections.abc import Generator, Iterable, Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_context, parent_process, resource_tracker
 from multiprocessing.connection import Connection, wait
@@ -68,21 +67,15 @@ def _start(group: TrialGroup, running: dict[Connection, Child]) -> None:
     answers, answering = context.Pipe(duplex=False)
     # Pickled here, and unpickled there once Django is ready: its classes import models.
     process = context.Process(target=_measure, args=(pickle.dumps(group), answering))
-    with _interrupts_blocked():
-        process.start()
-        running[answers] = Child(process, group)
-    answering.close()  # So that the end of the process is the end of its answers.
-
-
-@contextmanager
-def _interrupts_blocked() -> Iterator[None]:
-    """Keep Ctrl-C from processes that are started inside the block: their parent ends them."""
     resource_tracker.ensure_running()  # Otherwise the first process starts it, and that unblocks.
+    # Processes do not hear Ctrl-C: their parent ends them.
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
-        yield
+        process.start()
+        running[answers] = Child(process, group)
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    answering.close()  # So that the end of the process is the end of its answers.
 
 
 def _measure(pickled: bytes, answering: Connection) -> None:

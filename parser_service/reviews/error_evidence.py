@@ -163,8 +163,8 @@ class _Neighbours:
         self._starts = np.searchsorted(both_ways[order], np.arange(len(numbers) + 1))
 
     def of(self, at: int) -> Iterator[Neighbour]:
-        """Yield the neighbours that could explain the answer number ``at``, one of each label and answer: the head
-        predicate of their label is the same, that of their answer another one."""
+        """Yield the neighbours that could explain the answer number ``at``: their label has the same head
+        predicate, their answer another one. Each label and answer comes once."""
         answered, number = self._answers[at], self._number_of[at]
         heads = head_of(answered.label), head_of(answered.answer)
         seen: set[tuple[str, str]] = set()

@@ -29,8 +29,8 @@ _Predicates = frozenset[str]
 
 @dataclass(frozen=True, slots=True)
 class SpokenFor:
-    """``word`` stands in ``with_answer`` training pairs that have what the answer has and the label has
-    not, and in ``with_label`` pairs of the opposite kind."""
+    """``word`` occurs in ``with_answer`` training pairs with what only the answer has, and in ``with_label``
+    pairs with what only the label has."""
 
     word: str
     with_answer: int

@@ -122,7 +122,9 @@ def _candidates(world: World, present: TrainingRun | None) -> list[TrainingRun]:
     if present:
         runs = runs.exclude(pk=present.pk)
     listed = list(runs.order_by("-pk")[:MOST_LISTED])
-    scores = {each: spoken_score(each) for each in listed}
-    return sorted(
-        listed, key=lambda each: score.accuracy if (score := scores[each]) else -1.0, reverse=True
-    )
+
+    def accuracy(run: TrainingRun) -> float:
+        score = spoken_score(run)
+        return score.accuracy if score else -1.0
+
+    return sorted(listed, key=accuracy, reverse=True)
