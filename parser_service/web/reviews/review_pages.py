@@ -141,24 +141,15 @@ def _change(
     except Refusal as error:
         problem = error.message
     if not request.htmx:
-        return _back(request, world, run, example, problem, said)
+        if problem or said:
+            level = messages.ERROR if problem else messages.SUCCESS
+            messages.add_message(request, level, problem or said)
+        address = reverse("review", kwargs={"world": world.name})
+        state = ReviewListing(request, shown).url(example=str(example.pk), focus=str(run.pk))
+        return redirect(f"{address}{state}")
     context = _context_of(request, ReviewListing(request, shown), shown, example)
     context |= {"problem": problem, "said": said, "focus": run.pk}
     return render(request, "parser_service/reviews/_review_case.html", context)
-
-
-def _back(
-    request: WorldRequest, world: World, run: TrainingRun, example: Example, problem: str, said: str
-) -> HttpResponse:
-    """Go back to the example, without a script."""
-    if problem or said:
-        messages.add_message(
-            request, messages.ERROR if problem else messages.SUCCESS, problem or said
-        )
-    runs = runs_asked(request, world)
-    address = reverse("review", kwargs={"world": world.name})
-    state = ReviewListing(request, runs).url(example=str(example.pk), focus=str(run.pk))
-    return redirect(f"{address}{state}")
 
 
 def _context_of(
