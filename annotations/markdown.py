@@ -36,6 +36,18 @@ class _Renderer(RendererHTML):
 
     heading_close = heading_open
 
+    def th_open(self, tokens: Sequence[Token], at: int, options: Any, env: Any) -> str:
+        align_by_class(tokens[at])
+        return self.renderToken(tokens, at, options, env)
+
+    td_open = th_open
+
+
+def align_by_class(token: Token) -> None:
+    """Say by a class that a cell of a table is aligned right: styles of elements are refused by browsers here."""
+    if str(token.attrs.pop("style", "")) == "text-align:right":
+        token.attrJoin("class", "number")
+
 
 _MARKDOWN = (
     _Markdown("commonmark", {"html": False, "maxNesting": DEEPEST}, renderer_cls=_Renderer)

@@ -24,7 +24,7 @@ class PatientConsumer(consumer.Consumer):
     def on_connection_error_before_connected(self, exc: Exception) -> None:
         """Log why the broker refuses, and wait twice as long as before, ``LONGEST_WAIT`` at most.
 
-        The worker's timer and its quick stop have a thread of their own and do not wait.
+        The worker's timer and its quick stop run in another thread and do not wait.
         """
         if time.monotonic() - self._refused_at > 2 * LONGEST_WAIT:
             self._wait = 1.0

@@ -26,7 +26,7 @@ PARSE_SERVER = [sys.executable, "manage.py", "parse_server"]
 
 
 class Supervisor:
-    """Child processes by name, each in a process group of its own.
+    """Child processes by name, each in its own process group.
 
     A child that ends is started again; ``SIGINT`` or ``SIGTERM`` ends them all. Where this
     process is killed, Linux ends them.

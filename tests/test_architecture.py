@@ -57,13 +57,13 @@ ROOMS = {
         "ranker", "t5",
     ),
     "parser_service/analysis": (
-        "arrays", "encoded_labels", "answer_forms", "intervals", "calibration_folds", "clustered", "scores", "outcomes",
+        "arrays", "encoded_labels", "answer_forms", "intervals", "clustered", "scores", "outcomes",
         "comparing", "slicing", "confusions", "categories", "attractors", "risk_coverage", "probabilities", "edits",
         "sensitivity", "probe_texts",
     ),
     "parser_service/parsers": (
-        "conditions", "hyperparameters", "interface", "storage", "registry", "words", "spreading", "written_forms",
-        "new_forms", "nearest_pairs", "knn", "linear", "oracle", "llm", "pretrained_files",
+        "conditions", "hyperparameters", "interface", "storage", "registry", "words", "spreading", "remembering",
+        "written_forms", "new_forms", "nearest_pairs", "knn", "linear", "oracle", "llm", "pretrained_files",
     ),
     "parser_service/runs": (
         "checkpoints", "orphan_folders", "lifecycle", "requests", "analysis_requests", "training", "curves", "waiting",
@@ -75,7 +75,7 @@ ROOMS = {
     ),
     "gpsr_site": (
         "private_files", "sqlite", "settings", "broker", "consumer", "celery", "logs", "web", "wsgi",
-        "accounts", "overview", "pages", "urls", "processes", "backup", "management",
+        "accounts", "overview", "documents", "pages", "urls", "templatetags", "processes", "backup", "management",
     ),
     "parser_service": (
         "parsers", "neural", "analysis", "models", "promotions", "runs", "robots", "serving", "dialogues",

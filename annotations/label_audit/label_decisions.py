@@ -127,9 +127,11 @@ def _require_open(finding: AuditFinding, reader: User) -> None:
         did = f"{made.decision} this label"
         raise DecidedMeanwhile(say_who(made.decided_by, reader, did))
     if finding.utterance and finding.utterance.deleted_at:
-        raise DecidedMeanwhile("The utterance has been deleted since the audit.")
+        said = "The utterance has been deleted since the audit."
+        raise DecidedMeanwhile(said, "deleted_since")
     if not AuditFinding.objects.open().filter(pk=finding.pk).exists():
-        raise DecidedMeanwhile("The label has changed since the audit. Run it again.")
+        said = "The label has changed since the audit. Run it again."
+        raise DecidedMeanwhile(said, "changed_since")
 
 
 def _label_after(finding: AuditFinding, decision: str, form: str) -> str:

@@ -48,9 +48,11 @@ def finish(assignment: Assignment, label: Label | None = None) -> ItemDecision:
         if stored.outcome in FREE_AGAIN and item.is_open and item.places > 0:
             item.places -= 1  # they came back before anybody else
         elif stored.outcome == Outcome.DONE:
-            raise NoLongerYours("You have done this already. Take your answer back to change it.")
+            said = "You have done this already. Take your answer back to change it."
+            raise NoLongerYours(said, "already_done")
         elif stored.outcome != Outcome.HELD:
-            raise NoLongerYours("Somebody else is doing this now. Your answer was not counted.")
+            said = "Somebody else is doing this now. Your answer was not counted."
+            raise NoLongerYours(said, "done_by_another")
         stored.outcome, stored.label = Outcome.DONE, label
         stored.done_at, stored.leased_until = timezone.now(), None
         stored.save(update_fields=["outcome", "label", "done_at", "leased_until"])
@@ -85,7 +87,7 @@ def take_back(assignment: Assignment) -> None:
         others = item.assignments.filter(outcome__in=OCCUPYING).exclude(pk=stored.pk).count()
         is_answered = stored.outcome in (Outcome.DONE, Outcome.SKIPPED)
         if not is_answered or others >= item.people:
-            raise NoLongerYours("There is no answer of yours here to take back.")
+            raise NoLongerYours("There is no answer of yours here to take back.", "no_answer_here")
         _remove_what_came_after(item)
         item.closed_at, item.places = None, item.people - others - 1
         item.save(update_fields=["places", "closed_at"])
@@ -106,7 +108,7 @@ def _remove_what_came_after(item: WorkItem) -> None:
     later = WorkItem.objects.select_for_update().filter(Q(follows=item) | same).exclude(pk=item.pk)
     for each in later:
         if each.assignments.filter(outcome__in=OCCUPYING).exists():
-            raise NoLongerYours("Somebody has gone on from this answer already.")
+            raise NoLongerYours("Somebody has gone on from this answer already.", "gone_on_from")
         each.delete()
 
 

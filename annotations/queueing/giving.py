@@ -204,16 +204,18 @@ def _give(
 ) -> Assignment:
     """Give a place of an item that is locked. Raises NotForThem."""
     if not item.is_open:
-        raise NotForThem("This is done already.")
+        raise NotForThem("This is done already.", "already_done")
     if item.kind not in kinds_for(person, item.world):
-        raise NotForThem(f"{person} has no role in this world that does this.")
+        raise NotForThem(f"{person} has no role in this world that does this.", "no_role_for_it")
     item.assignments.expired().exclude(person=person).release()
     rows = WorkItem.objects.filter(pk=item.pk)
     if not rows.free().exists():
-        raise NotForThem("Somebody is doing this now. Withdraw it from them first.")
+        said = "Somebody is doing this now. Withdraw it from them first."
+        raise NotForThem(said, "done_by_another")
     for_them = rows.takeable_by(person) | rows.returned_by(person)
     if not (rows.not_answered_by(person) if after_skip else for_them).exists():
-        raise NotForThem(f"{person} has answered this already, so somebody else has to do it.")
+        said = f"{person} has answered this already, so somebody else has to do it."
+        raise NotForThem(said, "already_answered")
     item.refresh_from_db(fields=["places"])
     return _hand_over(item, person, until, by)
 

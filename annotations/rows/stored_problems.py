@@ -58,7 +58,17 @@ def store_problems(
 ) -> Changes:
     """Replace the stored problems about one part of a world."""
     stored = world.problems.filter(subject=subject)
-    texts = [_text_of_problem(problem) for problem in problems]
+    texts = [
+        (
+            each.position.source,
+            each.position.line,
+            each.position.column,
+            each.severity.value,
+            each.message,
+            each.hint,
+        )
+        for each in problems
+    ]
     if Counter(texts) == Counter(stored.order_by().values_list(*TEXTS)):
         return Changes()
     wanted = [
@@ -66,12 +76,6 @@ def store_problems(
         for text in texts
     ]
     return synchronise(stored, wanted, attrgetter(*TEXTS), [])
-
-
-def _text_of_problem(problem: Problem) -> tuple[object, ...]:
-    place = problem.position
-    texts = (problem.severity.value, problem.message, problem.hint)
-    return (place.source, place.line, place.column, *texts)
 
 
 def as_stored(problem: Problem) -> StoredRemark:

@@ -1,4 +1,4 @@
-"""What the forms of all rooms stand on: the data that was sent, and what is said of a text that is refused."""
+"""What all forms share: the data that was sent, and the sentence for a refused text."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ def sentence_of(error: LanguageError) -> str:
 
 
 def row_field(form: forms.BaseForm, name: str) -> forms.ModelChoiceField[Any]:
-    """Return the field of ``form`` in which one chooses a row, so that it can be told from which."""
+    """Return the field of ``form`` in which a row is chosen, typed so that its choices can be set."""
     field = form.fields[name]
     assert isinstance(field, forms.ModelChoiceField)
     return field
 
 
 def choice_field(form: forms.BaseForm, name: str) -> forms.ChoiceField:
-    """Return the field of ``form`` in which one chooses a text, so that it can be told from which."""
+    """Return the field of ``form`` in which a text is chosen, typed so that its choices can be set."""
     field = form.fields[name]
     assert isinstance(field, forms.ChoiceField)
     return field

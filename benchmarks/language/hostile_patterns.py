@@ -274,7 +274,7 @@ def hostile_texts(source: str, flags: int = 0) -> list[HostileText]:
     """Return texts that may be slow, from the parse tree of a pattern."""
     tree = regex_parser.parse(source, flags)
     texts: dict[HostileText, None] = {}
-    literals = sorted(set(_literals(tree)))[:24]
+    literals = sorted({character for _, _, character in _leaves(tree)})[:24]
     alphabet = list(dict.fromkeys([*literals, *OFTEN]))
 
     def repeated(head: str, unit: str, tail: str) -> None:
@@ -302,11 +302,6 @@ def hostile_texts(source: str, flags: int = 0) -> list[HostileText]:
         letters = "".join(chance.choices(alphabet, k=40))
         repeated("", letters, "\0")
     return list(texts)
-
-
-def _literals(tree: Any) -> Iterator[str]:
-    for _, _, character in _leaves(tree):
-        yield character
 
 
 def _leaves(tree: Any) -> Iterator[tuple[Any, Any, str]]:
@@ -411,18 +406,18 @@ class _TooLong(Exception):
     pass
 
 
-def _give_up(signum: int, frame: FrameType | None) -> None:
-    raise _TooLong
-
-
 def seconds(run: Callable[[], object], repeats: int = 1) -> float:
     """Return the least seconds of processor time of a call; ``LIMIT`` where it was given up.
 
     The engine of ``re`` looks at signals while it searches, so a timer of processor time stops it. Garbage is
     not collected meanwhile: that takes as long as the whole program has objects, whatever the call does.
     """
+
+    def give_up(signum: int, frame: FrameType | None) -> None:
+        raise _TooLong
+
     least = LIMIT
-    previous = signal.signal(signal.SIGVTALRM, _give_up)
+    previous = signal.signal(signal.SIGVTALRM, give_up)
     was_collecting = gc.isenabled()
     gc.disable()
     try:

@@ -55,6 +55,7 @@ CRITERIA = {"command": "command", "source_command": "source", BY_FORM: "form"}
 FIGURES = (HARMONIC, UNSEEN, KNOWN, ACCURACY)
 # Rows are in the order of the registry; parsers that it no longer has come last.
 PLACES = {name: place for place, name in enumerate(PARSERS)}
+ESCAPED = str.maketrans({MARK: r"\textdagger{}", "_": r"\_", "%": r"\%", "#": r"\#"})  # in LaTeX
 Column = tuple[str, str, str]  # setting, criterion, figure
 
 
@@ -114,8 +115,8 @@ def _table(protocol: str, figures: pd.DataFrame) -> AccuracyTable:
 
 
 def _row_name(row: tuple[str, str, str, bool], rows: Sequence[tuple[str, str, str, bool]]) -> str:
-    """The parser, with what distinguishes this one of its configurations if there are several, and what it was
-    measured on if that is not the usual."""
+    """Return the name of the parser, with the hyperparameters that tell its configurations apart, and what it
+    was measured on where that is not the usual."""
     parser, configuration, declared, on_new = row
     values = [json.loads(other) for each, other, *_ in rows if each == parser]
     mine = json.loads(configuration)
@@ -151,7 +152,11 @@ def to_markdown(table: AccuracyTable) -> str:
     text = f"### {table.protocol}\n\n" + _lines([head, rule, *_cells(table, _in_markdown)])
     if not table.has_spread:
         return text
-    spreads = _lines([head, rule, *_cells(table, _spread_of)])
+
+    def spread(figure: AccuracyFigure | None) -> str:
+        return "–" if figure is None or figure.spread is None else f"{figure.spread:.1f}"
+
+    spreads = _lines([head, rule, *_cells(table, spread)])
     return f"{text}\n\nStandard deviations between trainings:\n\n{spreads}"
 
 
@@ -161,10 +166,6 @@ def _lines(rows: Sequence[Sequence[str]]) -> str:
 
 def _cells(table: AccuracyTable, write: Callable[[AccuracyFigure | None], str]) -> list[list[str]]:
     return [[f"`{name}`", *map(write, row)] for name, row in table.rows]
-
-
-def _spread_of(figure: AccuracyFigure | None) -> str:
-    return "–" if figure is None or figure.spread is None else f"{figure.spread:.1f}"
 
 
 def to_latex(table: AccuracyTable) -> str:
@@ -178,7 +179,10 @@ def to_latex(table: AccuracyTable) -> str:
     lines = [
         [table.protocol, *heads],
         ["", *_heads(table)],
-        *([rf"\texttt{{{_escape(name)}}}", *map(_in_latex, row)] for name, row in table.rows),
+        *(
+            [rf"\texttt{{{name.translate(ESCAPED)}}}", *map(_in_latex, row)]
+            for name, row in table.rows
+        ),
     ]
     first, second, *body = [rf"{' & '.join(line)} \\" for line in lines]
     begin = rf"\begin{{tabular}}{{l{'r' * len(table.columns)}}}"
@@ -202,15 +206,6 @@ def _in_latex(figure: AccuracyFigure | None) -> str:
     reach = "" if figure.reach is None else rf" $\pm$ {figure.reach:.1f}"
     paper = "" if figure.published is None else rf" \textcolor{{gray}}{{({figure.published:.1f})}}"
     return mean + reach + paper
-
-
-def _escape(name: str) -> str:
-    return (
-        name.replace(MARK, r"\textdagger{}")
-        .replace("_", r"\_")
-        .replace("%", r"\%")
-        .replace("#", r"\#")
-    )
 
 
 def note(figures: pd.DataFrame, part: str, left_out: int) -> str:

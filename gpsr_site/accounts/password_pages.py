@@ -81,7 +81,7 @@ class ChangePasswordForm(NewPasswordForm, PasswordChangeForm):
 
 @reads_forms
 class LogIn(LoginView):
-    """The one page for logging in; Django's admin leads here, too."""
+    """The only page for logging in; Django's admin leads here as well."""
 
     redirect_authenticated_user = True
     authentication_form = LogInForm
@@ -143,7 +143,7 @@ class SetPassword(PasswordResetConfirmView):
     success_url = reverse_lazy("login")
 
     def form_valid(self, form: SetPasswordForm[User]) -> HttpResponse:
-        """Set the password if nobody has done so by this link, and say that it is over otherwise."""
+        """Set the password, or say that the link was used already."""
         form.save(commit=False)  # hashes it, which takes long, while nobody waits
         token = self.request.session[INTERNAL_RESET_SESSION_TOKEN]
         with transaction.atomic():

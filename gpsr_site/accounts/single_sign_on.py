@@ -1,7 +1,7 @@
 """Single sign-on by django-allauth, where the environment names a server; nothing else imports this.
 
-It opens no door of its own: somebody new needs an invitation, somebody who has an account connects it
-once, on the page of the account, and logs in by it from then on.
+Nobody gets in by it alone. Somebody new needs an invitation. Somebody with an account connects it once, on
+the page of the account, and then logs in by it.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Accounts(DefaultAccountAdapter):
     """What happens when somebody has signed on."""
 
     def is_open_for_signup(self, request: HttpRequest) -> bool:
-        """No account is made but by ``SignOn``."""
+        """Return False: only ``SignOn`` makes accounts."""
         return False
 
     def login(self, request: HttpRequest, user: User) -> None:

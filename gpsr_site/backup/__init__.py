@@ -1,1 +1,1 @@
-"""A whole installation as one file, and back: all rows in a form that no database owns, and all files."""
+"""A whole installation as one file, and back: all rows in a form that suits every database, and all files."""

@@ -126,7 +126,7 @@ def _empty() -> None:
 
 
 def _tables_of_users() -> Iterator[str]:
-    """Yield the tables of Django's own that refer to accounts."""
+    """Yield Django's tables that refer to accounts."""
     for field in User._meta.many_to_many:
         through = field.remote_field.through
         if through is not None:

@@ -107,8 +107,8 @@ class Unportable(Refusal):
 def fault_of(field: models.Field[Any, Any], value: Any) -> str:
     """Return why not every database can hold ``value`` in the column of ``field``; empty where each can.
 
-    SQLite has no limits of its own on the length of a text or the range of a number. PostgreSQL takes
-    no NUL and no lone surrogates, in JSON neither, and JSON knows no NaN and no infinite numbers.
+    SQLite does not limit the length of a text or the range of a number. PostgreSQL takes neither NUL nor lone
+    surrogates, in JSON as well, and JSON has neither NaN nor infinity.
     """
     if value is None:
         return ""

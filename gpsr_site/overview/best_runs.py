@@ -81,9 +81,9 @@ class BestRuns:
 def best_runs(world: World) -> BestRuns | None:
     """Find the best runs on the validation part of a split, on paraphrases where it has any.
 
-    The split is the one that was scored last; one by logical form only where there is no other,
-    because most parsers have no answer for a form that training never showed: there the best has the highest
-    harmonic mean of unseen and known forms. Two queries; None where nothing has been scored.
+    The split is the one that was scored last. One by logical form is taken only if there is no other, because
+    most parsers cannot answer a form that training never showed. The best run there has the highest harmonic
+    mean of unseen and known forms. Two queries; None if nothing has been scored.
     """
     scores = Evaluation.objects.filter(
         run__world=world,
@@ -105,16 +105,8 @@ def best_runs(world: World) -> BestRuns | None:
         of_runs[score.run_id].append(score)
     shown = (shown_scores(each, newest.run.split.criterion) for each in of_runs.values())
     comparable = [each[PART, source] for each in shown if (PART, source) in each]
-    best = (_best(comparable, protocol) for protocol in Protocol)
-    runs = tuple(BestRun(world, figure) for figure in best if figure is not None)
+    # The best comes last: figures on unseen forms alone come first, and the newer of two equal ones later.
+    comparable.sort(key=lambda each: (not each.alone, each.accuracy, each.score.run_id))
+    best = {each.score.run.protocol: each for each in comparable}
+    runs = tuple(BestRun(world, best[each]) for each in Protocol if each in best)
     return BestRuns(newest.run.split, SOURCES[source], runs)
-
-
-def _best(figures: list[ShownScore], protocol: str) -> ShownScore | None:
-    """Return the most accurate, the newer one of two that are equal; figures on unseen forms alone come last."""
-    of_protocol = (figure for figure in figures if figure.score.run.protocol == protocol)
-    return max(
-        of_protocol,
-        key=lambda figure: (not figure.alone, figure.accuracy, figure.score.run_id),
-        default=None,
-    )

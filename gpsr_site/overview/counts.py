@@ -50,8 +50,8 @@ class Counts:
 
     ``uncovered`` counts the commands of the grammar without a logical form, as of the last import or
     generation; ``stale`` is 1 where grammar or templates have changed since the last generation.
-    ``runs_failed`` and ``runs_lost`` leave out runs that were made up for: one of the same parser on the
-    same split has succeeded since.
+    ``runs_failed`` and ``runs_lost`` leave out a run if the same parser has succeeded on the same split
+    since.
     """
 
     members: int

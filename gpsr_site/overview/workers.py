@@ -53,7 +53,7 @@ class Workers:
 
     @property
     def _left_behind(self) -> int:
-        """How much work has begun although no worker lives: it waits for one to take it up again."""
+        """How much begun work waits because no worker lives."""
         return 0 if self.served else self.running
 
     @property

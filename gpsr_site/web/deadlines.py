@@ -28,7 +28,7 @@ AGAIN_SECONDS = 5
 class TookTooLong(BaseException):
     """Raised inside the thread of a request that is over its time.
 
-    Not an ``Exception``, so that no handler on the way takes it for an error of its own.
+    Not an ``Exception``, so that no handler on the way catches it.
     """
 
 

@@ -19,7 +19,8 @@ FORWARDED = (
 
 
 class ClientAddress:
-    """Middleware: make ``REMOTE_ADDR`` the client's, and drop what nobody trusted has forwarded."""
+    """Middleware: set ``REMOTE_ADDR`` to the client's address, and drop headers that no trusted proxy has
+    sent."""
 
     def __init__(self, get_response: Callable[[HttpRequest], HttpResponse]) -> None:
         self.get_response = get_response
@@ -36,10 +37,9 @@ class ClientAddress:
 
 
 def client_address(peer: str, forwarded: str) -> str:
-    """Return the nearest address in ``X-Forwarded-For`` that is no trusted proxy's.
-
-    Proxies append, so the list is read from its end; whatever stands before an address of nobody
-    trusted, or before something unreadable, may be made up.
+    """Return the nearest address in ``X-Forwarded-For`` that does not belong to a trusted proxy. Proxies
+    append, so the list is read from its end. Everything before an untrusted address, or before something
+    unreadable, may be made up.
     """
     address = peer
     for entry in reversed(forwarded.split(",")):

@@ -1,9 +1,9 @@
 """The web server: waitress, which reads whole requests before a thread sees them.
 
-A client that sends or reads slowly, or not at all, costs a connection and no thread, unless it reads a
-long answer slowly, which has an end as well. ``shares`` says which requests may have how many threads.
-Waitress's own limits are not enough: a request has a total time to arrive, a response must keep being
-read, and how large a body may be depends on its address and is judged once the headers are there.
+A client that sends or reads slowly, or not at all, costs a connection and no thread. A long answer that is
+read slowly keeps a thread, up to a limit. ``shares`` says which requests may have how many threads.
+Waitress's own limits are not enough: a request has a total time to arrive, a response must keep being read,
+and how large a body may be depends on its address and is judged once the headers are there.
 
 Waitress documents ``serve`` and its arguments alone, and none of them can say this:
 ``max_request_body_size`` is one number for all addresses, ``channel_timeout`` starts anew with each

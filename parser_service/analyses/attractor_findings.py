@@ -21,8 +21,10 @@ _NUMBERS = (
 
 
 def attractor_findings(target: Target, progress: Progress) -> dict[str, list[dict[str, Any]]]:
-    """Return source → rows of ``Attractor`` with some of its wrong inputs; training pairs of the same source
-    are further inputs of a form's own. An example without an answer has no form that could attract it."""
+    """Return source → rows of ``Attractor``, each with some of its wrong inputs.
+
+    Training pairs of the source count as inputs of their form. Examples without an answer give no row.
+    """
     rows = {}
     for source in target.sources:
         progress.check()

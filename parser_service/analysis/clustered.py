@@ -56,7 +56,7 @@ class Clustered:
         return np.asarray(self.right.sum(1) / self.count.sum(1))
 
     def over(self, names: Sequence[Hashable]) -> Clustered:
-        """Return the same over the clusters ``names``, without examples in those that it lacks."""
+        """Return these counts over the clusters ``names``; those that it lacks have no example."""
         place = {name: at for at, name in enumerate(self.names)}
         at = [place.get(name, -1) for name in names]  # the last column is one of zeros
         right, count = (np.pad(each, ((0, 0), (0, 1)))[:, at] for each in (self.right, self.count))
@@ -69,8 +69,8 @@ whose harmonic mean it is. The trainings of both are the same, in the same order
 
 
 class _Numbers:
-    """Parts that are equal where their numbers are, whatever their clusters are called: a page shows the same
-    figures again and again."""
+    """Parts that compare equal by their numbers, whatever their clusters are called. Caches are keyed by them,
+    since a page shows the same figures again and again."""
 
     def __init__(self, parts: Sequence[Clustered]) -> None:
         self.parts = parts

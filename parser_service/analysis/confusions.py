@@ -16,7 +16,6 @@ from annotations.language.forms import (
     CONJUNCTION,
     Application,
     Difference,
-    Form,
     diff_unordered,
 )
 from annotations.language.predicates import ArgumentKind, argument_kind
@@ -97,39 +96,20 @@ def confuse_slots(gold: Sequence[str], predicted: Sequence[str]) -> tuple[SlotCo
     Raises:
         ValueError: there are not as many answers as labels.
     """
-    totals: Counter[tuple[str, int, str, str]] = Counter()
-    for left, right, count in _distinct(gold, predicted):
-        if left is not None and right is not None:
-            for slot in _slots(diff_unordered(left, right)):
-                totals[slot] += count
-    rows = [SlotConfusion(*slot, count) for slot, count in totals.items()]
-    return tuple(
-        sorted(
-            rows,
-            key=lambda row: (
-                not row.is_error,
-                -row.count,
-                row.predicate,
-                row.place,
-                row.gold,
-                row.predicted,
-            ),
-        )
-    )
-
-
-def _distinct(
-    gold: Sequence[str], predicted: Sequence[str]
-) -> Iterator[tuple[Form | None, Form | None, int]]:
-    """Yield each distinct pair, read, and how often it occurs."""
     if len(gold) != len(predicted):
         raise ValueError(f"{len(predicted)} answers do not fit {len(gold)} labels.")
     labels, answers = encode(gold), encode(predicted)
-    left = [read_or_none(text) for text in labels.values]
-    right = [read_or_none(text) for text in answers.values]
+    read_labels = [read_or_none(text) for text in labels.values]
+    read_answers = [read_or_none(text) for text in answers.values]
+    totals: Counter[tuple[str, int, str, str]] = Counter()
     pairs = distinct_pairs(labels.codes, answers.codes)
     for first, second, count in zip(*(column.tolist() for column in pairs), strict=True):
-        yield left[first], right[second], count
+        left, right = read_labels[first], read_answers[second]
+        if left is not None and right is not None:
+            for slot in _slots(diff_unordered(left, right)):
+                totals[slot] += count
+    rows = [SlotConfusion(*slot, count) for slot, count in sorted(totals.items())]
+    return tuple(sorted(rows, key=lambda row: (not row.is_error, -row.count)))
 
 
 def _by_frequency(counts: Counter[str]) -> list[str]:

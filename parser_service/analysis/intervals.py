@@ -69,9 +69,8 @@ def ratio_interval(
     total, weight = float(numerators.sum()), float(denominators.sum())
     if total in (0.0, weight):
         return wilson_interval(len(numerators) if total else 0, len(numerators))
-    pairs = (
-        np.round(numerators, _DECIMALS) + 1j * denominators
-    )  # complex numbers are sorted at once
+    # Complex numbers are sorted at once.
+    pairs = np.round(numerators, _DECIMALS) + 1j * denominators
     kinds, counts = np.unique(pairs, return_counts=True)
     if len(kinds) > _MOST_KINDS:
         return _limit(numerators, denominators)

@@ -146,21 +146,17 @@ class _Forms:
     def distances(self, first: Ints, second: Ints) -> Floats:
         """Return the distance of each pair, 1 where only one is a form and for two unequal texts: [pairs]."""
         left, right, _ = distinct_pairs(first, second)
-        values = np.array(
-            [self._distance(a, b) for a, b in zip(left.tolist(), right.tolist(), strict=True)]
-        )
+        values: Floats = np.zeros(len(left))
+        for at, (one, other) in enumerate(zip(left.tolist(), right.tolist(), strict=True)):
+            first_form, second_form = self._forms[one], self._forms[other]
+            if first_form is None or second_form is None:
+                values[at] = float(one != other)
+            elif one != other:
+                values[at] = self._trees.distance(first_form, second_form)
         width = int(second.max(initial=0)) + 1
         places = np.searchsorted(left * width + right, first * width + second)
         distances: Floats = values[places]
         return distances
-
-    def _distance(self, left: int, right: int) -> float:
-        if left == right:
-            return 0.0
-        first, second = self._forms[left], self._forms[right]
-        if first is None or second is None:
-            return 1.0
-        return self._trees.distance(first, second)
 
 
 @dataclass(frozen=True, slots=True)

@@ -71,7 +71,8 @@ def accuracy_by(
 def accuracy_of_labels(
     correct: Bools, labels: EncodedLabels[Any], clusters: Ints, samples: int = SLICE_SAMPLES
 ) -> SliceAccuracies:
-    """Return the same for labels that are encoded already; a code of no value is in no slice. Raises likewise."""
+    """Return the accuracy of each run in each slice for encoded labels; a code without a value is in no slice.
+    Raises ValueError as ``accuracy_by`` does."""
     _require_same_length(correct, len(labels.codes))
     _require_same_length(correct, len(clusters))
     shape = len(labels.values), int(clusters.max(initial=0)) + 1

@@ -7,7 +7,6 @@ import pickle
 import signal
 import threading
 from collections.abc import Generator, Iterable, Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_context, parent_process, resource_tracker
 from multiprocessing.connection import Connection, wait
@@ -68,26 +67,26 @@ def _start(group: TrialGroup, running: dict[Connection, Child]) -> None:
     answers, answering = context.Pipe(duplex=False)
     # Pickled here, and unpickled there once Django is ready: its classes import models.
     process = context.Process(target=_measure, args=(pickle.dumps(group), answering))
-    with _interrupts_blocked():
-        process.start()
-        running[answers] = Child(process, group)
-    answering.close()  # So that the end of the process is the end of its answers.
-
-
-@contextmanager
-def _interrupts_blocked() -> Iterator[None]:
-    """Keep Ctrl-C from processes that are started inside the block: their parent ends them."""
     resource_tracker.ensure_running()  # Otherwise the first process starts it, and that unblocks.
+    # Processes do not hear Ctrl-C: their parent ends them.
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
-        yield
+        process.start()
+        running[answers] = Child(process, group)
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    answering.close()  # So that the end of the process is the end of its answers.
 
 
 def _measure(pickled: bytes, answering: Connection) -> None:
     """Measure a group in a new process. Settings come from the environment, as in the parent."""
-    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+    def end_with_parent() -> None:  # without it, nobody reads the cells
+        if parent := parent_process():
+            parent.join()
+            os._exit(1)
+
+    threading.Thread(target=end_with_parent, daemon=True).start()
     django.setup()
     group: TrialGroup = pickle.loads(pickled)
     # Not every parser tests on as many threads as it trains on, and torch takes all cores by default.
@@ -95,13 +94,6 @@ def _measure(pickled: bytes, answering: Connection) -> None:
         os.environ["OMP_NUM_THREADS"] = str(threads)
     for answer in group.measure():
         answering.send(answer)
-
-
-def _end_with_parent() -> None:
-    """End this process with its parent: without it, nobody reads the cells."""
-    if parent := parent_process():
-        parent.join()
-        os._exit(1)
 
 
 def _refuse_unanswered(child: Child) -> Iterator[str]:

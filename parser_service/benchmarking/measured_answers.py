@@ -131,8 +131,8 @@ def ask_cross_fitted(
 
 
 def intervals(answers: dict[str, PartAnswers]) -> Iterator[tuple[str, Any]]:
-    """Yield interval (fractions of 1) and number of clusters of each part with an answer. Those of the validation
-    part have the plain names; those of ``known`` and ``test`` say so; by form there is that of the harmonic mean."""
+    """Yield the interval (fractions of 1) and the number of clusters of each part with an answer. The names of
+    ``known`` and ``test`` end with the part. By form the interval of the harmonic mean comes too."""
     parts = {
         part: Clustered.of([each.tally()])  # type: ignore[list-item]
         for part, each in answers.items()

@@ -106,8 +106,8 @@ def _rows(candidates: list[Candidate], run: TrainingRun) -> list[dict[str, Any]]
 
 
 def enqueue_doubts(world: World, rows: Sequence[Utterance], progress: Progress) -> int:
-    """Ask first for those of ``rows`` that the parser is least sure of, or that it and the nearest
-    utterance give different forms. Returns how many items are new.
+    """Queue those of ``rows`` that the parser is least sure of, or for which it and the nearest utterance give
+    different forms. Returns how many items are new.
 
     Comparing takes minutes where there are thousands, and nobody waits for it: only what came of it is
     written, batch by batch.

@@ -209,7 +209,7 @@ class Parser(ABC):
         this one stays unchanged.
 
         What calibrates must not be scored, so the validation part is scored in folds, each by the
-        parser calibrated on the others (``analysis.calibration_folds``). It is this parser where nothing is
+        parser calibrated on the others (``runs.training.cross_fitting``). It is this parser where nothing is
         calibrated after training.
         """
         return self

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from importlib.util import find_spec
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -76,7 +77,11 @@ def find_encoder(name: str, encoders: Path | None = None, anywhere: bool = True)
     Raises:
         Refusal: it is at none of these places, or incomplete; says what to put where.
     """
-    for folder in _places(name, encoders) if anywhere else _open_places(name, encoders):
+    # What a request may name comes first: a training reads the files that its request was checked for.
+    places = [_open_places(name, encoders)]
+    if anywhere:
+        places += [iter([Path(name)]), _in_package(name), _in_cache(name)]
+    for folder in chain.from_iterable(places):
         if (folder / CONFIG).is_file():
             _refuse_incomplete(folder)
             return folder
@@ -101,15 +106,6 @@ def _open_places(name: str, encoders: Path | None) -> Iterator[Path]:
         yield encoders / name
     if name in _packages:
         yield from _in_package(name)
-
-
-def _places(name: str, encoders: Path | None) -> Iterator[Path]:
-    """Yield where the encoder may be, in the order in which it is looked for. What a request may
-    name comes first, so that a training reads the files that its request was checked for."""
-    yield from _open_places(name, encoders)
-    yield Path(name)
-    yield from _in_package(name)
-    yield from _in_cache(name)
 
 
 def _in_package(name: str) -> Iterator[Path]:

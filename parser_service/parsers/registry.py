@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import gc
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from enum import StrEnum
 from importlib import import_module
@@ -225,8 +224,15 @@ def needing(needs: Needs) -> list[str]:
 
 def load_class(name: str) -> type[Parser]:
     """Import the class of a parser, and torch where it needs that: for workers, not for pages."""
-    with _garbage_kept():
+    # Importing torch makes hundreds of thousands of objects that stay; to look through them for garbage
+    # again and again takes time.
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
         parser: type[Parser] = _attribute(entry(name).dotted)
+    finally:
+        if was_enabled:
+            gc.enable()
     return parser
 
 
@@ -249,19 +255,6 @@ def make_config(name: str, values: Mapping[str, Any] | None = None) -> Any:
 def config_values(config: Any) -> dict[str, Any]:
     """Return a config as JSON with every field: what is stored with the run and hashed."""
     return asdict(config)
-
-
-@contextmanager
-def _garbage_kept() -> Iterator[None]:
-    """Pause the garbage collector inside the block. Importing torch makes hundreds of thousands of
-    objects that stay; looking through them again and again takes time."""
-    was_enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_enabled:
-            gc.enable()
 
 
 def _attribute(dotted: str) -> Any:

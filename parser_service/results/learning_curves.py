@@ -35,8 +35,8 @@ class CurvePoint:
 
 @dataclass(frozen=True, slots=True)
 class LearningCurve:
-    """A parser with one configuration; ``points`` by share, the ``SHARES`` at least. ``run`` is the one that
-    missing runs are asked for like; ``asked`` has share and seed of those that are there."""
+    """A parser with one configuration; ``points`` by share, the ``SHARES`` at least. Missing runs are requested
+    like ``run``; ``asked`` has share and seed of those that are there."""
 
     parser: str
     changes: Changes

@@ -68,9 +68,8 @@ def report_run(run: TrainingRun) -> dict[str, Any]:
 
 
 def report_seeds(runs: Sequence[TrainingRun]) -> dict[str, Any]:
-    """Report runs that differ by their seed, and for each test source and part the mean and spread (the
-    sample standard deviation) of their accuracies and the 95 % interval of the mean, over those that
-    succeeded."""
+    """Report runs that differ by their seed. For each test source and part there are the mean accuracy of those
+    that succeeded, its spread (the sample standard deviation) and its 95 % interval."""
     scores = _scores(runs)
     means = [
         {

@@ -92,26 +92,21 @@ def read_case(runs: Sequence[TrainingRun], example: Example, reader: User) -> Re
     rows = Review.objects.filter(run__in=runs, example=example)
     for review in rows.select_related("category", "reviewer"):
         reviews[review.run_id].append(review)
-    answers = [_answer(run, example, candidates[run.pk], reviews[run.pk], reader) for run in runs]
+    answers = []
+    for run in runs:
+        beam, of_run = tuple(candidates[run.pk]), reviews[run.pk]
+        people = tuple(each for each in of_run if not each.is_proposed)
+        is_wrong = bool(beam) and not beam[0].is_exact_match
+        answers.append(
+            CaseAnswer(
+                run=run,
+                candidates=beam,
+                proposal=next((each for each in of_run if each.is_proposed), None),
+                reviews=people,
+                own=next((each for each in people if each.reviewer_id == reader.pk), None),
+                earlier=tuple(tags_of_example_before(run, example)) if is_wrong else (),
+            )
+        )
     return ReviewCase(
         example, tuple(answers), command_of_example(example), paraphrase_of_example(example)
-    )
-
-
-def _answer(
-    run: TrainingRun,
-    example: Example,
-    candidates: Sequence[Prediction],
-    reviews: Sequence[Review],
-    reader: User,
-) -> CaseAnswer:
-    people = tuple(each for each in reviews if not each.is_proposed)
-    is_wrong = bool(candidates) and not candidates[0].is_exact_match
-    return CaseAnswer(
-        run=run,
-        candidates=tuple(candidates),
-        proposal=next((each for each in reviews if each.is_proposed), None),
-        reviews=people,
-        own=next((each for each in people if each.reviewer_id == reader.pk), None),
-        earlier=tuple(tags_of_example_before(run, example)) if is_wrong else (),
     )

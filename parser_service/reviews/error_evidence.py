@@ -38,21 +38,16 @@ def evidence_of_run(run: TrainingRun, attractors: frozenset[str]) -> RunEvidence
     declared = frozenset(run.world.predicates.values_list("name", flat=True))
     entities = Entity.objects.filter(ontology__world=run.world_id).order_by()
     classes = frozenset(entities.values_list("entity_class", flat=True).distinct())
-    used, named = _names_in_training(run.split) if declared or classes else (set(), set())
+    used: set[str] = set()
+    named: set[str] = set()
+    if declared or classes:
+        training = run.split.examples.filter(part="train").order_by()
+        for text in training.values_list("logical_form", flat=True).distinct().iterator():
+            used.update(PREDICATE.findall(text))
+            named.update(name.rstrip("0123456789") for name in CLASS_TOKEN.findall(text))
     return RunEvidence(
         declared | used if declared else None, classes | named if classes else None, attractors
     )
-
-
-def _names_in_training(split: Split) -> tuple[set[str], set[str]]:
-    """Return the predicates and the classes that the training labels of ``split`` name."""
-    labels = split.examples.filter(part="train").order_by().values_list("logical_form", flat=True)
-    used: set[str] = set()
-    classes: set[str] = set()
-    for text in labels.distinct().iterator():
-        used.update(PREDICATE.findall(text))
-        classes.update(name.rstrip("0123456789") for name in CLASS_TOKEN.findall(text))
-    return used, classes
 
 
 class ErrorEvidences:
@@ -168,8 +163,8 @@ class _Neighbours:
         self._starts = np.searchsorted(both_ways[order], np.arange(len(numbers) + 1))
 
     def of(self, at: int) -> Iterator[Neighbour]:
-        """Yield the neighbours that could explain the answer number ``at``, one of each label and answer: the head
-        predicate of their label is the same, that of their answer another one."""
+        """Yield the neighbours that could explain the answer number ``at``: their label has the same head
+        predicate, their answer another one. Each label and answer comes once."""
         answered, number = self._answers[at], self._number_of[at]
         heads = head_of(answered.label), head_of(answered.answer)
         seen: set[tuple[str, str]] = set()

@@ -64,14 +64,15 @@ def _leave(work: BackgroundWork) -> None:
 @worker_process_init.connect
 def begin_child(**_: Any) -> None:
     """Lower the priority of this child, and end it when its parent ends."""
+    parent = os.getppid()
+
+    def leave_with_parent() -> None:
+        while os.getppid() == parent:
+            threading.Event().wait(1)
+        os._exit(1)
+
     os.nice(NICENESS)
-    threading.Thread(target=_leave_with, args=(os.getppid(),), daemon=True).start()
-
-
-def _leave_with(parent: int) -> None:
-    while os.getppid() == parent:
-        threading.Event().wait(1)
-    os._exit(1)
+    threading.Thread(target=leave_with_parent, daemon=True).start()
 
 
 class WorkerTimer(bootsteps.StartStopStep):
@@ -105,9 +106,7 @@ class WorkerTimer(bootsteps.StartStopStep):
         hub.call_repeatedly(REPLACE_EVERY, worker.pool._pool.maintain_pool)
 
     def _keep_ticking(self) -> None:
-        waited = timedelta(
-            0
-        )  # at the start everything queued may be something whose message was lost
+        waited = timedelta(0)  # the messages of all that is queued may be lost at the start
         while True:
             with self._quiet:
                 self._tick(waited)
@@ -118,7 +117,15 @@ class WorkerTimer(bootsteps.StartStopStep):
     def _tick(self, waited: timedelta) -> None:
         """Do the timer's work once. Errors are logged; the next tick comes anyway."""
         try:
-            self._write_row()
+            now = timezone.now()
+            row = {
+                "host": socket.gethostname(),
+                "process_id": os.getpid(),
+                "last_seen": now,
+                "queue": ",".join(self._queues),
+            }
+            Worker.objects.update_or_create(name=self._name, defaults=row)  # the banner reads it
+            Worker.objects.filter(last_seen__lt=now - FORGET_AFTER).delete()
             if self._leases.is_trusted():
                 for kind in background.kinds():
                     background.requeue_expired(kind.model)
@@ -130,15 +137,6 @@ class WorkerTimer(bootsteps.StartStopStep):
             logger.warning("The worker's timer could not do its work: %s", error)
         finally:
             connections.close_all()
-
-    def _write_row(self) -> None:
-        """Write the row that the banner reads."""
-        now = timezone.now()
-        us = {"host": socket.gethostname(), "process_id": os.getpid(), "last_seen": now}
-        Worker.objects.update_or_create(
-            name=self._name, defaults={**us, "queue": ",".join(self._queues)}
-        )
-        Worker.objects.filter(last_seen__lt=now - FORGET_AFTER).delete()
 
     def _stop(self) -> None:
         """Kill the child, give its work back to the queue and end the process."""

@@ -10,7 +10,6 @@ import json
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 
 from annotations.language.english import (
@@ -25,6 +24,7 @@ from annotations.language.grounding import Deanonymized, FormSlots, SlotPath, fi
 from annotations.language.plans import Lookup, Named, Value, Words
 from annotations.language.predicates import can_stand_in, is_loose, texts_of_patterns
 from parser_service.parsers.interface import Candidate
+from parser_service.parsers.remembering import remembered
 from parser_service.serving.parse_answers import answer_with, as_json, form_of
 from parser_service.serving.preparing import WorldLanguage
 
@@ -89,26 +89,22 @@ class Outlines:
     def __init__(self, language: WorldLanguage) -> None:
         self.language = language
         self._of_patterns = texts_of_patterns(language.predicates)
-        remember = lru_cache(maxsize=REMEMBERED)
-        self.slots = remember(self._slots)
-        self.answer = remember(self._answer)
-        self.sentence = remember(self._sentence)
-        self.asked = remember(self._asked)
-        self.text = remember(self._text)
-        self.entity = remember(self._entity)
 
-    def _slots(self, form: str) -> FormSlots:
+    @remembered(REMEMBERED)
+    def slots(self, form: str) -> FormSlots:
         """Return the slots of a form."""
         return FormSlots.of(_read(form))
 
-    def _text(self, text: str) -> StandIn | None:
+    @remembered(REMEMBERED)
+    def text(self, text: str) -> StandIn | None:
         """Return what is put in for a text."""
         if not can_stand_in(text, self._of_patterns):
             return None
         many = plural(text)
         return StandIn(text, many, as_json(text)[1:-1], as_json(many)[1:-1])
 
-    def _entity(self, text: str, predicate: str, place: int) -> tuple[str, str] | None:
+    @remembered(REMEMBERED)
+    def entity(self, text: str, predicate: str, place: int) -> tuple[str, str] | None:
         """Return class and JSON of an entity that a plan asks for; the class is empty for mere words."""
         value, is_missing = self.language.lookup.value(text, predicate, place)
         if is_missing:
@@ -116,13 +112,15 @@ class Outlines:
         entity_class = value.entity_class if isinstance(value, Named) else ""
         return entity_class, as_json(value.as_json())
 
-    def _asked(self, form: str, paths: Paths) -> tuple[AskedEntity, ...] | None:
+    @remembered(REMEMBERED)
+    def asked(self, form: str, paths: Paths) -> tuple[AskedEntity, ...] | None:
         """Return what the plan of a form asks for, whatever entities fill it."""
         if len(paths) > MOST_STAND_INS or STAND_IN.search(form):
             return None
         return tuple(self._make(form, paths, {})[1])
 
-    def _answer(self, form: str, paths: Paths, classes: tuple[str, ...]) -> Outline | None:
+    @remembered(REMEMBERED)
+    def answer(self, form: str, paths: Paths, classes: tuple[str, ...]) -> Outline | None:
         """Return the outline of an answer. ``classes`` are those of what was ``asked`` for."""
         asked = self.asked(form, paths) or ()
         answer, _ = self._make(form, paths, dict(zip(asked, classes, strict=True)))
@@ -131,7 +129,8 @@ class Outlines:
         text = as_json(answer | own | {"plan": plan})
         return Outline(text, answer["plan"]) if _is_sound(text, paths) else None
 
-    def _sentence(self, form: str, paths: Paths, blank: SlotPath) -> Outline | None:
+    @remembered(REMEMBERED)
+    def sentence(self, form: str, paths: Paths, blank: SlotPath) -> Outline | None:
         """Return the outline of the sentence with a blank in the place of the slot at ``blank``."""
         text = say_with_blank(blank, _with_signs(form, paths), self.language.predicates)
         return Outline(text) if _is_sound(text, paths) else None

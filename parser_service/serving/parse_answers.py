@@ -195,8 +195,8 @@ def _share(candidate: Candidate, score_kind: str | None) -> float:
 
 
 def _misfit(slots: Sequence[Slot] | None, heard: Anonymized) -> tuple[float, int, int]:
-    """Return how badly the entities of an utterance fit the slots of a form: the numbers of slots without any, of
-    entities without a slot, and of slots without a certain one."""
+    """Return how badly the entities of an utterance fit the slots of a form: how many slots have no entity, how
+    many entities no slot, and how many slots no certain entity."""
     if slots is None:
         return inf, 0, 0
     put_in = [slot.filler for slot in slots]

@@ -18,7 +18,7 @@ from annotations.language.grounding import Anonymized
 from annotations.models import Entity, Predicate, World
 from parser_service.models import ActionNames, Promotion, TrainingRun
 from parser_service.parsers.conditions import Protocol
-from parser_service.parsers.interface import Candidate, Parser
+from parser_service.parsers.interface import Candidate
 from parser_service.serving.answer_writing import AnswerWriter
 from parser_service.serving.batching import Batcher
 from parser_service.serving.loading import load_anew, size_of
@@ -59,7 +59,7 @@ class LoadedParser:
 
 @dataclass(frozen=True, slots=True)
 class ServedParser:
-    """A parser, and a writer with the language of its world: all that answers a request, the same while it does."""
+    """A parser and the writer of its world. They answer a request and do not change meanwhile."""
 
     world: str
     parser: LoadedParser
@@ -104,6 +104,12 @@ class WantedParser:
     language: tuple[object, ...]
     revision: int
     names: int = 0
+
+    def knowledge(self, protocol: str) -> tuple[object, ...]:
+        """Return what a run may know of the world; it is loaded anew where that changes."""
+        if protocol == Protocol.STRICT:
+            return ()
+        return self.language if protocol == Protocol.DOMAIN else (*self.language, self.revision)
 
 
 def read_wanted() -> dict[str, WantedParser]:
@@ -312,7 +318,7 @@ class Shelf:
             writer = held.writer
         else:
             writer = AnswerWriter(WorldLanguage.of(row.world))
-        knowledge = _knowledge(row, wanted)
+        knowledge = wanted.knowledge(row.protocol)
         if held is not None and (held.parser.run, held.parser.knowledge) == (row.pk, knowledge):
             return ServedParser(name, held.parser, writer, wanted)
         parser = load_anew(row).hesitant()
@@ -322,28 +328,17 @@ class Shelf:
             score_kind=str(parser.score_kind or ""),
             knowledge=knowledge,
             size=size_of(row),
-            batcher=self._make_batcher(parser),
+            batcher=RemoteAsker(parser.predict, self._seats)
+            if parser.asks_a_server
+            else Batcher(parser.predict, self._turn, self.metrics.batches.observe),
             lines_together=TOGETHER if parser.asks_a_server else LINES_TOGETHER,
         )
         return ServedParser(name, loaded, writer, wanted)
-
-    def _make_batcher(self, parser: Parser) -> Batcher | RemoteAsker:
-        if parser.asks_a_server:
-            return RemoteAsker(parser.predict, self._seats)
-        return Batcher(parser.predict, self._turn, self.metrics.batches.observe)
 
 
 def _words(wanted: WantedParser) -> tuple[object, ...]:
     """Return what changes when the language of the world has to be read anew."""
     return wanted.language, wanted.revision, wanted.names
-
-
-def _knowledge(run: TrainingRun, wanted: WantedParser) -> tuple[object, ...]:
-    """Return what changes when the run has to be loaded anew: what its protocol lets it know."""
-    if run.protocol == Protocol.STRICT:
-        return ()
-    is_domain = run.protocol == Protocol.DOMAIN
-    return wanted.language if is_domain else (*wanted.language, wanted.revision)
 
 
 def _nobody_answers(world: str, wanted: WantedParser) -> str:

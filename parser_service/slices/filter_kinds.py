@@ -103,18 +103,17 @@ class AnswerHead(OpenChoiceFilter):
     """The head predicate of the answer, or ``NO_FORM``."""
 
     def demand(self, value: str, given: Given) -> FilterCondition:
-        return FilterCondition(self._rows(value), columns=Q(answer_head=value))
-
-    def _rows(self, value: str) -> Q:
+        rows, prefix = Q(), ""
         if value == NO_FORM:
-            return Q(is_well_formed=False)
-        if value == "UNKNOWN":
-            return Q(logical_form="UNKNOWN")
-        found, prefix = Q(), ""
-        for number in range(1, MOST_LAMBDAS + 2):
-            found |= Q(logical_form__startswith=f"{prefix}( {value} ")
-            prefix += f"( lambda ${number} e "
-        return found & Q(is_well_formed=True)
+            rows = Q(is_well_formed=False)
+        elif value == "UNKNOWN":
+            rows = Q(logical_form="UNKNOWN")
+        else:
+            for number in range(1, MOST_LAMBDAS + 2):
+                rows |= Q(logical_form__startswith=f"{prefix}( {value} ")
+                prefix += f"( lambda ${number} e "
+            rows &= Q(is_well_formed=True)
+        return FilterCondition(rows, columns=Q(answer_head=value))
 
 
 class AnswerForm(django_filters.CharFilter):
@@ -152,7 +151,7 @@ class CategoryFilter(OpenChoiceFilter):
         return FilterCondition(people_say | (machine_says & ~self._have(by_people)))
 
     def _have(self, reviews: QuerySet[Review]) -> Q:
-        """Return the condition to be an answer with one of these reviews. Where all answers are of one run, a
+        """Return the condition that an answer has one of these reviews. Where all answers are of one run, a
         database looks its reviews up once instead of once for each answer."""
         run = self.parent.of_run
         if run is not None:

@@ -43,6 +43,12 @@ def test_tables_are_made():
     assert "<td>b</td>" in rendered("| a |\n| - |\n| b |\n")
 
 
+def test_cells_are_aligned_by_class_as_styles_are_refused():
+    html = rendered("| a | b |\n| -: | :- |\n| 1 | 2 |\n")
+    assert '<td class="number">1</td>' in html
+    assert "style" not in html
+
+
 @pytest.mark.parametrize("head", ["", "[", "> ", "| a |\n| - |\n"])
 @pytest.mark.parametrize("unit", UNITS)
 def test_rendering_is_linear(unit, head):

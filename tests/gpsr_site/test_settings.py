@@ -13,17 +13,13 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.mark.parametrize(
-    ("variable", "value", "sentence"),
+    ("variable", "value", "named"),
     [
-        (
-            "HOST",
-            "0.0.0.0",
-            "SECRET_KEY is not set, and HOST=0.0.0.0 serves more than this machine.",
-        ),
-        ("LOG_FORMAT", "xml", "LOG_FORMAT is xml; it is line or json."),
+        ("HOST", "0.0.0.0", ["SECRET_KEY", "HOST=0.0.0.0"]),
+        ("LOG_FORMAT", "xml", ["LOG_FORMAT", "xml", "line", "json"]),
     ],
 )
-def test_the_start_stops_with_a_sentence(tmp_path, variable, value, sentence):
+def test_the_start_stops_with_a_sentence(tmp_path, variable, value, named):
     environment = {**os.environ, "GPSR_VAR_DIR": str(tmp_path), variable: value}
     for name in ("SECRET_KEY", "ALLOWED_HOSTS", "DEBUG"):
         environment.pop(name, None)
@@ -36,7 +32,7 @@ def test_the_start_stops_with_a_sentence(tmp_path, variable, value, sentence):
         check=False,
     )
     assert done.returncode == 1
-    assert done.stderr.startswith(sentence) and "Traceback" not in done.stderr
+    assert all(each in done.stderr for each in named) and "Traceback" not in done.stderr
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Pages of what the worker does for somebody: progress, cancel, an answer, the result."""
+"""Pages of background jobs: progress, cancel, answer, result."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the worker does for somebody."""
+"""Routes of background jobs."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ from annotations.web.rest.streaming import JSON_LINES
 
 
 class JobSerializer(serializers.ModelSerializer[Job]):
-    """An import, a generation, an analysis. ``report`` is what came of it, null until it has ended.
+    """A background job, such as an import. ``report`` is its result, null until it has ended.
 
-    One that ``is_waiting_for_answer`` would remove something: POST to ``answer/`` lets it, ``cancel/``
-    drops it.
+    A job that ``is_waiting_for_answer`` would remove something: POST to ``answer/`` to allow it, or to
+    ``cancel/`` to drop the job.
     """
 
     report = serializers.DictField(allow_null=True)
@@ -78,7 +78,7 @@ class JobViewSet(Cancelling, RowsViewSet):
 
     @property
     def duty(self) -> Duty:
-        """What the request needs; to cancel or to answer a job, what asking for it needed."""
+        """Return the duty that the request needs; to cancel or answer a job, the duty for starting it."""
         if self.action not in ("cancel", "answer"):
             return super().duty
         keys = {"world__name": self.kwargs["world"], "pk": self.kwargs["pk"]}
@@ -111,7 +111,7 @@ class JobViewSet(Cancelling, RowsViewSet):
 
 
 class SiteJobViewSet(Cancelling, Retrieved, SiteViewSet):
-    """Jobs without a world that anybody sees: its import has not ended, or its deletion has begun."""
+    """Jobs whose world nobody sees: its import has not ended, or its deletion has begun."""
 
     model = Job
     serializer_class = JobSerializer

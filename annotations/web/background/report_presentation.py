@@ -1,4 +1,4 @@
-"""What a verb reports, as pages show it: the same right after a request and on the page of a job."""
+"""Prepare the report of a verb for pages: the same right after a request and on the page of a job."""
 
 from __future__ import annotations
 
@@ -39,8 +39,8 @@ def shown_report(
 ) -> dict[str, Any]:
     """Return the context of ``_report.html``: the report, its template, and its problems, the errors first.
 
-    Problems of an import into ``world`` have an ``url``: that of the row on their line, or of its list. Those
-    of a refused one have none: the rows that are there are not those of its files.
+    A problem of an import into ``world`` has a ``url``: that of the row on its line, or of its list. After a
+    refused import there is no ``url``, since no row comes from its files.
     """
     problems = [{**each, "source": each["file"]} for each in report.get("problems", ())]
     problems.sort(key=lambda each: each["severity"] != "error")

@@ -64,7 +64,7 @@ class LabelViewSet(ListModelMixin, WorldViewSet):
     sorts = {"newest": "-pk", "id": "pk"}
 
     def rows(self) -> QuerySet[Label]:
-        """Leave out what others answered: who may still be asked must not see it."""
+        """Leave out the answers of others: people who may still be asked must not see them."""
         return Label.objects.of_world(self.world).filter(annotator=self.request.user)
 
     @extend_schema(request=None, responses={200: LabelSerializer})

@@ -56,7 +56,7 @@ class UploadSerializer(serializers.ModelSerializer[Upload]):
 
 
 class NewUpload(Fields):
-    """A ``file``, or its ``text``. What is not said is recognised: ``format``, the ``column`` with the texts,
+    """A ``file``, or its ``text``. What is left out is recognised: ``format``, the ``column`` with the texts,
     whether the first row of a table is its head (``has_head``), the ``encoding``.
 
     ``preview`` says what would be stored and stores nothing. ``skips_bad`` leaves out rows that cannot be

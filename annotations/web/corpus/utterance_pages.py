@@ -155,7 +155,7 @@ def _store_pasted(request: WorldRequest, world: World, shown: Preview) -> HttpRe
 def utterances_delete(request: WorldRequest, world: World) -> HttpResponse:
     """Say which utterances would be deleted: those that are ticked, or all that the filters leave.
 
-    A POST deletes them, if they are as many still as its ``total`` says.
+    A POST deletes them, if their number is still its ``total``.
     """
     keys = [number_in(each) for each in request.GET.getlist("row") if each]
     rows = Listing(request, UtteranceFilters, world.utterances.all(), SORTS).matching

@@ -64,7 +64,7 @@ class NewUtterances(Fields):
 
 
 class CollectedSerializer(serializers.Serializer[Any]):
-    """What was stored. ``uploads/ID/undo/`` with the id in ``upload``, null where nothing was new, takes it away."""
+    """What was stored. ``upload`` is the id for ``uploads/ID/undo/``, null if nothing was new."""
 
     added = serializers.IntegerField()
     duplicates = serializers.ListField(child=serializers.CharField())
@@ -99,7 +99,7 @@ class ExportedLabelSerializer(serializers.Serializer[Any]):
 
 class ExportedUtteranceSerializer(serializers.ModelSerializer[Utterance]):
     """One line of a JSON Lines export. ``labels`` are the accepted answers; the last one decides, and
-    ``annotator``, ``labelled_at`` and ``seconds`` are its own."""
+    ``annotator``, ``labelled_at`` and ``seconds`` are taken from it."""
 
     spans = serializers.ListField(child=serializers.ListField())
     file_name = serializers.CharField()

@@ -133,7 +133,7 @@ class Check(WorldRoute):
     filter_backends = []
 
     def replaced(self, sent: dict[str, Any]) -> Any | None:
-        """Return the row that ``replaces`` names, which is no field of a form. Raises Http404."""
+        """Return the row that ``replaces`` in the body names. Raises Http404."""
         key = sent.pop("replaces", None)
         return get_object_or_404(self.rows(), pk=key) if key else None
 

@@ -1,4 +1,4 @@
-"""Commands that no template gives a form, and those that two templates give different ones."""
+"""Routes of commands without a form, and of commands to which two templates give different forms."""
 
 from __future__ import annotations
 

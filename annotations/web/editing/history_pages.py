@@ -1,4 +1,4 @@
-"""What became of a row: its versions with their differences, and what was deleted. Both can be restored."""
+"""History of a row: its versions with their differences, and deleted rows. Both can be restored."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What became of the rows that people edit: versions, restored ones, other names."""
+"""History of the rows that people edit: list versions, restore one, rename."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def serializer_of(kind: EditableKind) -> type[serializers.ModelSerializer[Any]]:
 
 
 class VersionSerializer(serializers.Serializer[Any]):
-    """What a row was: ``values`` as people edit them, who made it so, and when."""
+    """A version of a row: its ``values`` as people edit them, its author and its time."""
 
     entry = serializers.IntegerField(source="history_id")
     id = serializers.IntegerField()
@@ -106,7 +106,7 @@ class HistoryOfRow(Versions):
 
     @property
     def duty(self) -> Duty:
-        """What the method of the request needs; to restore a row, what writing one of its kind needs."""
+        """Return the duty that the request needs; to restore a row, the duty for writing its kind."""
         kind = KINDS.get(self.kwargs.get("kind", ""))
         return kind.write_duty if kind and self.request.method == "POST" else super().duty
 

@@ -1,4 +1,4 @@
-"""The kinds of rows by the names in URLs, and the verbs that some kinds have of their own."""
+"""The kinds of rows by their names in URLs, and the verbs that only some kinds have."""
 
 from __future__ import annotations
 

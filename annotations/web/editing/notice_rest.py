@@ -1,4 +1,4 @@
-"""What waits in one's inbox: comments that name one, or answer where one has written."""
+"""The caller's inbox: comments that mention them, and those on rows that they have commented on."""
 
 from __future__ import annotations
 

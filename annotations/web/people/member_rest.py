@@ -56,7 +56,7 @@ class RolesChange(Fields):
 
 
 class NewMember(RolesChange):
-    """The name of an account that is there already; whoever has none is invited."""
+    """The name of an existing account. People without one are invited."""
 
     name = LineField(max_length=150)
 

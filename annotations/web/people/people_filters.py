@@ -12,7 +12,7 @@ from annotations.people.access import PageRequest
 
 
 def entries_of(request: PageRequest) -> QuerySet[AuditEntry]:
-    """Return the audit log of the world that the page is about; of the whole site where it is about none."""
+    """Return the audit log of the page's world, or of the whole site on a page without a world."""
     world = getattr(request, "world", None)
     return AuditEntry.objects.filter(world=world) if world else AuditEntry.objects.all()
 

@@ -50,8 +50,8 @@ class IssuedToken(TokenSerializer):
 
 
 class NewToken(Fields):
-    """What a token is for, what it may be used for, and how many days. A token makes none of more scope
-    than its own, and none that outlives it."""
+    """What a token is for, what it may be used for, and how many days. A token cannot make one with a wider
+    scope or a longer life than its own."""
 
     name = LineField(max_length=80)
     scope = serializers.ChoiceField(choices=scope_choices(), default=Scope.READ)

@@ -143,7 +143,7 @@ class PersonAndCount(PersonSerializer):
 
 
 class GivenSerializer(serializers.Serializer[Any]):
-    """How many items the person has beside those that they had."""
+    """How many more items the person has now."""
 
     given = serializers.IntegerField()
 
@@ -199,7 +199,7 @@ class WorkItemViewSet(RowsViewSet):
         return found
 
     def shown(self) -> Response:
-        """Answer with the item as it is now, without a tag: what others do with it changes it too."""
+        """Answer with the item as it is now, without an ETag: other people change it as well."""
         return Response(self.get_serializer(self.rows().get(pk=self.kwargs["pk"])).data)
 
     @extend_schema(

@@ -13,7 +13,7 @@ from annotations.web.rest.problem_details import ProblemItemSerializer
 
 
 class Fields(serializers.Serializer[Any]):
-    """What a body may hold. A name that is none of it is refused rather than overlooked."""
+    """The fields that a body may have. An unknown name is refused."""
 
     def to_internal_value(self, data: Any) -> Any:
         if isinstance(data, Mapping):
@@ -51,7 +51,7 @@ class AttributesField(serializers.DictField):
 
 
 class FiniteField(serializers.FloatField):
-    """A number; null where it is infinite or none, which JSON cannot write."""
+    """A number; null for infinity and NaN, which JSON cannot write."""
 
     def to_representation(self, value: Any) -> Any:
         return float(value) if value is not None and math.isfinite(value) else None

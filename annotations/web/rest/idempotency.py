@@ -41,7 +41,13 @@ def once(method: Method) -> Method:
         except BaseException:
             cache.delete(slot)  # nothing was done, so the key can be used again
             raise
-        cache.set(slot, {"sent": sent, **_kept(response)}, REMEMBERED_SECONDS)
+        kept = {
+            "sent": sent,
+            "status": response.status_code,
+            "data": json.dumps(response.data, cls=DjangoJSONEncoder),
+            "headers": {name: response[name] for name in KEPT_HEADERS if name in response},
+        }
+        cache.set(slot, kept, REMEMBERED_SECONDS)
         return response
 
     answer.takes_key = True  # type: ignore[attr-defined]  # of a function
@@ -75,12 +81,6 @@ def _items(data: Any) -> list[tuple[str, Any]]:
     if hasattr(data, "lists"):
         return list(data.lists())
     return list(data.items()) if isinstance(data, dict) else [("", data)]
-
-
-def _kept(response: Response) -> dict[str, Any]:
-    headers = {name: response[name] for name in KEPT_HEADERS if name in response}
-    data = json.dumps(response.data, cls=DjangoJSONEncoder)
-    return {"status": response.status_code, "data": data, "headers": headers}
 
 
 def _replay(kept: dict[str, Any] | None, sent: str) -> Response:

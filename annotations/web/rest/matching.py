@@ -20,7 +20,7 @@ ANY = "*"
 
 
 def etag_of(row: Any, shown: Mapping[str, Any]) -> str:
-    """Return the tag of a row: its version where it counts them, else a hash of what is shown of it."""
+    """Return the tag of a row: its version number if it has one, else a hash of what is shown of it."""
     if isinstance(row, Editable):
         return f'"{row.version}"'
     text = json.dumps(shown, sort_keys=True, cls=DjangoJSONEncoder)

@@ -42,16 +42,16 @@ SCOPE_FOR = {
 
 
 def asked_of(view: APIView, method: str) -> str:
-    """Return the name by which ``duties``, ``scopes`` and ``conditional`` of a view speak of a request: that
-    of the action in a view set, else of the method."""
+    """Return the key of a request in ``duties``, ``scopes`` and ``conditional`` of a view: the action in a
+    view set, else the method."""
     return getattr(view, "action", None) or ("GET" if method == "HEAD" else method)
 
 
 def scope_needed(view: APIView, method: str) -> Scope:
     """Return the scope that a token needs for ``method`` of ``view``.
 
-    ``view.scopes`` says it where it is not what duty and method say: a POST that stores nothing needs
-    ``Scope.READ``, and so does what only admins read; one that starts a run ``Scope.TRAIN``.
+    It follows from duty and method unless ``view.scopes`` names another: ``Scope.READ`` for a POST that
+    stores nothing and for what only admins read, ``Scope.TRAIN`` for a POST that starts a run.
     """
     named: Scope | None = getattr(view, "scopes", {}).get(asked_of(view, method))
     if named is not None:

@@ -34,8 +34,8 @@ from annotations.web.rest.problem_details import refusal_of_form
 
 
 class Route(GenericAPIView[Any]):
-    """A route outside of any world. ``duties`` says what each method, or action of a view set, needs, which
-    decides the scope of a token; reading needs ``Duty.VIEW``."""
+    """A route outside of any world. ``duties`` has the duty for each method, or for each action of a view
+    set. It also decides the scope that a token needs. Reading needs ``Duty.VIEW``."""
 
     permission_classes = [HasScope]
     duties: Mapping[str, Duty] = {}
@@ -113,7 +113,7 @@ class Tagged(Route):
     def hold(self) -> None:
         """Lock the row until the end of the transaction.
 
-        A route whose row is made of several, or is not stored yet, holds what these belong to.
+        If the row is made of several, or is not stored yet, the route locks what these belong to.
         """
         rows = self.model._default_manager.select_for_update(no_key=True)
         rows.filter(pk=self.kwargs["pk"]).first()
@@ -147,10 +147,10 @@ class RowRoute(SingleRow, WorldRoute):
 
 
 class SiteViewSet(ViewSetMixin, Tagged):
-    """A kind of row: its list, each of its rows, and what is done with one.
+    """A kind of row: its list, each of its rows, and the actions on one.
 
-    ``duties``, ``scopes`` and ``conditional`` speak of its actions. An action without a docstring of its
-    own is described by that of the class.
+    The keys of ``duties``, ``scopes`` and ``conditional`` are its actions. An action without a docstring is
+    described by that of the class.
     """
 
     lookup_value_converter = "int"
@@ -158,7 +158,7 @@ class SiteViewSet(ViewSetMixin, Tagged):
     sorts: Mapping[str, str] = {"id": "pk"}
 
     def filter_queryset(self, rows: QuerySet[Any]) -> QuerySet[Any]:
-        """Filter lists: a single row is there whatever the address asks."""
+        """Filter only lists: a single row is found whatever filters the address has."""
         return rows if self.detail else super().filter_queryset(rows)
 
 
@@ -178,7 +178,7 @@ class RowsViewSet(ListModelMixin, Retrieved, WorldViewSet):
 
 
 class Noun(Tagged):
-    """What a kind of editable row says of itself: how it is read from a request and stored.
+    """A kind of editable row: how it is read from a request and stored.
 
     ``new_serializer`` reads a new row and ``change_serializer`` what may be changed of one.
     """

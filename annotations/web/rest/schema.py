@@ -65,7 +65,7 @@ class Schema(AutoSchema):
         return given
 
     def get_request_serializer(self) -> Any:
-        """Return what a noun reads of a new row, or of a change."""
+        """Return the serializer for the body: of a new row, or of a change."""
         names = dict.fromkeys(("POST", "create"), "new_serializer")
         names |= dict.fromkeys(("PATCH", "partial_update"), "change_serializer")
         return getattr(self.view, names.get(self._asked, ""), None) or (
@@ -73,7 +73,7 @@ class Schema(AutoSchema):
         )
 
     def get_response_serializers(self) -> Any:
-        """Return what a noun answers a write with: the row, and what the checker says of it."""
+        """Return the serializer for the answer to a write: the row with the checker's remarks."""
         writes = ("POST", "PATCH", "create", "partial_update")
         if self._asked in writes and hasattr(self.view, "new_serializer"):
             return with_problems(getattr(self.view, "serializer_class", None))

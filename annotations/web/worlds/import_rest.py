@@ -37,7 +37,7 @@ AnyForm = TypeVar("AnyForm", bound=forms.Form)
 
 
 class DoneSerializer(serializers.Serializer[Any]):
-    """What came of it, or the job that will say so: one of both is null."""
+    """The report of the work, or the job that carries it out: one of the two is null."""
 
     job = JobSerializer(allow_null=True)
     report = serializers.DictField(allow_null=True)

@@ -33,8 +33,8 @@ SENTENCES = frozenset({"question", "whattosay"})
 
 @dataclass(frozen=True, slots=True)
 class ErrorCase:
-    """One wrong answer and what is known of it. ``label_as_said`` is what the label should be as far as its
-    utterance and surer evidence than a parser say."""
+    """One wrong answer and what is known of it. ``label_as_said`` is the label that the utterance and evidence
+    surer than a parser call for."""
 
     gold: Form
     predicted: Form
@@ -85,7 +85,18 @@ def by_names(case: ErrorCase) -> Suggestions:
     if named is None:
         return
     if isinstance(case.gold, Unknown):
-        yield from _by_names_of_unknown(case, named)
+        classes = classes_in(case.predicted)
+        if classes and classes == tuple(each for each in named if each not in SENTENCES):
+            reason = (
+                "The label is UNKNOWN, yet the answer has a place for all that the utterance names."
+            )
+            yield CategoryProposal(category, reason), True
+        elif made_up := frozenset(classes) - set(named):
+            reason = (
+                f"The label is UNKNOWN, and the answer has a place for a {_list(made_up)} that the "
+                "utterance does not name."
+            )
+            yield CategoryProposal(ErrorCategory.UNEXPECTED_DEFAULT, reason), True
     elif unsaid := unsaid_in_label(case.gold, case.predicted, named):
         reason = f"The label has a place for a {_list(unsaid)}, but the utterance names none."
         yield CategoryProposal(category, reason), _is_the_same(case.label_as_said(), case.predicted)
@@ -93,21 +104,6 @@ def by_names(case: ErrorCase) -> Suggestions:
         without = without_classes(flatten_conjunctions(case.predicted), left_out)
         reason = f"The utterance names a {_list(left_out)}, which the label leaves out."
         yield CategoryProposal(category, reason), _is_the_same(case.gold, without)
-
-
-def _by_names_of_unknown(case: ErrorCase, named: tuple[str, ...]) -> Suggestions:
-    classes = classes_in(case.predicted)
-    if classes and classes == tuple(each for each in named if each not in SENTENCES):
-        reason = (
-            "The label is UNKNOWN, yet the answer has a place for all that the utterance names."
-        )
-        yield CategoryProposal(ErrorCategory.WRONG_GOLD_LABEL, reason), True
-    elif made_up := frozenset(classes) - set(named):
-        reason = (
-            f"The label is UNKNOWN, and the answer has a place for a {_list(made_up)} that the "
-            "utterance does not name."
-        )
-        yield CategoryProposal(ErrorCategory.UNEXPECTED_DEFAULT, reason), True
 
 
 def by_words(case: ErrorCase) -> Suggestions:
@@ -195,8 +191,8 @@ def _outside_world(form: Form, run: RunEvidence) -> Iterator[str]:
 
 
 def furthest(gold: Form, predicted: Form, neighbours: Sequence[Neighbour]) -> Neighbour | None:
-    """Return the neighbour whose answer differs most from ``predicted`` beyond what its label differs
-    from ``gold``; the first of equals, None where no answer differs more than the labels do."""
+    """Return the neighbour whose answer is further from ``predicted`` than its label from ``gold``, the one
+    with the largest excess. Of equals it is the first; None where no answer is further."""
     if not neighbours:
         return None
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from itertools import chain
 from typing import TYPE_CHECKING
 
@@ -16,6 +15,7 @@ from annotations.language.english import ARTICLES
 from annotations.language.forms import head_predicate, predicates
 from parser_service.analysis.answer_forms import read_or_none
 from parser_service.analysis.arrays import Bools, Floats, Ints
+from parser_service.parsers.remembering import remembered
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -29,8 +29,8 @@ _Predicates = frozenset[str]
 
 @dataclass(frozen=True, slots=True)
 class SpokenFor:
-    """``word`` stands in ``with_answer`` training pairs that have what the answer has and the label has
-    not, and in ``with_label`` pairs of the opposite kind."""
+    """``word`` occurs in ``with_answer`` training pairs with what only the answer has, and in ``with_label``
+    pairs with what only the label has."""
 
     word: str
     with_answer: int
@@ -58,8 +58,6 @@ class WordUse:
         self._heads = np.array([head_predicate(form) for form in forms.values()], dtype=object)
         self._pairs: Ints = np.array([per_label[label] for label in forms], dtype=np.int64)
         self._places, self._counts = _count([by_label[label] for label in forms])
-        self._odds = lru_cache(maxsize=4096)(self._compare)
-        self._usual = lru_cache(maxsize=256)(self._usual_words)
 
     def knows(self, label: str) -> bool:
         """Tell whether training has the label."""
@@ -68,7 +66,7 @@ class WordUse:
     def is_familiar(self, words: Iterable[str], head: str) -> bool:
         """Tell whether at least half of the words are usual where labels have this head predicate."""
         said = _content(words)
-        usual = self._usual(head)
+        usual = self._usual_words(head)
         known = sum(bool(usual[self._places[word]]) for word in said if word in self._places)
         return 2 * known >= len(said) > 0
 
@@ -86,7 +84,7 @@ class WordUse:
         if not more or not less:
             return None
         said = sorted(word for word in _content(words) if word in self._places)
-        odds = self._odds(more, less)
+        odds = self._compare(more, less)
         if odds is None or not said:
             return None
         places = [self._places[word] for word in said]
@@ -97,6 +95,7 @@ class WordUse:
         at = places[best]
         return SpokenFor(said[best], int(odds.with_answer[at]), int(odds.with_label[at]))
 
+    @remembered(4096)
     def _compare(self, more: _Predicates, less: _Predicates) -> _Odds | None:
         """Compare the words of pairs with all of ``more`` and none of ``less``, and the opposite; None where
         training lacks either."""
@@ -123,6 +122,7 @@ class WordUse:
         counts: Ints = forms.astype(np.int64) @ self._counts
         return counts
 
+    @remembered(256)
     def _usual_words(self, head: str) -> Bools:
         """Return which words are usual in pairs with this head predicate, [words]."""
         forms = np.asarray(self._heads == head, dtype=bool)

@@ -9,7 +9,7 @@ from annotations.language.english import ARTICLES, NO_COMMAND_WORDS, POLITE_OPEN
 from annotations.language.forms import Form, head_predicate
 from parser_service.analysis.edits.edit import EditKind, UtteranceEdit
 from parser_service.analysis.edits.facts import WorldFacts
-from parser_service.analysis.edits.mentions import TokenizedUtterance, UtteranceToken
+from parser_service.analysis.edits.mentions import TokenizedUtterance
 
 SHORTEST_MISSPELLED = 5  # letters; shorter words become other words too easily
 _OPENINGS = sorted((opening.split() for opening in POLITE_OPENINGS), key=len, reverse=True)
@@ -58,10 +58,18 @@ def misspell(
 ) -> Iterator[UtteranceEdit]:
     """Exchange two letters inside one long plain word, unless that makes a word of the world."""
     for word in utterance.mentions:
-        new = _misspelled(word, random) if not word.entity_class else ""
-        if new and new.lower() not in facts.vocabulary:
+        letters = word.text
+        is_short = len(letters) < SHORTEST_MISSPELLED
+        if word.entity_class or is_short or not letters.isalpha():
+            continue
+        places = [at for at in range(1, len(letters) - 2) if letters[at] != letters[at + 1]]
+        if not places:
+            continue
+        at = random.choice(places)
+        new = letters[:at] + letters[at + 1] + letters[at] + letters[at + 2 :]
+        if new.lower() not in facts.vocabulary:
             text = utterance.replace(word, new)
-            yield UtteranceEdit(EditKind.SPELLING, text, form, word.text, new)
+            yield UtteranceEdit(EditKind.SPELLING, text, form, letters, new)
 
 
 def exchange_synonym(
@@ -71,33 +79,19 @@ def exchange_synonym(
     head = head_predicate(form)
     words = [each.word for each in utterance.mentions]
     for (old, needed, following), others in facts.synonyms.items():
+        if needed != head:
+            continue
         phrase = [*old.split(), *following.split()]
-        places = _places(words, phrase) if needed == head else []
+        last = len(words) - len(phrase) + 1
+        places = [at for at in range(last) if words[at : at + len(phrase)] == phrase]
         if len(places) != 1:
             continue
         first = utterance.mentions[places[0]]
-        last = utterance.mentions[places[0] + len(old.split()) - 1]
+        end = utterance.mentions[places[0] + len(old.split()) - 1].end
         for new in others:
             written = _like(first.text, new)
-            text = utterance.text[: first.start] + written + utterance.text[last.end :]
+            text = utterance.text[: first.start] + written + utterance.text[end:]
             yield UtteranceEdit(EditKind.SYNONYM, text, form, old, new)
-
-
-def _misspelled(word: UtteranceToken, random: Random) -> str:
-    letters = word.text
-    if len(letters) < SHORTEST_MISSPELLED or not letters.isalpha():
-        return ""
-    places = [at for at in range(1, len(letters) - 2) if letters[at] != letters[at + 1]]
-    if not places:
-        return ""
-    at = random.choice(places)
-    return letters[:at] + letters[at + 1] + letters[at] + letters[at + 2 :]
-
-
-def _places(words: list[str], phrase: list[str]) -> list[int]:
-    """Return where a phrase begins among words."""
-    last = len(words) - len(phrase) + 1
-    return [at for at in range(last) if words[at : at + len(phrase)] == phrase]
 
 
 def _like(model: str, text: str) -> str:

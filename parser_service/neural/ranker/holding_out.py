@@ -25,7 +25,7 @@ MOST_ASKED = 300  # utterances of each kind
 
 @dataclass(frozen=True, slots=True)
 class HeldOut:
-    """``train`` is what is left; no pair of it has a form of ``new``. The forms of ``known`` it has."""
+    """``train`` is what is left: it has no form of ``new``, and all forms of ``known``."""
 
     train: tuple[Pair, ...]
     new: tuple[Pair, ...]

@@ -69,7 +69,7 @@ class RankedForms:
         return self.origins[number - self.known] if self.origins else ""
 
     def to_json(self) -> dict[str, Any]:
-        """Return the same as a JSON-ready mapping."""
+        """Return it as a mapping that is ready for JSON."""
         return asdict(self)
 
 

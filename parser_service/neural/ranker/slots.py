@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Sequence
-from functools import lru_cache
 from random import Random
 from re import Match
 
@@ -17,6 +16,7 @@ from annotations.language.forms import CLASS_TOKEN
 from annotations.language.grounding import QUESTION_WORD, Anonymizer
 from annotations.language.ontology import Ontology
 from annotations.language.symbols import ENTITY_CLASSES
+from parser_service.parsers.remembering import remembered
 
 _PLACE = {name: place for place, name in enumerate(ENTITY_CLASSES)}
 _MOST_READINGS = 8
@@ -39,17 +39,17 @@ class SlotTerm:
         # Many forms have the same slots. [kinds of form, classes] and [forms]
         self._kinds, self._kind_of = torch.unique(counts, dim=0, return_inverse=True)
         self._anonymizer = Anonymizer(ontology)
-        self._readings = lru_cache(maxsize=100_000)(self._read)
 
     def scores(self, utterances: Sequence[str]) -> Tensor:
         """Return scores [utterances, forms]; 0 where all slots fit."""
         rows = []
         for utterance in utterances:
-            readings = torch.tensor(self._readings(utterance))  # [readings, classes]
+            readings = torch.tensor(self._read(utterance))  # [readings, classes]
             misfit = (self._kinds[None] - readings[:, None]).abs().sum(-1)  # [readings, kinds]
             rows.append(-misfit.min(0).values)
         return torch.stack(rows).float()[:, self._kind_of]
 
+    @remembered(100_000)
     def _read(self, utterance: str) -> tuple[Counts, ...]:
         """Count the entities by class, once for each way to understand the words."""
         readings = [_count_tokens(utterance)]
@@ -84,18 +84,19 @@ class SlotFiller:
     def fill(self, text: str, random: Random) -> str:
         """Return ``text`` with entities: ``bring me the <object>`` with an object. A class without entities
         keeps its token."""
-        return CLASS_TOKEN.sub(lambda token: self._draw(token, random), text)
 
-    def _draw(self, token: Match[str], random: Random) -> str:
-        entity_class = token[1].rstrip("0123456789")
-        if entity_class == "question":
-            return QUESTION_WORD
-        if entity_class == "object" and self._singulars and random.random() < _OBFUSCATED:
-            return random.choice(self._singulars)
-        entities = self._ontology.of_class(entity_class)
-        if not entities:
-            return token[0]
-        text = random.choice(entities).text
-        if entity_class == "category":
-            return random.choice((ANY_OBJECT, text, self._ontology.singular(text)))
-        return text
+        def draw(token: Match[str]) -> str:
+            entity_class = token[1].rstrip("0123456789")
+            if entity_class == "question":
+                return QUESTION_WORD
+            if entity_class == "object" and self._singulars and random.random() < _OBFUSCATED:
+                return random.choice(self._singulars)
+            entities = self._ontology.of_class(entity_class)
+            if not entities:
+                return token[0]
+            name = random.choice(entities).text
+            if entity_class == "category":
+                return random.choice((ANY_OBJECT, name, self._ontology.singular(name)))
+            return name
+
+        return CLASS_TOKEN.sub(draw, text)

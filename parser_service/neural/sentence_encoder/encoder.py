@@ -130,7 +130,7 @@ class SentenceEncoder(nn.Module):
     @torch.no_grad()
     @denormals_flushed()
     def vectors(self, texts: Sequence[str], check: Check = keep_going) -> Tensor:
-        """Return the same without dropout and gradient, for any number of texts. Shape [texts, width]."""
+        """Return the vectors of any number of texts without dropout and gradient. Shape [texts, width]."""
         if not texts:
             return torch.zeros(0, self.width, device=self.device)
         was_training = self.training

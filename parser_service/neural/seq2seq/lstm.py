@@ -176,9 +176,8 @@ class Seq2SeqModel(nn.Module):
         """Draw weights and dropout from ``generator`` alone. ``context`` is the shape of what a frozen
         encoder adds to each word of the utterance, if there is one."""
         super().__init__()
-        with torch.random.fork_rng(
-            devices=[]
-        ):  # torch's layers draw weights, which are drawn again
+        # Torch's layers draw weights from the global generator; they are drawn again below.
+        with torch.random.fork_rng(devices=[]):
             source = WordEmbedding(source_words, config.embedding_size)
             target = WordEmbedding(target_words, config.embedding_size)
             mix = ScalarMix(context) if context else None

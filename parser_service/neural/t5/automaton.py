@@ -11,13 +11,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum, auto
-from functools import lru_cache
 
 from annotations.language.forms import UNKNOWN, Application, Form, Lambda, Variable
 from annotations.language.predicates import ArgumentKind, argument_kind
 from parser_service.neural.t5.rules import NESTED, NEVER, Costs, Kinds, Rules, own_length
 from parser_service.neural.t5.spelling import INSIDE, spell
 from parser_service.parsers.new_forms.short import CLOSE
+from parser_service.parsers.remembering import remembered
 
 REMEMBERED = 2_000  # states whose continuations are kept, of some kilobytes each
 
@@ -101,12 +101,11 @@ class Automaton:
         self._terms = {atom: term for term in terms for atom in _spellings(term)}
         self.atoms = (*self._terms, CLOSE)
         self._alike = self._group()
-        self._needs = lru_cache(maxsize=REMEMBERED)(self._count_needs)
 
     def continuations(self, state: UnfinishedForm) -> list[str]:
         """Return the atoms after which a form within the limits can be completed."""
         left = self.rules.longest - state.spent
-        needs = self._needs(replace(state, spent=0))
+        needs = self._count_needs(replace(state, spent=0))
         return [atom for atom, needed in needs if needed <= left]
 
     def follow(self, state: UnfinishedForm, atom: str) -> UnfinishedForm | None:
@@ -141,6 +140,7 @@ class Automaton:
             state = after
         return self.can_end(state)
 
+    @remembered(REMEMBERED)
     def _count_needs(self, state: UnfinishedForm) -> list[tuple[str, int]]:
         """Return the atoms that may follow, each with the least bytes of it and of what completes the
         form. Atoms that are alike are tried together."""

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from functools import cache
 from typing import Any, Self
 
 from annotations.language.forms import (
@@ -30,6 +29,7 @@ from annotations.language.predicates import (
     argument_kind,
     infer_signatures,
 )
+from parser_service.parsers.remembering import remembered
 
 NEVER = 10**9  # bytes: more than any form may have
 NESTED = (ArgumentKind.LAMBDA, ArgumentKind.FORM)  # also what a λ holds
@@ -145,16 +145,15 @@ class Costs:
 
     def __init__(self, rules: Rules):
         self.rules = rules
-        self.leaf = cache(self._leaf)
-        self.nested = cache(self._nested)
-        self.fill = cache(self._fill)
 
-    def _leaf(self, kind: ArgumentKind, bound: int) -> int:
+    @remembered()
+    def leaf(self, kind: ArgumentKind, bound: int) -> int:
         """Of a leaf that is allowed where ``kind`` is declared."""
         allowed = (x for x in self.rules.leaves(bound) if kind.admits(argument_kind(x)))
         return min(map(own_length, allowed), default=NEVER)
 
-    def _nested(self, kind: ArgumentKind, level: int, bound: int) -> int:
+    @remembered()
+    def nested(self, kind: ArgumentKind, level: int, bound: int) -> int:
         """Of a λ or an application that is allowed where ``kind`` is declared."""
         is_allowed = any(map(kind.admits, NESTED))
         if not is_allowed or level >= self.rules.deepest:
@@ -178,7 +177,8 @@ class Costs:
         """Of what may stand in a λ: another λ or an application."""
         return self.nested(ArgumentKind.ANY, level, bound)
 
-    def _fill(self, kinds: Kinds, filled: int, needs_nested: bool, level: int, bound: int) -> int:
+    @remembered()
+    def fill(self, kinds: Kinds, filled: int, needs_nested: bool, level: int, bound: int) -> int:
         """Of the arguments from number ``filled`` on, with a λ or an application among them where
         ``needs_nested``."""
         costs = [

@@ -69,9 +69,14 @@ class Exchange:
 
     def send(self, method: str, path: str, body: bytes | None = None) -> Reply:
         """Return the reply, whatever its status. Raises ServerRefusal, NoReply and Abandoned."""
+        headers = {"Accept": "application/json", "User-Agent": "gpsr-workbench"}
+        if body is not None:
+            headers["Content-Type"] = "application/json"
+        if self._server.key:
+            headers["Authorization"] = f"Bearer {self._server.key}"
         try:
             with closing(self._connect()) as connection:
-                connection.request(method, self._server.path + path, body, self._headers(body))
+                connection.request(method, self._server.path + path, body, headers)
                 return self._read(connection.getresponse())
         except (OSError, HTTPException) as error:
             if self._is_abandoned:
@@ -111,14 +116,6 @@ class Exchange:
         connection = HTTPConnection(server.host, server.port)
         connection.sock = self._socket
         return connection
-
-    def _headers(self, body: bytes | None) -> dict[str, str]:
-        headers = {"Accept": "application/json", "User-Agent": "gpsr-workbench"}
-        if body is not None:
-            headers["Content-Type"] = "application/json"
-        if self._server.key:
-            headers["Authorization"] = f"Bearer {self._server.key}"
-        return headers
 
     def _read(self, response: HTTPResponse) -> Reply:
         if 300 <= response.status < 400:

@@ -53,7 +53,12 @@ class KeptAnswers:
             path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
             unfinished.write_text(json.dumps(asdict(answer)) + "\n", encoding="utf-8")
             unfinished.replace(path)
-            self._make_room(path.parent)
+            files = list(path.parent.iterdir())
+            # Hashes fill all folders alike, so that each holds its share of the bound.
+            if len(files) > self._most_in_one:
+                by_age = sorted(files, key=lambda file: file.stat().st_mtime)
+                for file in by_age[: len(files) - self._most_in_one]:
+                    file.unlink(missing_ok=True)
         except OSError:
             with suppress(OSError):
                 unfinished.unlink(missing_ok=True)
@@ -63,14 +68,6 @@ class KeptAnswers:
             return None
         name = hash_of(question)
         return self._folder / name[:2] / f"{name}.json"
-
-    def _make_room(self, folder: Path) -> None:
-        """Hashes fill all folders alike, so that each holds its share of the bound."""
-        files = list(folder.iterdir())
-        if len(files) > self._most_in_one:
-            by_age = sorted(files, key=lambda path: path.stat().st_mtime)
-            for path in by_age[: len(files) - self._most_in_one]:
-                path.unlink(missing_ok=True)
 
 
 def hash_of(question: Question) -> str:

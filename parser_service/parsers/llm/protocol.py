@@ -54,9 +54,17 @@ class Dialect:
 
     def write(self, question: Question) -> bytes:
         """Return the body of the request."""
+        messages = list(question.messages)
+        if not self.takes_system and messages[0]["role"] == "system":
+            # The person says first what a system message would say.
+            first, second, *others = messages
+            messages = [
+                {**second, "content": f"{first['content']}\n\n{second['content']}"},
+                *others,
+            ]
         body: dict[str, Any] = {
             "model": question.model,
-            "messages": self._messages(question),
+            "messages": messages,
             "temperature": question.temperature,
             "seed": question.seed,
             self.limit: question.max_tokens,
@@ -76,14 +84,6 @@ class Dialect:
             self.limit = "max_completion_tokens"
         if "system role" in detail.lower():
             self.takes_system = False
-
-    def _messages(self, question: Question) -> list[Message]:
-        """Return the messages; the person says first what a system message would say."""
-        first = question.messages[0]
-        if self.takes_system or first["role"] != "system":
-            return list(question.messages)
-        _, second, *others = question.messages
-        return [{**second, "content": f"{first['content']}\n\n{second['content']}"}, *others]
 
     def forget_schema(self, detail: str) -> None:
         """Send no schema any more: the server answers without one only."""

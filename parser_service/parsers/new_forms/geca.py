@@ -10,6 +10,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import product
 
 from annotations.language.errors import LanguageError
 from annotations.language.forms import canonical_text, read_form
@@ -60,9 +61,11 @@ def find_rules(
     frames: defaultdict[tuple[Words, Words], set[tuple[Words, Short]]] = defaultdict(set)
     for sentence, short in examples:
         check()
-        for begin, end in _spans(len(sentence)):
-            frame = sentence[:begin], sentence[end:]
-            frames[frame].add((sentence[begin:end], short))
+        longest = min(LONGEST_SPAN, len(sentence) - LEAST_CONTEXT)
+        for begin, size in product(range(len(sentence)), range(1, longest + 1)):
+            end = begin + size
+            if end <= len(sentence):
+                frames[sentence[:begin], sentence[end:]].add((sentence[begin:end], short))
     rules: set[ExchangeRule] = set()
     for filled in frames.values():
         if len(filled) > 1:
@@ -120,13 +123,6 @@ def _shorten(text: str) -> Short | None:
         return shorten(read_form(text))
     except LanguageError:
         return None
-
-
-def _spans(length: int) -> Iterator[tuple[int, int]]:
-    for begin in range(length):
-        for end in range(begin + 1, min(begin + LONGEST_SPAN, length) + 1):
-            if length - (end - begin) >= LEAST_CONTEXT:
-                yield begin, end
 
 
 def _rules_of(filled: Sequence[tuple[Words, Short]]) -> Iterator[ExchangeRule]:

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 from itertools import islice
 
 from annotations.language.grounding import Anonymizer
-from annotations.language.ontology import Ontology
 from annotations.language.predicates import infer_signatures
 from annotations.language.templates import TaskCategory, generate
 from parser_service.parsers.interface import Check, Knowledge, Pair, keep_going
@@ -84,7 +83,16 @@ def reach(pairs: Sequence[Pair], knowledge: Knowledge, check: Check = keep_going
         return pool
     training = _forms(pairs)
     some = spread(pairs, MOST_PAIRS, lambda pair: pair.form)
-    pool.add(geca(_anonymize(some, knowledge.ontology, check), check))
+    if knowledge.ontology is not None:
+        # With class tokens for known entities, more commands differ in one thing only.
+        anonymizer = Anonymizer(knowledge.ontology)
+        anonymized = []
+        for pair in some:
+            check()
+            command = anonymizer.anonymize(pair.utterance).command
+            anonymized.append(replace(pair, utterance=command))
+        some = anonymized
+    pool.add(geca(some, check))
     if knowledge.predicates is None:
         pool.add(close(training, infer_signatures(read_forms(training)), check=check))
         return pool
@@ -92,19 +100,6 @@ def reach(pairs: Sequence[Pair], knowledge: Knowledge, check: Check = keep_going
     pool.add(substitute(training, knowledge.predicates, check))
     pool.add(unseen(training, knowledge.predicates, check))
     return pool
-
-
-def _anonymize(pairs: Sequence[Pair], ontology: Ontology | None, check: Check) -> Sequence[Pair]:
-    """Put class tokens for known entities: then more commands differ in one thing only."""
-    if ontology is None:
-        return pairs
-    anonymizer = Anonymizer(ontology)
-    anonymized = []
-    for pair in pairs:
-        check()
-        command = anonymizer.anonymize(pair.utterance).command
-        anonymized.append(replace(pair, utterance=command))
-    return anonymized
 
 
 def grammar_forms(categories: Sequence[TaskCategory]) -> list[WayToForm]:

@@ -64,7 +64,7 @@ class RunFindings(OfRun):
 
 
 class ProbeSerializer(serializers.ModelSerializer[Probe]):
-    """A text beyond the split, made of ``base`` by another word where it has one; ``before`` is the answer to
+    """A text outside the split. An edit was made from the utterance ``base``, and ``before`` is the answer to
     that. ``is_expected`` is null where no answer is expected."""
 
     base = serializers.IntegerField(source="base_id", allow_null=True)

@@ -55,10 +55,15 @@ def audit(request: WorldRequest, world: World) -> HttpResponse:
     """List the labels in doubt, and show one of them: the first, or the one that the URL names."""
     rows = world.audit_findings.prefetch_related("reasons")
     listing = Listing(request, AuditFindingFilters, rows, SORTS)
-    finding = _find_asked(request, world, listing)
+    finding: AuditFinding | None
+    if name := request.GET.get("finding", ""):
+        finding = get_object_or_404(world.audit_findings, pk=number_in(name))
+    else:
+        finding = next(iter(listing.rows), None)
+    decisions = AuditDecision.objects.valid().filter(finding__world=world, decided_by=request.user)
     context = {
         "listing": listing,
-        "last": _last_decisions(request, world),
+        "last": decisions.select_related("finding").order_by("-pk")[:LAST_SHOWN],
         "precision": precision_of(world),
         "job": world.jobs.filter(kind=JobKind.AUDIT).first(),
         "audit_form": AuditForm(),
@@ -101,11 +106,19 @@ def audit_decide(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     form, reason = sent.get("form", ""), sent.get("reason", "")
     try:
         decide(finding, sent.get("decision", ""), request.user, form, reason)
-    except (AnsweredMeanwhile, DecidedMeanwhile, NoLongerYours, NotForThem) as error:
-        messages.error(request, str(error))
-        return _to(request, world, finding)
     except Refusal as refusal:
-        return _refuse(request, world, finding, str(refusal))
+        is_over = isinstance(
+            refusal, AnsweredMeanwhile | DecidedMeanwhile | NoLongerYours | NotForThem
+        )
+        if is_over or not request.htmx:
+            messages.error(request, str(refusal))
+            return _to(request, world, finding)
+        # What the reviewer wrote stays on the page.
+        shown = {"sentence": str(refusal)}
+        response = render(
+            request, "parser_service/labelling/_audit_problem.html", shown, status=422
+        )
+        return reswap(retarget(reselect(response, "#audit-problem"), "#audit-problem"), "outerHTML")
     listing = Listing(request, AuditFindingFilters, world.audit_findings.all(), SORTS)
     rows = listing.matching.exclude(pk=pk).order_by("rank", "pk")
     beyond = rows.filter(Q(rank__gt=finding.rank) | Q(rank=finding.rank, pk__gt=pk))
@@ -131,14 +144,6 @@ def audit_check(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     return JsonResponse(check_label(world, text, form, may_be_unknown=True))
 
 
-def _find_asked(request: WorldRequest, world: World, listing: Listing) -> AuditFinding | None:
-    """Return the finding that the URL names, or the first of the list. Raises Http404 for one of another
-    world."""
-    if name := request.GET.get("finding", ""):
-        return get_object_or_404(world.audit_findings, pk=number_in(name))
-    return next(iter(listing.rows), None)
-
-
 def _context_of(request: WorldRequest, finding: AuditFinding | None) -> dict[str, Any]:
     """Return the context of one finding; ``state`` holds the filters of the list, for its forms."""
     state = request.GET.copy()
@@ -157,23 +162,6 @@ def _context_of(request: WorldRequest, finding: AuditFinding | None) -> dict[str
         "may_decide": may_decide and is_open,
         "is_outdated": finding.status == FindingStatus.OPEN and not is_open,
     }
-
-
-def _last_decisions(request: WorldRequest, world: World) -> Any:
-    rows = AuditDecision.objects.valid().filter(finding__world=world, decided_by=request.user)
-    return rows.select_related("finding").order_by("-pk")[:LAST_SHOWN]
-
-
-def _refuse(
-    request: WorldRequest, world: World, finding: AuditFinding, sentence: str
-) -> HttpResponse:
-    """Show why a decision was refused. What the reviewer wrote stays on the page."""
-    if not request.htmx:
-        messages.error(request, sentence)
-        return _to(request, world, finding)
-    context = {"sentence": sentence}
-    response = render(request, "parser_service/labelling/_audit_problem.html", context, status=422)
-    return reswap(retarget(reselect(response, "#audit-problem"), "#audit-problem"), "outerHTML")
 
 
 def _to(request: WorldRequest, world: World, finding: AuditFinding | None) -> HttpResponse:

@@ -42,9 +42,11 @@ def label_page(request: WorldRequest, world: World) -> HttpResponse:
     """Show the next utterance that the filters of the URL leave, or the one that it names."""
     listing = _listing(request, world)
     row = _find_asked(request, world, listing)
+    entities = Entity.objects.filter(ontology__world=world).order_by("entity_class", "text")
+    names = entities.values_list("text", "entity_class").distinct()[:MOST_ENTITIES]
     context = {
         "listing": listing,
-        "entities": _entity_names(world),
+        "entities": [f"{text} ({entity_class})" for text, entity_class in names],
         **_strip(request, world),
         **_item(request, row),
     }
@@ -111,7 +113,15 @@ def label_mend(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     words, name = request.POST.get("words", "").strip(), request.POST.get("entity", "")
     start = row.text.casefold().find(words.casefold())
     try:
-        entity = _entity_named(world, name)
+        text, _, entity_class = name.strip().removesuffix(")").rpartition(" (")
+        rows = Entity.objects.filter(ontology__world=world, entity_class=entity_class)
+        entity = rows.filter(text=text).first() if "\0" not in name else None
+        if entity is None:
+            raise Refusal(
+                "Choose an entity of this world from the list.",
+                "unknown_entity",
+                HTTPStatus.UNPROCESSABLE_ENTITY,
+            )
         if start < 0:
             raise Refusal(
                 f"The utterance does not have the words “{words[:60]}”.",
@@ -201,23 +211,3 @@ def _number(text: str | None) -> float | None:
     except ValueError:
         return None
     return value if 0 <= value < 2**31 else None
-
-
-def _entity_names(world: World) -> list[str]:
-    rows = Entity.objects.filter(ontology__world=world).order_by("entity_class", "text")
-    names = rows.values_list("text", "entity_class").distinct()
-    return [f"{text} ({entity_class})" for text, entity_class in names[:MOST_ENTITIES]]
-
-
-def _entity_named(world: World, name: str) -> Entity:
-    """Return the entity called ``text (class)``. Raises Refusal where there is none."""
-    text, _, entity_class = name.strip().removesuffix(")").rpartition(" (")
-    rows = Entity.objects.filter(ontology__world=world, entity_class=entity_class)
-    entity = rows.filter(text=text).first() if "\0" not in name else None
-    if entity is None:
-        raise Refusal(
-            "Choose an entity of this world from the list.",
-            "unknown_entity",
-            HTTPStatus.UNPROCESSABLE_ENTITY,
-        )
-    return entity

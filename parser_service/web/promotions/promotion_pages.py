@@ -122,9 +122,9 @@ def _candidates(world: World, present: TrainingRun | None) -> list[TrainingRun]:
     if present:
         runs = runs.exclude(pk=present.pk)
     listed = list(runs.order_by("-pk")[:MOST_LISTED])
-    return sorted(listed, key=_accuracy, reverse=True)
 
+    def accuracy(run: TrainingRun) -> float:
+        score = spoken_score(run)
+        return score.accuracy if score else -1.0
 
-def _accuracy(run: TrainingRun) -> float:
-    score = spoken_score(run)
-    return score.accuracy if score else -1.0
+    return sorted(listed, key=accuracy, reverse=True)

@@ -29,7 +29,7 @@ OF_THE_PAGE = ("part", "versus", "versus_outcome", "slot")
 
 
 class ComparedFilters(FilteredList):
-    """The filters of a comparison; the part, which has buttons of its own, is none of them."""
+    """The filters of a comparison, without the part, which has buttons."""
 
     further = PredictionFilters.further
 
@@ -111,8 +111,8 @@ def comparison_of(
 
 
 def scores_by_form(choice: RunChoice) -> list[tuple[str, TrainingRun, Sequence[ShownScore]]]:
-    """Return letter, run and the scores on the whole part of each compared run where the split is by form: the
-    examples that are compared have unseen forms alone. Nothing for other splits."""
+    """Return letter, run and scores on the whole part for each compared run, if the split is by form: the
+    compared examples have only unseen forms. Nothing for other splits."""
     if choice.split is None or choice.split.criterion != Criterion.LOGICAL_FORM:
         return []
     scores = {each.run: tuple(each.scores.values()) for each in choice.offered}

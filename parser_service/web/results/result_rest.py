@@ -22,9 +22,9 @@ from parser_service.results.result_choices import read_choices, scored_splits
 
 
 class EvaluationSerializer(serializers.ModelSerializer[Evaluation]):
-    """Exact match of a run on one source of one part; fractions of 1, the interval at 95 %. Of a split by form
-    ``accuracy`` is that on unseen forms, except of the part ``known``; ``harmonic_mean`` is that of it and of
-    ``accuracy_known``. Both are null for other splits and where known forms were not held out."""
+    """Exact match of a run on one source of one part; fractions of 1, the interval at 95 %. On a split by
+    form ``accuracy`` is that on unseen forms, except for the part ``known``; ``harmonic_mean`` combines it
+    with ``accuracy_known``. Both are null for other splits, and if known forms were not held out."""
 
     run = serializers.IntegerField(source="run_id")
     accuracy_known = serializers.FloatField(allow_null=True)

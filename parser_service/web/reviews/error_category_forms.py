@@ -30,7 +30,7 @@ class CategoryForm(forms.ModelForm):  # type: ignore[type-arg]  # generic in the
 
 
 class DeletionForm(forms.Form):
-    """Where the reviews of a category go that is deleted."""
+    """The category that gets the reviews of a deleted one."""
 
     move_to = forms.ModelChoiceField(
         ErrorCategory.objects.none(),

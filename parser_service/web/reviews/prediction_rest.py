@@ -42,7 +42,7 @@ class PredictionSerializer(serializers.ModelSerializer[Prediction]):
 
 
 class FiltersOfRun(DjangoFilterBackend):
-    """Tells the filters whose answers the rows are, which makes some of them quick."""
+    """Tells the filters which run the rows are of, which makes some of them quick."""
 
     def get_filterset_kwargs(self, request: ApiRequest, queryset: Any, view: Any) -> dict[str, Any]:
         return {**super().get_filterset_kwargs(request, queryset, view), "of_run": view.run()}

@@ -141,24 +141,15 @@ def _change(
     except Refusal as error:
         problem = error.message
     if not request.htmx:
-        return _back(request, world, run, example, problem, said)
+        if problem or said:
+            level = messages.ERROR if problem else messages.SUCCESS
+            messages.add_message(request, level, problem or said)
+        address = reverse("review", kwargs={"world": world.name})
+        state = ReviewListing(request, shown).url(example=str(example.pk), focus=str(run.pk))
+        return redirect(f"{address}{state}")
     context = _context_of(request, ReviewListing(request, shown), shown, example)
     context |= {"problem": problem, "said": said, "focus": run.pk}
     return render(request, "parser_service/reviews/_review_case.html", context)
-
-
-def _back(
-    request: WorldRequest, world: World, run: TrainingRun, example: Example, problem: str, said: str
-) -> HttpResponse:
-    """Go back to the example, without a script."""
-    if problem or said:
-        messages.add_message(
-            request, messages.ERROR if problem else messages.SUCCESS, problem or said
-        )
-    runs = runs_asked(request, world)
-    address = reverse("review", kwargs={"world": world.name})
-    state = ReviewListing(request, runs).url(example=str(example.pk), focus=str(run.pk))
-    return redirect(f"{address}{state}")
 
 
 def _context_of(
@@ -243,7 +234,8 @@ class ReviewListing(Listing):
 
     @property
     def first_fields(self) -> list[Any]:
-        """The filters that one sees at once; where the runs differ is asked by a button of its own."""
+        """The filters that are always in sight; ``where the runs differ`` is not among them, since it has a
+        button."""
         return [field for field in super().first_fields if field.name != "differ"]
 
     @cached_property
@@ -251,7 +243,7 @@ class ReviewListing(Listing):
         return self.url(differ="" if self.query.get("differ") else "1")
 
     def first_from(self, example: int) -> int | None:
-        """Return the first example of the list at or behind ``example``; the first of all where none is."""
+        """Return the first example of the list at or behind ``example``, or else the first of all."""
         keys = self.matching.order_by("example_id").values_list("example_id", flat=True)
         return keys.filter(example_id__gte=example).first() or keys.first()
 

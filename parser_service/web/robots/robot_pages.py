@@ -56,7 +56,12 @@ def robot(request: WorldRequest, world: World) -> HttpResponse:
                 trouble = error.message
     else:
         names = names_of(world)
-        rows = [_row(action, names.get(action)) for action in actions]
+        rows = [
+            ActionRow(action, name.name if name.name != action else "", write_arguments(name))
+            if (name := names.get(action))
+            else ActionRow(action, "", "")
+            for action in actions
+        ]
     has_trouble = bool(trouble) or any(row.trouble for row in rows)
     context = {"rows": rows, "version": version, "trouble": trouble, "schemas": list(SCHEMAS)}
     return render(
@@ -72,12 +77,6 @@ def plan_schema_file(request: WorldRequest, world: World, name: str) -> HttpResp
     kind, read = SCHEMAS[name]
     headers = {"Content-Disposition": f'attachment; filename="{name}"'}
     return HttpResponse(read(), content_type=f"{kind}; charset=utf-8", headers=headers)
-
-
-def _row(action: str, name: ActionName | None) -> ActionRow:
-    if name is None:
-        return ActionRow(action, "", "")
-    return ActionRow(action, name.name if name.name != action else "", write_arguments(name))
 
 
 def _read(actions: list[str], sent: QueryDict) -> tuple[list[ActionRow], dict[str, ActionName]]:

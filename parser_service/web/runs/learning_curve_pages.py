@@ -115,7 +115,7 @@ def context_of(request: WorldRequest, world: World) -> dict[str, object]:
 
 
 def read_choices(request: WorldRequest, world: World, splits: list[Split]) -> CurveChoices | None:
-    """Read the address; what it leaves out or misspells is that of the newest run on the split."""
+    """Read the address; for what it leaves out or misspells, take the choices of the newest run on the split."""
     asked = request.GET
     newest = world.runs.scored_or_active().order_by("-id").select_related("split")
     named = [split for split in splits if split.name == asked.get("split")]

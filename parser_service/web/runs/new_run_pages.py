@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from statistics import median
 from typing import Any
@@ -147,8 +147,8 @@ class RunChoices:
 
 
 def choices_in(query: QueryDict, world: World) -> RunChoices:
-    """Read the choices from an address: ``like`` names a run to ask for again, everything else is
-    called as its field. What no field knows is left out."""
+    """Read the choices from an address: ``like`` names a run to repeat. The other parameters have the names
+    of the fields; unknown ones are ignored."""
     like = number_in(query.get("like", ""))
     run = world.runs.filter(pk=like).first() if like else None
     parser = query.get("parser", run.parser if run else recommended_parser(world))
@@ -156,22 +156,22 @@ def choices_in(query: QueryDict, world: World) -> RunChoices:
         return RunChoices(
             recommended_parser(world), note=f"There is no parser called {parser!r} any more."
         )
-    initial = values_of(run, parser) if run else _recommended_values(world)
+    initial: dict[str, Any] = values_of(run, parser) if run else {}
+    spoken = Example.objects.filter(split__world=world, part=Part.TRAIN, source=PARAPHRASED)
+    if run is None and spoken.exists():  # in any split, to train on
+        initial = {"train_sources": TrainSources.BOTH}
     names = [*GENERAL, *(PREFIX + each.name for each in config_fields(parser))]
     initial.update({name: query[name] for name in names if name in query})
-    return RunChoices(parser, initial, _note(parser, initial))
+    protocol, entry, note = initial.get("protocol"), PARSERS[parser], ""
+    if protocol not in (None, "", *entry.protocols):
+        note = f"{entry.title} has no {protocol} protocol; {entry.protocols[0]} is chosen instead."
+    return RunChoices(parser, initial, note)
 
 
 def recommended_parser(world: World) -> str:
     """Return the first of ``RECOMMENDED`` that no run of ``world`` has trained or will; else the last one."""
     there = set(world.runs.scored_or_active().on_all_pairs().values_list("parser", flat=True))
     return next((name for name in RECOMMENDED if name not in there), RECOMMENDED[-1])
-
-
-def _recommended_values(world: World) -> dict[str, Any]:
-    """Return what a new run learns from: paraphrases too, where any split of ``world`` has some to train on."""
-    spoken = Example.objects.filter(split__world=world, part=Part.TRAIN, source=PARAPHRASED)
-    return {"train_sources": TrainSources.BOTH} if spoken.exists() else {}
 
 
 def values_of(run: TrainingRun, parser: str) -> dict[str, Any]:
@@ -199,13 +199,6 @@ def query_of(posted: Mapping[str, str], parser: str, shown: str) -> str:
             if posted.get(name, default) != default
         }
     return urlencode({"parser": parser, **kept})
-
-
-def _note(parser: str, initial: Mapping[str, Any]) -> str:
-    protocol, entry = initial.get("protocol"), PARSERS[parser]
-    if protocol in (None, "", *entry.protocols):
-        return ""
-    return f"{entry.title} has no {protocol} protocol; {entry.protocols[0]} is chosen instead."
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,14 +237,11 @@ def parser_groups(world: World, split: Split | None) -> list[ParserGroup]:
         )
         for name, entry in PARSERS.items()
     ]
-    return list(_group(options))
-
-
-def _group(options: list[ParserOption]) -> Iterator[ParserGroup]:
-    for needs, title in TITLES.items():
-        of_group = tuple(each for each in options if each.entry.needs == needs)
-        if of_group:
-            yield ParserGroup(title, of_group)
+    by_need = {
+        title: tuple(each for each in options if each.entry.needs == needs)
+        for needs, title in TITLES.items()
+    }
+    return [ParserGroup(title, of_group) for title, of_group in by_need.items() if of_group]
 
 
 def _seconds(world: World) -> dict[str, float]:

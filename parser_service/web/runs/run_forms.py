@@ -137,25 +137,19 @@ class RunForm(forms.Form):
             for name, value in cleaned.items()
             if name.startswith(PREFIX)
         }
-        if not self.errors:
-            self._check_config()
-            self._count_seeds()
-        return cleaned
-
-    def _count_seeds(self) -> None:
-        try:
-            self.asked_seeds = seeds_from(self.cleaned_data["seed"], self.cleaned_data["seeds"])
-        except Refusal as error:
-            self.add_error("seeds", error.message)
-
-    def _check_config(self) -> None:
-        """Let the parser check its hyperparameters; a complaint that begins with the name of one is shown
-        beside its field."""
+        if self.errors:
+            return cleaned
         try:
             make_config(self.parser, self.config)
         except Refusal as error:
+            # A complaint that begins with the name of a hyperparameter is shown beside its field.
             field = PREFIX + error.message.partition(" ")[0]
             self.add_error(field if field in self.fields else None, error.message)
+        try:
+            self.asked_seeds = seeds_from(cleaned["seed"], cleaned["seeds"])
+        except Refusal as error:
+            self.add_error("seeds", error.message)
+        return cleaned
 
 
 def say_default(declared: ConfigField) -> str:

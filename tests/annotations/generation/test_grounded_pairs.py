@@ -40,5 +40,5 @@ def test_a_world_that_can_ground_nothing_says_so(tiny_world):
 
 
 def test_a_world_without_templates_says_so(world):
-    with pytest.raises(LanguageError, match="makes no command"):
+    with pytest.raises(LanguageError):
         grounded_pairs(world, 1)

@@ -196,12 +196,12 @@ def messages_of(template):
 
 def test_a_changed_production_is_felt_by_the_templates_that_use_it(two_categories, annotator):
     template = SemanticTemplate.objects.get(form="(leave)")
-    assert "matches nothing" not in messages_of(template)
+    before = messages_of(template)
     main = Production.objects.get(expansion__contains="$go out")
     row = change(main, {"expansion": "$fetch $thing"}, annotator, main.version)
-    assert "matches nothing in the grammar" in messages_of(template)
+    assert messages_of(template) != before
     change(row, {"expansion": main.expansion}, annotator, row.version)
-    assert "matches nothing" not in messages_of(template)
+    assert messages_of(template) == before
 
 
 def test_the_other_template_of_a_conflict_hears_of_it(two_categories, annotator):

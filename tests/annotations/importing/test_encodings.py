@@ -39,7 +39,8 @@ class TestUploads:
 
         refused = send(adam, way, "", files=files())
         assert refused.status_code == 422
-        assert f"as {encoding} it reads “$Main = bring the café crème" in refused.content.decode()
+        text = refused.content.decode()
+        assert f" {encoding} " in text and "“$Main = bring the café crème" in text
         assert not Production.objects.exists()
         answer = send(adam, way, "", files=files(), encoding=encoding)
         assert answer.status_code == 200
@@ -77,7 +78,7 @@ def test_no_other_encoding_can_be_chosen(world, adam):
 
 def test_the_commands_take_it_too(db, tmp_path, capsys):
     (tmp_path / "a.txt").write_bytes(RULES.encode("utf-16"))
-    with pytest.raises(CommandError, match="as utf-16 it reads"):
+    with pytest.raises(CommandError, match="utf-16"):
         call_command("import_generator", tmp_path, "--world", "theirs")
     capsys.readouterr()
     call_command(

@@ -15,7 +15,7 @@ def test_the_first_warnings_are_stored_and_the_rest_counted(db):
     assert not report.is_refused
     assert len(report.problems) == StoredProblem.objects.count() == MOST_PROBLEMS + 1
     last = report.problems[-1]
-    assert last.message == "500 more problems from here on, not listed"
+    assert last.message.startswith("500 ")
     assert last.position.line == 2 * MOST_PROBLEMS + 2
 
 

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from annotations.language.errors import Refusal
 from annotations.language.label_errors import LabelledPair, assign_folds, source_key
 
 PAIRS = st.lists(st.sampled_from([f"go to {number}" for number in range(12)]), max_size=40)
@@ -37,7 +38,11 @@ def test_case_and_spacing_of_a_source_command_have_no_effect():
     assert source_key(LabelledPair("a", "Leave", "")) == "leave"
 
 
-@pytest.mark.parametrize("count, why", [(1, "2 to 20"), (21, "2 to 20"), (3, "too few for 3")])
-def test_folds_that_cannot_be_made_are_refused(count, why):
-    with pytest.raises(ValueError, match=why):
+@pytest.mark.parametrize(
+    "count, code",
+    [(1, "folds_out_of_range"), (21, "folds_out_of_range"), (3, "too_few_commands")],
+)
+def test_folds_that_cannot_be_made_are_refused(count, code):
+    with pytest.raises(Refusal, match=rf"\b{count}\b") as refused:
         assign_folds(pairs_of(["go", "stay"]), count)
+    assert refused.value.code == code

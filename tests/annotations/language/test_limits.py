@@ -79,9 +79,9 @@ def test_a_predicate_that_a_nonterminal_makes_too_long_is_refused():
 
 
 def test_a_pattern_and_a_form_have_a_greatest_length():
-    with pytest.raises(LanguageError, match="the pattern has 5,001 characters"):
+    with pytest.raises(LanguageError, match="5,001"):
         make_template("x" * 5_001, "UNKNOWN")
-    with pytest.raises(LanguageError, match="the form has 5,007 characters"):
+    with pytest.raises(LanguageError, match="5,007"):
         make_template("x", f'(go "{"x" * 5_000}")')
 
 
@@ -90,7 +90,7 @@ def test_a_pattern_and_a_form_have_a_greatest_length():
 )
 def test_a_command_or_form_too_large_for_an_index_is_an_error(pattern, form):
     template = make_template(pattern, form, Position("t.txt", 3))
-    with pytest.raises(LanguageError, match="2,500 is the limit"):
+    with pytest.raises(LanguageError, match="2,500"):
         list(TemplateExpander(GRAMMAR).pairs(template))
     assert any(problem.is_error for problem in problems(template, GRAMMAR))
 
@@ -98,8 +98,8 @@ def test_a_command_or_form_too_large_for_an_index_is_an_error(pattern, form):
 def test_a_task_category_of_a_long_file_name_is_an_error():
     files = {f"{'c' * 61}.txt": b"$Main = go"}
     (problem,) = read_generator_files(files).problems
-    assert "the task category" in problem.message and "61 characters" in problem.message
-    with pytest.raises(LanguageError, match="the file name"):
+    assert problem.is_error and "61" in problem.message
+    with pytest.raises(LanguageError, match="201"):
         decode(b"text", "f" * 201)
 
 

@@ -65,15 +65,16 @@ def test_two_people_never_hold_one_item(world, queue, annotator, berta, carl, ad
 
 
 def test_an_empty_queue_is_filled_from_the_rows(world, utterances, annotator):
-    assert next_item(annotator, world).item.reason == "Nobody has said yet what this means."
+    assert next_item(annotator, world).item.kind == WorkKind.UNLABELLED
 
 
 def test_an_expired_lease_returns_to_the_queue(world, queue, annotator, berta):
     lost = next_item(annotator, world)
     expire(lost)
     assert next_item(berta, world).item_id == lost.item_id
-    with pytest.raises(NoLongerYours, match="Somebody else is doing this"):
+    with pytest.raises(NoLongerYours) as refused:
         finish(lost)
+    assert refused.value.code == "done_by_another"
 
 
 def test_who_comes_back_before_anybody_else_has_lost_nothing(world, queue, annotator):
@@ -171,8 +172,9 @@ def test_an_admin_assigns_and_withdraws(world, queue, annotator, berta, admin):
     given = assign(item, annotator, by=admin)
     assert given.leased_until is None
     assert next_item(annotator, world).item_id == item.pk
-    with pytest.raises(NotForThem, match="Somebody is doing this now"):
+    with pytest.raises(NotForThem) as refused:
         assign(item, berta, by=admin)
+    assert refused.value.code == "done_by_another"
     withdraw(given)
     assert assign(item, berta, by=admin).item_id == item.pk
 
@@ -182,11 +184,13 @@ def test_nothing_is_assigned_to_who_has_no_role_or_answered_it(
 ):
     item = queue.first()
     for person in (stranger, reviewer):
-        with pytest.raises(NotForThem, match="no role"):
+        with pytest.raises(NotForThem) as refused:
             assign(item, person, by=admin)
+        assert refused.value.code == "no_role_for_it"
     say(next_item(annotator, world))
-    with pytest.raises(NotForThem, match="done already"):
+    with pytest.raises(NotForThem) as refused:
         take(annotator, item)
+    assert refused.value.code == "already_done"
 
 
 def test_a_reviewer_gets_no_labels_to_write(world, queue, reviewer):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import zipfile
 from secrets import token_hex
 
@@ -47,43 +48,43 @@ def change_manifest(members, **values):
 
 
 @pytest.mark.parametrize(
-    ("table", "values", "sentence"),
+    ("table", "values", "named"),
     [
-        ("commands", {"template": 99}, "number 99 of templates, which is not there"),
-        ("commands", {"template": True}, "number True of templates"),
-        ("commands", {"logical_form": None}, "number None of forms"),
-        ("commands", {"position": -1}, "position:"),
-        ("commands", {"position": 10**30}, "position:"),
-        ("commands", {"position": "1"}, "position is not a whole number"),
-        ("commands", {"is_in_grammar": 1}, "is_in_grammar is not true or false"),
-        ("commands", {"task_category": "x" * 61}, "task_category:"),
+        ("commands", {"template": 99}, "99 of templates"),
+        ("commands", {"template": True}, "True of templates"),
+        ("commands", {"logical_form": None}, "None of forms"),
+        ("commands", {"position": -1}, "position"),
+        ("commands", {"position": 10**30}, "position"),
+        ("commands", {"position": "1"}, "position"),
+        ("commands", {"is_in_grammar": 1}, "is_in_grammar"),
+        ("commands", {"task_category": "x" * 61}, "task_category"),
         ("commands", {"anonymized_text": "a\0b"}, "NUL"),
         ("commands", {"anonymized_text": "a\\\0b"}, "NUL"),
-        ("commands", {"anonymized_text": "\ud800"}, "JSON in UTF-8"),
-        ("commands", {"world_id": 1}, "missing or unknown: world_id"),
-        ("entities", {"entity_class": "planet"}, "entity_class cannot be “planet”"),
-        ("entities", {"attributes": ["a"]}, "attributes has the wrong shape"),
-        ("entities", {"aliases": "a"}, "aliases has the wrong shape"),
-        ("productions", {"source": "../evil.txt"}, "is a path"),
-        ("productions", {"expansion": "( a | b"}, "never closed"),
-        ("task_categories", {"rule_sources": []}, "rule_sources has the wrong shape"),
-        ("task_categories", {"template_sources": ["/etc/passwd"]}, "is a path"),
-        ("predicates", {"signatures": [["planet"]]}, "signatures has the wrong shape"),
+        ("commands", {"anonymized_text": "\ud800"}, "UTF-8"),
+        ("commands", {"world_id": 1}, ": world_id"),
+        ("entities", {"entity_class": "planet"}, "“planet”"),
+        ("entities", {"attributes": ["a"]}, "attributes"),
+        ("entities", {"aliases": "a"}, "aliases"),
+        ("productions", {"source": "../evil.txt"}, "“../evil.txt”"),
+        ("productions", {"expansion": "( a | b"}, ""),
+        ("task_categories", {"rule_sources": []}, "rule_sources"),
+        ("task_categories", {"template_sources": ["/etc/passwd"]}, "“/etc/passwd”"),
+        ("predicates", {"signatures": [["planet"]]}, "signatures"),
         ("templates", {"form": "(go"}, ""),
-        ("templates", {"author": 7}, "author is not the name of an account"),
-        ("forms", {"text": "( go"}, "text is not a logical form"),
+        ("templates", {"author": 7}, "author"),
+        ("forms", {"text": "( go"}, "text"),
     ],
 )
-def test_a_row_that_cannot_be_stored(members, table, values, sentence):
+def test_a_row_that_cannot_be_stored(members, table, values, named):
     change_row(members, table, **values)
-    assert sentence in str(refusal_of(pack_members(members)))
+    assert named in refusal_of(pack_members(members)).message
 
 
 def test_a_row_twice(members):
     first, *rest = members["rows/commands.jsonl"].splitlines()
     members["rows/commands.jsonl"] = b"\n".join([first, first, *rest[1:]]) + b"\n"
     refusal = refusal_of(pack_members(members))
-    assert "lines 1 and 2 are the same: “" in refusal.message
+    assert re.findall(r"\b\d+\b", refusal.message.partition("“")[0]) == ["1", "2"]
     assert (refusal.source, refusal.line) == ("rows/commands.jsonl", 2)
 
 
@@ -98,26 +99,28 @@ def test_a_line_that_is_no_object(members, line):
 
 def test_a_line_too_long(members):
     members["rows/commands.jsonl"] = json.dumps(token_hex(500_001)).encode()
-    assert "longer than 1,000,000 bytes" in str(refusal_of(pack_members(members)))
+    refusal = refusal_of(pack_members(members))
+    assert "1,000,000" in refusal.message and refusal.source == "rows/commands.jsonl"
 
 
 def test_rows_that_are_missing(members):
     members["rows/commands.jsonl"] = members["rows/commands.jsonl"].split(b"\n")[0] + b"\n"
-    assert "1 rows, and world.json announces 3" in str(refusal_of(pack_members(members)))
+    refusal = refusal_of(pack_members(members))
+    assert re.findall(r"\b\d+\b", refusal.message) == ["1", "3"]
 
 
 def test_a_split_whose_pairs_were_changed(members, tiny_world):
     freeze_split(tiny_world, "frozen")
     members = members_of(pack(tiny_world))
     change_row(members, "examples", utterance="something else")
-    assert "not those that were frozen" in str(refusal_of(pack_members(members)))
+    assert "frozen" in refusal_of(pack_members(members)).message
 
 
 def test_a_file_that_was_changed_after_the_download(members):
     members["generator/objects.xml"] += b"<!-- one more -->"
     refusal = refusal_of(pack_members(members, is_consistent=False))
     assert refusal.source == "generator/objects.xml"
-    assert "import the files of generator/ as a generator" in str(refusal)
+    assert "generator/" in refusal.hint
 
 
 def test_a_file_that_is_missing(members):
@@ -127,26 +130,26 @@ def test_a_file_that_is_missing(members):
 
 def test_no_manifest(members):
     del members["world.json"]
-    assert "world.json is missing" in str(refusal_of(pack_members(members, is_consistent=False)))
+    assert "world.json" in refusal_of(pack_members(members, is_consistent=False)).message
 
 
 @pytest.mark.parametrize(
-    ("values", "sentence"),
+    ("values", "named"),
     [
-        ({"version": 2}, "has version 2 of the format, and this installation reads version 1"),
-        ({"format": "other"}, "does not describe a world"),
-        ({"has_grammar": "yes"}, "has_grammar is neither true nor false"),
-        ({"has_grammar": False}, "there is no grammar"),
-        ({"revision": -1}, "revision:"),
-        ({"description": None}, "description is not a text"),
-        ({"rows": 3}, "do not give a number"),
-        ({"files": {"world.json": "x"}}, "do not give a number"),
+        ({"version": 2}, r"\b2\b.*\b1\b"),
+        ({"format": "other"}, "“format”"),
+        ({"has_grammar": "yes"}, r"\bhas_grammar\b"),
+        ({"has_grammar": False}, r"\bgrammar\b"),
+        ({"revision": -1}, r"\brevision\b"),
+        ({"description": None}, r"\bdescription\b"),
+        ({"rows": 3}, "“rows”"),
+        ({"files": {"world.json": "x"}}, "“files”"),
     ],
 )
-def test_a_manifest_that_says_something_else(members, values, sentence):
+def test_a_manifest_that_says_something_else(members, values, named):
     change_manifest(members, **values)
     is_consistent = "files" not in values
-    assert sentence in str(refusal_of(pack_members(members, is_consistent)))
+    assert re.search(named, str(refusal_of(pack_members(members, is_consistent))))
 
 
 @pytest.mark.parametrize("text", [b"", b"[]", b"{", b"\xff\xfe", b"9" * 5000])
@@ -166,7 +169,7 @@ def pack_and_read(members):
 
 
 def test_what_is_no_archive(members):
-    assert "not a zip archive" in str(refusal_of(io.BytesIO(b"PK\x03\x04 no zip")))
+    assert refusal_of(io.BytesIO(b"PK\x03\x04 no zip")).hint
 
 
 @pytest.mark.parametrize("method", [zipfile.ZIP_DEFLATED, zipfile.ZIP_LZMA, zipfile.ZIP_BZIP2])
@@ -180,25 +183,25 @@ def test_a_stream_that_is_damaged(members, method):
     start = info.header_offset + 30 + len(info.filename)
     data[start : start + info.compress_size] = b"\x99" * info.compress_size
     refusal = refusal_of(io.BytesIO(bytes(data)))
-    assert "not a zip archive that can be read" in str(refusal)
+    assert refusal.code == "unreadable"
 
 
 def test_more_than_an_archive_may_hold(members, settings):
     settings.ARCHIVE_MAX_FILES = 3
-    assert "3 is the limit" in str(refusal_of(pack_members(members)))
+    assert re.search(r"\b3\b", refusal_of(pack_members(members)).message)
     settings.ARCHIVE_MAX_FILES, settings.ARCHIVE_MAX_BYTES = 5000, 100
-    assert "more than 100 bytes" in str(refusal_of(pack_members(members)))
+    assert re.search(r"\b100\b", refusal_of(pack_members(members)).message)
 
 
 def test_a_bomb(members):
     members["rows/bomb.jsonl"] = b" " * 10_000_000
-    assert "unpacks to far more than it holds" in str(refusal_of(pack_members(members)))
+    assert "bomb" in refusal_of(pack_members(members)).hint
 
 
 @pytest.mark.parametrize("name", ["Upper", "", "x" * 61, "home"])
 def test_a_name_that_no_new_world_can_have(members, name):
     before = counts()
-    with pytest.raises(LanguageError, match=r"cannot be the name|already"):
+    with pytest.raises(LanguageError, match=f"“{name}”"):
         import_world(name, pack_members(members))
     assert counts() == before
 
@@ -208,6 +211,6 @@ def test_a_name_that_is_taken_in_the_meantime(members, monkeypatch):
         World.objects.create(name="again")
 
     monkeypatch.setattr(world_import, "_check_world", check_slowly)
-    with pytest.raises(LanguageError, match="there is a world “again” already"):
+    with pytest.raises(LanguageError, match="“again”"):
         import_world("again", pack_members(members))
     assert set(World.objects.values_list("name", flat=True)) == {"again", "home"}

@@ -174,9 +174,9 @@ def test_it_is_nobodys_business_but_of_who_wrote_it(small, tmp_path):
 def test_an_installation_with_something_in_it_is_not_overwritten(small, tmp_path):
     write_backup(tmp_path / "one.zip")
     _, failure = run("restore", tmp_path / "one.zip")
-    assert "This installation is not empty" in str(failure) and failure.returncode == 1
+    assert failure.__cause__.code == "not_empty" and failure.returncode == 1
     _, failure = run("backup", tmp_path / "one.zip")
-    assert "exists. Choose another name" in str(failure)
+    assert failure.__cause__.code == "file_exists" and "one.zip" in str(failure)
 
 
 def changed(source: Path, target: Path, change) -> Path:
@@ -267,7 +267,7 @@ def test_a_manifest_that_is_no_json_is_refused(manifest, small, tmp_path):
     with zipfile.ZipFile(tmp_path / "x.zip", "w") as archive:
         archive.writestr(NAME, manifest)
     _, failure = run("restore", tmp_path / "x.zip")
-    assert "This is no backup" in str(failure)
+    assert failure.__cause__.code == "no_backup"
 
 
 def test_a_backup_of_another_version_is_refused(small, tmp_path):
@@ -287,14 +287,14 @@ def test_a_backup_of_another_version_is_refused(small, tmp_path):
 def test_what_is_no_backup_is_refused(content, transactional_db, tmp_path):
     (tmp_path / "x.zip").write_bytes(content)
     _, failure = run("restore", tmp_path / "x.zip")
-    assert "cannot be read as a backup" in str(failure)
+    assert failure.__cause__.code == "no_backup" and "x.zip" in str(failure)
 
 
 def test_an_archive_of_one_world_is_no_backup(transactional_db, tmp_path):
     with zipfile.ZipFile(tmp_path / "x.zip", "w") as archive:
         archive.writestr("world.json", "{}")
     _, failure = run("restore", tmp_path / "x.zip")
-    assert "This is no backup" in str(failure)
+    assert failure.__cause__.code == "no_backup"
 
 
 def test_every_table_of_ours_is_in_it(db):

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 from django.utils import timezone
 
-from gpsr_site.overview.workers import workers_now
+from annotations.models.background import Queue
+from gpsr_site.overview.workers import TAKEN_BY, workers_now
 from parser_service.models import TrainingRun, Worker
 from parser_service.runs.requests import run_requests
 
@@ -25,7 +26,7 @@ def test_one_worker_may_serve_all_queues(db, served):
     alive(*served)
     workers = workers_now()
     assert (workers.is_alive, workers.headline, workers.sentence) == (True, "", "")
-    assert workers.summary == "Worker idle"
+    assert (workers.running, sum(workers.waiting.values())) == (0, 0)
 
 
 def test_each_queue_needs_a_worker(sample):
@@ -33,9 +34,9 @@ def test_each_queue_needs_a_worker(sample):
     run_requests.request(sample.world, sample.split, "seq2seq", send=False)
     run_requests.request(sample.world, sample.split, "knn", seed=7, send=False)
     workers = workers_now()
-    assert workers.headline == "No training worker is running."
-    assert workers.sentence == "1 run waits for one."
-    assert workers.summary == "No training worker, 2 waiting"
+    assert workers.missing == ["cpu"] and TAKEN_BY[Queue.CPU] in workers.headline
+    assert workers.sentence.startswith("1 run ")
+    assert TAKEN_BY[Queue.CPU] in workers.summary and "2 " in workers.summary
 
 
 def test_a_gpu_worker_is_missed_only_where_work_waits_for_one(sample):
@@ -43,7 +44,8 @@ def test_a_gpu_worker_is_missed_only_where_work_waits_for_one(sample):
     run_requests.request(sample.world, sample.split, "seq2seq", send=False)
     assert workers_now().is_alive
     TrainingRun.objects.filter(status="queued").update(queue="gpu")
-    assert workers_now().headline == "No GPU worker is running."
+    assert workers_now().missing == ["gpu"]
+    assert TAKEN_BY[Queue.GPU] in workers_now().headline
 
 
 def test_of_several_missing_workers_the_one_is_named_that_work_waits_for(sample):
@@ -51,7 +53,7 @@ def test_of_several_missing_workers_the_one_is_named_that_work_waits_for(sample)
     run_requests.request(sample.world, sample.split, "knn", seed=7, send=False)
     workers = workers_now()
     assert workers.missing == ["cpu", "quick"]
-    assert workers.headline == "No quick worker is running."
+    assert TAKEN_BY[Queue.QUICK] in workers.headline
     assert workers.is_work_left
 
 
@@ -68,5 +70,5 @@ def test_what_a_stopped_worker_left_behind_waits_too(sample):
     run_requests.request(sample.world, sample.split, "knn", seed=7, send=False)
     TrainingRun.objects.filter(status="queued", parser="knn").update(status="running")
     workers = workers_now()
-    assert workers.summary == "No worker, 2 waiting"
-    assert workers.sentence == "2 runs wait for one."
+    assert (workers.running, sum(workers.waiting.values())) == (1, 1)
+    assert "2 " in workers.summary and workers.sentence.startswith("2 runs ")

@@ -60,6 +60,8 @@ KEYS: dict[str, RouteKeys] = {
     **dict.fromkeys(("api:token-detail", "api:notice-read"), lambda _: {"pk": 10**6}),
     "api:session": lambda _: {"handle": "none"},
     **dict.fromkeys(("api:site-job-detail", "api:site-job-cancel"), pk_of(job_without_world)),
+    "document": lambda _: {"shelf": "guides", "page": "first-steps"},
+    "document_image": lambda _: {"name": "run.png"},
     "join": join_keys,
     **dict.fromkeys(("account_close", "account_link"), pk_of(removable_member)),
     "password_set": lambda _: {"uidb64": "MQ", "token": "none"},

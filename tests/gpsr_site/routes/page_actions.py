@@ -147,11 +147,13 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
 CHOICES = NoRoute("A form with its choices; the schema says what its route takes.")
 HERE = NoRoute("It says how this server is, for whoever looks after it.")
 PRINTED = NoRoute("One file to read or print of what runs, results and predictions hold.")
+DOCUMENTS = NoRoute("It is a text for people, and a file of the code.")
 IN_EDITOR = NoRoute("It completes what somebody types, of predicates, entities and productions.")
 
 # Pages that are looked at and not posted to.
 PAGE_VIEWS: dict[str, str | NoRoute] = {
     **dict.fromkeys(("healthz", "banner", "admin:index"), HERE),
+    **dict.fromkeys(("documents", "document", "document_image"), DOCUMENTS),
     "home": "get worlds",
     "account": "get token-list, get sessions",
     "accounts": "get account-list",

@@ -26,7 +26,7 @@ def test_a_row_that_is_not_there(name, sample: SampleWorld, client_as):
             continue
         if name.startswith("api:"):
             said = answer.json()["detail"]
-            where = re.search(r"(/api/v1/\S*) shows what is there\.$", said)
+            where = re.search(r"\. (/api/v1/\S*) ", said)
             assert where is not None, said
             shown = where[1]
         else:
@@ -41,13 +41,13 @@ def test_a_row_that_is_not_there(name, sample: SampleWorld, client_as):
 def test_a_split_is_named_by_its_number(sample: SampleWorld, client_as):
     path = "/api/v1/worlds/home/splits/"
     said = client_as("admin").get(f"{path}999999/export/").json()["detail"]
-    assert said == f"There is no split 999999 that you can see here. {path} shows what is there."
+    assert "split 999999 " in said and f" {path} " in said
 
 
 @pytest.mark.parametrize("path", ["/api/v1/worlds/nowhere/splits/", "/api/v1/worlds/nowhere/"])
 def test_a_world_that_is_not_there(path, sample: SampleWorld, client_as):
     said = client_as("stranger").get(path).json()["detail"]
-    assert said.endswith("/api/v1/worlds/ shows what is there.")
+    assert " /api/v1/worlds/ " in said
 
 
 def test_an_address_that_is_none(sample: SampleWorld, client_as):

@@ -215,7 +215,7 @@ def test_pages_go_on_while_writers_wait(site, sample, annotator, monkeypatch):
         answers = [b"".join(iter(partial(each.recv, 10_000), b"")) for each in refused]
     for answer in answers:
         assert answer.startswith(b"HTTP/1.1 503 ") and b"Retry-After: 5" in answer
-        assert b'"title": "The server is busy"' in answer
+        assert b"Content-Type: application/problem+json" in answer and b'"status": 503' in answer
     for connection_of in set(saving) - set(refused):
         assert connection_of.recv(1000).startswith(b"HTTP/1.1 201 ")
 

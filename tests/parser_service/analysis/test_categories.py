@@ -191,7 +191,7 @@ def test_what_the_world_does_not_have_is_outside_the_ontology(run, reason):
 
 
 def test_a_right_answer_has_no_category():
-    with pytest.raises(ValueError, match="right"):
+    with pytest.raises(ValueError):
         propose_category(GOLD, read_form(canonical_text(GOLD)))
 
 

@@ -122,7 +122,7 @@ def test_sentences_say_who_is_better_and_whether_that_may_be_chance():
 
 
 def test_runs_cannot_be_compared_on_nothing():
-    with pytest.raises(ValueError, match="no example"):
+    with pytest.raises(ValueError):
         compare_runs(np.zeros((2, 0), dtype=bool), np.zeros(0, dtype=np.int64))
 
 

@@ -62,5 +62,5 @@ def test_right_answers_confuse_no_slot(rows):
 
 
 def test_answers_have_to_fit_the_labels():
-    with pytest.raises(ValueError, match="1 answers do not fit 2 labels"):
+    with pytest.raises(ValueError, match=r"1 .* 2 "):
         confuse_slots(FORMS[:2], FORMS[:1])

@@ -59,10 +59,7 @@ def test_certainty_that_is_right_costs_nothing(pairs):
     assert (measured.error, measured.brier) == (0, 0)
 
 
-@pytest.mark.parametrize(
-    ("scores", "sentence"),
-    [([], "no answer"), ([1.2], "no probability"), ([float("nan")], "no probability")],
-)
-def test_what_is_no_probability_is_refused(scores, sentence):
-    with pytest.raises(ValueError, match=sentence):
+@pytest.mark.parametrize("scores", [[], [1.2], [float("nan")]])
+def test_what_is_no_probability_is_refused(scores):
+    with pytest.raises(ValueError):
         calibration(scores, np.zeros(len(scores), dtype=bool))

@@ -78,11 +78,9 @@ def test_a_thinned_curve_has_the_same_ends():
     assert thin.area == curve.area
 
 
-@pytest.mark.parametrize(
-    ("scores", "message"), [([], "no answer"), ([float("nan")], "not a number")]
-)
-def test_scores_are_numbers(scores, message):
-    with pytest.raises(ValueError, match=message):
+@pytest.mark.parametrize("scores", [[], [float("nan")]])
+def test_scores_are_numbers(scores):
+    with pytest.raises(ValueError):
         risk_coverage(scores, np.ones(len(scores), dtype=bool))
 
 

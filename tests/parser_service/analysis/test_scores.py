@@ -37,5 +37,5 @@ def test_a_score_counts_exact_matches():
 
 
 def test_nothing_cannot_be_scored():
-    with pytest.raises(ValueError, match="no example"):
+    with pytest.raises(ValueError):
         score([])

@@ -100,7 +100,7 @@ def test_slices_that_are_not_named_follow_in_order_of_appearance():
 
 
 def test_labels_have_to_fit_the_examples():
-    with pytest.raises(ValueError, match="2 labels do not fit 3 examples"):
+    with pytest.raises(ValueError, match=r"2 .* 3 "):
         accuracy_by(np.ones((1, 3), dtype=bool), ["a", "b"], np.arange(3))
 
 

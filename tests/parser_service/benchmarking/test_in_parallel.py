@@ -147,7 +147,7 @@ def test_an_interrupt_ends_all_processes_and_leaves_a_whole_file(file, started):
 
 def test_what_cannot_be_measured_is_said_and_the_rest_is_measured(folder, file):
     columns = f"gen-gen:logical_form:strict,{COLUMNS}"
-    with pytest.raises(CommandError, match="has no split by logical_form"):
+    with pytest.raises(CommandError, match="logical_form"):
         measure(folder, file, columns=columns, jobs=2, seeds="1")
     assert len(read(file)) == 3
 
@@ -156,7 +156,7 @@ def test_a_refusal_of_the_parser_itself_is_a_sentence(folder, file):
     asked = {"parsers": "grammar-oracle,knn", "columns": f"gen-gen:command:grammar,{COLUMNS}"}
     with pytest.raises(CommandError) as refused:
         measure(folder, file, jobs=2, seeds="1", **asked)
-    assert str(refused.value).startswith("grammar-oracle, grammar: The grammar oracle parses with")
+    assert str(refused.value).startswith("grammar-oracle, grammar: ")
     assert len(read(file)) == 3
 
 

@@ -67,7 +67,7 @@ def test_a_wrong_label_is_first_with_the_form_of_its_command(sample, paraphrases
     assert first["utterance"] == "look for the <object>"
     assert (first["form"], first["suggested_form"]) == (GO, FIND)
     assert first["findings"][0]["reason"] == "command"
-    assert "“locate the <object>”, has another form" in first["findings"][0]["sentence"]
+    assert "“locate the <object>”" in first["findings"][0]["sentence"]
 
 
 def test_what_was_rejected_is_not_audited(sample, paraphrases):
@@ -80,16 +80,18 @@ def test_the_report_for_a_person_shows_label_and_suggestion(sample, paraphrases)
     out = StringIO()
     call_command("audit_labels", "--world", "home", "--folds", "3", "--most", "1", stdout=out)
     text = out.getvalue()
-    assert "of 4 labels are in doubt" in text
+    assert " of 4 " in text
     assert f"label:     {GO}\n   suggested: {FIND}" in text
     assert "\n2. " not in text
 
 
 def test_a_world_with_too_few_pairs_is_told_so(sample):
-    with pytest.raises(CommandError, match="too few for 5 folds"):
+    with pytest.raises(CommandError, match=r"\b5\b") as refused:
         ask()
-    with pytest.raises(CommandError, match="--most is 0"):
+    assert refused.value.__cause__.code == "too_few_commands"
+    with pytest.raises(CommandError, match=r"--most .*\b0") as refused:
         ask("--most", "0")
+    assert refused.value.__cause__.code == "option_out_of_range"
 
 
 def test_the_published_faults_are_among_the_first(shared_data, world):

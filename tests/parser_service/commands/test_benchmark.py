@@ -120,11 +120,11 @@ def test_a_cell_names_the_model_that_answered_and_one_without_all_answers_is_not
 ):
     asked = {"parsers": "llm", "columns": "gen-para:command:strict"}
     with installed_tiny_server(tmp_path) as tiny:
-        with pytest.raises(CommandError, match="model is empty"):
+        with pytest.raises(CommandError, match=r"\bmodel\b"):
             run(folder, tmp_path / "cells.json", **asked)
         tiny.faults = [*4 * [says('{"form": "UNKNOWN"}')], *9 * [fails(500, KEY)]]
         asked["config"] = ["llm.model=tiny", "llm.at_once=1"]
-        with pytest.raises(CommandError, match="does not answer: status 500"):
+        with pytest.raises(CommandError, match=r"\b500\b"):
             run(folder, tmp_path / "cells.json", **asked)
         assert not (tmp_path / "cells.json").exists()
         tiny.faults.clear()

@@ -142,27 +142,27 @@ def test_an_utterance_without_an_answer_has_no_candidates(split):
 
 
 @pytest.mark.parametrize(
-    ("options", "sentence"),
+    ("options", "named"),
     [
-        ((), "No run of home has succeeded yet"),
-        (("--run", "99"), "There is no run 99 in home"),
-        (("--beam", "0"), "--beam has to be at least 1"),
+        ((), r"\bhome\b"),
+        (("--run", "99"), r"\b99\b.*\bhome\b"),
+        (("--beam", "0"), r"--beam .*\b1\b"),
     ],
 )
-def test_what_cannot_be_answered_is_a_sentence(split, options, sentence):
-    with pytest.raises(CommandError) as refused:
+def test_what_cannot_be_answered_is_a_sentence(split, options, named):
+    with pytest.raises(CommandError, match=named):
         ask("bring me the red cup", *options)
-    assert sentence in str(refused.value)
 
 
 def test_a_run_that_has_not_succeeded_is_not_asked(split):
     run, _ = run_requests.request(split.world, split, "knn", send=False)
-    with pytest.raises(CommandError, match=f"Run {run.pk} is queued"):
+    with pytest.raises(CommandError, match=rf"\b{run.pk}\b.*queued"):
         ask("bring me the red cup", "--run", str(run.pk))
 
 
 def test_a_parser_whose_folder_is_gone_says_where_it_was(split):
     run = trained(split)
     remove_folder(model_folder(run.pk))
-    with pytest.raises(CommandError, match="Bring that folder back, or train again"):
+    with pytest.raises(CommandError, match=str(model_folder(run.pk))) as refused:
         ask("bring me the red cup")
+    assert refused.value.__cause__.code == "saved_parser_missing"

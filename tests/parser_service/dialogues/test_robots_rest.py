@@ -41,7 +41,7 @@ def test_names_of_actions_are_replaced_as_a_whole(world, client, call, annotator
     fetch = {"name": "Fetch", "arguments": "thing=object"}
     assert put(0, bring=fetch).json() == {"version": 1, "names": {"bring": fetch}}
     assert put(0, bring=fetch).status_code == 409
-    assert put(1, bring={"name": "no name"}).json()["detail"].startswith("“no name” is no name")
+    assert "“no name”" in put(1, bring={"name": "no name"}).json()["detail"]
     step = call(annotator, f"{WORLD}plan/", {"form": FORM}).json()["steps"][0]
     assert (step["action"], list(step["arguments"])) == ("Fetch", ["object"])
     assert put(1).json() == {"version": 2, "names": {}}

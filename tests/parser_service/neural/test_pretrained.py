@@ -57,24 +57,21 @@ def test_a_hub_name_is_looked_for_in_the_local_cache_alone(encoder, monkeypatch)
 
 
 def test_what_is_nowhere_says_what_to_put_where(tmp_path):
-    message = rf"no weights of someone/absent.*Put its .* into {tmp_path}/someone/absent"
-    with pytest.raises(Refusal, match=message) as refused:
+    with pytest.raises(Refusal, match=f"{tmp_path}/someone/absent") as refused:
         find_encoder("someone/absent", tmp_path)
     assert refused.value.code == "pretrained_weights_missing"
 
 
 def test_pickled_weights_are_never_read(encoder):
     (encoder / "model.safetensors").rename(encoder / "pytorch_model.bin")
-    with pytest.raises(
-        Refusal, match="holds only pickled weights, which are never read"
-    ) as refused:
+    with pytest.raises(Refusal, match="pickled") as refused:
         find_encoder(str(encoder))
     assert refused.value.code == "pretrained_weights_unreadable"
 
 
 def test_a_pickle_under_a_safe_name_is_refused(encoder):
     torch.save({"weights": torch.zeros(3)}, encoder / "model.safetensors")
-    with pytest.raises(Refusal, match="holds no encoder that can be read") as refused:
+    with pytest.raises(Refusal, match=str(encoder)) as refused:
         load_encoder(str(encoder))
     assert refused.value.code == "pretrained_weights_unreadable"
 
@@ -82,7 +79,7 @@ def test_a_pickle_under_a_safe_name_is_refused(encoder):
 @pytest.mark.parametrize("missing", ["model.safetensors", "tokenizer.json"])
 def test_a_missing_file_is_named(encoder, missing):
     (encoder / missing).unlink()
-    with pytest.raises(Refusal, match=f"holds no {missing}") as refused:
+    with pytest.raises(Refusal, match=missing) as refused:
         find_encoder(str(encoder))
     assert refused.value.code == "pretrained_weights_unreadable"
 
@@ -93,7 +90,7 @@ def test_code_that_comes_with_weights_is_not_run(encoder, tmp_path):
     config["auto_map"] = {"AutoConfig": "code.Config", "AutoModel": "code.Model"}
     (encoder / "config.json").write_text(json.dumps(config))
     (encoder / "code.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')")
-    with pytest.raises(Refusal, match="holds no encoder that can be read") as refused:
+    with pytest.raises(Refusal, match=str(encoder)) as refused:
         load_encoder(str(encoder))
     assert refused.value.code == "pretrained_weights_unreadable"
     assert not (tmp_path / "ran").exists()

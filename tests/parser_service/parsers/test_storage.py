@@ -35,7 +35,7 @@ def test_saving_again_gives_the_same_bytes(folder, tmp_path_factory):
 
 def test_an_altered_file_is_refused(folder):
     (folder / PAIRS).write_text((folder / PAIRS).read_text().replace("kitchen", "bedroom"))
-    with pytest.raises(Refusal, match=r"pairs\.json is not the file that was saved") as refused:
+    with pytest.raises(Refusal, match=PAIRS) as refused:
         NearestNeighbour.load(folder)
     assert refused.value.code == "saved_file_altered"
 
@@ -45,20 +45,20 @@ def test_an_altered_file_is_refused(folder):
 )
 def test_a_configuration_that_nobody_wrote_is_refused(written, folder):
     (folder / CONFIG).write_bytes(written)
-    with pytest.raises(Refusal, match=r"config\.json .*(JSON file|describe a parser)") as refused:
+    with pytest.raises(Refusal, match=CONFIG) as refused:
         NearestNeighbour.load(folder)
     assert refused.value.code == "saved_parser_unreadable"
 
 
 def test_a_missing_file_is_refused(folder):
     (folder / PAIRS).unlink()
-    with pytest.raises(Refusal, match=r"pairs\.json is missing") as refused:
+    with pytest.raises(Refusal, match=PAIRS) as refused:
         NearestNeighbour.load(folder)
     assert refused.value.code == "saved_file_missing"
 
 
 def test_an_empty_folder_is_refused(tmp_path):
-    with pytest.raises(Refusal, match=r"config\.json is missing") as refused:
+    with pytest.raises(Refusal, match=CONFIG) as refused:
         NearestNeighbour.load(tmp_path)
     assert refused.value.code == "saved_file_missing"
 
@@ -66,21 +66,21 @@ def test_an_empty_folder_is_refused(tmp_path):
 @pytest.mark.parametrize("content", [b"\x80\x04\x95", b"not json", b"[]", b"{}"])
 def test_a_config_that_describes_no_parser_is_refused(folder, content):
     (folder / CONFIG).write_bytes(content)
-    with pytest.raises(Refusal, match=r"config\.json (is not a JSON|does not describe)") as refused:
+    with pytest.raises(Refusal, match=CONFIG) as refused:
         NearestNeighbour.load(folder)
     assert refused.value.code == "saved_parser_unreadable"
 
 
 def test_another_parser_or_version_is_refused(folder):
     rewrite(folder / CONFIG, version=99)
-    with pytest.raises(Refusal, match="holds version 99 of knn, not version 1 of knn") as refused:
+    with pytest.raises(Refusal, match=r"\b99 of knn.*\b1 of knn") as refused:
         NearestNeighbour.load(folder)
     assert refused.value.code == "other_parser_version"
 
 
 def test_an_older_version_that_answers_as_it_did_is_read(folder, monkeypatch):
     monkeypatch.setattr(NearestNeighbour, "version", 3)
-    with pytest.raises(Refusal, match="holds version 1 of knn, not version 3 of knn") as refused:
+    with pytest.raises(Refusal, match=r"\b1 of knn.*\b3 of knn") as refused:
         NearestNeighbour.load(folder)
     assert refused.value.code == "other_parser_version"
     monkeypatch.setattr(NearestNeighbour, "reads", (1, 2))
@@ -89,6 +89,6 @@ def test_an_older_version_that_answers_as_it_did_is_read(folder, monkeypatch):
 
 def test_a_hyperparameter_out_of_bounds_is_refused(folder):
     rewrite(folder / CONFIG, config={"least_overlap": 2})
-    with pytest.raises(Refusal, match="at most 1") as refused:
+    with pytest.raises(Refusal, match=r"least_overlap .* 1\b") as refused:
         NearestNeighbour.load(folder)
     assert refused.value.code == "hyperparameter_out_of_range"

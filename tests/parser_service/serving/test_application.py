@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 
 import pytest
 
@@ -61,8 +62,9 @@ def test_json_lines_are_answered_in_order_and_bad_ones_in_their_place(ask):
     status, kind, body = ask(PARSE, "\n".join(lines).encode(), kind="application/jsonl")
     answers = [json.loads(line) for line in body.splitlines()]
     assert (status, kind, len(answers)) == (200, "application/jsonl", len(lines) - 1)
-    assert answers[1]["detail"].startswith("Line 2: This is not a JSON object")
-    assert answers[2] == {"line": 4, "detail": "Line 4: There is no utterance: send a text."}
+    assert [each["line"] for each in answers[1:3]] == [2, 4]
+    assert all(set(each) == {"line", "detail"} for each in answers[1:3])
+    assert "JSON" in answers[1]["detail"] and "JSON" not in answers[2]["detail"]
     said = [answer["utterance"] for answer in answers if "utterance" in answer]
     assert said == [f"find the bowl {n}" for n in range(LINES_TOGETHER + 3)]
 
@@ -88,21 +90,21 @@ def test_it_counts_for_prometheus(ask):
 
 
 @pytest.mark.parametrize(
-    ("body", "sentence"),
+    ("body", "named"),
     [
-        (b"", "not a JSON object"),
-        (b"[" * 100_000, "not a JSON object"),
-        (b'{"utterance": 3}', "send a text"),
-        (b'{"utterance": "a\\u0000b"}', "NUL"),
-        (json.dumps({"utterance": "a" * 501}).encode(), "at most 500"),
-        (b'{"utterance": "go", "beam": 0}', "from 1 to 20"),
-        (b'{"utterance": "go", "beam": true}', "from 1 to 20"),
-        (b'{"utterance": "go", "run": "x"}', "the number of a run"),
+        (b"", r"\bJSON\b"),
+        (b"[" * 100_000, r"\bJSON\b"),
+        (b'{"utterance": 3}', r"\butterance\b"),
+        (b'{"utterance": "a\\u0000b"}', r"\bNUL\b"),
+        (json.dumps({"utterance": "a" * 501}).encode(), r"\b500\b"),
+        (b'{"utterance": "go", "beam": 0}', r"\b1\b.*\b20\b"),
+        (b'{"utterance": "go", "beam": true}', r"\b1\b.*\b20\b"),
+        (b'{"utterance": "go", "run": "x"}', r"\brun\b"),
     ],
 )
-def test_what_is_no_request_is_refused_with_a_sentence(ask, body, sentence):
+def test_what_is_no_request_is_refused_with_what_is_wrong(ask, body, named):
     status, _, answer = ask(PARSE, body)
-    assert status == 400 and sentence in json.loads(answer)["detail"]
+    assert status == 400 and re.search(named, json.loads(answer)["detail"])
 
 
 def test_what_is_not_there_is_refused(ask):
@@ -117,4 +119,4 @@ def test_what_is_not_there_is_refused(ask):
 def test_numbers_that_are_none_are_refused_in_words_of_ours(ask, query):
     status, _, answer = ask(PARSE, b"{}", kind="application/jsonl", query=query)
     said = json.loads(answer)["detail"]
-    assert status == 400 and "whole number" in said and "invalid literal" not in said
+    assert status == 400 and "run and beam" in said and "literal" not in said

@@ -74,20 +74,20 @@ def test_a_model_that_takes_too_long_ends_in_a_sentence(shelf, tiny, monkeypatch
     monkeypatch.setattr(service.parser.batcher, "_patience", 0.3)
     tiny.seconds = 30
     began = time.monotonic()
-    with pytest.raises(NotServed, match=r"has not answered within 0.3 s") as caught:
+    with pytest.raises(NotServed, match=r"\b0\.3 s") as caught:
         ask(shelf, "bring me the bowl please")
     assert caught.value.status == 503 and time.monotonic() - began < 15
 
 
 @pytest.mark.parametrize(
-    ("fault", "sentence"),
-    [(fails(401), "does not let us in"), (fails(500), "does not answer: status 500")],
+    ("fault", "status"),
+    [(fails(401), 401), (fails(500), 500)],
 )
 def test_a_server_that_fails_is_a_sentence_and_a_later_question_is_answered(
-    shelf, tiny, fault, sentence
+    shelf, tiny, fault, status
 ):
     tiny.always = fault
-    with pytest.raises(NotServed, match=sentence):
+    with pytest.raises(NotServed, match=rf"\bstatus {status}\b"):
         ask(shelf, "bring me the bowl please")
     tiny.always = None
     assert ask(shelf, "bring me the bowl please")["is_unknown"] is False
@@ -97,7 +97,7 @@ def test_an_installation_without_a_server_says_so(shelf):
     with installed(ModelServer()):
         other = Shelf(10_000_000, Metrics())
         other.update()
-        with pytest.raises(NotServed, match="GPSR_LLM_URL is not set"):
+        with pytest.raises(NotServed, match="GPSR_LLM_URL"):
             ask(other, "bring me the bowl please")
 
 
@@ -123,8 +123,9 @@ def test_other_parsers_answer_while_it_waits_and_too_many_are_refused(
         thread.start()
     wait_for(lambda: tiny.now == remote.SEATS, "all seats are taken")
     near.parse(["find the object"], 1)
-    with pytest.raises(NotServed, match="8 others wait for a language model already"):
+    with pytest.raises(NotServed, match=rf"\b{remote.SEATS}\b") as refused:
         service.parse(["one too many"], 1)
+    assert refused.value.status == 503
     assert tiny.now == remote.SEATS
     answers_come.set()
     for thread in threads:
@@ -150,7 +151,7 @@ def test_lines_are_answered_in_parts_and_those_without_an_answer_say_why(shelf, 
     answers = [json.loads(line) for line in b"".join(chunks).splitlines()]
     assert len(chunks) == 2
     assert [each.get("is_unknown") for each in answers] == [*4 * [False], None, None]
-    assert answers[-1]["detail"].startswith("Line 6: The language model's server at")
+    assert answers[-1]["line"] == 6 and "403" in answers[-1]["detail"]
     assert KEY not in str(answers)
 
 
@@ -160,4 +161,4 @@ def test_the_playground_shows_the_answer_or_the_sentence(run, tiny, anna, parse_
     assert "bring me the red cup" in page and "<meter" not in page
     tiny.always = fails(500, "CUDA error")
     page = anna.post("/w/home/parse/ask/", {"text": "Bring me the bowl now"}).content.decode()
-    assert "does not answer: status 500, CUDA error" in page
+    assert "status 500, CUDA error" in page and 'role="alert"' in page

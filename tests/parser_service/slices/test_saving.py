@@ -19,13 +19,12 @@ def test_a_slice_keeps_its_query_in_one_order(sample, annotator):
 
 @pytest.mark.parametrize("query", ["", "part=test", "outcome=splendid", "nonsense"])
 def test_a_slice_of_everything_is_refused(query, sample):
-    with pytest.raises(LanguageError, match="every prediction"):
+    with pytest.raises(LanguageError):
         save_slice(sample.world, "all", query)
+    assert not sample.world.slices.exists()
 
 
-@pytest.mark.parametrize(
-    ("name", "said"), [("", "needs a name"), (" \0", "name"), ("x" * 81, "longer")]
-)
+@pytest.mark.parametrize(("name", "said"), [("", None), (" \0", None), ("x" * 81, "80")])
 def test_a_name_that_cannot_be_had_is_refused(name, said, sample):
     with pytest.raises(LanguageError, match=said):
         save_slice(sample.world, name, "outcome=wrong")
@@ -35,9 +34,9 @@ def test_two_slices_of_a_world_differ_in_their_names(sample, other_world):
     saved = save_slice(sample.world, "errors", "outcome=wrong")
     save_slice(other_world, "errors", "outcome=wrong")
     other = save_slice(sample.world, "right ones", "outcome=correct")
-    with pytest.raises(LanguageError, match="already"):
+    with pytest.raises(LanguageError, match="“errors”"):
         save_slice(sample.world, "errors", "outcome=none")
-    with pytest.raises(LanguageError, match="already"):
+    with pytest.raises(LanguageError, match="“errors”"):
         rename_slice(other, "errors")
     rename_slice(saved, "mistakes")
     saved.refresh_from_db()

@@ -146,5 +146,5 @@ def test_a_slice_of_another_world_is_not_known(varied, other_world):
 
 
 def test_predictions_alone_do_not_say_which_world_is_meant(varied):
-    with pytest.raises(ValueError, match="which world"):
+    with pytest.raises(ValueError):
         select(varied.run.predictions.best(), "outcome=wrong")

@@ -103,5 +103,5 @@ def test_an_analysis_waits_for_a_worker_of_its_own_queue(sample, rene, served, i
     Worker.objects.create(name="w", host="h", process_id=1, queue=served, last_seen=timezone.now())
     rene.post(f"/w/home/runs/{sample.run.pk}/analysis/start/")
     page = rene.get(f"/w/home/runs/{sample.run.pk}/analysis/").content.decode()
-    assert ("starts when one does" in page) is is_missed
+    assert ("data-no-worker" in page) is is_missed
     assert "quick worker" not in page

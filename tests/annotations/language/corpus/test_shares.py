@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from annotations.language.corpus import Criterion, SplitItem, draw_share
+from annotations.language.errors import Refusal
 
 TEXTS = st.sampled_from(["go", "Go", "find it", "bring it", "take it", ""])
 ITEMS = st.lists(
@@ -53,5 +54,6 @@ def test_another_seed_draws_others():
 
 @pytest.mark.parametrize("share", [0, -0.5, 1.5])
 def test_a_share_of_nothing_or_more_than_all_is_refused(share):
-    with pytest.raises(ValueError, match="above 0 and at most 1"):
+    with pytest.raises(Refusal, match=f"{share:g}") as refused:
         draw_share([], Criterion.COMMAND, share)
+    assert refused.value.code == "share_out_of_range"

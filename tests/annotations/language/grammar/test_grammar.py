@@ -100,37 +100,36 @@ def test_references_know_where_they_stand():
 
 
 @pytest.mark.parametrize(
-    ("text", "line", "column", "words"),
+    ("text", "line", "column", "named"),
     [
-        ("$Main = a\n$b = (x | y", 2, 6, "never closed"),
-        ("$Main = a\n$b = x) | y", 2, 7, "never opened"),
-        ("$Main = a | ", 1, 13, "empty"),
-        ("$Main = (a | | b)", 1, 14, "empty"),
-        ("$Main = a\nhello there", 2, 1, "neither a production nor a comment"),
-        ("$Main = {spaceship}", 1, 10, "no wildcard {spaceship}"),
-        ("$Main = {room", 1, 9, "never closed"),
-        ("$Main = room}", 1, 13, "never opened"),
-        ("$Main = costs $5", 1, 15, "needs a name"),
-        ("$Main = a\n/* no end", 2, 1, "comment opened here"),
-        ("$Main = a\\", 1, 10, "needs a character"),
+        ("$Main = a\n$b = (x | y", 2, 6, ""),
+        ("$Main = a\n$b = x) | y", 2, 7, ""),
+        ("$Main = a | ", 1, 13, ""),
+        ("$Main = (a | | b)", 1, 14, ""),
+        ("$Main = a\nhello there", 2, 1, ""),
+        ("$Main = {spaceship}", 1, 10, "{spaceship}"),
+        ("$Main = {room", 1, 9, ""),
+        ("$Main = room}", 1, 13, ""),
+        ("$Main = costs $5", 1, 15, ""),
+        ("$Main = a\n/* no end", 2, 1, ""),
+        ("$Main = a\\", 1, 10, ""),
     ],
 )
-def test_a_malformed_line_is_an_error_with_its_place(text, line, column, words):
+def test_a_malformed_line_is_an_error_with_its_place(text, line, column, named):
     problem = only_problem(text)
     assert problem.is_error
-    assert words in problem.message
+    assert problem.message and named in problem.message
     assert problem.position == Position("rules.txt", line, column)
 
 
 def test_a_file_that_is_no_grammar_gives_one_error_and_not_one_a_line():
     problem = only_problem("<?xml version='1.0'?>\n<rooms>\n" + "<room/>\n" * 500)
-    assert "not a grammar file" in problem.message
-    assert problem.position.line == 1
+    assert problem.position == Position("rules.txt", 1, 1) and problem.hint
 
 
 def test_five_thousand_parentheses_are_refused_at_once():
     problem = only_problem("$Main = " + "(" * 5000 + "a" + ")" * 5000)
-    assert "deeper than 64" in problem.message
+    assert " 64" in problem.message
     assert problem.position.column == 8 + 65
 
 
@@ -180,8 +179,8 @@ def test_a_cycle_out_of_reach_and_one_of_five_thousand_are_found_too():
 
 def test_a_chain_of_a_thousand_nonterminals_is_refused_with_its_depth():
     grammar = grammar_of("$Main = $a0", *(f"$a{n} = $a{n + 1}" for n in range(999)), "$a999 = x")
-    assert any("1001 deep" in problem.message for problem in grammar.problems())
-    with pytest.raises(LanguageError, match="1001 deep"):
+    assert any("1001" in problem.message for problem in grammar.problems())
+    with pytest.raises(LanguageError, match="1001"):
         grammar.size()
 
 
@@ -193,7 +192,7 @@ def test_a_grammar_of_a_trillion_answers_at_once_and_refuses_to_be_enumerated():
     grammar = huge_grammar()
     assert grammar.problems() == ()
     assert grammar.size() == 10**12
-    with pytest.raises(LanguageError, match="1,000,000,000,000 commands"):
+    with pytest.raises(LanguageError, match="1,000,000,000,000"):
         grammar.commands(limit=10_000)
     assert len(list(islice(grammar.commands(), 5))) == 5
 
@@ -201,7 +200,7 @@ def test_a_grammar_of_a_trillion_answers_at_once_and_refuses_to_be_enumerated():
 def test_a_size_of_hundreds_of_digits_is_counted_exactly_and_said_as_a_power():
     grammar = grammar_of("$Main = " + "(a | b) " * 500)
     assert grammar.size() == 2**500
-    with pytest.raises(LanguageError, match=r"about 10\^150 commands"):
+    with pytest.raises(LanguageError, match=r"10\^150"):
         grammar.commands(limit=10)
 
 

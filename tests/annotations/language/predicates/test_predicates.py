@@ -60,29 +60,29 @@ def test_a_form_of_the_inferred_signatures_has_no_problem() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "sentence", "hint"),
+    ("text", "named", "hint"),
     [
-        ('(brin (λ$1:e (is_a $1 "<object>")))', "no predicate brin", "did you mean bring?"),
-        ("(zzz UNKNOWN)", "no predicate zzz", "declare it"),
-        ("(guide UNKNOWN)", "guide does not take 1 argument", "write guide(lambda, unknown)"),
-        ("(guide 1 2 3)", "guide does not take 3 arguments", "guide(lambda, unknown)"),
+        ('(brin (λ$1:e (is_a $1 "<object>")))', ["brin"], "bring?"),
+        ("(zzz UNKNOWN)", ["zzz"], ""),
+        ("(guide UNKNOWN)", ["guide", "1"], "guide(lambda, unknown)"),
+        ("(guide 1 2 3)", ["guide", "3"], "guide(lambda, unknown)"),
         (
             '(bring (λ$1:e (at $1 "<object>")))',
-            "argument 2 of at cannot be of the kind object",
+            ["2", "at", "object"],
             "at(variable, location) or at(variable, room)",
         ),
-        ("(say 3)", "argument 1 of say cannot be of the kind number", "say(form)"),
+        ("(say 3)", ["1", "say", "number"], "say(form)"),
     ],
 )
 def test_a_mismatch_is_a_warning_with_its_place_and_a_hint(
-    text: str, sentence: str, hint: str
+    text: str, named: list[str], hint: str
 ) -> None:
     problem, *others = check_form(read_form(text), KNOWN, PLACE)
     assert not others
     assert problem.severity == Severity.WARNING
     assert problem.position == PLACE
-    assert sentence in problem.message
-    assert hint in problem.hint
+    assert set(named) <= set(problem.message.split())
+    assert problem.hint and hint in problem.hint
 
 
 def test_a_nonterminal_as_predicate_or_argument_is_not_judged() -> None:

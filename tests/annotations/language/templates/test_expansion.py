@@ -184,7 +184,7 @@ def test_a_template_of_a_trillion_pairs_is_left_out_with_their_number():
 
 def test_templates_that_are_too_many_together_are_refused():
     many = category("1", "(a|b|c) = (go)", "(d|e|f) = (run)")
-    with pytest.raises(LanguageError, match="up to 6 commands, more than the limit of 5"):
+    with pytest.raises(LanguageError, match=r"\b6\b.*\b5\b"):
         generate([many], limit=5)
 
 
@@ -214,7 +214,7 @@ def test_what_was_expanded_before_is_looked_up_and_gives_the_same():
 
 def test_a_cycle_is_refused():
     cyclic = Grammar(read_productions("$Main = $Main").productions)
-    with pytest.raises(LanguageError, match="cycle"):
+    with pytest.raises(LanguageError, match=r"\$Main → \$Main"):
         generate([category("1", "go = (go)", grammar=cyclic)])
 
 

@@ -5,6 +5,7 @@ import pytest
 from annotations.language.errors import LanguageError, Position
 from annotations.language.forms import read_form
 from annotations.language.grammar import Grammar, read_productions
+from annotations.language.limits import MAX_NESTING
 from annotations.language.predicates import infer_signatures
 from annotations.language.symbols import Nonterminal, Wildcard
 from annotations.language.templates import (
@@ -77,37 +78,36 @@ def test_slots_are_nonterminals_and_wildcards_of_the_form_in_order():
 
 
 @pytest.mark.parametrize(
-    ("line", "column", "words"),
+    ("line", "column", "named"),
     [
-        ("find {name}", 1, "no equals sign"),
-        ("a = b = (go)", 7, "2 equals signs"),
-        (" = (go)", 1, "no pattern"),
-        ("go = ", 6, "no form"),
-        ("go ( = (go)", 4, "never closed"),
-        ("go {nam} = (go)", 5, "did you mean {name}?"),
-        ("go = (go", 9, "ends too early"),
-        ("go = (find (λ$1:e (is_a $2 {room})))", 25, "no λ binds the variable $2"),
-        ("go = (go {room 1 2})", 18, "neither a type nor an id"),
+        ("find {name}", 1, " = "),
+        ("a = b = (go)", 7, " 2 "),
+        (" = (go)", 1, ""),
+        ("go = ", 6, ""),
+        ("go ( = (go)", 4, ""),
+        ("go {nam} = (go)", 5, "{name}"),
+        ("go = (go", 9, ""),
+        ("go = (find (λ$1:e (is_a $2 {room})))", 25, "$2"),
+        ("go = (go {room 1 2})", 18, ""),
     ],
 )
-def test_a_line_that_is_no_template_is_an_error_with_its_place(line, column, words):
+def test_a_line_that_is_no_template_is_an_error_with_its_place(line, column, named):
     _, (problem,) = read_templates(f"go = (go)\n{line}", "t.txt")
     assert problem.is_error
-    assert words in str(problem)
+    assert named in str(problem)
     assert problem.position == Position("t.txt", 2, column)
 
 
 def test_five_thousand_parentheses_are_refused_on_either_side():
     deep = "(" * 2_000 + ")" * 2_000
     for line in (f"{deep} = (go)", f"go = {deep}"):
-        with pytest.raises(LanguageError, match="deep"):
+        with pytest.raises(LanguageError, match=rf"\b{MAX_NESTING}\b"):
             read_template(line)
 
 
 def test_a_file_of_something_else_is_one_error_and_one_of_comments_a_warning():
     _, (problem,) = read_templates("<rooms>\n<room/>\n<room/>\n</rooms>", "t.txt")
-    assert problem.is_error
-    assert "no semantic template" in problem.message
+    assert problem.is_error and problem.position.source == "t.txt"
     _, (problem,) = read_templates("# nothing yet", "t.txt")
     assert not problem.is_error
 
@@ -128,7 +128,7 @@ def test_a_template_that_fits_has_no_problems():
 def test_a_slot_that_only_the_form_has_is_an_error(slot):
     problem = only(f"find {{name}} = (find {{name}} {slot})")
     assert problem.startswith("t.txt:4:28: error: ")
-    assert f"the form mentions {slot}, which the pattern never produces" in problem
+    assert f" {slot}" in problem
 
 
 def test_a_nonterminal_that_the_pattern_produces_further_down_may_be_a_slot():
@@ -137,41 +137,41 @@ def test_a_nonterminal_that_the_pattern_produces_further_down_may_be_a_slot():
 
 
 def test_a_wildcard_that_the_form_leaves_out_is_a_warning_pronouns_and_unknown_excepted():
-    assert only("find {name} = (find)").startswith(
-        "t.txt:4:6: warning: the command says {name}, but the form leaves it out"
-    )
-    assert "says {object}" in only("$fetch the $thing = (bring)")
+    problem = only("find {name} = (find)")
+    assert problem.startswith("t.txt:4:6: warning: ") and "{name}" in problem
+    assert "{object}" in only("$fetch the $thing = (bring)")
     assert problems_of("find {name} = UNKNOWN") == []
 
 
 def test_commands_outside_the_grammar_are_counted_with_an_example():
     problem = only("(find | seek) {name} = (find {name})")
-    assert '1 of 2 commands are outside the grammar, such as "seek <name>"' in problem
-    assert "matches nothing in the grammar" in only("seek {name} = (find {name})")
+    assert "1 of 2 commands " in problem and '"seek <name>"' in problem
+    whole = only("seek {name} = (find {name})")
+    assert "warning: " in whole and '"seek <name>"' in whole and "commands" not in whole
 
 
 def test_a_template_of_a_trillion_commands_is_checked_at_once():
     template = read_template("$Main $Main = (go)")
     too_many, problem = problems(template, huge_grammar())
-    assert "more than the limit of 1,000,000" in too_many.message and not too_many.is_error
-    assert "matches nothing in the grammar" in problem.message
+    assert " 1,000,000" in too_many.message and not too_many.is_error
+    assert not problem.is_error
 
 
 def test_an_undefined_nonterminal_in_a_pattern_is_a_warning():
     first, second = problems_of("$fetch $lost = (bring)")
-    assert first.startswith("t.txt:4:8: warning: nothing defines $lost")
-    assert "makes no command" in second
+    assert first.startswith("t.txt:4:8: warning: ") and "$lost" in first
+    assert ": warning: " in second and "$lost" not in second
 
 
 def test_a_predicate_that_is_not_declared_or_takes_something_else_is_a_warning():
     declared = infer_signatures([read_form("(find {name})"), read_form("(go {room})")])
-    assert "there is no predicate fined" in only("find {name} = (fined {name})", declared)
-    assert "find does not take 2 arguments" in only("find {name} = (find {name} 1)", declared)
+    assert " fined" in only("find {name} = (fined {name})", declared)
+    assert " 2 " in only("find {name} = (find {name} 1)", declared)
 
 
 def test_a_predicate_slot_that_becomes_no_name_is_an_error():
     problem = problems_of("$fetch the $thing = (bring (λ$1:e ($thing $1)))")[-1]
-    assert "error: $thing is used as a predicate but became" in problem
+    assert "error: $thing " in problem
 
 
 def test_duplicates_and_conflicts_inside_a_set_are_reported_with_the_other_place():
@@ -182,7 +182,7 @@ def test_duplicates_and_conflicts_inside_a_set_are_reported_with_the_other_place
     )
     category = TaskCategory("1", GRAMMAR, read_templates(text, "t.txt")[0])
     troubles = [str(each) for each in set_problems([category], generate([category]))]
-    assert any("t.txt:2:1: warning: duplicate of t.txt:1:1" in t for t in troubles)
-    conflict = next(trouble for trouble in troubles if "a different form" in trouble)
-    assert conflict.startswith('t.txt:3:1: warning: 1 command such as "find <name>"')
-    assert "at t.txt:2:1" in conflict
+    (duplicate,) = [each for each in troubles if each.startswith("t.txt:2:1: warning: ")]
+    (conflict,) = [each for each in troubles if each.startswith("t.txt:3:1: warning: 1 command ")]
+    assert "t.txt:1:1" in duplicate
+    assert all(named in conflict for named in ('"find <name>"', "t.txt:2:1"))

@@ -28,7 +28,7 @@ def commands_on(client, query: str = "") -> list[str]:
 def test_a_covered_grammar_has_nothing_to_list(sample, anna):
     page = anna.get(PAGE)
     assert page.context["listing"].total == 0
-    assert "Every command looked at has a form." in page.content.decode()
+    assert '<div class="empty">' in page.content.decode()
 
 
 def test_a_command_without_a_form_leads_to_a_new_template(without_go, anna):
@@ -39,7 +39,8 @@ def test_a_command_without_a_form_leads_to_a_new_template(without_go, anna):
 
 
 def test_reviewers_see_the_list_and_no_link(without_go, rene):
-    assert "Write a template" not in rene.get(PAGE).content.decode()
+    page = rene.get(PAGE)
+    assert page.context["listing"].total == 1 and NEW not in page.content.decode()
 
 
 def test_bars_lead_to_the_commands_of_a_nonterminal(sample, anna, annotator):
@@ -105,7 +106,7 @@ def test_an_empty_world_suggests_a_pattern_and_no_form(without_go, anna, annotat
     page = anna.get(NEW, {"command": "locate the <object>"})
     assert page.context["form"]["pattern"].value() == "$vbfind the {kobject}"
     assert page.context["suggestions"] == []
-    assert "Suggest forms" in page.content.decode()
+    assert 'hx-post="/w/home/templates/suggestions/' in page.content.decode()
 
 
 @pytest.mark.parametrize("command", ["sing", "go to \0 the", "<room>", "(" * 300, "a " * 2000])
@@ -117,7 +118,8 @@ def test_forms_are_suggested_for_the_typed_pattern(sample, anna):
     page = anna.post("/w/home/templates/suggestions/", {"pattern": "fly to the {room}"})
     assert page.context["suggestions"][0].text == "(go {room})"
     unreadable = anna.post("/w/home/templates/suggestions/", {"pattern": "fly to the {room"})
-    assert "No form to suggest" in unreadable.content.decode()
+    assert unreadable.status_code == 200 and not unreadable.context["suggestions"]
+    assert 'type="radio"' not in unreadable.content.decode()
 
 
 @pytest.mark.parametrize(("verb", "status"), [("go at once", "draft"), ("walk", "ready")])

@@ -25,15 +25,17 @@ def sent(**values):
 
 def test_a_preview_says_it_in_english_and_names_the_templates_that_break(go, anna):
     address = f"/w/home/predicates/preview/?predicate={go.pk}"
-    page = anna.post(address, sent(gloss="walk into {1}")).content.decode()
-    assert "walk into the room" in page
-    assert "new problem" not in page
-    page = anna.post(address, sent(signatures="(gesture)")).content.decode()
-    assert "Templates with a new problem" in page
-    assert "argument 1 of go cannot be of the kind room" in page
-    assert "no kind of argument planet" in (
-        anna.post(address, sent(signatures="(planet)")).content.decode().lower()
-    )
+    answer = anna.post(address, sent(gloss="walk into {1}"))
+    checked = answer.context["checked"]
+    assert [each.sentence for each in checked.samples] == ["walk into the room"]
+    assert "walk into the room" in answer.content.decode()
+    assert checked.templates == ()
+    answer = anna.post(address, sent(signatures="(gesture)"))
+    ((row, told),) = answer.context["checked"].templates
+    assert row.form == "(go {room})" and told
+    assert row.pattern in answer.content.decode() and told[0] in answer.content.decode()
+    answer = anna.post(address, sent(signatures="(planet)"))
+    assert "checked" not in answer.context and "planet" in answer.context["trouble"]
 
 
 def test_what_is_saved_is_the_next_version_and_templates_have_its_problems(go, anna):
@@ -44,7 +46,8 @@ def test_what_is_saved_is_the_next_version_and_templates_have_its_problems(go, a
     assert go.signatures == [["gesture"], ["name"], ["name", "room"]]
     assert (go.version, go.is_edited) == (2, True)
     new = problems_of("(go {room})") - before
-    assert new == {"argument 1 of go cannot be of the kind room"}
+    (message,) = new
+    assert "go" in message.split() and "room" in message.split()
     assert anna.post(address, sent(version=2)).status_code == 302
     assert problems_of("(go {room})") == before
 
@@ -65,11 +68,11 @@ def test_two_people_on_one_predicate_get_a_merge(go, anna, admin):
 def test_a_predicate_is_declared_once(sample, anna):
     new = sent(name="fly", signatures="(location)", gloss="")
     assert anna.post("/w/home/predicates/new/", new).status_code == 302
-    again = anna.post("/w/home/predicates/new/", new)
-    assert "There is a predicate of this name already." in again.content.decode()
-    assert "means something else" in (
-        anna.post("/w/home/predicates/new/", sent(name="lambda")).content.decode()
-    )
+    for refused in (new, sent(name="lambda")):
+        answer = anna.post("/w/home/predicates/new/", refused)
+        assert answer.status_code == 200 and list(answer.context["form"].errors) == ["name"]
+    assert sample.world.predicates.filter(name="fly").count() == 1
+    assert not sample.world.predicates.filter(name="lambda").exists()
 
 
 def test_the_parts_that_are_downloaded_import_without_a_change(sample, rene, admin):

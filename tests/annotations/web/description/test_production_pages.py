@@ -32,27 +32,28 @@ def test_consequences_are_shown_before_saving(find, anna, world):
     before = commands(world)
     sent = {"expansion": "find | seek"}
     address = f"/w/home/grammar/preview/?production={find.pk}"
-    page = anna.post(address, sent).content.decode()
-    assert "1 command newly covered, 1 command without a form from then on" in page
-    assert "<li>seek</li>" in page
+    answer = anna.post(address, sent)
+    changes = answer.context["expected"].changes
+    assert [each.command for each in changes.covered_in_grammar] == ["seek the <object>"]
+    assert [each.command for each in changes.lost] == ["locate the <object>"]
+    assert "<li>seek</li>" in answer.content.decode()
     assert commands(world) == before
-    assert "Write it without errors" in anna.post(address, {"expansion": "find ("}).content.decode()
+    assert "expected" not in anna.post(address, {"expansion": "find ("}).context
 
 
 @pytest.mark.parametrize(
-    ("expansion", "message", "severity"),
+    ("expansion", "named", "column", "severity"),
     [
-        ("find ($gone", "the choice opened here is never closed", "error"),
-        ("find $gone", "nothing defines $gone", "warning"),
-        ("find $vbfind", "a cycle: $vbfind → $vbfind", "error"),
+        ("find ($gone", "", 6, "error"),
+        ("find $gone", "$gone", 1, "warning"),
+        ("find $vbfind", "$vbfind → $vbfind", 1, "error"),
     ],
 )
-def test_the_checker_answers_while_one_types(find, anna, expansion, message, severity):
+def test_the_checker_answers_while_one_types(find, anna, expansion, named, column, severity):
     address = f"/w/home/grammar/check/?production={find.pk}"
-    problems = anna.post(address, {"expansion": expansion}).json()["problems"]
-    assert [(message in each["message"], each["severity"]) for each in problems] == [
-        (True, severity)
-    ]
+    (problem,) = anna.post(address, {"expansion": expansion}).json()["problems"]
+    assert (problem["severity"], problem["column"]) == (severity, column)
+    assert named in problem["message"]
     saved = anna.post(f"/w/home/grammar/{find.pk}/", {"expansion": expansion, "version": 1})
     assert (saved.status_code == 200) == (severity == "error")
 

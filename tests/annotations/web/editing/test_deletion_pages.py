@@ -31,9 +31,9 @@ def test_the_page_of_a_template_names_commands_and_splits(sample, world, anna):
     row = SemanticTemplate.objects.get(form="(go {room})")
     split = freeze_split(world, "before")
     before = commands_of(world)
-    page = anna.get(address("template", row)).content.decode()
-    assert "When you delete it" in page and "without a form from then on" in page
-    assert split.name in page
+    page = anna.get(address("template", row))
+    assert [group.kind for group in page.context["groups"]] == ["lost", "splits"]
+    assert split.name in page.content.decode()
     assert commands_of(world) == before
     assert anna.post(address("template", row), {"version": row.version}).status_code == 302
     assert len(commands_of(world)) < len(before)
@@ -42,18 +42,23 @@ def test_the_page_of_a_template_names_commands_and_splits(sample, world, anna):
 
 def test_the_page_of_a_production_names_what_the_grammar_lacks_then(sample, anna):
     row = Production.objects.get(nonterminal="vbfind")
-    page = anna.get(address("production", row)).content.decode()
-    assert "New problems" in page and "nothing defines $vbfind" in page
+    page = anna.get(address("production", row))
+    (problem,) = page.context["deletion"].problems
+    assert "$vbfind" in problem.message and problem.message in page.content.decode()
 
 
 def test_the_page_of_a_predicate_names_the_templates_that_use_it(sample, anna):
-    page = anna.get(address("predicate", Predicate.objects.get(name="go"))).content.decode()
-    assert "No command changes." in page
-    assert "there is no predicate go" in page
+    page = anna.get(address("predicate", Predicate.objects.get(name="go")))
+    assert page.context["groups"] == []
+    ((row, told),) = page.context["deletion"].templates
+    assert row.form == "(go {room})" and "go" in told[0].split()
+    assert row.pattern in page.content.decode() and told[0] in page.content.decode()
 
 
 def test_the_page_of_an_entity_names_what_refers_to_it(sample, anna):
     row = Entity.objects.get(text="kitchen")
-    page = anna.get(address("entity", row)).content.decode()
-    assert "No command changes." in page
-    assert "the room kitchen of the category drinks does not exist" in page
+    page = anna.get(address("entity", row))
+    assert page.context["groups"] == []
+    (problem,) = page.context["deletion"].problems
+    assert "kitchen" in problem.message and "drinks" in problem.message
+    assert problem.message in page.content.decode()

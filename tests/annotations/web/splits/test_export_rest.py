@@ -55,7 +55,8 @@ def test_text_is_one_pair_file(caller, split, reviewer):
 def test_text_without_part_and_source_is_refused_with_a_sentence(caller, split, annotator):
     response = caller(url_of(split, "?as=txt&part=test"), annotator)
     assert response.status_code == 400
-    assert "one pair file" in str(response.json())
+    (problem,) = response.json()["problems"]
+    assert "part=" in problem["message"] and "source=" in problem["message"]
 
 
 def test_parquet_holds_the_rows_and_the_manifest(caller, split, annotator):

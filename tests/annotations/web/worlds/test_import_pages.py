@@ -54,8 +54,8 @@ def test_an_archive_is_one_import_whatever_its_folders(world, adam, tiny):
 
 def test_the_same_files_again_change_nothing(world, adam, tiny):
     send(adam, uploads(tiny))
-    page = report_of(adam, send(adam, uploads(tiny))).content.decode()
-    assert "0 added, 0 changed, 0 removed" in page
+    report = report_of(adam, send(adam, uploads(tiny))).context["report"]
+    assert set(report["changes"].values()) == {0}
 
 
 def test_one_error_refuses_everything_and_is_shown_with_its_place(world, adam, tiny):
@@ -63,42 +63,43 @@ def test_one_error_refuses_everything_and_is_shown_with_its_place(world, adam, t
     answer = send(adam, uploads(tiny))
     page = answer.content.decode()
     assert answer.status_code == 422
-    assert "Nothing was imported" in page
+    assert answer.context["is_refused"]
     assert "tiny_category_1_semantics.txt:1:" in page
     assert not hasattr(world, "grammar")
 
 
 def test_an_error_of_the_files_as_a_whole_has_no_place(world, adam):
     answer = send(adam, uploads({"names.xml": b"<names><name>Ada</name></names>"}))
-    page = answer.content.decode()
-    assert "there is no grammar here" in page
-    assert ":1:1" not in page
+    (problem,) = [each for each in answer.context["problems"] if each["severity"] == "error"]
+    assert problem["file"] == "" and problem["message"] in answer.content.decode()
+    assert ":1:1" not in answer.content.decode()
 
 
 def test_no_file_is_told(world, adam):
-    assert "This field is required" in adam.post("/w/home/import/").content.decode()
+    assert adam.post("/w/home/import/").context["form"].has_error("files", "required")
 
 
 @pytest.mark.parametrize(
-    ("files", "sentence"),
+    ("files", "named"),
     [
-        ([SimpleUploadedFile("x.zip", b"PK no archive")], "not a zip archive that can be read"),
-        ([archive({f"{n}.txt": b"x" for n in range(80)})], "64 is the limit"),
-        ([archive({"a/x.txt": b"$Main = a\n", "b/x.txt": b"$Main = b\n"})], "have this name"),
+        ([SimpleUploadedFile("x.zip", b"PK no archive")], "x.zip"),
+        ([archive({f"{n}.txt": b"x" for n in range(80)})], "64"),
+        ([archive({"a/x.txt": b"$Main = a\n", "b/x.txt": b"$Main = b\n"})], "x.txt"),
     ],
 )
-def test_an_upload_that_cannot_be_taken_is_told_in_a_sentence(files, sentence, world, adam):
+def test_an_upload_that_cannot_be_taken_is_told_at_its_field(files, named, world, adam):
     for file in files:
         file.seek(0)
     answer = send(adam, files)
     assert answer.status_code == 422
-    assert sentence in answer.content.decode()
+    told = f"{answer.context['form'].errors} {answer.context.get('problems')}"
+    assert named in told
 
 
 def test_an_archive_that_swells_is_refused_before_it_is_unpacked(world, adam, settings):
     settings.UPLOAD_MAX_BYTES = 1000
     bomb = archive({"x.txt": b"a" * 1001})
-    assert "more than 1,000 bytes" in send(adam, [bomb]).content.decode()
+    assert "1,000" in str(send(adam, [bomb]).context["form"].errors["files"])
 
 
 def test_a_name_that_leaves_its_folder_is_no_way_out(world, adam, tiny, tmp_path):
@@ -128,16 +129,15 @@ def test_published_pairs_become_a_frozen_split(sample, adam):
 
 def test_a_fault_in_the_pairs_refuses_them_with_its_place(sample, adam):
     answer = send_pairs(adam, {"gen/train.txt": b"go to the <room>\n"})
-    page = answer.content.decode()
     assert answer.status_code == 422
-    assert "Nothing was imported" in page and "train.txt:1" in page
+    assert answer.context["is_refused"] and "train.txt:1" in answer.content.decode()
     assert sample.world.splits.count() == 1
 
 
 def test_an_archive_without_pairs_is_told(sample, adam):
     answer = send_pairs(adam, {"notes/train.txt": b"x"})
     assert answer.status_code == 422
-    assert "Nothing was imported" in answer.content.decode()
+    assert answer.context["is_refused"]
 
 
 def test_an_import_that_forgets_a_file_shows_what_would_go_and_asks(
@@ -147,11 +147,12 @@ def test_an_import_that_forgets_a_file_shows_what_would_go_and_asks(
     send(adam, uploads(tiny))
     del tiny["tiny_category_1_semantics.txt"]
     answer = send(adam, uploads(tiny))
-    page = " ".join(adam.get(answer["Location"]).content.decode().split())
-    assert "Remove 2 templates and import" in page
-    assert "go to the {room} = (go {room})" in page
-    assert SemanticTemplate.objects.count() == 2
+    page = adam.get(answer["Location"])
     job = Job.objects.latest("pk")
+    assert page.context["report"]["is_waiting"]
+    assert "go to the {room} = (go {room})" in page.content.decode()
+    assert f'action="/jobs/{job.pk}/answer/"' in page.content.decode()
+    assert SemanticTemplate.objects.count() == 2
     answer = adam.post(f"/jobs/{job.pk}/answer/")
     confirmed = Job.objects.latest("pk")
     assert answer["Location"] == f"/jobs/{confirmed.pk}/"
@@ -164,7 +165,7 @@ def test_an_import_that_asks_can_be_cancelled(world, adam, tiny, settings, tmp_p
     del tiny["objects.xml"]
     job_page = send(adam, uploads(tiny))["Location"]
     adam.post(f"{job_page}cancel/")
-    assert "and import</button>" not in adam.get(job_page).content.decode()
+    assert f'action="{job_page}answer/"' not in adam.get(job_page).content.decode()
     assert Job.objects.count() == 2
 
 
@@ -175,7 +176,7 @@ def test_large_files_become_a_job(world, adam, tiny, settings, tmp_path):
     job = Job.objects.get()
     assert answer["Location"] == f"/jobs/{job.pk}/"
     page = adam.get(answer["Location"]).content.decode()
-    assert "Import of generator files" in page and "hx-get" in page
+    assert job.title in page and "hx-get" in page
 
 
 @pytest.mark.parametrize("method", [zipfile.ZIP_DEFLATED, zipfile.ZIP_LZMA, zipfile.ZIP_BZIP2])
@@ -189,7 +190,7 @@ def test_an_archive_with_a_damaged_stream_is_told_in_a_sentence(world, adam, tin
     data[start : start + info.compress_size] = b"\x99" * info.compress_size
     answer = send(adam, [SimpleUploadedFile("x.zip", bytes(data))])
     assert answer.status_code == 422
-    assert "not a zip archive that can be read" in answer.content.decode()
+    assert list(answer.context["form"].errors) == ["files"]
 
 
 @pytest.mark.parametrize("page", ["import/", "import/pairs/"])
@@ -197,18 +198,20 @@ def test_a_name_of_300_letters_or_bytes_that_are_no_text(world, adam, page):
     field = "archive" if "pairs" in page else "files"
     long = archive({f"gen/{'x' * 300}.txt": b"$Main = hello\n"}, "long.zip")
     answer = adam.post(f"/w/home/{page}", {"name": "n", field: long})
-    assert answer.status_code == 422 and "longer than 200 characters" in answer.content.decode()
+    assert answer.status_code == 422
+    assert "200" in str(answer.context["form"].errors[field])
     whole = archive({"gen/ä.txt": b"$Main = hello\n"}, "bad.zip").read()
     bad = SimpleUploadedFile("bad.zip", whole.replace("ä".encode(), b"\xff\xff"))
     answer = adam.post(f"/w/home/{page}", {"name": "n", field: bad})
     assert answer.status_code == 422
-    assert "not a zip archive that can be read" in answer.content.decode()
+    assert list(answer.context["form"].errors) == [field]
 
 
 def test_a_name_of_more_bytes_than_a_folder_takes(world, adam):
     long = archive({f"gen/{'ü' * 150}.txt": b"go\n( go )\n"}, "long.zip")
     answer = adam.post("/w/home/import/pairs/", {"name": "n", "archive": long})
-    assert answer.status_code == 422 and "255 bytes" in answer.content.decode()
+    assert answer.status_code == 422
+    assert "255" in str(answer.context["form"].errors["archive"])
 
 
 def test_an_archive_some_of_whose_paths_begin_with_a_slash(world, adam, tiny):
@@ -222,12 +225,12 @@ def test_what_people_deleted_is_said_and_brought_back_if_asked_for(world, adam, 
     template = SemanticTemplate.objects.get(pattern="go to the {room}")
     delete(template, admin, 1)
     page = " ".join(report_of(adam, send(adam, uploads(tiny))).content.decode().split())
-    assert "1 template" in page and "(deleted by adam on" in page
+    assert f"{template} (" in page and "adam" in page.partition(f"{template} (")[2]
     assert "/w/home/history/template/deleted/" in page
     assert SemanticTemplate.objects.count() == 1
     answer = adam.post("/w/home/import/", {"files": uploads(tiny), "brings_back": "on"})
     page = report_of(adam, answer).content.decode()
-    assert "left out" not in page
+    assert "/w/home/history/template/deleted/" not in page
     assert SemanticTemplate.objects.get(pk=template.pk).version == 2
 
 
@@ -275,7 +278,7 @@ def test_after_a_first_import_everything_leads_to_the_commands(world, adam, tiny
     assert "coverage-bar" not in overview.content.decode()
     assert overview.content.decode().count(generate) == 1
     coverage = adam.get("/w/home/coverage/").content.decode()
-    assert generate in coverage and "Write a template" not in coverage
+    assert generate in coverage and "/w/home/templates/new/" not in coverage
     adam.post("/w/home/generate/")
     for address in ("/w/home/", "/w/home/coverage/"):
         page = adam.get(address).content.decode()

@@ -6,6 +6,7 @@ import pytest
 from django.urls import reverse
 
 from annotations.models import World
+from tests.notices import levels
 
 
 @pytest.fixture
@@ -28,7 +29,7 @@ def test_another_name_deletes_nothing(name, sample, root):
 
 def test_the_name_deletes_the_world_and_leaves_the_others(sample, other_world, root):
     answer = root.post("/w/home/delete/", {"name": "home"}, follow=True)
-    assert "Deleted home with" in answer.content.decode()
+    assert levels(answer) == ["success"] and "home" in str(*answer.context["messages"])
     assert [world.name for world in World.objects.all()] == ["laboratory"]
 
 

@@ -98,18 +98,14 @@ def test_without_training_pairs_it_refuses(config):
 
 def test_a_missing_encoder_is_said_before_training(config, pairs, tmp_path, monkeypatch):
     monkeypatch.setattr("parser_service.neural.ranker.fitting.encoders_folder", lambda: tmp_path)
-    with pytest.raises(
-        Refusal, match=f"no weights of absent.*Put its .* into {tmp_path}/absent"
-    ) as refused:
+    with pytest.raises(Refusal, match=f"{tmp_path}/absent") as refused:
         FormRanker(replace(config, encoder="absent")).fit(pairs)
     assert refused.value.code == "pretrained_weights_missing"
 
 
 def test_a_learning_rate_that_diverges_is_said(config, pairs, monkeypatch):
     monkeypatch.setattr(RankerTraining, "_train_on", lambda *_: float("nan"))
-    with pytest.raises(
-        Refusal, match=r"Training diverged in epoch 1.*learning rate below"
-    ) as refused:
+    with pytest.raises(Refusal, match=rf"\b1\b.*{config.learning_rate:g}") as refused:
         FormRanker(config).fit(pairs)
     assert refused.value.code == "training_diverged"
 

@@ -109,21 +109,17 @@ def test_a_word_is_read_in_its_context(pairs):
 
 
 @pytest.mark.parametrize(
-    ("name", "changes", "sentence"),
+    ("name", "changes", "named"),
     [
-        (
-            "seq2seq-glove",
-            {"glove": "absent.txt"},
-            r"no GloVe vectors: absent\.txt is no file in .*",
-        ),
-        ("seq2seq-glove-elmo", {"elmo": "absent"}, "no ELMo: absent is no folder in .*Put elmo_2x"),
-        ("seq2seq-glove-gpt", {"encoder": "a/gpt"}, "no weights of a/gpt.* hf download a/gpt"),
-        ("seq2seq-minilm", {"encoder": "absent"}, "no weights of absent.*Put its config.json, mod"),
+        ("seq2seq-glove", {"glove": "absent.txt"}, r"absent\.txt.*glove\.6B\.100d\.txt"),
+        ("seq2seq-glove-elmo", {"elmo": "absent"}, "absent.*elmo_2x"),
+        ("seq2seq-glove-gpt", {"encoder": "a/gpt"}, "hf download a/gpt"),
+        ("seq2seq-minilm", {"encoder": "absent"}, r"absent.*config\.json, model\.safetensors"),
     ],
 )
-def test_missing_weights_are_said_and_nothing_is_trained(name, changes, sentence, pairs, tmp_path):
+def test_missing_weights_are_named_and_nothing_is_trained(name, changes, named, pairs, tmp_path):
     observe = Recorder(tmp_path)
-    with pytest.raises(Refusal, match=sentence) as refused:
+    with pytest.raises(Refusal, match=named) as refused:
         parser_of(name, **changes).fit(pairs, (), observe)
     assert refused.value.code == "requirement_missing"
     assert not observe.epochs
@@ -132,7 +128,7 @@ def test_missing_weights_are_said_and_nothing_is_trained(name, changes, sentence
 def test_weights_that_are_pickled_are_refused_before_training(pairs, encoders, tmp_path):
     folder = write_bert(tmp_path / "pickled")
     torch.save({"weights": torch.zeros(3)}, folder / "model.safetensors")
-    with pytest.raises(Refusal, match="holds no encoder that can be read") as refused:
+    with pytest.raises(Refusal, match=str(folder)) as refused:
         parser_of("seq2seq-minilm", encoder=str(folder)).fit(pairs)
     assert refused.value.code == "pretrained_weights_unreadable"
 
@@ -143,7 +139,7 @@ def test_another_encoder_under_the_same_name_is_refused(pairs, tmp_path, monkeyp
     parser.save(tmp_path / "saved")
     write_bert(tmp_path / "others" / "bert", seed=5)
     monkeypatch.setattr(pretrained_files, "_encoders", tmp_path / "others")
-    with pytest.raises(Refusal, match="was trained on an encoder with the SHA-256") as refused:
+    with pytest.raises(Refusal) as refused:
         Seq2SeqMiniLm.load(tmp_path / "saved")
     assert refused.value.code == "other_encoder"
 
@@ -187,7 +183,7 @@ def test_equal_seeds_give_equal_weights(pairs):
 @pytest.mark.parametrize("name", PRETRAINED)
 def test_a_row_is_never_without_its_vectors(name):
     for field in {"glove", "elmo", "encoder"} & asdict(parser_of(name).config).keys():
-        with pytest.raises(Refusal, match=f"{field} is empty, but this parser needs it") as refused:
+        with pytest.raises(Refusal, match=rf"\b{field}\b") as refused:
             parser_of(name, **{field: " "})
         assert refused.value.code == "hyperparameter_missing"
 

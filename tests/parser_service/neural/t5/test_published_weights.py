@@ -17,18 +17,19 @@ from tests.parser_service.neural.tiny_weights import write_bert
 
 pytestmark = pytest.mark.usefixtures("kept_there")
 
+MISSING, UNREADABLE = "requirement_missing", "pretrained_weights_unreadable"
+START = "decoder_start_token_id"
+
 
 def test_pickled_weights_are_refused_before_training(tmp_path):
     folder = write_t5(tmp_path / "pickled")
     state = {"weights": torch.zeros(3)}
     torch.save(state, folder / "model.safetensors")
-    with pytest.raises(Refusal, match="holds no encoder–decoder that can be read") as refused:
+    with pytest.raises(Refusal, match=str(folder)) as refused:
         parser_of(encoder=str(folder)).fit(TWENTY)
     assert refused.value.code == "pretrained_weights_unreadable"
     (folder / "model.safetensors").rename(folder / "pytorch_model.bin")
-    with pytest.raises(
-        Refusal, match="holds only pickled weights, which are never read"
-    ) as refused:
+    with pytest.raises(Refusal, match="pickled") as refused:
         parser_of(encoder=str(folder)).fit(TWENTY)
     assert refused.value.code == "requirement_missing"
 
@@ -39,27 +40,27 @@ def test_code_that_comes_with_weights_is_not_run(tmp_path):
     maps = {"AutoConfig": "code.Config", "AutoModelForSeq2SeqLM": "code.Model"}
     (folder / "config.json").write_text(json.dumps({**config, "model_type": "x", "auto_map": maps}))
     (folder / "code.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')")
-    with pytest.raises(Refusal, match="holds no encoder–decoder that can be read") as refused:
+    with pytest.raises(Refusal, match=str(folder)) as refused:
         parser_of(encoder=str(folder)).fit(TWENTY)
     assert refused.value.code == "pretrained_weights_unreadable"
     assert not (tmp_path / "ran").exists()
 
 
 @pytest.mark.parametrize(
-    ("change", "sentence"),
+    ("change", "code", "named"),
     [
-        (lambda folder: (folder / "tokenizer.json").unlink(), "holds no tokenizer.json"),
-        (lambda folder: write_bert(folder), "holds no encoder–decoder that can be read"),
-        (lambda folder: _forget(folder, "decoder_start_token_id"), "has no decoder_start_token_id"),
-        (lambda folder: _shrink(folder), "knows more tokens than the network has vectors"),
+        (lambda folder: (folder / "tokenizer.json").unlink(), MISSING, "tokenizer.json"),
+        (lambda folder: write_bert(folder), UNREADABLE, "wrong"),
+        (lambda folder: _forget(folder, START), UNREADABLE, START),
+        (lambda folder: _shrink(folder), UNREADABLE, "tokenizer"),
     ],
 )
-def test_files_that_do_not_make_an_encoder_decoder_are_refused(change, sentence, tmp_path):
+def test_files_that_do_not_make_an_encoder_decoder_are_refused(change, code, named, tmp_path):
     folder = write_t5(tmp_path / "wrong")
     change(folder)
-    with pytest.raises(Refusal, match=sentence) as refused:
+    with pytest.raises(Refusal, match=named) as refused:
         parser_of(encoder=str(folder)).fit(TWENTY)
-    assert refused.value.code in ("requirement_missing", "pretrained_weights_unreadable")
+    assert refused.value.code == code
 
 
 def _forget(folder, name):
@@ -76,7 +77,7 @@ def _shrink(folder):
 
 def test_missing_weights_are_said_and_nothing_is_trained(tmp_path):
     observe = Recorder(tmp_path)
-    with pytest.raises(Refusal, match=r"no weights of a/t5.* hf download a/t5") as refused:
+    with pytest.raises(Refusal, match="hf download a/t5") as refused:
         parser_of(encoder="a/t5").fit(TWENTY, (), observe)
     assert refused.value.code == "requirement_missing"
     assert not observe.epochs
@@ -118,9 +119,7 @@ def test_a_file_without_all_weights_is_refused(tmp_path):
     some = load_file(folder / "model.safetensors")
     del some["encoder.final_layer_norm.weight"]
     save_file(some, folder / "model.safetensors", {"format": "pt"})
-    with pytest.raises(
-        Refusal, match=r"lacks 1 weights of the network.*final_layer_norm"
-    ) as refused:
+    with pytest.raises(Refusal, match=r"\b1\b.*final_layer_norm") as refused:
         parser_of(encoder=str(folder)).fit(TWENTY)
     assert refused.value.code == "pretrained_weights_unreadable"
 

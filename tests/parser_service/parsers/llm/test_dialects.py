@@ -27,15 +27,13 @@ def test_a_server_that_knows_no_schema_is_asked_without_and_the_log_says_so(plac
     ]
     assert ["response_format" in each for each in tiny.asked] == [True, False, False]
     [sentence] = asker.dialect.learned
-    assert "does not take the JSON schema" in sentence and "unknown field" in sentence
+    assert "JSON" in sentence and "unknown field" in sentence
     assert [record.message for record in caplog.records] == [sentence]
 
 
 def test_a_question_that_is_refused_with_and_without_its_schema_is_refused(place, tiny):
     tiny.always = fails(400, "the prompt is longer than the context")
-    with pytest.raises(
-        Refusal, match=r"refuses the question .status 400, the prompt is longer"
-    ) as refused:
+    with pytest.raises(Refusal, match=r"\b400, the prompt is longer") as refused:
         ask(place, question())
     assert refused.value.code == "language_model_refused"
     assert len(tiny.asked) == 2
@@ -71,13 +69,11 @@ def test_a_model_without_system_messages_is_told_the_task_by_the_person(place, t
 
 def test_a_model_that_thinks_until_its_tokens_are_used_is_told_from_a_silent_one(place, tiny):
     tiny.faults = [says("", finish_reason="length")]
-    with pytest.raises(
-        Refusal, match=r"had used all its tokens before it answered. Raise max_to"
-    ) as refused:
+    with pytest.raises(Refusal, match="max_tokens") as refused:
         ask(place, question())
     assert refused.value.code == "language_model_refused"
     tiny.faults = [says(None, finish_reason="length", message={"reasoning_content": "Hmm"})]
-    with pytest.raises(Refusal, match=r"had used all its tokens") as refused:
+    with pytest.raises(Refusal, match="max_tokens") as refused:
         ask(place, question())
     assert refused.value.code == "language_model_refused"
     tiny.faults = [says(None, message={"refusal": "I cannot help with that."})]

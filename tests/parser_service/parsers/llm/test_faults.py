@@ -56,38 +56,37 @@ def test_what_passes_is_asked_again(place, tiny, fault):
 
 
 @pytest.mark.parametrize(
-    ("fault", "words"),
+    ("fault", "named"),
     [
-        ("busy", "status 429, slow down"),
-        ("broken", "status 500, CUDA error"),
-        ("hangs up", "its answer was cut off or is not HTTP"),
-        ("cut", "its answer was cut off"),
-        ("no JSON", "its answer is not JSON"),
-        ("an error within", "its answer is none of the protocol \\(upstream\\)"),
-        ("no content", "its answer is none of the protocol"),
+        ("busy", "429, slow down"),
+        ("broken", "500, CUDA error"),
+        ("hangs up", "HTTP"),
+        ("cut", ""),
+        ("no JSON", "JSON"),
+        ("an error within", r"\(upstream\)"),
+        ("no content", ""),
     ],
 )
-def test_what_does_not_pass_ends_in_a_sentence(place, tiny, fault, words):
+def test_what_does_not_pass_ends_in_a_sentence(place, tiny, fault, named):
     tiny.always = PASSING[fault]
-    with pytest.raises(Refusal, match=f"does not answer: {words}.* It was asked 3 times") as caught:
+    with pytest.raises(Refusal, match=rf"{place.name}.*{named}.*\b3\b") as caught:
         ask(place, question())
     assert caught.value.code == "language_model_refused"
-    assert "Answers that came are kept" in str(caught.value)
     assert len(tiny.asked) == 3
 
 
 @pytest.mark.parametrize(
-    ("status", "sentence"),
+    ("status", "named"),
     [
-        (401, "does not let us in \\(status 401, no\\). Set GPSR_LLM_KEY"),
-        (403, "does not let us in"),
-        (404, "has nothing at /v1/chat/completions"),
-        (413, "refuses the question \\(status 413, no\\)"),
+        (401, r"\(status 401, no\).*GPSR_LLM_KEY"),
+        (403, r"\(status 403, no\).*GPSR_LLM_KEY"),
+        (404, r"/v1/chat/completions \(status 404, no\).*GPSR_LLM_URL"),
+        (413, r"\(status 413, no\)"),
     ],
 )
-def test_what_cannot_pass_is_not_asked_again(place, tiny, status, sentence):
+def test_what_cannot_pass_is_not_asked_again(place, tiny, status, named):
     tiny.always = fails(status, "no")
-    with pytest.raises(Refusal, match=sentence) as refused:
+    with pytest.raises(Refusal, match=named) as refused:
         ask(place, question())
     assert refused.value.code == "language_model_refused"
     assert len(tiny.asked) == 1
@@ -98,9 +97,7 @@ def test_a_server_that_is_away_is_said_to_be_so(tmp_path):
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     place = ModelServer(f"http://127.0.0.1:{port}", patience=QUICK)
-    with pytest.raises(
-        Refusal, match=f"127.0.0.1:{port} does not answer: connection refused"
-    ) as refused:
+    with pytest.raises(Refusal, match=f"127.0.0.1:{port} .*connection refused") as refused:
         ask(place, question())
     assert refused.value.code == "language_model_refused"
 
@@ -110,7 +107,7 @@ def test_an_answer_that_takes_too_long_is_waited_for_no_longer(place, tiny):
     for fault in (drips, lambda handler: time.sleep(LONG)):
         tiny.always = fault
         began = time.monotonic()
-        with pytest.raises(Refusal, match=r"does not answer: it took longer than 0.3 s") as refused:
+        with pytest.raises(Refusal, match=r"\b0\.3 s") as refused:
             ask(place, question())
         assert refused.value.code == "language_model_refused"
         assert time.monotonic() - began < LONG
@@ -125,9 +122,7 @@ def test_a_wait_that_the_server_asks_for_is_kept_but_not_a_long_one(place, tiny)
     in_an_hour = format_datetime(datetime.now(UTC) + timedelta(hours=1), usegmt=True)
     for wanted in ("3600", in_an_hour):
         tiny.always = fails(429, "quota", Retry_After=wanted)
-        with pytest.raises(
-            Refusal, match=r"asked again in 3,(600|59\d) s only \(status 429, quota"
-        ) as refused:
+        with pytest.raises(Refusal, match=r"\b3,(600|59\d) s .*\(status 429, quota") as refused:
             ask(place, question(wanted))
         assert refused.value.code == "language_model_refused"
     assert len(tiny.asked) == 4
@@ -157,7 +152,7 @@ def test_stopping_takes_no_longer_than_the_check(place, tiny, fault):
 def test_what_came_before_a_failure_is_not_asked_again(place, tiny):
     asked = [question(str(number)) for number in range(6)]
     tiny.faults = [*4 * [says("b")], *9 * [fails(500)]]
-    with pytest.raises(Refusal, match=r"does not answer") as refused:
+    with pytest.raises(Refusal, match=r"\b500\b") as refused:
         ask(place, *asked, at_once=1)
     assert refused.value.code == "language_model_refused"
     tiny.faults.clear()
@@ -191,7 +186,7 @@ def test_a_huge_answer_is_not_read_to_its_end(place, tiny):
             handler.wfile.write(b"10000\r\n" + piece + b"\r\n")
 
     tiny.always = endless
-    with pytest.raises(Refusal, match="answers with more than 1,048,576 bytes") as refused:
+    with pytest.raises(Refusal, match="1,048,576") as refused:
         ask(place, question())
     assert refused.value.code == "language_model_refused"
     assert len(tiny.asked) == 1

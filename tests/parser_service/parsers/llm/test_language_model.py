@@ -170,9 +170,7 @@ def test_what_cannot_be_trained_is_refused(place, pairs, model, code):
 
 def test_a_model_that_the_server_does_not_have_is_refused_with_those_it_has(place, tiny):
     tiny.models = ["large", "small:latest"]
-    with pytest.raises(
-        Refusal, match="has no model 'tiny'; it has: large, small:latest"
-    ) as refused:
+    with pytest.raises(Refusal, match=r"'tiny'.*: large, small:latest") as refused:
         fitted()
     assert refused.value.code == "language_model_refused"
     assert tiny.asked == []

@@ -25,15 +25,16 @@ def test_nothing_is_sent_where_a_redirect_leads(place, tiny, status):
     with tiny_server() as other:
         to = other.url.replace("127.0.0.1", "localhost")
         tiny.always = sends(b"", status, Location=f"{to}/chat/completions?secret=x")
-        with pytest.raises(Refusal, match=r"sends the question to the host localhost") as caught:
+        with pytest.raises(Refusal, match="localhost") as caught:
             ask(place, question())
         assert caught.value.code == "language_model_refused"
         assert other.asked == other.headers == []
     assert "secret" not in str(caught.value)
     tiny.always = sends(b"", status, Location="/v1/chat/completions/")
-    with pytest.raises(Refusal, match=r"elsewhere on its own host") as refused:
+    with pytest.raises(Refusal, match="GPSR_LLM_URL") as refused:
         ask(place, question())
     assert refused.value.code == "language_model_refused"
+    assert "localhost" not in refused.value.message
 
 
 def test_no_proxy_of_the_environment_is_used(place, tiny, monkeypatch):
@@ -87,16 +88,12 @@ def certified(tiny, tmp_path):
 def test_a_certificate_is_looked_at_and_its_name_too(place, tiny, certified, monkeypatch):
     port = tiny.server_address[1]
     by_name = replace(place, url=f"https://localhost:{port}/v1")
-    with pytest.raises(
-        Refusal, match=r"certificate of localhost:\d+ is not to be trusted"
-    ) as refused:
+    with pytest.raises(Refusal, match=r"certificate .*localhost:\d+") as refused:
         ask(by_name, question())
     assert refused.value.code == "language_model_refused"
     monkeypatch.setenv("SSL_CERT_FILE", str(certified))
     assert ask(by_name, question()) == ["a"]
-    with pytest.raises(
-        Refusal, match=r"certificate of 127.0.0.1:\d+ is not to be trusted"
-    ) as refused:
+    with pytest.raises(Refusal, match=r"certificate .*127.0.0.1:\d+") as refused:
         ask(replace(place, url=f"https://127.0.0.1:{port}/v1"), question("another"))
     assert refused.value.code == "language_model_refused"
     assert len(tiny.asked) == 1
@@ -111,12 +108,10 @@ def test_a_name_that_leads_elsewhere_is_refused_after_it_is_looked_up(monkeypatc
 
     monkeypatch.setattr(exchange.socket, "getaddrinfo", look_up)
     place = ModelServer("http://models.example.org/v1", patience=QUICK)
-    with pytest.raises(Refusal, match=r"is another machine.*Set GPSR_LLM_REMOTE=1") as refused:
+    with pytest.raises(Refusal, match="GPSR_LLM_REMOTE=1") as refused:
         ask(place, question())
     assert refused.value.code == "language_model_refused"
     open_line = replace(place, key=KEY, may_be_remote=True)
-    with pytest.raises(
-        Refusal, match=r"GPSR_LLM_KEY would travel to models.example.org"
-    ) as refused:
+    with pytest.raises(Refusal, match=r"GPSR_LLM_KEY .*models\.example\.org") as refused:
         ask(open_line, question())
     assert refused.value.code == "language_model_refused"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from ipaddress import ip_address
@@ -37,33 +38,33 @@ def test_an_address_of_this_machine_or_a_name_is_accepted(url):
 
 
 @pytest.mark.parametrize(
-    ("server", "sentence"),
+    ("server", "named"),
     [
-        (ModelServer(), "GPSR_LLM_URL is not set. Start a server that speaks OpenAI's protocol"),
-        (ModelServer("127.0.0.1:8080"), "is no address that begins with http:// or https://"),
-        (ModelServer("ftp://127.0.0.1/v1"), "is no address"),
-        (ModelServer("file:///etc/passwd"), "is no address"),
-        (ModelServer("http://"), "is no address"),
-        (ModelServer("http://127.0.0.1:70000/v1"), "is no address"),
-        (ModelServer("http://127.0.0.1:0/v1"), "is no address"),
-        (ModelServer("http://[::1/v1"), "is no address"),
-        (ModelServer("http://127.0.0.1/v1\r\nX: y"), "is no address"),
-        (ModelServer(f"http://me:{KEY}@127.0.0.1/v1"), "holds a user or a password"),
-        (ModelServer(f"http://{KEY}@127.0.0.1/v1"), "holds a user or a password"),
-        (ModelServer(f"{HERE}?key={KEY}"), "goes on after its path"),
-        (ModelServer(HERE, f"{KEY}\nX-Other: 1"), "GPSR_LLM_KEY holds a space or another sign"),
-        (ModelServer(HERE, "schlüssel"), "GPSR_LLM_KEY holds"),
-        (ModelServer(HERE, patience=Patience(answer=0)), "GPSR_LLM_SECONDS has to be more than 0"),
-        (ModelServer(HERE, patience=Patience(answer=float("nan"))), "GPSR_LLM_SECONDS has to be"),
-        (ModelServer("http://192.0.2.7/v1"), "another machine: commands and forms would leave"),
-        (ModelServer("http://0.0.0.0:8080/v1"), "another machine"),
-        (ModelServer("http://[2001:db8::1]/v1"), "another machine"),
-        (ModelServer("http://192.0.2.7/v1", KEY, True), "GPSR_LLM_KEY would travel to 192.0.2.7"),
+        (ModelServer(), "GPSR_LLM_URL .*OpenAI"),
+        (ModelServer("127.0.0.1:8080"), "http://.*https://"),
+        (ModelServer("ftp://127.0.0.1/v1"), "http://.*https://"),
+        (ModelServer("file:///etc/passwd"), "http://.*https://"),
+        (ModelServer("http://"), "http://.*https://"),
+        (ModelServer("http://127.0.0.1:70000/v1"), "http://.*https://"),
+        (ModelServer("http://127.0.0.1:0/v1"), "http://.*https://"),
+        (ModelServer("http://[::1/v1"), "http://.*https://"),
+        (ModelServer("http://127.0.0.1/v1\r\nX: y"), "http://.*https://"),
+        (ModelServer(f"http://me:{KEY}@127.0.0.1/v1"), "GPSR_LLM_KEY"),
+        (ModelServer(f"http://{KEY}@127.0.0.1/v1"), "GPSR_LLM_KEY"),
+        (ModelServer(f"{HERE}?key={KEY}"), "^GPSR_LLM_URL "),
+        (ModelServer(HERE, f"{KEY}\nX-Other: 1"), "^GPSR_LLM_KEY "),
+        (ModelServer(HERE, "schlüssel"), "^GPSR_LLM_KEY "),
+        (ModelServer(HERE, patience=Patience(answer=0)), "^GPSR_LLM_SECONDS .* 0"),
+        (ModelServer(HERE, patience=Patience(answer=float("nan"))), "^GPSR_LLM_SECONDS .* 0"),
+        (ModelServer("http://192.0.2.7/v1"), "GPSR_LLM_REMOTE"),
+        (ModelServer("http://0.0.0.0:8080/v1"), "GPSR_LLM_REMOTE"),
+        (ModelServer("http://[2001:db8::1]/v1"), "GPSR_LLM_REMOTE"),
+        (ModelServer("http://192.0.2.7/v1", KEY, True), r"GPSR_LLM_KEY .* 192\.0\.2\.7"),
     ],
 )
-def test_any_other_is_refused_without_repeating_what_may_be_secret(server, sentence):
+def test_any_other_is_refused_without_repeating_what_may_be_secret(server, named):
     problem = problem_of(server)
-    assert sentence in problem and problem.endswith(".")
+    assert re.search(named, problem) and problem.endswith(".")
     assert KEY not in problem
 
 

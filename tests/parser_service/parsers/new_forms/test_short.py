@@ -56,12 +56,12 @@ def test_every_published_form_is_read_back_from_a_quarter_of_its_tokens(shared_d
 
 @pytest.mark.parametrize("tokens", [(), (")",), ("go:<room>", "go:<room>"), ("Lx",), ("go:$x",)])
 def test_what_spells_no_form_is_refused(tokens):
-    with pytest.raises(ValueError, match="is not a form"):
+    with pytest.raises(ValueError):
         lengthen(tokens)
 
 
 def test_a_template_has_no_short_spelling():
-    with pytest.raises(ValueError, match="slot of a template"):
+    with pytest.raises(ValueError, match="room"):
         shorten(read_form("(go {room})"))
 
 

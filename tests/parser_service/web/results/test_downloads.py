@@ -132,7 +132,7 @@ def test_a_model_that_may_have_read_the_corpus_is_marked_everywhere(sample, anna
     )
     page = anna.get("/w/home/results/").content.decode()
     assert page.count(">†</abbr></sup>") == 1 and f"† {MAY_KNOW_CORPORA}" in page
-    assert "answered by tiny-2026-07" in page and "model tiny" in page
+    assert " tiny-2026-07" in page and "model tiny" in page
     for name in ("predictions", "defaults", "sensitivity", "probes"):
         of_run = anna.get(reverse(name, args=["home", run.pk])).content.decode()
         assert f"† {MAY_KNOW_CORPORA}" in of_run

@@ -85,7 +85,7 @@ def test_what_is_misspelled_is_the_default(sample, anna):
 def test_published_figures_are_shown_on_request(sample, anna, published):
     assert published == 63.0
     page = anna.get("/w/home/results/").content.decode()
-    assert ">published 63.0<" not in page and "beside published" in page
+    assert ">published 63.0<" not in page and "published=yes" in page
     page = anna.get("/w/home/results/", {"published": "yes"}).content.decode()
     assert ">published 63.0<" in page and "Walker, Peng and Cakmak (2019)" in page
     page = anna.get("/w/home/results/", {"published": "yes", "measure": "equivalent"})

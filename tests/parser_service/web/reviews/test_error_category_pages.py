@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from annotations.background.progress import UNWATCHED
@@ -37,20 +39,20 @@ def test_counts_lead_to_the_errors_of_a_run(run, anna):
 
 
 def test_agreement_is_shown_once_two_people_have_tagged(run, anna, reviewer, admin):
-    assert "No answer has been tagged by two people yet" in anna.get(PATH).content.decode()
+    assert "AC1" not in anna.get(PATH).content.decode()
     for row in run.predictions.filter(is_exact_match=False):
         for person in (reviewer, admin):
             tag(run, row.example, category(run), person)
     page = anna.get(PATH).content.decode()
-    assert "100 %" in page and "AC1" in page and "tagged by two people yet" not in page
+    assert "100 %" in page and "AC1" in page
 
 
 def test_others_see_no_forms(run, anna, rene):
     for client in (anna, rene):
-        assert b"Add a category" not in client.get(PATH).content
-        page = client.get(f"{PATH}{category(run).pk}/").content.decode()
-        assert "Admins of this world change error categories." in page
-        assert "Delete this category" not in page
+        for page in (PATH, f"{PATH}{category(run).pk}/"):
+            shown = client.get(page).content.decode()
+            shown = shown.partition('<main id="main"')[2].partition("</main>")[0]
+            assert 'method="post"' not in shown and category(run).name in shown
 
 
 def test_an_admin_adds_changes_and_orders(run, adam):
@@ -74,9 +76,10 @@ def test_a_slice_of_another_world_is_none(run, other_world, adam):
 def test_deletion_says_how_many_reviews_there_are_and_where_they_go(run, adam):
     row = category(run)
     page = adam.get(f"{PATH}{row.pk}/").content.decode()
-    assert "9 reviews of this category" in page
+    assert re.search(r"\b9 review", page) and 'name="move_to"' in page
     refused = adam.post(f"{PATH}{row.pk}/delete/")
-    assert refused.status_code == 422 and "Say which category" in refused.content.decode()
+    assert refused.status_code == 422 and 'name="move_to"' in refused.content.decode()
+    assert category(run).reviews.count() == 9
     adam.post(f"{PATH}{row.pk}/delete/", {"move_to": category(run, "wrong_structure").pk})
     assert category(run, "wrong_structure").reviews.count() == 9
 

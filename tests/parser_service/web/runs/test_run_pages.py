@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
 from datetime import timedelta
 
 import pytest
 from django.utils import timezone
+from django.utils.html import escape
 
 from annotations.people.rate_limits import STARTED_RUNS
 from parser_service.models import RunEvent, TrainingRun, Worker
@@ -13,6 +16,7 @@ from parser_service.parsers.interface import EpochReport
 from parser_service.parsers.registry import PARSERS, config_fields
 from parser_service.runs import lifecycle
 from parser_service.runs.requests import run_requests
+from tests.notices import levels
 from tests.parser_service.made_up import make_split
 from tests.sample_world import scored_run
 
@@ -63,14 +67,15 @@ def test_the_same_is_trained_once(sample, adam, no_messages):
     first = adam.post("/w/home/runs/new/?parser=seq2seq", form(sample))
     again = adam.post("/w/home/runs/new/?parser=seq2seq", form(sample), follow=True)
     assert again.redirect_chain[-1][0] == first.url
-    assert "This has been trained already" in again.content.decode()
+    assert levels(again) == ["info"]
     assert TrainingRun.objects.filter(parser="seq2seq").count() == 1
 
 
 def test_several_seeds_start_as_one_request_and_are_listed(sample, adam, no_messages):
     asked = {**form(sample), "seeds": 3}
     answer = adam.post("/w/home/runs/new/?parser=seq2seq", asked, follow=True)
-    assert "Started 3 runs, seeds 7 to 9." in answer.content.decode()
+    assert levels(answer) == ["info"]
+    assert re.findall(r"\d+", str(*answer.context["messages"])) == ["3", "7", "9"]
     assert [run.seed for run in answer.context["listing"].rows] == [9, 8, 7]
 
 
@@ -78,50 +83,54 @@ def test_seeds_that_were_trained_already_are_listed_with_the_new_ones(sample, ad
     adam.post("/w/home/runs/new/?parser=seq2seq", {**form(sample), "seed": 8})
     asked = {**form(sample), "seeds": 3}
     answer = adam.post("/w/home/runs/new/?parser=seq2seq", asked, follow=True)
-    assert "Started 2 runs, seeds 7 to 9; 1 was there already." in answer.content.decode()
+    assert re.findall(r"\d+", str(*answer.context["messages"])) == ["2", "7", "9", "1"]
     again = adam.post("/w/home/runs/new/?parser=seq2seq", asked, follow=True)
-    assert "All 3 seeds have been asked for already" in again.content.decode()
+    assert re.findall(r"\d+", str(*again.context["messages"])) == ["3"]
     assert again.context["listing"].total == TrainingRun.objects.filter(parser="seq2seq").count()
 
 
 @pytest.mark.parametrize(
-    ("changes", "sentence"),
+    ("changes", "field", "code"),
     [
-        ({"config-epochs": 0}, "greater than or equal to 1"),
-        ({"config-dropout": "much"}, "Enter a number"),
-        ({"config-dropout": "nan"}, "Enter a number"),
-        ({"split": 999999}, "Select a valid choice"),
-        ({"train_sources": "all"}, "Select a valid choice"),
-        ({"protocol": "grammar"}, "Select a valid choice"),
-        ({"seed": -1}, "greater than or equal to 0"),
-        ({"seeds": 0}, "greater than or equal to 1"),
-        ({"seeds": 11}, "less than or equal to 10"),
-        ({"seed": 2**32 - 2, "seeds": 3}, "The last seed would be 4294967296"),
+        ({"config-epochs": 0}, "config-epochs", "min_value"),
+        ({"config-dropout": "much"}, "config-dropout", "invalid"),
+        ({"config-dropout": "nan"}, "config-dropout", "invalid"),
+        ({"split": 999999}, "split", "invalid_choice"),
+        ({"train_sources": "all"}, "train_sources", "invalid_choice"),
+        ({"protocol": "grammar"}, "protocol", "invalid_choice"),
+        ({"seed": -1}, "seed", "min_value"),
+        ({"seeds": 0}, "seeds", "min_value"),
+        ({"seeds": 11}, "seeds", "max_value"),
+        ({"seed": 2**32 - 2, "seeds": 3}, "seeds", None),
     ],
 )
-def test_what_cannot_be_trained_is_told_beside_its_field(changes, sentence, sample, adam):
+def test_what_cannot_be_trained_is_told_beside_its_field(changes, field, code, sample, adam):
     answer = adam.post("/w/home/runs/new/?parser=seq2seq", {**form(sample), **changes})
-    assert sentence in answer.content.decode()
+    errors = answer.context["form"].errors.as_data()
+    assert {name: [each.code for each in told] for name, told in errors.items()} == {field: [code]}
+    assert escape(errors[field][0].messages[0]) in answer.content.decode()
     assert TrainingRun.objects.count() == 1
 
 
 def test_a_source_that_the_split_lacks_is_told_in_a_sentence(sample, adam):
     sample.split.examples.filter(source="paraphrased").delete()
     answer = adam.post("/w/home/runs/new/?parser=seq2seq", form(sample))
-    assert "has no paraphrased examples to train on" in answer.content.decode()
+    (told,) = answer.context["form"].non_field_errors()
+    assert "paraphrased" in told and told in answer.content.decode()
 
 
 def test_a_split_of_another_world_is_no_choice(sample, other_world, adam):
     foreign = make_split(other_world, "foreign")
     answer = adam.post("/w/home/runs/new/?parser=seq2seq", {**form(sample), "split": foreign.pk})
-    assert "Select a valid choice" in answer.content.decode()
+    assert answer.context["form"].has_error("split", "invalid_choice")
 
 
 def test_there_is_a_limit_to_the_runs_of_an_hour(sample, adam, admin, no_messages):
     for _ in range(STARTED_RUNS.limit):
         STARTED_RUNS.take(str(admin.pk))
     answer = adam.post("/w/home/runs/new/?parser=seq2seq", form(sample))
-    assert f"You have started {STARTED_RUNS.limit} runs within the hour" in answer.content.decode()
+    (told,) = answer.context["form"].non_field_errors()
+    assert f" {STARTED_RUNS.limit} " in told and told in answer.content.decode()
 
 
 def test_every_seed_counts_towards_the_limit(sample, adam, admin, no_messages):
@@ -132,15 +141,18 @@ def test_every_seed_counts_towards_the_limit(sample, adam, admin, no_messages):
     adam.post("/w/home/runs/new/?parser=seq2seq", asked)
     assert STARTED_RUNS.left(key) == 1
     answer = adam.post("/w/home/runs/new/?parser=seq2seq", {**asked, "seed": 20})
-    assert "3 runs are more than the 1 that you may still start" in answer.content.decode()
+    (told,) = answer.context["form"].non_field_errors()
+    assert re.findall(r"\d+", told) == ["3", "1"] and told in answer.content.decode()
     assert not TrainingRun.objects.filter(seed__gte=20).exists()
 
 
 def test_a_run_that_waits_asks_for_itself_again(sample, anna):
     run, _ = run_requests.request(sample.world, sample.split, "seq2seq", send=False)
-    page = anna.get(f"/w/home/runs/{run.pk}/").content.decode()
+    answer = anna.get(f"/w/home/runs/{run.pk}/")
+    page, waiting = answer.content.decode(), answer.context["waiting"]
     assert f'hx-get="/w/home/runs/{run.pk}/state/"' in page
-    assert "No worker takes it now; it starts when one does." in page
+    assert waiting.workers == 0 and waiting.sentence in page
+    assert waiting.sentence != replace(waiting, workers=1).sentence
 
 
 def test_a_queued_run_says_its_place_and_the_likely_times(sample, anna):
@@ -158,18 +170,22 @@ def test_a_queued_run_says_its_place_and_the_likely_times(sample, anna):
         status="running", attempt=1, started_at=now - timedelta(minutes=2), progress=0.25
     )
     Worker.objects.create(name="w", host="h", process_id=1, queue="cpu,gpu")
-    page = anna.get(f"/w/home/runs/{asked[2].pk}/").content.decode()
-    assert "2 ahead of it; likely to start in about 12 min." in page
-    assert "It takes about 6 min, by earlier runs of this parser." in page
-    page = anna.get(f"/w/home/runs/{asked[0].pk}/state/").content.decode()
-    assert "ahead of it" not in page
+    answer = anna.get(f"/w/home/runs/{asked[2].pk}/")
+    waiting = answer.context["waiting"]
+    assert (waiting.ahead, waiting.workers) == (2, 1)
+    assert (round(waiting.starts_in / 60), round(waiting.takes / 60)) == (12, 6)
+    assert re.findall(r"\d+", waiting.sentence) == ["2", "12", "6"]
+    assert waiting.sentence in answer.content.decode()
+    assert not anna.get(f"/w/home/runs/{asked[0].pk}/state/").context["waiting"]
 
 
 def test_a_short_run_has_nothing_ahead_in_its_own_queue(sample, anna):
     run_requests.request(sample.world, sample.split, "seq2seq", send=False)
     short, _ = run_requests.request(sample.world, sample.split, "knn", seed=5, send=False)
     Worker.objects.create(name="w", host="h", process_id=1, queue="cpu,gpu,quick")
-    assert "Next in line." in anna.get(f"/w/home/runs/{short.pk}/").content.decode()
+    answer = anna.get(f"/w/home/runs/{short.pk}/")
+    assert answer.context["waiting"].ahead == 0
+    assert answer.context["waiting"].sentence in answer.content.decode()
 
 
 def test_charts_are_drawn_once_there_is_something_to_draw(sample, anna):
@@ -204,8 +220,9 @@ def test_the_state_shows_progress_log_and_failure(sample, anna):
 
 def test_only_admins_see_what_only_admins_may_do(sample, anna, adam):
     run, _ = run_requests.request(sample.world, sample.split, "seq2seq", send=False)
-    assert "Cancel" not in anna.get(f"/w/home/runs/{run.pk}/").content.decode()
-    assert "Cancel" in adam.get(f"/w/home/runs/{run.pk}/").content.decode()
+    cancel = f'action="/w/home/runs/{run.pk}/cancel/"'
+    assert cancel not in anna.get(f"/w/home/runs/{run.pk}/").content.decode()
+    assert cancel in adam.get(f"/w/home/runs/{run.pk}/").content.decode()
 
 
 def test_cancelling_a_run_that_waits_ends_it_at_once(sample, adam):
@@ -217,7 +234,7 @@ def test_cancelling_a_run_that_waits_ends_it_at_once(sample, adam):
 
 def test_cancelling_a_run_that_has_ended_is_told(sample, adam):
     answer = adam.post(f"/w/home/runs/{sample.run.pk}/cancel/", follow=True)
-    assert "has already ended" in answer.content.decode()
+    assert levels(answer) == ["warning"] and str(sample.run.pk) in str(*answer.context["messages"])
 
 
 def test_the_curves_are_what_the_charts_read(sample, anna):
@@ -238,7 +255,7 @@ def test_the_curves_are_what_the_charts_read(sample, anna):
 def test_the_chart_says_in_what_the_parser_counts_its_loss(parser, unit, sample, anna):
     run, _ = run_requests.request(sample.world, sample.split, parser, send=False)
     lifecycle.record_epoch(lifecycle.claim("w", "cpu", run), EpochReport(1, 2.0, 1.5, 0.5, 1.0))
-    assert f"Loss by epoch, {unit}" in anna.get(f"/w/home/runs/{run.pk}/").content.decode()
+    assert f", {unit}" in anna.get(f"/w/home/runs/{run.pk}/").content.decode()
 
 
 def test_the_table_of_runs_costs_no_query_a_run(sample, anna, django_assert_max_num_queries):

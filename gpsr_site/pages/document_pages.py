@@ -1,0 +1,41 @@
+"""The pages that show the documents of ``docs/``. They hold nobody's data, so everybody may read them."""
+
+from __future__ import annotations
+
+from django.contrib.auth.decorators import login_not_required
+from django.http import FileResponse, Http404, HttpRequest, HttpResponse
+from django.shortcuts import render
+from django.views.decorators.http import require_safe
+
+from gpsr_site.documents import INDEX, find_document, find_image
+
+
+@login_not_required
+@require_safe
+def documents(request: HttpRequest) -> HttpResponse:
+    """Show the first page, which lists all documents."""
+    return _show(request, INDEX)
+
+
+@login_not_required
+@require_safe
+def document(request: HttpRequest, shelf: str, page: str) -> HttpResponse:
+    """Show a document of a shelf."""
+    return _show(request, f"{shelf}/{page}")
+
+
+@login_not_required
+@require_safe
+def document_image(request: HttpRequest, name: str) -> FileResponse:
+    """Send an image of a document."""
+    path = find_image(name)
+    if path is None:
+        raise Http404("There is no such image.")
+    return FileResponse(path.open("rb"))
+
+
+def _show(request: HttpRequest, name: str) -> HttpResponse:
+    document = find_document(name)
+    if document is None:
+        raise Http404("There is no such document.")
+    return render(request, "gpsr_site/document.html", {"document": document})
