@@ -3,6 +3,7 @@
 from django.urls import path
 
 from annotations.web.background import job_pages
+from annotations.web.campaigns import submission_pages
 from annotations.web.corpus import command_pages, paraphrase_pages, upload_pages, utterance_pages
 from annotations.web.description import (
     coverage_pages,
@@ -132,4 +133,15 @@ urlpatterns = [
     path("splits/<int:pk>/changes/", split_pages.split_changes, name="split_changes"),
     path("splits/<int:pk>/renew/", split_pages.split_renew, name="split_renew"),
     path("splits/<int:pk>/near/", split_pages.near_duplicates, name="near_duplicates"),
+    path("submissions/", submission_pages.submissions, name="submissions"),
+    path("submissions/decide/", submission_pages.submissions_decide, name="submissions_decide"),
+    path(
+        "submissions/take-back/",
+        submission_pages.submissions_take_back,
+        name="submissions_take_back",
+    ),
+    path("submissions/<int:pk>/", submission_pages.submission, name="submission"),
+    path(
+        "submissions/<int:pk>/decide/", submission_pages.submission_decide, name="submission_decide"
+    ),
 ]
