@@ -25,3 +25,25 @@ def launch_in(
     values = {"name": "first", "task_size": 4, "free_commands": 1, **values}
     chosen = PromptChoice(**{"prompts_per_form": 2, **(choice or {})})
     return launch(Campaign(world=world, **values), chosen, by)
+
+
+def small_campaign(world: World, **values: Any) -> Campaign:
+    """Store a campaign of two prompts in any world, each of which names an entity of its own."""
+    values = {"name": "first", "task_size": 2, "free_commands": 1, **values}
+    campaign = Campaign.objects.create(world=world, **values)
+    for position, (text, entity) in enumerate(
+        (
+            ("bring me the apple from the kitchen table", "apple"),
+            ("tell me how many people are in the living room", "living room"),
+        ),
+        start=1,
+    ):
+        campaign.prompts.create(
+            logical_form=f"form{position}",
+            prompt=text,
+            grounded_form=f"form{position}",
+            shown=text,
+            entities=[{"text": entity, "aliases": [], "is_described": False}],
+            position=position,
+        )
+    return campaign
