@@ -51,7 +51,8 @@ def save_answer(
 ) -> Submission:
     """Store what was written at a place of a task, with its flags. An empty text empties the place again.
 
-    Saving the same twice changes nothing.
+    Saving the same twice changes nothing. Who changes what they wrote has looked at the prompt for ``seconds``
+    more, and what was pasted once stays pasted.
 
     Raises:
         Refusal: the text is too long or no text, or the task is finished.
@@ -61,28 +62,34 @@ def save_answer(
     require_writable(wanted, Position())
     if len(wanted) > MOST_CHARACTERS:
         raise Refusal(f"Use at most {MOST_CHARACTERS} characters.", "too_long")
+    stored = Submission.objects.select_related("contributor__campaign", "prompt").get(
+        pk=submission.pk
+    )
+    _require_changeable(stored)
+    if stored.text == wanted:
+        return stored
+    stored.text = wanted
+    stored.was_pasted = stored.was_pasted or was_pasted
+    if seconds is not None:
+        stored.seconds = (stored.seconds or 0) + seconds
+    stored.answered_at = timezone.now() if wanted else None
+    # Worked out before the row is held: others write meanwhile.
+    stored.flags = [{"code": flag.code, "evidence": flag.evidence} for flag in flags_of(stored)]
     with transaction.atomic():
-        stored = (
-            Submission.objects.select_for_update(of=("self",))
-            .select_related("contributor__campaign", "prompt")
-            .get(pk=submission.pk)
+        held = Submission.objects.select_for_update(of=("self",)).select_related(
+            "contributor__campaign"
         )
-        if stored.contributor.campaign.is_over:
-            raise CampaignOver
-        if stored.contributor.is_finished or stored.status != SubmissionStatus.PENDING:
-            said = "This task is finished. What you wrote is kept."
-            raise Refusal(said, "task_finished", HTTPStatus.CONFLICT)
-        if stored.text == wanted:
-            return stored
-        stored.text = wanted
-        stored.was_pasted = was_pasted
-        stored.seconds = seconds
-        stored.answered_at = timezone.now() if wanted else None
-        stored.flags = [{"code": flag.code, "evidence": flag.evidence} for flag in flags_of(stored)]
-        stored.save(
-            update_fields=["text", "was_pasted", "seconds", "answered_at", "flags"],
-        )
+        _require_changeable(held.get(pk=submission.pk))
+        stored.save(update_fields=["text", "was_pasted", "seconds", "answered_at", "flags"])
     return stored
+
+
+def _require_changeable(submission: Submission) -> None:
+    if submission.contributor.campaign.is_over:
+        raise CampaignOver
+    if submission.contributor.is_finished or submission.status != SubmissionStatus.PENDING:
+        said = "This task is finished. What you wrote is kept."
+        raise Refusal(said, "task_finished", HTTPStatus.CONFLICT)
 
 
 def finish(contributor: Contributor, had_model_help: bool) -> Contributor:

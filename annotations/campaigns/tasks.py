@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from datetime import timedelta
 from http import HTTPStatus
+from itertools import islice
 from random import Random
 
 from django.db import IntegrityError, transaction
@@ -55,6 +56,9 @@ def begin(campaign: Campaign, pseudonym: str, kind: str = ContributorKind.PERSON
         return latest
     require_open(campaign)
     attempt = 1 if latest is None else latest.attempt + 1
+    # Chosen before anything is written: others write meanwhile.
+    prompts = choose_prompts(campaign, campaign.task_size, pseudonym)
+    checks = list(campaign.prompts.exclude(check_words=""))
     try:
         with transaction.atomic():
             contributor = Contributor.objects.create(
@@ -64,7 +68,7 @@ def begin(campaign: Campaign, pseudonym: str, kind: str = ContributorKind.PERSON
                 kind=kind,
                 consented_at=timezone.now(),
             )
-            Submission.objects.bulk_create(_places(contributor))
+            Submission.objects.bulk_create(_places(contributor, prompts, checks))
     except IntegrityError:
         return campaign.contributors.get(pseudonym=pseudonym, attempt=attempt)
     return contributor
@@ -77,13 +81,13 @@ def choose_prompts(campaign: Campaign, size: int, pseudonym: str = "") -> list[C
     """
     random = Random(f"{campaign.seed}:{pseudonym}:{timezone.now().timestamp()}")
     rewrites = campaign.prompts.filter(check_words="")
-    by_form: dict[str, list[CampaignPrompt]] = defaultdict(list)
-    for prompt in rewrites.only("pk", "logical_form"):
-        by_form[prompt.logical_form].append(prompt)
+    by_form: dict[str, list[int]] = defaultdict(list)
+    for key, form in rewrites.values_list("pk", "logical_form"):
+        by_form[form].append(key)
     of_prompt = _taken(campaign, "prompt")
     of_form = Counter[str]()
     for form, prompts in by_form.items():
-        of_form[form] = sum(of_prompt[prompt.pk] for prompt in prompts)
+        of_form[form] = sum(of_prompt[key] for key in prompts)
     had = set(
         Submission.objects.filter(
             contributor__campaign=campaign, contributor__pseudonym=pseudonym
@@ -91,7 +95,7 @@ def choose_prompts(campaign: Campaign, size: int, pseudonym: str = "") -> list[C
     )
     for prompts in by_form.values():
         random.shuffle(prompts)
-        prompts.sort(key=lambda prompt: (prompt.pk in had, of_prompt[prompt.pk]))
+        prompts.sort(key=lambda key: (key in had, of_prompt[key]))
     forms = random.sample(list(by_form), len(by_form))
     forms.sort(key=lambda form: of_form[form])
     longest = max(map(len, by_form.values()), default=0)
@@ -101,7 +105,7 @@ def choose_prompts(campaign: Campaign, size: int, pseudonym: str = "") -> list[C
         for form in forms
         if turn < len(by_form[form])
     )
-    chosen = [prompt.pk for prompt, _ in zip(rounds, range(size), strict=False)]
+    chosen = list(islice(rounds, size))
     random.shuffle(chosen)
     rows = CampaignPrompt.objects.in_bulk(chosen)
     return [rows[key] for key in chosen]
@@ -116,12 +120,12 @@ def _taken(campaign: Campaign, column: str) -> Counter[int]:
     return Counter(dict(rows.order_by().values_list(column).annotate(Count("pk"))))
 
 
-def _places(contributor: Contributor) -> list[Submission]:
+def _places(
+    contributor: Contributor, prompts: list[CampaignPrompt], checks: list[CampaignPrompt]
+) -> list[Submission]:
     """Return the places of a task: prompts, a check after every so many, and free commands at the end."""
     campaign = contributor.campaign
-    checks = list(campaign.prompts.exclude(check_words=""))
     places: list[tuple[str, CampaignPrompt | None]] = []
-    prompts = choose_prompts(campaign, campaign.task_size, contributor.pseudonym)
     for number, prompt in enumerate(prompts, start=1):
         places.append((SubmissionKind.REWRITE, prompt))
         if checks and number % campaign.check_every == 0:

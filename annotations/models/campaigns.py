@@ -18,6 +18,7 @@ from annotations.models.worlds import World
 MOST_CHARACTERS_OF_TEXT = 8_000  # of a text that contributors read
 LONGEST_CAMPAIGN_NAME = 60
 LONGEST_PSEUDONYM = 32
+MOST_PLACES = 400  # of a task
 
 
 class Wording(models.TextChoices):

@@ -28,6 +28,7 @@ from annotations.language.paraphrases.submission_flags import (
     free_command_flags,
     rewrite_flags,
 )
+from annotations.language.paraphrases.word_folding import folded_words
 
 __all__ = [
     "INSTRUCTIONS",
@@ -44,6 +45,7 @@ __all__ = [
     "check_instructions",
     "check_rewrite",
     "entities_of",
+    "folded_words",
     "free_command_flags",
     "instructions_version",
     "lost_entities",

@@ -12,7 +12,7 @@ from enum import StrEnum
 
 from annotations.language.corpus import distance
 from annotations.language.english import COURTESY_WORDS, spellings
-from annotations.language.paraphrases.folded_words import folded_words
+from annotations.language.paraphrases.word_folding import folded_words
 
 # Levenshtein distance over the length of the prompt, and Jaccard distance of the words.
 CLOSE_EDITS, CLOSE_WORDS = 0.15, 0.2

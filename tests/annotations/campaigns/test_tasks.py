@@ -108,11 +108,14 @@ def test_a_campaign_ends_with_its_number_or_its_time(launched):
 def test_an_answer_is_saved_with_its_flags_and_can_be_changed(launched):
     contributor = begin(launched(), "one")
     place = contributor.submissions.order_by("position").first()
-    saved = save_answer(place, f"  {place.prompt.shown}\u200b  please ", seconds=30)
+    saved = save_answer(place, f"  {place.prompt.shown}\u200b  please ", seconds=0.5)
     assert saved.text == f"{place.prompt.shown} please"
-    assert codes(saved) == ["copy"]
+    assert codes(saved) == ["copy", "too_fast"]
     changed = save_answer(place, "xyzzy plugh asdf", seconds=1.0, was_pasted=True)
     assert {"too_fast", "gibberish", "pasted"} <= set(codes(changed))
+    mended = save_answer(place, "xyzzy plugh asdfg", seconds=30)
+    assert {"gibberish", "pasted"} <= set(codes(mended))
+    assert "too_fast" not in codes(mended)
     assert save_answer(place, "").answered_at is None
 
 

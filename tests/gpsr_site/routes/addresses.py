@@ -12,6 +12,7 @@ from annotations.models import Entity
 from tests.gpsr_site.routes.listing import ROUTES_OF_WORLDS
 from tests.gpsr_site.routes.sample_rows import (
     answer_of_nobody,
+    campaign_key,
     decision_of_nobody,
     dialogue,
     error_category,
@@ -63,6 +64,10 @@ KEYS: dict[str, RouteKeys] = {
     "document": lambda _: {"shelf": "guides", "page": "first-steps"},
     "document_image": lambda _: {"name": "run.png"},
     "join": join_keys,
+    **dict.fromkeys(("campaign", "campaign_done"), campaign_key),
+    **dict.fromkeys(
+        ("campaign_place", "campaign_check"), lambda sample: {**campaign_key(sample), "position": 1}
+    ),
     **dict.fromkeys(("account_close", "account_link"), pk_of(removable_member)),
     "password_set": lambda _: {"uidb64": "MQ", "token": "none"},
     "token_revoke": lambda _: {"pk": 10**6},

@@ -21,6 +21,9 @@ PASSWORD = NoRoute(
     "A password is typed by a person and is not sent by programs; it ends their tokens."
 )
 UNSAVED = NoRoute("It keeps what somebody has typed and not saved, for the next look at the page.")
+PEOPLE_ALONE = NoRoute(
+    "It is for people without an account; what a program writes comes by a file."
+)
 
 PAGE_ACTIONS: dict[str, str | NoRoute] = {
     # One's account
@@ -33,6 +36,9 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "join": "post join",
     "inbox": "post notice-read-all",
     "notice_open": "post notice-read",
+    # What contributors write
+    **dict.fromkeys(("campaign", "campaign_place", "campaign_done"), PEOPLE_ALONE),
+    "campaign_check": PEOPLE_ALONE,
     # The site
     "account_close": "patch account-detail",
     "account_link": "post account-link",

@@ -45,6 +45,14 @@ POLICY = [
     # Whoever has the link of an invitation joins
     Rule("join", YES, YES, YES, YES, YES),
     Rule("join", 422, GONE_ON, GONE_ON, GONE_ON, GONE_ON, method="post"),
+    # Whoever has the link of a campaign contributes; who has not begun is led to its first page
+    Rule("campaign", YES, YES, YES, YES, YES),
+    Rule("campaign", 422, 422, 422, 422, 422, method="post"),
+    Rule("campaign_place", *[GONE_ON] * 5),
+    Rule("campaign_place", *[GONE_ON] * 5, method="post"),
+    Rule("campaign_check", YES, YES, YES, YES, YES, method="post"),
+    Rule("campaign_done", *[GONE_ON] * 5),
+    Rule("campaign_done", *[GONE_ON] * 5, method="post"),
     Rule("home", LOG_IN, YES, YES, YES, YES),
     Rule("inbox", LOG_IN, YES, YES, YES, YES),
     Rule("inbox", LOG_IN, GONE_ON, GONE_ON, GONE_ON, GONE_ON, method="post"),

@@ -7,10 +7,13 @@ from datetime import timedelta
 from django.db.models import Model
 from django.utils import timezone
 
+from annotations.campaigns.answering import save_answer
+from annotations.campaigns.tasks import begin
 from annotations.language.dialogue import DialogueState, Offer, Phase
 from annotations.models import (
     AuditDecision,
     AuditFinding,
+    Campaign,
     Invitation,
     Job,
     Label,
@@ -71,6 +74,25 @@ def key_of(sample: SampleWorld) -> str:
 def join_keys(sample: SampleWorld) -> dict[str, object]:
     invitation(sample)
     return {"key": key_of(sample)}
+
+
+def campaign_row(sample: SampleWorld) -> Campaign:
+    """Return an open campaign with a prompt, a contributor, and what they submitted."""
+    key = f"campaign-of-{sample.world}"
+    row, is_new = Campaign.objects.get_or_create(
+        world=sample.world, name="first", key=key, task_size=1, free_commands=0
+    )
+    if is_new:
+        row.prompts.create(
+            logical_form="go", prompt="go there", grounded_form="go", shown="go there", position=1
+        )
+        place = begin(row, "f00d").submissions.get()
+        save_answer(place, "move over there")
+    return row
+
+
+def campaign_key(sample: SampleWorld) -> dict[str, object]:
+    return {"key": campaign_row(sample).key}
 
 
 def utterance(sample: SampleWorld) -> Utterance:

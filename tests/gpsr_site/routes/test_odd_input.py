@@ -195,6 +195,10 @@ FIELDS_ELSEWHERE = {
     "queue_ask": ("reason",),
     "queue_act": ("step", "person"),
     "queue_settle": ("choice", "form"),
+    "campaign": ("agrees",),
+    "campaign_place": ("text", "shown", "pasted", "advised"),
+    "campaign_check": ("text",),
+    "campaign_done": ("helped",),
     "login": ("username", "password", "next"),
 }
 
