@@ -34,6 +34,8 @@ UNRECORDED = re.compile(
 VERBS = {"POST": "create", "PUT": "change", "PATCH": "change", "DELETE": "delete"}
 # What a route does where its name does not say it.
 WHAT = {
+    **dict.fromkeys(("submission_decide", "submissions_decide"), "moderate submissions"),
+    "submissions_take_back": "take back a moderation",
     "login": "log in",
     "join": "join",
     "password": "change password",

@@ -103,7 +103,7 @@ PLACES = (
         page="paraphrases",
         count="paraphrases",
         waiting=Waiting(count="paraphrases_waiting", noun="paraphrase", reason="to judge"),
-        pages_below=("paraphrase",),
+        pages_below=("paraphrase", "submissions", "submission"),
     ),
     Place(
         label="Utterances",

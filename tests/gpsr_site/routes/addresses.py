@@ -28,6 +28,7 @@ from tests.gpsr_site.routes.sample_rows import (
     run,
     saved_slice,
     split,
+    submission,
     template,
     upload,
     utterance,
@@ -65,6 +66,13 @@ KEYS: dict[str, RouteKeys] = {
     "document_image": lambda _: {"name": "run.png"},
     "join": join_keys,
     **dict.fromkeys(("campaign", "campaign_done"), campaign_key),
+    **dict.fromkeys(
+        (
+            *("submission", "submission_decide", "api:submission-detail", "api:submission-mend"),
+            *("api:submission-take-back", "api:submission-with-form", "api:submission-with-doubt"),
+        ),
+        pk_of(submission),
+    ),
     **dict.fromkeys(
         ("campaign_place", "campaign_check"), lambda sample: {**campaign_key(sample), "position": 1}
     ),

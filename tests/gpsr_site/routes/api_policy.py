@@ -202,6 +202,13 @@ API_POLICY = [
     Rule("api:parse-jobs", *members(NO_JSON), method="post"),
     Rule("api:parse-wrong", *members(NO_JSON), method="post"),
     # Everybody with a role decides about labels in doubt, reviewers let them be looked for
+    # What contributors wrote, by pseudonym
+    *(Rule(f"api:submission-{name}", *reviewers(YES)) for name in ("list", "detail")),
+    *(
+        Rule(f"api:submission-{name}", *reviewers(NO_JSON), method="post")
+        for name in ("decide", "mend", "with-form", "with-doubt")
+    ),
+    Rule("api:submission-take-back", *reviewers(CLASH), method="post"),
     Rule("api:audit-finding-decide", *members(NO_JSON), method="post"),
     Rule("api:audit-decision-take-back", *members(CLASH), method="post"),
     *(

@@ -39,6 +39,10 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     # What contributors write
     **dict.fromkeys(("campaign", "campaign_place", "campaign_done"), PEOPLE_ALONE),
     "campaign_check": PEOPLE_ALONE,
+    "submission_decide": "post submission-decide, post submission-mend, post submission-with-form, "
+    "post submission-with-doubt",
+    "submissions_decide": "post submission-decide",
+    "submissions_take_back": "post submission-take-back",
     # The site
     "account_close": "patch account-detail",
     "account_link": "post account-link",
@@ -188,6 +192,8 @@ PAGE_VIEWS: dict[str, str | NoRoute] = {
     "logical_form": "get form-detail",
     "paraphrases": "get paraphrase-list",
     "paraphrase": "get paraphrase-detail",
+    "submissions": "get submission-list",
+    "submission": "get submission-detail",
     "utterances": "get utterance-list",
     "utterance": "get utterance-detail",
     "uploads": "get upload-list",

@@ -65,6 +65,11 @@ POLICY = [
     Rule("world_import", LOG_IN, NO, NO, NO, NO, method="post"),
     Rule("world_delete", LOG_IN, NOWHERE, NO, NO, NO),
     Rule("world_delete", LOG_IN, NOWHERE, NO, NO, NO, method="post"),
+    # Who reviews moderates what contributors wrote
+    *(Rule(name, LOG_IN, NOWHERE, NO, YES, YES) for name in ("submissions", "submission")),
+    Rule("submission_decide", LOG_IN, NOWHERE, NO, 422, 422, method="post"),
+    Rule("submissions_decide", LOG_IN, NOWHERE, NO, GONE_ON, GONE_ON, method="post"),
+    Rule("submissions_take_back", LOG_IN, NOWHERE, NO, GONE_ON, GONE_ON, method="post"),
     # What members look at
     *(
         Rule(name, *MEMBERS)

@@ -18,6 +18,7 @@ from annotations.models import (
     Job,
     Label,
     Membership,
+    Submission,
     Upload,
     User,
     Utterance,
@@ -88,6 +89,13 @@ def campaign_row(sample: SampleWorld) -> Campaign:
         )
         place = begin(row, "f00d").submissions.get()
         save_answer(place, "move over there")
+    return row
+
+
+def submission(sample: SampleWorld) -> Submission:
+    """Return what a contributor of the campaign wrote, which nobody has decided about."""
+    row = Submission.objects.answered().filter(contributor__campaign=campaign_row(sample)).first()
+    assert row is not None
     return row
 
 
