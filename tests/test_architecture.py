@@ -84,7 +84,7 @@ ROOMS = {
     ),
     "parser_service/web": (
         "page_of_run", "runs", "results", "reviews", "analyses", "labelling", "promotions", "robots", "serving",
-        "dialogues",
+        "dialogues", "paraphrasing",
     ),
 }  # fmt: skip
 

@@ -36,6 +36,7 @@ VERBS = {"POST": "create", "PUT": "change", "PATCH": "change", "DELETE": "delete
 WHAT = {
     **dict.fromkeys(("submission_decide", "submissions_decide"), "moderate submissions"),
     "submissions_take_back": "take back a moderation",
+    **dict.fromkeys(("campaign_model", "campaign-model"), "ask a language model for paraphrases"),
     "login": "log in",
     "join": "join",
     "password": "change password",

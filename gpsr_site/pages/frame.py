@@ -103,7 +103,7 @@ PLACES = (
         page="paraphrases",
         count="paraphrases",
         waiting=Waiting(count="paraphrases_waiting", noun="paraphrase", reason="to judge"),
-        pages_below=("paraphrase", "submissions", "submission"),
+        pages_below=("paraphrase", "submissions", "submission", "campaign_model"),
     ),
     Place(
         label="Utterances",

@@ -13,6 +13,7 @@ from tests.gpsr_site.routes.listing import ROUTES_OF_WORLDS
 from tests.gpsr_site.routes.sample_rows import (
     answer_of_nobody,
     campaign_key,
+    campaign_row,
     decision_of_nobody,
     dialogue,
     error_category,
@@ -66,6 +67,7 @@ KEYS: dict[str, RouteKeys] = {
     "document_image": lambda _: {"name": "run.png"},
     "join": join_keys,
     **dict.fromkeys(("campaign", "campaign_done"), campaign_key),
+    **dict.fromkeys(("campaign_model", "api:campaign-model"), pk_of(campaign_row)),
     **dict.fromkeys(
         (
             *("submission", "submission_decide", "api:submission-detail", "api:submission-mend"),

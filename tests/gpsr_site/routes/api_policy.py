@@ -202,6 +202,7 @@ API_POLICY = [
     Rule("api:parse-jobs", *members(NO_JSON), method="post"),
     Rule("api:parse-wrong", *members(NO_JSON), method="post"),
     # Everybody with a role decides about labels in doubt, reviewers let them be looked for
+    Rule("api:campaign-model", *admins(NO_JSON), method="post"),
     # What contributors wrote, by pseudonym
     *(Rule(f"api:submission-{name}", *reviewers(YES)) for name in ("list", "detail")),
     *(

@@ -42,6 +42,7 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "submission_decide": "post submission-decide, post submission-mend, post submission-with-form, "
     "post submission-with-doubt",
     "submissions_decide": "post submission-decide",
+    "campaign_model": "post campaign-model",
     "submissions_take_back": "post submission-take-back",
     # The site
     "account_close": "patch account-detail",

@@ -65,6 +65,8 @@ POLICY = [
     Rule("world_import", LOG_IN, NO, NO, NO, NO, method="post"),
     Rule("world_delete", LOG_IN, NOWHERE, NO, NO, NO),
     Rule("world_delete", LOG_IN, NOWHERE, NO, NO, NO, method="post"),
+    Rule("campaign_model", *ADMINS),
+    Rule("campaign_model", LOG_IN, NOWHERE, NO, NO, 422, method="post"),
     # Who reviews moderates what contributors wrote
     *(Rule(name, LOG_IN, NOWHERE, NO, YES, YES) for name in ("submissions", "submission")),
     Rule("submission_decide", LOG_IN, NOWHERE, NO, 422, 422, method="post"),
