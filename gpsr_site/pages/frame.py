@@ -103,7 +103,13 @@ PLACES = (
         page="paraphrases",
         count="paraphrases",
         waiting=Waiting(count="paraphrases_waiting", noun="paraphrase", reason="to judge"),
-        pages_below=("paraphrase",),
+        pages_below=(
+            "paraphrase",
+            "campaigns",
+            "campaign_new",
+            "campaign_page",
+            "contributor_forget",
+        ),
     ),
     Place(
         label="Utterances",

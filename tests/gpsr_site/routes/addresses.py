@@ -13,6 +13,8 @@ from tests.gpsr_site.routes.listing import ROUTES_OF_WORLDS
 from tests.gpsr_site.routes.sample_rows import (
     answer_of_nobody,
     campaign_key,
+    campaign_row,
+    contributor_row,
     decision_of_nobody,
     dialogue,
     error_category,
@@ -28,6 +30,7 @@ from tests.gpsr_site.routes.sample_rows import (
     run,
     saved_slice,
     split,
+    submission_row,
     template,
     upload,
     utterance,
@@ -62,6 +65,19 @@ KEYS: dict[str, RouteKeys] = {
     "api:session": lambda _: {"handle": "none"},
     **dict.fromkeys(("api:site-job-detail", "api:site-job-cancel"), pk_of(job_without_world)),
     "join": join_keys,
+    **dict.fromkeys(
+        (
+            *("campaign_page", "campaign_state", "campaign_act", "api:campaign-detail"),
+            *("api:campaign-progress", "api:campaign-close", "api:campaign-reopen"),
+            *("api:campaign-revoke-link", "api:campaign-renew-link"),
+        ),
+        pk_of(campaign_row),
+    ),
+    **dict.fromkeys(
+        ("contributor_forget", "api:contributor-detail", "api:contributor-forget"),
+        pk_of(contributor_row),
+    ),
+    "api:submission-detail": pk_of(submission_row),
     **dict.fromkeys(("campaign", "campaign_done"), campaign_key),
     **dict.fromkeys(
         ("campaign_place", "campaign_check"), lambda sample: {**campaign_key(sample), "position": 1}

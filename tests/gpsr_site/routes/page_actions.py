@@ -39,6 +39,9 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     # What contributors write
     **dict.fromkeys(("campaign", "campaign_place", "campaign_done"), PEOPLE_ALONE),
     "campaign_check": PEOPLE_ALONE,
+    "campaign_new": "post campaign-list",
+    "campaign_act": "post campaign-close, post campaign-reopen, post campaign-revoke-link, post campaign-renew-link",
+    "contributor_forget": "post contributor-forget",
     # The site
     "account_close": "patch account-detail",
     "account_link": "post account-link",
@@ -186,6 +189,9 @@ PAGE_VIEWS: dict[str, str | NoRoute] = {
     "logical_form": "get form-detail",
     "paraphrases": "get paraphrase-list",
     "paraphrase": "get paraphrase-detail",
+    "campaigns": "get campaign-list",
+    "campaign_page": "get campaign-detail, get contributor-list, get submission-list",
+    "campaign_state": "get campaign-progress",
     "utterances": "get utterance-list",
     "utterance": "get utterance-detail",
     "uploads": "get upload-list",
