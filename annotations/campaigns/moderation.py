@@ -21,7 +21,6 @@ from annotations.language.limits import require_writable
 from annotations.language.paraphrases import lost_entities
 from annotations.language.text import normalise_line
 from annotations.models import (
-    Contributor,
     Origin,
     Paraphrase,
     Submission,
@@ -179,27 +178,6 @@ def accept_with_doubt(submission: Submission, reason: str, by: User) -> Submissi
         assert row.paraphrase is not None
         doubt(row.paraphrase, reason, by)
     return row
-
-
-def forget_contributor(contributor: Contributor, by: User) -> int:
-    """Delete a contributor, as they asked, with all that they wrote, and return how many submissions went.
-
-    Paraphrases that were made of it go too, and utterances that nobody has labelled. Frozen splits keep
-    their copies: they never change.
-    """
-    with transaction.atomic():
-        rows = _held(list(contributor.submissions.all()))
-        for row in rows:
-            if row.paraphrase is not None:
-                delete(row.paraphrase, by, row.paraphrase.version)
-        unlabelled = [
-            row.utterance.pk
-            for row in rows
-            if row.utterance is not None and row.utterance.status == UtteranceStatus.UNLABELLED
-        ]
-        delete_utterances(unlabelled, by)
-        contributor.delete()
-    return len(rows)
 
 
 def paraphrase_from(submission: Submission) -> Paraphrase:

@@ -41,6 +41,10 @@ class CampaignProgress:
     left: timedelta | None
     cost: Decimal | None
 
+    @property
+    def seconds_left(self) -> float | None:
+        return None if self.left is None else self.left.total_seconds()
+
 
 def progress_of(campaign: Campaign, now: datetime | None = None) -> CampaignProgress:
     """Count what was submitted. Accepted paraphrases of the world that came another way count for a form, too."""

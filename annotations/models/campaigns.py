@@ -9,7 +9,7 @@ from __future__ import annotations
 import secrets
 
 from django.db import models
-from django.db.models import Q
+from django.db.models import Count, Q
 from django.utils import timezone
 
 from annotations.models.people import User
@@ -86,6 +86,16 @@ class CampaignQuerySet(models.QuerySet["Campaign"]):
         """Return the campaign whose link holds ``key``, also one that is over; None where no link holds it."""
         rows = self.filter(world__deletion_requested_at__isnull=True).select_related("world")
         return None if not key or "\0" in key else rows.filter(key=key).first()
+
+    def counted(self) -> CampaignQuerySet:
+        """Return each with ``people`` who have begun, ``finished`` ones, and their ``answers``."""
+        is_answered = ~Q(contributors__submissions__text="")
+        has_finished = Q(contributors__finished_at__isnull=False)
+        return self.annotate(
+            people=Count("contributors", distinct=True),
+            finished=Count("contributors", distinct=True, filter=has_finished),
+            answers=Count("contributors__submissions", distinct=True, filter=is_answered),
+        )
 
 
 class Campaign(models.Model):
@@ -186,6 +196,16 @@ class CampaignPrompt(models.Model):
         return self.prompt
 
 
+class ContributorQuerySet(models.QuerySet["Contributor"]):
+    def counted(self) -> ContributorQuerySet:
+        """Return each with the number of their ``answers``, and of those that are ``flagged``."""
+        is_answered = ~Q(submissions__text="")
+        return self.annotate(
+            answers=Count("submissions", filter=is_answered),
+            flagged=Count("submissions", filter=is_answered & ~Q(submissions__flags=[])),
+        )
+
+
 class Contributor(models.Model):
     """Somebody who does a task of a campaign, known by a pseudonym alone.
 
@@ -205,6 +225,8 @@ class Contributor(models.Model):
     settings = models.JSONField(default=dict, blank=True)
     began_at = models.DateTimeField(default=timezone.now)
     finished_at = models.DateTimeField(null=True, blank=True)
+
+    objects = ContributorQuerySet.as_manager()
 
     class Meta:
         ordering = ["id"]

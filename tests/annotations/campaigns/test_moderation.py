@@ -8,7 +8,6 @@ from annotations.campaigns.moderation import (
     accept,
     accept_with_doubt,
     accept_with_form,
-    forget_contributor,
     mend,
     reject,
     take_back,
@@ -18,7 +17,7 @@ from annotations.campaigns.tasks import begin
 from annotations.editing.edits import change
 from annotations.language.corpus import distance
 from annotations.language.errors import LanguageError, Refusal
-from annotations.models import Contributor, Origin, Paraphrase, Submission, Utterance
+from annotations.models import Origin, Paraphrase, Submission, Utterance
 from tests.at_once import at_once
 
 
@@ -135,12 +134,3 @@ def test_a_doubted_label_goes_to_the_audit(submissions, admin):
     assert finding.status == "open"
     with pytest.raises(DecidedAlready):
         accept_with_doubt(submissions[0], "again", admin)
-
-
-def test_a_contributor_is_forgotten_with_all_that_they_wrote(submissions, admin):
-    accept(submissions, admin)
-    other = begin(submissions[0].contributor.campaign, "other")
-    assert forget_contributor(submissions[0].contributor, admin) == 4
-    assert list(Contributor.objects.all()) == [other]
-    assert not Paraphrase.objects.exists()
-    assert not Utterance.objects.exists()

@@ -14,6 +14,7 @@ from tests.gpsr_site.routes.sample_rows import (
     answer_of_nobody,
     campaign_key,
     campaign_row,
+    contributor_row,
     decision_of_nobody,
     dialogue,
     error_category,
@@ -66,6 +67,18 @@ KEYS: dict[str, RouteKeys] = {
     "document": lambda _: {"shelf": "guides", "page": "first-steps"},
     "document_image": lambda _: {"name": "run.png"},
     "join": join_keys,
+    **dict.fromkeys(
+        (
+            *("campaign_page", "campaign_state", "campaign_act", "api:campaign-detail"),
+            *("api:campaign-progress", "api:campaign-close", "api:campaign-reopen"),
+            *("api:campaign-revoke-link", "api:campaign-renew-link"),
+        ),
+        pk_of(campaign_row),
+    ),
+    **dict.fromkeys(
+        ("contributor_forget", "api:contributor-detail", "api:contributor-forget"),
+        pk_of(contributor_row),
+    ),
     **dict.fromkeys(("campaign", "campaign_done"), campaign_key),
     **dict.fromkeys(("campaign_model", "api:campaign-model"), pk_of(campaign_row)),
     **dict.fromkeys(

@@ -157,9 +157,22 @@ API_POLICY = [
         Rule(f"api:{name}", *admins(YES))
         for name in ("invitation-list", "invitation-detail", "audit-log")
     ),
+    # Admins let people contribute, and know them by pseudonyms
+    *(
+        Rule(f"api:{name}", *admins(YES))
+        for name in (
+            *("campaign-list", "campaign-detail", "campaign-progress", "contributor-list"),
+            "contributor-detail",
+        )
+    ),
+    *(
+        Rule(f"api:campaign-{name}", *admins(YES), method="post")
+        for name in ("close", "reopen", "revoke-link", "renew-link")
+    ),
+    Rule("api:contributor-forget", *admins(NOTHING), method="post"),
     *(
         Rule(f"api:{name}", *admins(NO_JSON), method="post")
-        for name in ("member-list", "invitation-list")
+        for name in ("member-list", "invitation-list", "campaign-list")
     ),
     Rule("api:member-detail", *admins(NO_VERSION), method="patch"),
     *(

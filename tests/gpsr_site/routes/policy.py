@@ -280,6 +280,13 @@ POLICY = [
     ),
     Rule("job_cancel", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("job_answer", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
+    # Admins let people contribute
+    *(Rule(name, *ADMINS) for name in ("campaigns", "campaign_page", "campaign_state")),
+    Rule("campaign_new", *ADMINS),
+    Rule("campaign_new", LOG_IN, NOWHERE, NO, NO, 422, method="post"),
+    Rule("campaign_act", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
+    Rule("contributor_forget", *ADMINS),
+    Rule("contributor_forget", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("run_new", *ADMINS),
     Rule("run_new", *ADMINS, method="post"),
     Rule("run_cancel", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),

@@ -7,8 +7,6 @@ from datetime import timedelta
 from django.db.models import Model
 from django.utils import timezone
 
-from annotations.campaigns.answering import save_answer
-from annotations.campaigns.tasks import begin
 from annotations.language.dialogue import DialogueState, Offer, Phase
 from annotations.models import (
     AuditDecision,
@@ -78,17 +76,18 @@ def join_keys(sample: SampleWorld) -> dict[str, object]:
 
 
 def campaign_row(sample: SampleWorld) -> Campaign:
-    """Return an open campaign with a prompt, a contributor, and what they submitted."""
-    key = f"campaign-of-{sample.world}"
-    row, is_new = Campaign.objects.get_or_create(
-        world=sample.world, name="first", key=key, task_size=1, free_commands=0
-    )
-    if is_new:
-        row.prompts.create(
-            logical_form="go", prompt="go there", grounded_form="go", shown="go there", position=1
-        )
-        place = begin(row, "f00d").submissions.get()
-        save_answer(place, "move over there")
+    """Return a campaign with a prompt, a contributor, and what they submitted; what is missing is made."""
+    sizes = {"task_size": 1, "free_commands": 0}
+    row, _ = Campaign.objects.get_or_create(world=sample.world, name="first", defaults=sizes)
+    if not row.key:
+        row.key = f"campaign-of-{sample.world}"
+        row.save()
+    texts = {"prompt": "go there", "shown": "go there"}
+    forms = {"logical_form": "go", "grounded_form": "go"}
+    prompt, _ = row.prompts.get_or_create(position=1, defaults={**texts, **forms})
+    contributor, _ = row.contributors.get_or_create(pseudonym="f00d")
+    values = {"prompt": prompt, "text": "move over there", "answered_at": timezone.now()}
+    contributor.submissions.get_or_create(position=1, defaults=values)
     return row
 
 
@@ -97,6 +96,10 @@ def submission(sample: SampleWorld) -> Submission:
     row = Submission.objects.answered().filter(contributor__campaign=campaign_row(sample)).first()
     assert row is not None
     return row
+
+
+def contributor_row(sample: SampleWorld) -> Model:
+    return campaign_row(sample).contributors.first()
 
 
 def campaign_key(sample: SampleWorld) -> dict[str, object]:
