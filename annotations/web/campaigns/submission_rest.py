@@ -21,7 +21,7 @@ from annotations.campaigns.moderation import (
 )
 from annotations.language.limits import MAX_FORM
 from annotations.lists.paging import LARGEST_INTEGER
-from annotations.models import Duty, Submission
+from annotations.models import Duty, Scope, Submission
 from annotations.models.campaigns import SubmissionKind
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.models.queueing import LONGEST_REASON
@@ -108,6 +108,7 @@ class SubmissionViewSet(RowsViewSet):
     duties = dict.fromkeys(
         ("list", "retrieve", "decide", "take_back", "mend", "with_form", "with_doubt"), Duty.REVIEW
     )
+    scopes = dict.fromkeys(("list", "retrieve"), Scope.READ)
     sorts = {"id": "pk", "newest": "-pk"}
 
     def rows(self) -> QuerySet[Submission]:
