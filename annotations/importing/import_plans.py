@@ -66,15 +66,14 @@ def differences_of(
         for name, planned in plans.items()
     }
     plans["predicates"] = plan_predicates(world, generator, brings_back)
-    left_out = {name: _list_left_out(planned) for name, planned in plans.items()}
+    left_out = {
+        name: tuple(
+            f"{row.source}: {row} ({why})" if hasattr(row, "source") else f"{row} ({why})"
+            for row, why in planned.left_out
+        )
+        for name, planned in plans.items()
+    }
     return Differences(productions, RowTexts(**removals), RowTexts(**left_out))
-
-
-def _list_left_out(changes: RowPlan[Any]) -> tuple[str, ...]:
-    return tuple(
-        f"{row.source}: {row} ({why})" if hasattr(row, "source") else f"{row} ({why})"
-        for row, why in changes.left_out
-    )
 
 
 def plan_productions(

@@ -19,18 +19,8 @@ RESULTS_KEPT_FOR = timedelta(days=7)
 
 def sweep() -> None:
     """Remove folders of jobs that are over, old results, and what else interrupted jobs have left."""
-    _sweep_folders()
-    for file in results_folder().glob("*"):
-        if _is_old(file, RESULTS_KEPT_FOR):
-            file.unlink(missing_ok=True)
-    for sweep_others in sweeps():
-        sweep_others()
-
-
-def _sweep_folders() -> None:
     folders = [path for path in jobs_folder().glob("*") if path.is_dir()]
-    keys = [int(path.name) for path in folders if path.name.isdigit()]
-    jobs = {job.pk: job for job in Job.objects.filter(pk__in=keys)}
+    jobs = Job.objects.in_bulk([int(path.name) for path in folders if path.name.isdigit()])
     for folder in folders:
         job = jobs.get(int(folder.name)) if folder.name.isdigit() else None
         if job is None:  # files on their way, or of a world that was deleted
@@ -39,6 +29,11 @@ def _sweep_folders() -> None:
             is_needless = _is_old(folder) if job.is_waiting_for_answer else job.is_ended
         if is_needless:
             shutil.rmtree(folder, ignore_errors=True)
+    for file in results_folder().glob("*"):
+        if _is_old(file, RESULTS_KEPT_FOR):
+            file.unlink(missing_ok=True)
+    for sweep_others in sweeps():
+        sweep_others()
 
 
 def _is_old(path: Path, kept_for: timedelta = KEPT_FOR) -> bool:

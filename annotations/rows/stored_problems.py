@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import astuple, replace
 from operator import attrgetter
 from typing import Any
 
@@ -58,7 +58,9 @@ def store_problems(
 ) -> Changes:
     """Replace the stored problems about one part of a world."""
     stored = world.problems.filter(subject=subject)
-    texts = [_text_of_problem(problem) for problem in problems]
+    texts = [
+        (*astuple(each.position), each.severity.value, each.message, each.hint) for each in problems
+    ]
     if Counter(texts) == Counter(stored.order_by().values_list(*TEXTS)):
         return Changes()
     wanted = [
@@ -66,12 +68,6 @@ def store_problems(
         for text in texts
     ]
     return synchronise(stored, wanted, attrgetter(*TEXTS), [])
-
-
-def _text_of_problem(problem: Problem) -> tuple[object, ...]:
-    place = problem.position
-    texts = (problem.severity.value, problem.message, problem.hint)
-    return (place.source, place.line, place.column, *texts)
 
 
 def as_stored(problem: Problem) -> StoredRemark:

@@ -16,7 +16,6 @@ from django.utils.safestring import SafeString, mark_safe
 
 from annotations import figures
 from annotations.form_presentation import (
-    Piece,
     answer_difference,
     answer_pieces,
     form_of,
@@ -159,7 +158,12 @@ def template_notation(text: str) -> str:
 @register.filter
 def chips(text: str) -> SafeString:
     """Show a command with its class tokens as chips."""
-    return format_html_join("", "{}", ((_chip(piece),) for piece in pieces_of(text)))
+    chip = '<span class="chip" data-class="{0}">{0}</span>'
+    shown = (
+        format_html(chip, each.entity_class) if each.entity_class else each.text
+        for each in pieces_of(text)
+    )
+    return format_html_join("", "{}", ((each,) for each in shown))
 
 
 @register.filter
@@ -182,12 +186,6 @@ def grounded(utterance: Any) -> SafeString:
 def command(text: str) -> SafeString:
     """Show a command with its class tokens as chips."""
     return chips(text)
-
-
-def _chip(piece: Piece) -> str:
-    if not piece.entity_class:
-        return piece.text
-    return format_html('<span class="chip" data-class="{0}">{0}</span>', piece.entity_class)
 
 
 @register.simple_tag

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from typing import Any
 
 from django.http import Http404, JsonResponse
 from django.views.decorators.cache import never_cache
@@ -37,7 +36,14 @@ def draft(request: WorldRequest, world: World, kind: str, subject: str) -> JsonR
     if request.method == "POST":
         return _post(request, world, kind, subject)
     key = {"user": request.user, "world": world, "kind": kind, "subject": subject}
-    return JsonResponse({"draft": _as_json(Draft.objects.filter(**key).first())})
+    stored = Draft.objects.filter(**key).first()
+    values = stored and {
+        "fields": stored.fields,
+        "version": stored.base_version,
+        "device": stored.device,
+        "saved_at": stored.saved_at.isoformat(),
+    }
+    return JsonResponse({"draft": values})
 
 
 def _post(request: WorldRequest, world: World, kind: str, subject: str) -> JsonResponse:
@@ -64,14 +70,3 @@ def _post(request: WorldRequest, world: World, kind: str, subject: str) -> JsonR
         return JsonResponse({"draft": None})
     saved = save_draft(request.user, world, kind, subject, values)
     return JsonResponse({"saved_at": saved and saved.saved_at.isoformat()})
-
-
-def _as_json(stored: Draft | None) -> dict[str, Any] | None:
-    if stored is None:
-        return None
-    return {
-        "fields": stored.fields,
-        "version": stored.base_version,
-        "device": stored.device,
-        "saved_at": stored.saved_at.isoformat(),
-    }

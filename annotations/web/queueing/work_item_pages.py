@@ -210,7 +210,12 @@ def _act(request: WorldRequest, item: WorkItem, step: str) -> str:
     if step in ("assign", "withdraw"):
         demand(request, Duty.MANAGE)
         if step == "assign":
-            return _assign(request, item)
+            form = AssignForm(item.world, request.POST)
+            if not form.is_valid():
+                raise NotForThem("Choose a person of this world.")
+            person = form.cleaned_data["person"]
+            assign(item, person, by=request.user)
+            return f"{person} has this now."
         for assignment in item.assignments.held():
             withdraw(assignment)
         return "Withdrawn. Others can take it now."
@@ -220,15 +225,6 @@ def _act(request: WorldRequest, item: WorkItem, step: str) -> str:
     verb, sentence = STEPS[step]
     verb(held)
     return sentence
-
-
-def _assign(request: WorldRequest, item: WorkItem) -> str:
-    form = AssignForm(item.world, request.POST)
-    if not form.is_valid():
-        raise NotForThem("Choose a person of this world.")
-    person = form.cleaned_data["person"]
-    assign(item, person, by=request.user)
-    return f"{person} has this now."
 
 
 @world_view(Duty.MANAGE, WRITE)

@@ -41,7 +41,13 @@ def once(method: Method) -> Method:
         except BaseException:
             cache.delete(slot)  # nothing was done, so the key can be used again
             raise
-        cache.set(slot, {"sent": sent, **_kept(response)}, REMEMBERED_SECONDS)
+        kept = {
+            "sent": sent,
+            "status": response.status_code,
+            "data": json.dumps(response.data, cls=DjangoJSONEncoder),
+            "headers": {name: response[name] for name in KEPT_HEADERS if name in response},
+        }
+        cache.set(slot, kept, REMEMBERED_SECONDS)
         return response
 
     answer.takes_key = True  # type: ignore[attr-defined]  # of a function
@@ -61,7 +67,12 @@ def fingerprint_of(request: ApiRequest) -> str:
     """Return a hash of what was sent, files with their contents."""
     digest = hashlib.sha256(request.META.get("QUERY_STRING", "").encode())
     files = [(name, file) for name, some in request.FILES.lists() for file in some]
-    values = {name: value for name, value in _items(request.data) if name not in request.FILES}
+    data: Any = request.data
+    if hasattr(data, "lists"):
+        data = dict(data.lists())
+    elif not isinstance(data, dict):
+        data = {"": data}
+    values = {name: value for name, value in data.items() if name not in request.FILES}
     digest.update(json.dumps(values, sort_keys=True, default=str).encode())
     for name, file in sorted(files, key=lambda each: (each[0], each[1].name)):
         digest.update(f"\0{name}\0{file.name}\0".encode(errors="replace"))
@@ -69,18 +80,6 @@ def fingerprint_of(request: ApiRequest) -> str:
             digest.update(chunk)
         file.seek(0)
     return digest.hexdigest()
-
-
-def _items(data: Any) -> list[tuple[str, Any]]:
-    if hasattr(data, "lists"):
-        return list(data.lists())
-    return list(data.items()) if isinstance(data, dict) else [("", data)]
-
-
-def _kept(response: Response) -> dict[str, Any]:
-    headers = {name: response[name] for name in KEPT_HEADERS if name in response}
-    data = json.dumps(response.data, cls=DjangoJSONEncoder)
-    return {"status": response.status_code, "data": data, "headers": headers}
 
 
 def _replay(kept: dict[str, Any] | None, sent: str) -> Response:

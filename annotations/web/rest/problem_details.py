@@ -14,7 +14,7 @@ from rest_framework import exceptions, serializers
 from rest_framework.response import Response
 
 from annotations.editing.edits import Overtaken
-from annotations.language.errors import LanguageError, Problem, Refusal
+from annotations.language.errors import LanguageError, Refusal
 from annotations.rows.clashes import MADE_MEANWHILE, is_clash
 from annotations.rows.stored_problems import as_json
 from annotations.web.not_found import say_missing, where_to_look
@@ -59,7 +59,10 @@ def refusal_of_form(form: forms.BaseForm) -> Refusal:
     """Return what is wrong with a form of the pages, with the places that its checker knows."""
     checked = getattr(form, "checked", None)
     found = [each for each in checked.problems if each.is_error] if checked else []
-    placed = [_with_field(problem, form) for problem in found]
+    placed = [
+        {"field": each["file"], **each} if each["file"] in form.fields else each
+        for each in map(as_json, found)
+    ]
     problems = placed or list(_problems_in(form.errors))
     return Refusal(problems[0]["message"], "not_valid", problems=problems)
 
@@ -136,8 +139,3 @@ def _problems_in(errors: Any, field: str = "") -> Iterator[dict[str, Any]]:
                 yield from _problems_in(inner, f"{field}.{place}" if is_nested else field)
     else:
         yield {"field": field, "message": str(errors)} if field else {"message": str(errors)}
-
-
-def _with_field(problem: Problem, form: forms.BaseForm) -> dict[str, Any]:
-    item = as_json(problem)
-    return {"field": item["file"], **item} if item["file"] in form.fields else item

@@ -46,7 +46,10 @@ class SchemaFile(SpectacularAPIView):
         kind = request.accepted_renderer.media_type
         with _making:
             if kind not in _made:
-                _made[kind] = self._make(request)
+                generator: Any = self.generator_class()
+                schema = generator.get_schema(public=True)
+                made: Any = request.accepted_renderer.render(schema, renderer_context={})
+                _made[kind] = made, f'"{hashlib.sha256(made).hexdigest()[:20]}"'
         content, tag = _made[kind]
         answer = HttpResponse(content, content_type=kind)
         name = f"{spectacular_settings.TITLE}.{request.accepted_renderer.format}"
@@ -64,10 +67,3 @@ class SchemaFile(SpectacularAPIView):
             if renderer.format == wanted:
                 return renderer, renderer.media_type
         raise ValidationError({"format": ["The schema is written as json or yaml."]})
-
-    def _make(self, request: Request) -> tuple[bytes, str]:
-        """Return the schema in the type that was asked for, and its tag."""
-        generator: Any = self.generator_class()
-        schema = generator.get_schema(public=True)
-        content: Any = request.accepted_renderer.render(schema, renderer_context={})
-        return content, f'"{hashlib.sha256(content).hexdigest()[:20]}"'
