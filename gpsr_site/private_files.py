@@ -40,17 +40,14 @@ def read_or_make_secret_key(path: Path) -> str:
     try:
         descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     except FileExistsError:
-        return _read_when_written(path)
+        deadline = time.monotonic() + PATIENCE_SECONDS
+        while not (key := path.read_text(encoding="ascii").strip()):  # somebody else writes it now
+            if time.monotonic() > deadline:
+                said = f"{path} is empty. Delete it, and a new key is made."
+                raise ImproperlyConfigured(said) from None
+            time.sleep(0.01)
+        return key
     key = secrets.token_urlsafe(48)
     with os.fdopen(descriptor, "w", encoding="ascii") as file:
         file.write(key)
-    return key
-
-
-def _read_when_written(path: Path) -> str:
-    deadline = time.monotonic() + PATIENCE_SECONDS
-    while not (key := path.read_text(encoding="ascii").strip()):
-        if time.monotonic() > deadline:
-            raise ImproperlyConfigured(f"{path} is empty. Delete it, and a new key is made.")
-        time.sleep(0.01)
     return key

@@ -105,16 +105,8 @@ def best_runs(world: World) -> BestRuns | None:
         of_runs[score.run_id].append(score)
     shown = (shown_scores(each, newest.run.split.criterion) for each in of_runs.values())
     comparable = [each[PART, source] for each in shown if (PART, source) in each]
-    best = (_best(comparable, protocol) for protocol in Protocol)
-    runs = tuple(BestRun(world, figure) for figure in best if figure is not None)
+    # The last is the best: figures on unseen forms alone come first, then the less accurate and the older.
+    comparable.sort(key=lambda each: (not each.alone, each.accuracy, each.score.run_id))
+    best = {each.score.run.protocol: each for each in comparable}
+    runs = tuple(BestRun(world, best[protocol]) for protocol in Protocol if protocol in best)
     return BestRuns(newest.run.split, SOURCES[source], runs)
-
-
-def _best(figures: list[ShownScore], protocol: str) -> ShownScore | None:
-    """Return the most accurate, the newer one of two that are equal; figures on unseen forms alone come last."""
-    of_protocol = (figure for figure in figures if figure.score.run.protocol == protocol)
-    return max(
-        of_protocol,
-        key=lambda figure: (not figure.alone, figure.accuracy, figure.score.run_id),
-        default=None,
-    )
