@@ -94,8 +94,9 @@ def is_archive(upload: UploadedFile) -> bool:
 
 @contextmanager
 def unpacked_pairs(upload: UploadedFile, notation: str = Notation.OURS) -> Iterator[Path]:
-    """Unpack the files of a corpus (``gen/train.txt``, ``paraphrasings.txt`` …) in a folder that is gone
-    afterwards. Whatever else the archive holds, and the folders around them, is left out.
+    """Unpack the files of a corpus (``gen/train.txt``, ``paraphrasings.txt`` …) into a temporary folder.
+
+    Other files of the archive, and the folders around, are left out. Sizes are checked as announced and as read.
 
     Raises:
         LanguageError: as ``files_of``.

@@ -68,7 +68,10 @@ def answer(
     with transaction.atomic():
         # One answer at a time: the next one sees what this one has done.
         stored = Utterance.with_deleted.select_for_update().get(pk=utterance.pk)
-        assignment = _still_theirs(assignment) or assignment_in(stored, by)
+        if assignment is not None:
+            assignment = Assignment.objects.select_related("item").get(pk=assignment.pk)
+        if assignment is None or assignment.outcome == Outcome.DONE:  # answered in the meantime
+            assignment = assignment_in(stored, by)
         if assignment is None:
             given = answer_waiting(stored, by) or stored.accepted_label
             if given and given.annotator == by and given.says(verdict, text, reason):
@@ -94,18 +97,10 @@ def answer(
         return row
 
 
-def _still_theirs(assignment: Assignment | None) -> Assignment | None:
-    """Return ``assignment`` as it is now; None where it has been answered in the meantime."""
-    if assignment is None:
-        return None
-    stored = Assignment.objects.select_related("item").get(pk=assignment.pk)
-    return None if stored.outcome == Outcome.DONE else stored
-
-
 def _take_unasked(utterance: Utterance, by: User) -> Assignment | None:
-    """Return an assignment for an answer of ``by`` to which nothing has led them.
+    """Return an assignment for an answer that ``by`` gives without having been asked.
 
-    It is theirs to an item that is still open, its answer taken back, or else that of a free item.
+    It is their own to an open item, with its answer taken back, or else one to a free item.
     """
     done = Assignment.objects.done().filter(person=by, item__in=WorkItem.objects.open())
     assignment = done.filter(item__utterance=utterance, label__isnull=False).first()
@@ -124,8 +119,7 @@ def _take_unasked(utterance: Utterance, by: User) -> Assignment | None:
 def take_answer_back(label: Label, by: User) -> Utterance:
     """Undo an answer; its person holds the item again.
 
-    Raises Refusal where it is somebody else's, and NoLongerYours where others have gone
-    on from it.
+    Raises Refusal where the answer is somebody else's, and NoLongerYours where others have built on it.
     """
     with transaction.atomic():
         utterance = label_answers.take_back(label, by)

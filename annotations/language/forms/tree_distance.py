@@ -129,7 +129,7 @@ class FormDistances:
     def _best_inside(
         self, shared: Callable[[int, int], int], left: int, right: int, best: int
     ) -> int:
-        """Return ``best``, or what one side shares with a single subtree of the other where that is more."""
+        """Return ``best``, or the most that one side shares with a single subtree of the other."""
         pairs = [(left, child) for child in self._nodes[right].children]
         pairs += [(child, right) for child in self._nodes[left].children]
         for one, other in pairs:
