@@ -68,10 +68,7 @@ def answer(
     with transaction.atomic():
         # One answer at a time: the next one sees what this one has done.
         stored = Utterance.with_deleted.select_for_update().get(pk=utterance.pk)
-        if assignment is not None:
-            assignment = Assignment.objects.select_related("item").get(pk=assignment.pk)
-        if assignment is None or assignment.outcome == Outcome.DONE:  # answered in the meantime
-            assignment = assignment_in(stored, by)
+        assignment = _still_theirs(assignment) or assignment_in(stored, by)
         if assignment is None:
             given = answer_waiting(stored, by) or stored.accepted_label
             if given and given.annotator == by and given.says(verdict, text, reason):
@@ -95,6 +92,14 @@ def answer(
             label_answers.accept(decisive, by)
             row.refresh_from_db()
         return row
+
+
+def _still_theirs(assignment: Assignment | None) -> Assignment | None:
+    """Return ``assignment`` as it is now; None where it has been answered in the meantime."""
+    if assignment is None:
+        return None
+    stored = Assignment.objects.select_related("item").get(pk=assignment.pk)
+    return None if stored.outcome == Outcome.DONE else stored
 
 
 def _take_unasked(utterance: Utterance, by: User) -> Assignment | None:
