@@ -93,16 +93,12 @@ def modules_of(root: Path) -> dict[str, Module]:
 def imports_in(tree: ast.AST, everywhere: bool) -> Iterator[ast.Import | ast.ImportFrom]:
     """Yield the import statements: all of them, or only those that importing the module runs."""
     for node in ast.iter_child_nodes(tree):
+        is_function = isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+        is_for_types = isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test)
         if isinstance(node, ast.Import | ast.ImportFrom):
             yield node
-        elif everywhere or not (
-            isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) or _is_for_types(node)
-        ):
+        elif everywhere or not (is_function or is_for_types):
             yield from imports_in(node, everywhere)
-
-
-def _is_for_types(node: ast.AST) -> bool:
-    return isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test)
 
 
 class House:

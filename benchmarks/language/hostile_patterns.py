@@ -274,7 +274,7 @@ def hostile_texts(source: str, flags: int = 0) -> list[HostileText]:
     """Return texts that may be slow, from the parse tree of a pattern."""
     tree = regex_parser.parse(source, flags)
     texts: dict[HostileText, None] = {}
-    literals = sorted(set(_literals(tree)))[:24]
+    literals = sorted({character for _, _, character in _leaves(tree)})[:24]
     alphabet = list(dict.fromkeys([*literals, *OFTEN]))
 
     def repeated(head: str, unit: str, tail: str) -> None:
@@ -302,11 +302,6 @@ def hostile_texts(source: str, flags: int = 0) -> list[HostileText]:
         letters = "".join(chance.choices(alphabet, k=40))
         repeated("", letters, "\0")
     return list(texts)
-
-
-def _literals(tree: Any) -> Iterator[str]:
-    for _, _, character in _leaves(tree):
-        yield character
 
 
 def _leaves(tree: Any) -> Iterator[tuple[Any, Any, str]]:

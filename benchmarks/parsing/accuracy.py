@@ -50,6 +50,8 @@ from parser_service.results.table_parts import MARK, MAY_KNOW_CORPORA, may_know_
 
 __all__ = ["main", "read_figures", "tables"]
 
+# What LaTeX does not print as it is, among what names of rows have.
+ESCAPES = str.maketrans({MARK: r"\textdagger{}", "_": r"\_", "%": r"\%", "#": r"\#"})
 # Criterion → the word for it in a column's head.
 CRITERIA = {"command": "command", "source_command": "source", BY_FORM: "form"}
 FIGURES = (HARMONIC, UNSEEN, KNOWN, ACCURACY)
@@ -178,7 +180,10 @@ def to_latex(table: AccuracyTable) -> str:
     lines = [
         [table.protocol, *heads],
         ["", *_heads(table)],
-        *([rf"\texttt{{{_escape(name)}}}", *map(_in_latex, row)] for name, row in table.rows),
+        *(
+            [rf"\texttt{{{name.translate(ESCAPES)}}}", *map(_in_latex, row)]
+            for name, row in table.rows
+        ),
     ]
     first, second, *body = [rf"{' & '.join(line)} \\" for line in lines]
     begin = rf"\begin{{tabular}}{{l{'r' * len(table.columns)}}}"
@@ -202,15 +207,6 @@ def _in_latex(figure: AccuracyFigure | None) -> str:
     reach = "" if figure.reach is None else rf" $\pm$ {figure.reach:.1f}"
     paper = "" if figure.published is None else rf" \textcolor{{gray}}{{({figure.published:.1f})}}"
     return mean + reach + paper
-
-
-def _escape(name: str) -> str:
-    return (
-        name.replace(MARK, r"\textdagger{}")
-        .replace("_", r"\_")
-        .replace("%", r"\%")
-        .replace("#", r"\#")
-    )
 
 
 def note(figures: pd.DataFrame, part: str, left_out: int) -> str:

@@ -46,7 +46,36 @@ class Target:
 
     @cached_property
     def answers(self) -> FirstAnswers:
-        return _read(self.run, self.part)
+        """The answers, equal forms as one text, so that a million of them fit in memory."""
+        rows = (
+            self.run.predictions.best()
+            .filter(example__part=self.part)
+            .order_by("example_id")
+            .values_list(
+                *("example_id", "example__utterance", "example__logical_form", "logical_form"),
+                *("score", "is_exact_match", "example__source"),
+            )
+        )
+        forms: dict[str, str] = {}
+        keys, utterances, labels, answers = [], [], [], []
+        scores, right, generated = [], [], []
+        for key, utterance, label, answer, score, is_right, source in rows.iterator(ROWS_AT_ONCE):
+            keys.append(key)
+            utterances.append(utterance)
+            labels.append(forms.setdefault(label, label))
+            answers.append(forms.setdefault(answer, answer))
+            scores.append(score)
+            right.append(is_right)
+            generated.append(source == Source.GENERATED)
+        return FirstAnswers(
+            examples=np.array(keys, dtype=np.int64),
+            utterances=utterances,
+            labels=labels,
+            answers=answers,
+            scores=np.array(scores, dtype=np.float64),
+            is_right=np.array(right, dtype=np.bool_),
+            is_generated=np.array(generated, dtype=np.bool_),
+        )
 
     def forget_answers(self) -> None:
         """Free their memory; they are read again where they are needed."""
@@ -66,36 +95,3 @@ def parts_of(run: TrainingRun) -> list[str]:
     """
     tested = set(run.evaluations.values_list("part", flat=True))
     return [str(part) for part in (Part.VALIDATION, Part.TEST) if part in tested]
-
-
-def _read(run: TrainingRun, part: str) -> FirstAnswers:
-    """Read the answers, equal forms as one text, so that a million of them fit in memory."""
-    rows = (
-        run.predictions.best()
-        .filter(example__part=part)
-        .order_by("example_id")
-        .values_list(
-            *("example_id", "example__utterance", "example__logical_form", "logical_form"),
-            *("score", "is_exact_match", "example__source"),
-        )
-    )
-    forms: dict[str, str] = {}
-    keys, utterances, labels, answers = [], [], [], []
-    scores, right, generated = [], [], []
-    for key, utterance, label, answer, score, is_right, source in rows.iterator(ROWS_AT_ONCE):
-        keys.append(key)
-        utterances.append(utterance)
-        labels.append(forms.setdefault(label, label))
-        answers.append(forms.setdefault(answer, answer))
-        scores.append(score)
-        right.append(is_right)
-        generated.append(source == Source.GENERATED)
-    return FirstAnswers(
-        examples=np.array(keys, dtype=np.int64),
-        utterances=utterances,
-        labels=labels,
-        answers=answers,
-        scores=np.array(scores, dtype=np.float64),
-        is_right=np.array(right, dtype=np.bool_),
-        is_generated=np.array(generated, dtype=np.bool_),
-    )

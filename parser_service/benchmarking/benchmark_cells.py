@@ -192,8 +192,18 @@ class CellFile:
 
     def __init__(self, path: Path):
         """Read the cells of ``path``. Raises Refusal where it holds something else."""
+        cells: Any = []
+        if path.exists():
+            try:
+                cells = json.loads(path.read_text(encoding="utf-8"))
+            except (ValueError, RecursionError):
+                cells = None
+        if not isinstance(cells, list) or any("key" not in cell for cell in cells):
+            raise Refusal(
+                f"{path} holds something other than cells; name another file.", "not_a_cells_file"
+            )
         self.path = path
-        self.cells: list[Cell] = _read_cells(path)
+        self.cells: list[Cell] = cells
 
     def has(self, key: str) -> bool:
         return any(cell["key"] == key for cell in self.cells)
@@ -205,20 +215,6 @@ class CellFile:
         text = json.dumps(self.cells, ensure_ascii=False, indent=1)
         unfinished.write_text(text + "\n", encoding="utf-8")
         os.replace(unfinished, self.path)
-
-
-def _read_cells(path: Path) -> list[Cell]:
-    if not path.exists():
-        return []
-    try:
-        cells = json.loads(path.read_text(encoding="utf-8"))
-    except (ValueError, RecursionError):
-        cells = None
-    if not isinstance(cells, list) or any("key" not in cell for cell in cells):
-        raise Refusal(
-            f"{path} holds something other than cells; name another file.", "not_a_cells_file"
-        )
-    return cells
 
 
 @cache

@@ -9,10 +9,14 @@ from http import HTTPStatus
 from typing import Any
 
 from annotations.background.progress import UNWATCHED, Progress
+from annotations.importing.prompt_sources import CATEGORY_TOKEN
 from annotations.jobs import request_job_once
 from annotations.label_audit.audit_findings import SuspectPair, store_findings
+from annotations.labelling.entity_spans import anonymizer_of
+from annotations.language.english import ANY_OBJECT
 from annotations.language.errors import Refusal
 from annotations.language.label_errors import (
+    LabelledPair,
     Reason,
     Suspect,
     check_answers,
@@ -21,9 +25,9 @@ from annotations.language.label_errors import (
     rank,
 )
 from annotations.models import Job, JobKind, User, World
-from parser_service.label_audit.audited_pairs import command_forms, labelled_pairs, subject_of
+from annotations.rows.synchronise import BATCH
 from parser_service.label_audit.out_of_fold import AUDITORS, answer_out_of_fold
-from parser_service.parsers.interface import Pair
+from parser_service.parsers.interface import Check, Pair
 from parser_service.parsers.registry import entry
 
 
@@ -48,7 +52,7 @@ def audit_labels(
     ``progress`` raises between utterances to stop it.
     """
     progress.report(0, "reading the pairs")
-    forms = command_forms(world)
+    forms = dict(world.commands.values_list("anonymized_text", "logical_form__text"))
     commands = [Pair(text, form) for text, form in forms.items()]
     pairs = labelled_pairs(world, forms, progress.check)
     answers = answer_out_of_fold(pairs, parser, folds, seed, commands, progress)
@@ -59,6 +63,36 @@ def audit_labels(
         *check_answers(pairs, answers, entry(parser).title),
     ]
     return AuditedLabels(len(pairs), rank(findings))
+
+
+def labelled_pairs(world: World, forms: Mapping[str, str], check: Check) -> list[LabelledPair]:
+    """Return the accepted paraphrases and the labelled utterances of ``world`` with class tokens.
+
+    Keys are ``paraphrase-N`` and ``utterance-N`` with the primary key of the row. The command behind a
+    paraphrase is the generated one, or else its prompt.
+
+    Args:
+        forms: the form of each generated command, by its text.
+    """
+    pairs = []
+    anonymizer = anonymizer_of(world)
+    columns = ("pk", "utterance", "logical_form", "prompt", "command__anonymized_text")
+    paraphrases = world.paraphrases.accepted().values_list(*columns)
+    for key, utterance, label, prompt, command in paraphrases.iterator(chunk_size=BATCH):
+        check()
+        source = command or anonymizer.anonymize(prompt).command
+        # A prompt that says "objects" may come from two commands, and the import cannot tell which: then the form
+        # behind it is that of either, the label's if it is one of them.
+        either = (source, source.replace(ANY_OBJECT, CATEGORY_TOKEN))
+        known = [forms[text] for text in either if text in forms]
+        behind = label if label in known else next(iter(known), "")
+        text = anonymizer.anonymize(utterance).command
+        pairs.append(LabelledPair(f"paraphrase-{key}", text, label, source, behind))
+    utterances = world.utterances.labelled()
+    rows = utterances.values_list("pk", "anonymized_text", "logical_form")
+    for key, text, label in rows.iterator(chunk_size=BATCH):
+        pairs.append(LabelledPair(f"utterance-{key}", text, label))
+    return pairs
 
 
 def request_audit(world: World, by: User, choice: Mapping[str, Any]) -> Job:
@@ -82,7 +116,11 @@ def audit_of(job: Job, progress: Progress) -> dict[str, Any]:
         )
     asked = job.arguments
     result = audit_labels(job.world, asked["parser"], asked["folds"], progress=progress)
-    found_pairs = [SuspectPair(subject_of(each.pair), each) for each in result.suspects]
+    found_pairs = [
+        SuspectPair((kind, int(key)), each)
+        for each in result.suspects
+        for kind, _, key in [each.pair.key.rpartition("-")]
+    ]
     reasons = Counter(reason for each in result.suspects for reason in each.reasons)
     with progress.writing():
         stored = store_findings(job.world, found_pairs, asked["to_queue"], job.created_by)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Self
+from typing import Self
 
 from annotations.language.errors import Refusal
 from annotations.language.grammar import Grammar, print_production, read_production
@@ -103,7 +103,15 @@ class GrammarOracle(Parser):
 
     def save(self, folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
-        write_json(folder / GRAMMAR, [_to_json(category) for category in self._categories])
+        grammar = [
+            {
+                "name": category.name,
+                "productions": [print_production(each) for each in category.grammar.productions],
+                "templates": [print_template(each) for each in category.templates],
+            }
+            for category in self._categories
+        ]
+        write_json(folder / GRAMMAR, grammar)
         write_json(folder / ONTOLOGY, write_ontology(self.knowledge.ontology or Ontology(())))
         seal(folder, self, [GRAMMAR, ONTOLOGY])
 
@@ -111,26 +119,17 @@ class GrammarOracle(Parser):
     def load(cls, folder: Path, knowledge: Knowledge | None = None) -> Self:
         """Load the saved oracle with its own grammar and ontology, whatever ``knowledge`` is now."""
         saved = open_sealed(folder, cls, [GRAMMAR, ONTOLOGY])
-        grammar = tuple(_read_category(category) for category in read_json(folder / GRAMMAR))
+        grammar = tuple(
+            TaskCategory(
+                category["name"],
+                Grammar(tuple(read_production(line) for line in category["productions"])),
+                tuple(read_template(line) for line in category["templates"]),
+            )
+            for category in read_json(folder / GRAMMAR)
+        )
         files = {name: text.encode() for name, text in read_json(folder / ONTOLOGY).items()}
         ontology, _ = read_ontology(files)
         return cls(saved.config, saved.seed, Knowledge(ontology=ontology, grammar=grammar))
 
     def parameters(self) -> int:
         return 0
-
-
-def _to_json(category: TaskCategory) -> dict[str, Any]:
-    return {
-        "name": category.name,
-        "productions": [print_production(each) for each in category.grammar.productions],
-        "templates": [print_template(each) for each in category.templates],
-    }
-
-
-def _read_category(category: Mapping[str, Any]) -> TaskCategory:
-    return TaskCategory(
-        category["name"],
-        Grammar(tuple(read_production(line) for line in category["productions"])),
-        tuple(read_template(line) for line in category["templates"]),
-    )

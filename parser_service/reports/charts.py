@@ -93,7 +93,14 @@ def draw_lines(
     title: str, lines: Sequence[Line], x_label: str, y_label: str, x_most: float | None = None
 ) -> SafeString:
     """Draw lines with their names at their ends; the scale of values begins at 0."""
-    points = [_points(line) for line in lines]
+    points = [
+        [
+            (x, y)
+            for x, y in zip(line.xs, line.ys, strict=True)
+            if y is not None and math.isfinite(y) and math.isfinite(x)
+        ]
+        for line in lines
+    ]
     xs = [x for some in points for x, _ in some]
     ys = [y for some in points for _, y in some]
     if not xs:
@@ -157,11 +164,6 @@ class _Scale:
         first = math.ceil(self.low / step - 1e-9)
         last = math.floor(self.high / step + 1e-9)
         return [step * number for number in range(first, last + 1)]
-
-
-def _points(line: Line) -> list[tuple[float, float]]:
-    pairs = zip(line.xs, line.ys, strict=True)
-    return [(x, y) for x, y in pairs if y is not None and math.isfinite(y) and math.isfinite(x)]
 
 
 def _axes(across: _Scale, up: _Scale, x_label: str, y_label: str) -> SafeString:

@@ -108,13 +108,6 @@ def _by_form(
     )
 
 
-def _part(
-    label: str, scores: Sequence[Evaluation], shares: Sequence[float], measure: Measure
-) -> PartFigure:
-    (low, high), _ = _interval([scores], measure)
-    return PartFigure(label, 100 * fmean(shares), 100 * low, 100 * high)
-
-
 def _interval(
     parts: Sequence[Sequence[Evaluation]], measure: Measure
 ) -> tuple[tuple[float, float], Parts | None]:

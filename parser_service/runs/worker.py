@@ -118,7 +118,11 @@ class WorkerTimer(bootsteps.StartStopStep):
     def _tick(self, waited: timedelta) -> None:
         """Do the timer's work once. Errors are logged; the next tick comes anyway."""
         try:
-            self._write_row()
+            now = timezone.now()
+            us = {"host": socket.gethostname(), "process_id": os.getpid(), "last_seen": now}
+            us["queue"] = ",".join(self._queues)
+            Worker.objects.update_or_create(name=self._name, defaults=us)  # the banner reads it
+            Worker.objects.filter(last_seen__lt=now - FORGET_AFTER).delete()
             if self._leases.is_trusted():
                 for kind in background.kinds():
                     background.requeue_expired(kind.model)
@@ -130,15 +134,6 @@ class WorkerTimer(bootsteps.StartStopStep):
             logger.warning("The worker's timer could not do its work: %s", error)
         finally:
             connections.close_all()
-
-    def _write_row(self) -> None:
-        """Write the row that the banner reads."""
-        now = timezone.now()
-        us = {"host": socket.gethostname(), "process_id": os.getpid(), "last_seen": now}
-        Worker.objects.update_or_create(
-            name=self._name, defaults={**us, "queue": ",".join(self._queues)}
-        )
-        Worker.objects.filter(last_seen__lt=now - FORGET_AFTER).delete()
 
     def _stop(self) -> None:
         """Kill the child, give its work back to the queue and end the process."""

@@ -115,7 +115,8 @@ class AnswerWriter:
             return None
         written = outline.fill(
             {name_of_entity(number): text for number, (_, text) in enumerate(entities)}
-            | {sign: text for n, each in enumerate(texts) for sign, text in _in_json(n, each)}
+            | {one: text.in_json for (one, _), text in zip(_SIGNS, texts, strict=False)}
+            | {many: text.plural_in_json for (_, many), text in zip(_SIGNS, texts, strict=False)}
             | self._own_values(outline, candidate, form, slots, paths, texts)
         )
         if outline.is_right is None:
@@ -132,7 +133,9 @@ class AnswerWriter:
         texts: Sequence[StandIn],
     ) -> dict[str, str]:
         """Return the JSON of the values that differ between answers with one outline, by their names."""
-        plain = {sign: text for n, each in enumerate(texts) for sign, text in _as_text(n, each)}
+        signs = list(zip(_SIGNS, texts, strict=False))
+        plain = {one: text.text for (one, _), text in signs}
+        plain |= {many: text.plural for (_, many), text in signs}
 
         def sentence_of(slot: Slot) -> str:
             sentence = self._outlines.sentence(candidate.form, paths, slot.path)
@@ -149,13 +152,3 @@ class AnswerWriter:
             "is_executable": as_json(outline.is_executable and not doubts),
             "problems": as_json([*doubts, *outline.problems]),
         }
-
-
-def _in_json(number: int, text: StandIn) -> tuple[tuple[str, str], ...]:
-    one, many = _SIGNS[number]
-    return (one, text.in_json), (many, text.plural_in_json)
-
-
-def _as_text(number: int, text: StandIn) -> tuple[tuple[str, str], ...]:
-    one, many = _SIGNS[number]
-    return (one, text.text), (many, text.plural)

@@ -42,16 +42,8 @@ class RemoteAsker:
             raise Unanswered(
                 f"{SEATS} others wait for a language model already. Ask again in a few seconds."
             )
-        try:
-            return self._predict(texts, beam, self._check_until(time.monotonic() + self._patience))
-        except Unanswered:
-            raise
-        except Refusal as error:
-            raise Unanswered(error.message) from error
-        finally:
-            self._seats.release()
+        end = time.monotonic() + self._patience
 
-    def _check_until(self, end: float) -> Check:
         def check() -> None:
             if time.monotonic() > end:
                 raise Unanswered(
@@ -59,4 +51,11 @@ class RemoteAsker:
                     "only have been starting."
                 )
 
-        return check
+        try:
+            return self._predict(texts, beam, check)
+        except Unanswered:
+            raise
+        except Refusal as error:
+            raise Unanswered(error.message) from error
+        finally:
+            self._seats.release()

@@ -5,8 +5,8 @@ from __future__ import annotations
 import logging
 import os
 import signal
+import sys
 import threading
-from typing import Any
 
 from django.db import connections
 from waitress.server import create_server
@@ -37,7 +37,7 @@ def serve(host: str, port: int, secret: str, most_bytes: int) -> None:
         max_request_body_size=MOST_BODY_BYTES,
         ident="",
     )
-    signal.signal(signal.SIGTERM, _stop)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit())
     threading.Thread(target=_keep_up, args=[shelf], name="watch", daemon=True).start()
     logger.info("The parse server answers on %s:%s.", host, port)
     server.run()
@@ -57,7 +57,3 @@ def _keep_up(shelf: Shelf) -> None:
         finally:
             connections.close_all()
         threading.Event().wait(LOOK_EVERY)
-
-
-def _stop(*_: Any) -> None:
-    raise SystemExit

@@ -18,7 +18,7 @@ from annotations.language.grounding import Anonymized
 from annotations.models import Entity, Predicate, World
 from parser_service.models import ActionNames, Promotion, TrainingRun
 from parser_service.parsers.conditions import Protocol
-from parser_service.parsers.interface import Candidate, Parser
+from parser_service.parsers.interface import Candidate
 from parser_service.serving.answer_writing import AnswerWriter
 from parser_service.serving.batching import Batcher
 from parser_service.serving.loading import load_anew, size_of
@@ -316,21 +316,21 @@ class Shelf:
         if held is not None and (held.parser.run, held.parser.knowledge) == (row.pk, knowledge):
             return ServedParser(name, held.parser, writer, wanted)
         parser = load_anew(row).hesitant()
+        batcher: Batcher | RemoteAsker = (
+            RemoteAsker(parser.predict, self._seats)
+            if parser.asks_a_server
+            else Batcher(parser.predict, self._turn, self.metrics.batches.observe)
+        )
         loaded = LoadedParser(
             run=row.pk,
             name=row.parser,
             score_kind=str(parser.score_kind or ""),
             knowledge=knowledge,
             size=size_of(row),
-            batcher=self._make_batcher(parser),
+            batcher=batcher,
             lines_together=TOGETHER if parser.asks_a_server else LINES_TOGETHER,
         )
         return ServedParser(name, loaded, writer, wanted)
-
-    def _make_batcher(self, parser: Parser) -> Batcher | RemoteAsker:
-        if parser.asks_a_server:
-            return RemoteAsker(parser.predict, self._seats)
-        return Batcher(parser.predict, self._turn, self.metrics.batches.observe)
 
 
 def _words(wanted: WantedParser) -> tuple[object, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -67,8 +67,21 @@ def break_down(compared: Compared, addresses: Addresses) -> list[Breakdown]:
 
 def break_down_by_slices(compared: Compared, addresses: Addresses) -> Breakdown:
     """Return the accuracies in the saved slices of the world."""
-    rows = tuple(_slice_rows(compared, addresses))
-    return Breakdown("slices", "Saved slices", rows, is_of_base=True)
+    rows = []
+    is_quick = len(compared.examples.keys) <= MOST_ASKED
+    for saved in Slice.objects.filter(world=compared.world):
+        filters = filters_of(compared.world, saved.query, of_run=compared.base)
+        conditions = filters.conditions(but=["part"])
+        chosen = {"slice": str(saved.pk)}
+        url = addresses.compare(chosen)
+        if not is_quick and not are_in_columns(conditions, compared):
+            rows.append(SliceRow(saved.name, None, url))
+            continue
+        mask = compared.mask(conditions)
+        accuracies = accuracy_where(compared.correct, mask, compared.clusters)
+        cells = _cells(accuracies, 0, addresses, chosen)
+        rows.append(SliceRow(saved.name, int(accuracies.counts[0]), url, cells))
+    return Breakdown("slices", "Saved slices", tuple(rows), is_of_base=True)
 
 
 def _by_group(compared: Compared, grouping: Grouping, addresses: Addresses) -> Breakdown:
@@ -105,22 +118,6 @@ def _most_frequent(labels: EncodedLabels[str], is_ordered: bool) -> tuple[Encode
     return EncodedLabels(tuple(labels.values[place] for place in shown), codes[labels.codes]), len(
         there
     )
-
-
-def _slice_rows(compared: Compared, addresses: Addresses) -> Iterator[SliceRow]:
-    for saved in Slice.objects.filter(world=compared.world):
-        conditions = filters_of(compared.world, saved.query, of_run=compared.base).conditions(
-            but=["part"]
-        )
-        chosen = {"slice": str(saved.pk)}
-        is_quick = len(compared.examples.keys) <= MOST_ASKED
-        if not is_quick and not are_in_columns(conditions, compared):
-            yield SliceRow(saved.name, None, addresses.compare(chosen))
-            continue
-        mask = compared.mask(conditions)
-        accuracies = accuracy_where(compared.correct, mask, compared.clusters)
-        cells = _cells(accuracies, 0, addresses, chosen)
-        yield SliceRow(saved.name, int(accuracies.counts[0]), addresses.compare(chosen), cells)
 
 
 def _cells(

@@ -103,18 +103,17 @@ class AnswerHead(OpenChoiceFilter):
     """The head predicate of the answer, or ``NO_FORM``."""
 
     def demand(self, value: str, given: Given) -> FilterCondition:
-        return FilterCondition(self._rows(value), columns=Q(answer_head=value))
-
-    def _rows(self, value: str) -> Q:
         if value == NO_FORM:
-            return Q(is_well_formed=False)
-        if value == "UNKNOWN":
-            return Q(logical_form="UNKNOWN")
-        found, prefix = Q(), ""
-        for number in range(1, MOST_LAMBDAS + 2):
-            found |= Q(logical_form__startswith=f"{prefix}( {value} ")
-            prefix += f"( lambda ${number} e "
-        return found & Q(is_well_formed=True)
+            rows = Q(is_well_formed=False)
+        elif value == "UNKNOWN":
+            rows = Q(logical_form="UNKNOWN")
+        else:
+            found, prefix = Q(), ""
+            for number in range(1, MOST_LAMBDAS + 2):
+                found |= Q(logical_form__startswith=f"{prefix}( {value} ")
+                prefix += f"( lambda ${number} e "
+            rows = found & Q(is_well_formed=True)
+        return FilterCondition(rows, columns=Q(answer_head=value))
 
 
 class AnswerForm(django_filters.CharFilter):

@@ -66,10 +66,6 @@ def _by_training(compared: Compared) -> EncodedLabels[str]:
     return EncodedLabels((SEEN, NEW, NOT_KNOWN), codes.astype(np.int64))
 
 
-def _training_is(name: str) -> Parameters | None:
-    return {SEEN: {"label": "seen"}, NEW: {"label": "new"}}.get(name)
-
-
 def _by_error(compared: Compared) -> EncodedLabels[str]:
     """Group the answers of the first run by their error category; what people say counts more than what the
     machine proposes, and the newest word of people most."""
@@ -95,10 +91,6 @@ def _by_error(compared: Compared) -> EncodedLabels[str]:
     return EncodedLabels(
         (*(code for _, code in categories), NO_CATEGORY, RIGHT), codes[compared.chosen]
     )
-
-
-def _error_is(code: str) -> Parameters:
-    return {"outcome": "correct"} if code == RIGHT else {"category": code}
 
 
 def _error_names(compared: Compared) -> dict[str, str]:
@@ -129,7 +121,19 @@ GROUPINGS = (
     ),
     Grouping("source", "Source", _column("source"), _exactly("source")),
     Grouping(
-        "training", "Form in training", _by_training, _training_is, is_ordered=True, is_of_base=True
+        "training",
+        "Form in training",
+        _by_training,
+        {SEEN: {"label": "seen"}, NEW: {"label": "new"}}.get,
+        is_ordered=True,
+        is_of_base=True,
     ),
-    Grouping("error", "Error category", _by_error, _error_is, is_of_base=True, titles=_error_names),
+    Grouping(
+        "error",
+        "Error category",
+        _by_error,
+        lambda code: {"outcome": "correct"} if code == RIGHT else {"category": code},
+        is_of_base=True,
+        titles=_error_names,
+    ),
 )

@@ -97,10 +97,10 @@ def parts_of_scores(predictions: Sequence[Prediction]) -> list[ScorePart]:
     names = dict.fromkeys(name for each in predictions for name in each.score_parts)
     ordered = [name for name in PARTS if name in names]
     ordered += [name for name in names if name not in PARTS]
-    return [_part(name, [each.score_parts.get(name) for each in predictions]) for name in ordered]
-
-
-def _part(name: str, values: Sequence[float | None]) -> ScorePart:
-    is_count = all(isinstance(value, int) for value in values if value is not None)
-    title = PARTS.get(name, name.replace("_", " ").capitalize())
-    return ScorePart(title, tuple(values), is_count)
+    parts = []
+    for name in ordered:
+        values = tuple(each.score_parts.get(name) for each in predictions)
+        is_count = all(isinstance(value, int) for value in values if value is not None)
+        title = PARTS.get(name, name.replace("_", " ").capitalize())
+        parts.append(ScorePart(title, values, is_count))
+    return parts

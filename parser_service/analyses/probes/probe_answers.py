@@ -46,17 +46,11 @@ def is_refusal(answer: str) -> bool:
 
 def _answer(probe: Probe, candidates: Sequence[Candidate]) -> ProbeAnswer:
     best = candidates[0] if candidates else Candidate("", 0.0)
-    return ProbeAnswer(
-        probe=probe,
-        logical_form=best.form,
-        score=best.score,
-        is_expected=_is_expected(probe, best.form),
-    )
-
-
-def _is_expected(probe: Probe, answer: str) -> bool | None:
-    if probe.expectation == Expectation.OPEN:
-        return None
+    is_expected = None
     if probe.expectation == Expectation.UNKNOWN:
-        return is_refusal(answer)
-    return is_same_answer(answer, probe.expected_form)
+        is_expected = is_refusal(best.form)
+    elif probe.expectation != Expectation.OPEN:
+        is_expected = is_same_answer(best.form, probe.expected_form)
+    return ProbeAnswer(
+        probe=probe, logical_form=best.form, score=best.score, is_expected=is_expected
+    )

@@ -47,7 +47,11 @@ class TokenizedUtterance:
     def replace(self, mention: UtteranceToken, new: str) -> str:
         """Return the text with ``new`` in place of a mention; an article before it fits the new word."""
         before, after = self.text[: mention.start], self.text[mention.end :]
-        return _fit_article(before, new) + new + after
+        article = re.search(r"\b(an?)(\s+)$", before, re.IGNORECASE)
+        if article is not None and new[:1].isalpha():
+            fitting = article[1][0] + ("n" if new[0].lower() in "aeiou" else "")
+            before = before[: article.start()] + fitting + article[2]
+        return before + new + after
 
 
 def read_utterance(text: str, anonymizer: Anonymizer) -> TokenizedUtterance:
@@ -96,11 +100,3 @@ def constant_of(
         rivals = utterance.of_class(mention.entity_class)
         candidates = [each for each in constants(form) if each.token_class == mention.entity_class]
     return candidates[0] if len(rivals) == len(candidates) == 1 else None
-
-
-def _fit_article(before: str, new: str) -> str:
-    match = re.search(r"\b(an?)(\s+)$", before, re.IGNORECASE)
-    if match is None or not new[:1].isalpha():
-        return before
-    article = match[1][0] + ("n" if new[0].lower() in "aeiou" else "")
-    return before[: match.start()] + article + match[2]

@@ -71,8 +71,11 @@ def exchange_synonym(
     head = head_predicate(form)
     words = [each.word for each in utterance.mentions]
     for (old, needed, following), others in facts.synonyms.items():
+        if needed != head:
+            continue
         phrase = [*old.split(), *following.split()]
-        places = _places(words, phrase) if needed == head else []
+        begins = range(len(words) - len(phrase) + 1)
+        places = [at for at in begins if words[at : at + len(phrase)] == phrase]
         if len(places) != 1:
             continue
         first = utterance.mentions[places[0]]
@@ -92,12 +95,6 @@ def _misspelled(word: UtteranceToken, random: Random) -> str:
         return ""
     at = random.choice(places)
     return letters[:at] + letters[at + 1] + letters[at] + letters[at + 2 :]
-
-
-def _places(words: list[str], phrase: list[str]) -> list[int]:
-    """Return where a phrase begins among words."""
-    last = len(words) - len(phrase) + 1
-    return [at for at in range(last) if words[at : at + len(phrase)] == phrase]
 
 
 def _like(model: str, text: str) -> str:

@@ -114,17 +114,12 @@ def _fault(declared: ConfigField, value: Value) -> str:
         return f"it has to be {kinds[declared.type]}"
     if declared.choices and value not in declared.choices:
         return f"it has to be one of {', '.join(declared.choices)}"
-    if not isinstance(value, str):
-        return _out_of_bounds(declared, value)
-    if declared.longest is not None and len(value) > declared.longest:
-        return f"it may have at most {declared.longest} characters"
-    return ""
-
-
-def _out_of_bounds(declared: ConfigField, value: float) -> str:
+    if isinstance(value, str):
+        if declared.longest is not None and len(value) > declared.longest:
+            return f"it may have at most {declared.longest} characters"
     # Written this way round, NaN is outside every bound.
-    if declared.minimum is not None and not value >= declared.minimum:
+    elif declared.minimum is not None and not value >= declared.minimum:
         return f"it has to be at least {declared.minimum:g}"
-    if declared.maximum is not None and not value <= declared.maximum:
+    elif declared.maximum is not None and not value <= declared.maximum:
         return f"it has to be at most {declared.maximum:g}"
     return ""

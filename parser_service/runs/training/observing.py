@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from annotations.background import DatabaseAway, Fenced, Lease, Stopped
-from parser_service.models import Checkpoint, TrainingRun
+from parser_service.models import TrainingRun
 from parser_service.parsers.interface import Cancelled, EpochReport, Observer
 from parser_service.runs import lifecycle
 from parser_service.runs.checkpoints import (
@@ -101,16 +101,11 @@ class RunObserver(Observer):
     def last_checkpoint(self) -> Path | None:
         """Return the newest checkpoint whose files are unaltered; None if there is none."""
         for checkpoint in self.run.checkpoints.order_by("-epoch", "-id"):
-            if self._is_sound(checkpoint):
-                return stored_folder(checkpoint.folder)
+            folder = stored_folder(checkpoint.folder)
+            if folder.is_dir() and digest_of(folder) == checkpoint.sha256:
+                return folder
+            self.log(
+                f"The checkpoint of epoch {checkpoint.epoch} is missing or altered ({folder}), so it "
+                "is not used."
+            )
         return None
-
-    def _is_sound(self, checkpoint: Checkpoint) -> bool:
-        folder = stored_folder(checkpoint.folder)
-        if folder.is_dir() and digest_of(folder) == checkpoint.sha256:
-            return True
-        self.log(
-            f"The checkpoint of epoch {checkpoint.epoch} is missing or altered ({folder}), so it "
-            "is not used."
-        )
-        return False

@@ -58,7 +58,11 @@ def sensitivity(request: WorldRequest, world: World, pk: int) -> HttpResponse:
 
 def _kinds_of(runs: Sequence[TrainingRun]) -> list[KindOfEdit]:
     """Return the kinds of edits that any of the runs was probed with; all together come last."""
-    found = [(run, _rows_of(run)) for run in runs]
+    found = []
+    for run in runs:
+        parts = parts_of(run)
+        rows_of_run = findings_of(run, parts[0]).get("sensitivity", []) if parts else []
+        found.append((run, {row["kind"]: row for row in rows_of_run}))
     names = {**{str(kind): name for kind, name in PROBE_KINDS.items()}, ALL_KINDS: "all edits"}
     kinds = [str(kind) for kind in EditKind] + [ALL_KINDS]
     return [
@@ -71,9 +75,3 @@ def _kinds_of(runs: Sequence[TrainingRun]) -> list[KindOfEdit]:
         for kind in kinds
         if any(kind in rows for _, rows in found)
     ]
-
-
-def _rows_of(run: TrainingRun) -> dict[str, dict[str, Any]]:
-    parts = parts_of(run)
-    rows = findings_of(run, parts[0]).get("sensitivity", []) if parts else []
-    return {row["kind"]: row for row in rows}

@@ -88,7 +88,15 @@ def tryout_ask(request: WorldRequest, world: World) -> HttpResponse:
         row = ask(world, request.user, text, runs) if text and runs else None
     context = {"tryout": row, "answers": _answers_of(row, world) if row else [], "text": text}
     response = render(request, "parser_service/analyses/_tryout_answers.html", context)
-    return response if "waiting" in request.GET else replace_url(response, _address(request, world))
+    if "waiting" in request.GET:
+        return response
+    query = QueryDict(mutable=True)
+    query.setlist("run", request.POST.getlist("run"))
+    query["text"] = text
+    if example := request.POST.get("example", ""):
+        query["example"] = example
+    address = reverse("tryout", kwargs={"world": world.name})
+    return replace_url(response, f"{address}?{query.urlencode()}")
 
 
 def _answers_of(row: Tryout, world: World) -> list[TriedAnswer]:
@@ -108,16 +116,6 @@ def _answers_of(row: Tryout, world: World) -> list[TriedAnswer]:
                 )
             )
     return shown
-
-
-def _address(request: WorldRequest, world: World) -> str:
-    """Return the URL of the page with the text and the runs."""
-    query = QueryDict(mutable=True)
-    query.setlist("run", request.POST.getlist("run"))
-    query["text"] = _text_of(request.POST)
-    if example := request.POST.get("example", ""):
-        query["example"] = example
-    return f"{reverse('tryout', kwargs={'world': world.name})}?{query.urlencode()}"
 
 
 def _text_of(query: QueryDict) -> str:

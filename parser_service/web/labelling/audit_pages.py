@@ -55,10 +55,15 @@ def audit(request: WorldRequest, world: World) -> HttpResponse:
     """List the labels in doubt, and show one of them: the first, or the one that the URL names."""
     rows = world.audit_findings.prefetch_related("reasons")
     listing = Listing(request, AuditFindingFilters, rows, SORTS)
-    finding = _find_asked(request, world, listing)
+    finding: AuditFinding | None
+    if name := request.GET.get("finding", ""):
+        finding = get_object_or_404(world.audit_findings, pk=number_in(name))
+    else:
+        finding = next(iter(listing.rows), None)
+    decided = AuditDecision.objects.valid().filter(finding__world=world, decided_by=request.user)
     context = {
         "listing": listing,
-        "last": _last_decisions(request, world),
+        "last": decided.select_related("finding").order_by("-pk")[:LAST_SHOWN],
         "precision": precision_of(world),
         "job": world.jobs.filter(kind=JobKind.AUDIT).first(),
         "audit_form": AuditForm(),
@@ -131,14 +136,6 @@ def audit_check(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     return JsonResponse(check_label(world, text, form, may_be_unknown=True))
 
 
-def _find_asked(request: WorldRequest, world: World, listing: Listing) -> AuditFinding | None:
-    """Return the finding that the URL names, or the first of the list. Raises Http404 for one of another
-    world."""
-    if name := request.GET.get("finding", ""):
-        return get_object_or_404(world.audit_findings, pk=number_in(name))
-    return next(iter(listing.rows), None)
-
-
 def _context_of(request: WorldRequest, finding: AuditFinding | None) -> dict[str, Any]:
     """Return the context of one finding; ``state`` holds the filters of the list, for its forms."""
     state = request.GET.copy()
@@ -157,11 +154,6 @@ def _context_of(request: WorldRequest, finding: AuditFinding | None) -> dict[str
         "may_decide": may_decide and is_open,
         "is_outdated": finding.status == FindingStatus.OPEN and not is_open,
     }
-
-
-def _last_decisions(request: WorldRequest, world: World) -> Any:
-    rows = AuditDecision.objects.valid().filter(finding__world=world, decided_by=request.user)
-    return rows.select_related("finding").order_by("-pk")[:LAST_SHOWN]
 
 
 def _refuse(

@@ -42,9 +42,11 @@ def label_page(request: WorldRequest, world: World) -> HttpResponse:
     """Show the next utterance that the filters of the URL leave, or the one that it names."""
     listing = _listing(request, world)
     row = _find_asked(request, world, listing)
+    entities = Entity.objects.filter(ontology__world=world).order_by("entity_class", "text")
+    names = entities.values_list("text", "entity_class").distinct()[:MOST_ENTITIES]
     context = {
         "listing": listing,
-        "entities": _entity_names(world),
+        "entities": [f"{text} ({entity_class})" for text, entity_class in names],
         **_strip(request, world),
         **_item(request, row),
     }
@@ -201,12 +203,6 @@ def _number(text: str | None) -> float | None:
     except ValueError:
         return None
     return value if 0 <= value < 2**31 else None
-
-
-def _entity_names(world: World) -> list[str]:
-    rows = Entity.objects.filter(ontology__world=world).order_by("entity_class", "text")
-    names = rows.values_list("text", "entity_class").distinct()
-    return [f"{text} ({entity_class})" for text, entity_class in names[:MOST_ENTITIES]]
 
 
 def _entity_named(world: World, name: str) -> Entity:

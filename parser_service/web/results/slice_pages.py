@@ -24,7 +24,17 @@ DELETED = "deleted_slice"  # in the session, until the page has offered to resto
 def slices(request: WorldRequest, world: World) -> HttpResponse:
     """List the saved slices; save one that another page chose."""
     if request.method == "POST":
-        return _save(request, world)
+        sent = request.POST
+        try:
+            saved = save_slice(world, sent.get("name", ""), sent.get("query", ""), request.user)
+        except LanguageError as error:
+            messages.error(request, sentence_of(error))
+        else:
+            messages.success(request, f"Saved the slice “{saved.name}”.")
+        following = sent.get("next", "")
+        if following and url_has_allowed_host_and_scheme(following, {request.get_host()}):
+            return redirect(following)
+        return redirect("slices", world=world.name)
     rows = world.slices.select_related("created_by").prefetch_related("error_categories")
     context = {
         "slices": [(row, describe_query(world, row.query)) for row in rows],
@@ -58,18 +68,3 @@ def sentence_of(error: LanguageError) -> str:
     parts: Sequence[Any] = [part for part in (error.message, error.hint) if part]
     text = "; ".join(parts)
     return f"{text[:1].upper()}{text[1:]}."
-
-
-def _save(request: WorldRequest, world: World) -> HttpResponse:
-    try:
-        saved = save_slice(
-            world, request.POST.get("name", ""), request.POST.get("query", ""), request.user
-        )
-    except LanguageError as error:
-        messages.error(request, sentence_of(error))
-    else:
-        messages.success(request, f"Saved the slice “{saved.name}”.")
-    following = request.POST.get("next", "")
-    if following and url_has_allowed_host_and_scheme(following, {request.get_host()}):
-        return redirect(following)
-    return redirect("slices", world=world.name)

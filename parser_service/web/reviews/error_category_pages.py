@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from django.contrib import messages
 from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
@@ -41,25 +39,22 @@ def error_categories(request: WorldRequest, world: World) -> HttpResponse:
         else:
             messages.success(request, f"Added: {added}.")
             return redirect("error_categories", world=world.name)
-    status = 422 if form.errors else 200
-    context = {**_counts_of(request, world), "form": form}
-    return render(request, "parser_service/reviews/error_categories.html", context, status=status)
-
-
-def _counts_of(request: WorldRequest, world: World) -> dict[str, Any]:
-    """Return the counts of each category in the reviews of ``run``; they lead to the errors of ``shown``."""
     categories = list(ensure_categories(world).values())
     reviewed = Review.objects.filter(run__in=world.runs.all()).order_by().values("run")
     runs = world.runs.filter(pk__in=reviewed)
     run = runs.filter(pk=number_in(request.GET.get("run", ""))).first()
     opening = opening_run(world)
-    return {
+    context = {
+        "form": form,
         "counts": count_categories(world, categories, run),
         "runs": runs,
         "run": run,
-        "shown": run or (opening if opening in runs else runs.first()),
+        "shown": run
+        or (opening if opening in runs else runs.first()),  # whose errors counts lead to
         "agreement": agreement_of_reviewers(world),
     }
+    status = 422 if form.errors else 200
+    return render(request, "parser_service/reviews/error_categories.html", context, status=status)
 
 
 @world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.MANAGE)

@@ -117,24 +117,22 @@ class ReviewOfAnswer(AnswerRoute):
     def patch(self, request: ApiRequest, **kwargs: object) -> Response:
         with self.matching() as answer:
             sent = self.read(ReviewChange, partial=True)
-            self._review(answer, sent, request)
+            about = (answer.run, answer.example)
+            if sent.get("accept"):
+                accept(*about, request.user)
+            if sent.get("category"):
+                category = ensure_categories(self.world).get(sent["category"])
+                if category is None:
+                    raise Refusal(
+                        f"There is no error category {sent['category']} here.",
+                        "unknown_error_category",
+                    )
+                tag(*about, category, request.user)
+            elif "category" in sent:
+                take_back(*about, request.user)
+            if "note" in sent:
+                write_note(*about, sent["note"], request.user)
         return self.show(self.get_object())
-
-    def _review(self, answer: ReviewedAnswer, sent: dict[str, Any], request: ApiRequest) -> None:
-        about = (answer.run, answer.example)
-        if sent.get("accept"):
-            accept(*about, request.user)
-        if sent.get("category"):
-            category = ensure_categories(self.world).get(sent["category"])
-            if category is None:
-                raise Refusal(
-                    f"There is no error category {sent['category']} here.", "unknown_error_category"
-                )
-            tag(*about, category, request.user)
-        elif "category" in sent:
-            take_back(*about, request.user)
-        if "note" in sent:
-            write_note(*about, sent["note"], request.user)
 
 
 class DoubtSerializer(Fields):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from statistics import median
 from typing import Any
@@ -159,7 +159,11 @@ def choices_in(query: QueryDict, world: World) -> RunChoices:
     initial = values_of(run, parser) if run else _recommended_values(world)
     names = [*GENERAL, *(PREFIX + each.name for each in config_fields(parser))]
     initial.update({name: query[name] for name in names if name in query})
-    return RunChoices(parser, initial, _note(parser, initial))
+    protocol, entry = initial.get("protocol"), PARSERS[parser]
+    if protocol in (None, "", *entry.protocols):
+        return RunChoices(parser, initial)
+    note = f"{entry.title} has no {protocol} protocol; {entry.protocols[0]} is chosen instead."
+    return RunChoices(parser, initial, note)
 
 
 def recommended_parser(world: World) -> str:
@@ -201,13 +205,6 @@ def query_of(posted: Mapping[str, str], parser: str, shown: str) -> str:
     return urlencode({"parser": parser, **kept})
 
 
-def _note(parser: str, initial: Mapping[str, Any]) -> str:
-    protocol, entry = initial.get("protocol"), PARSERS[parser]
-    if protocol in (None, "", *entry.protocols):
-        return ""
-    return f"{entry.title} has no {protocol} protocol; {entry.protocols[0]} is chosen instead."
-
-
 @dataclass(frozen=True, slots=True)
 class ParserOption:
     """One parser. ``seconds`` is the median time of its finished runs here, None before the first;
@@ -233,39 +230,26 @@ class ParserGroup:
 
 def parser_groups(world: World, split: Split | None) -> list[ParserGroup]:
     """Return all parsers by what they need; accuracies are those on ``split``. Two queries."""
-    seconds, scores = _seconds(world), _scores(world, split)
+    scores = _scores(world, split)
+    times: dict[str, list[float]] = defaultdict(list)  # of training, by parser
+    runs = world.runs.succeeded().on_all_pairs().order_by("-id")
+    for parser, seconds in runs.values_list("parser", "seconds_trained")[:MOST_RUNS]:
+        times[parser].append(seconds)
     options = [
         ParserOption(
             name,
             entry,
             tuple(gap.name for gap in find_gaps(make_config(name), anywhere=False)),
-            seconds.get(name),
+            median(times[name]) if name in times else None,
             tuple(scores.get(name, {}).items()),
         )
         for name, entry in PARSERS.items()
     ]
-    return list(_group(options))
-
-
-def _group(options: list[ParserOption]) -> Iterator[ParserGroup]:
-    for needs, title in TITLES.items():
-        of_group = tuple(each for each in options if each.entry.needs == needs)
-        if of_group:
-            yield ParserGroup(title, of_group)
-
-
-def _seconds(world: World) -> dict[str, float]:
-    """Return the median seconds of training of the newest finished runs, by parser."""
-    times: dict[str, list[float]] = defaultdict(list)
-    runs = (
-        world.runs.succeeded()
-        .on_all_pairs()
-        .order_by("-id")
-        .values_list("parser", "seconds_trained")
-    )
-    for parser, seconds in runs[:MOST_RUNS]:
-        times[parser].append(seconds)
-    return {parser: median(each) for parser, each in times.items()}
+    return [
+        ParserGroup(title, of_group)
+        for needs, title in TITLES.items()
+        if (of_group := tuple(each for each in options if each.entry.needs == needs))
+    ]
 
 
 def _scores(world: World, split: Split | None) -> dict[str, dict[str, ShownScore]]:

@@ -139,14 +139,11 @@ class RunForm(forms.Form):
         }
         if not self.errors:
             self._check_config()
-            self._count_seeds()
+            try:
+                self.asked_seeds = seeds_from(cleaned["seed"], cleaned["seeds"])
+            except Refusal as error:
+                self.add_error("seeds", error.message)
         return cleaned
-
-    def _count_seeds(self) -> None:
-        try:
-            self.asked_seeds = seeds_from(self.cleaned_data["seed"], self.cleaned_data["seeds"])
-        except Refusal as error:
-            self.add_error("seeds", error.message)
 
     def _check_config(self) -> None:
         """Let the parser check its hyperparameters; a complaint that begins with the name of one is shown

@@ -116,13 +116,7 @@ class RunViewSet(RowsViewSet):
     @once
     def create(self, request: ApiRequest, **kwargs: object) -> Response:
         """Starts runs, one for each seed."""
-        form = self._form(self.read(NewRuns))
-        if not form.is_valid():
-            raise refusal_of_run(form)
-        return self.answer_started(start_runs(self.world, request.user, **form.asked))
-
-    def _form(self, sent: dict[str, Any]) -> RunForm:
-        """Return the form of the page with what was sent, and defaults for the rest."""
+        sent = self.read(NewRuns)
         declared = {each.name: each.default for each in config_fields(sent["parser"])}
         unknown = [name for name in sent["config"] if name not in declared]
         if unknown:
@@ -133,7 +127,10 @@ class RunViewSet(RowsViewSet):
         config = {PREFIX + name: value for name, value in {**declared, **sent["config"]}.items()}
         protocol = sent.get("protocol", PARSERS[sent["parser"]].protocols[0])
         asked = {**sent, **config, "protocol": protocol, "share": 100 * sent["train_share"]}
-        return RunForm(self.world, sent["parser"], asked)
+        form = RunForm(self.world, sent["parser"], asked)
+        if not form.is_valid():
+            raise refusal_of_run(form)
+        return self.answer_started(start_runs(self.world, request.user, **form.asked))
 
     @extend_schema(request=None, responses={200: RunSerializer})
     @action(detail=True, methods=["post"])

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
+from urllib.parse import urlencode
 
 from django.http import HttpResponse, QueryDict
 from django.shortcuts import render
@@ -75,14 +76,19 @@ def playground_ask(request: WorldRequest, world: World) -> HttpResponse:
             context |= {
                 "answer": answer,
                 "heard": SpannedText.heard_in(answer),
-                "bars": _bars(answer),
+                "bars": [
+                    (each, _share(each["score"], answer["score_kind"]))
+                    for each in answer["candidates"]
+                ],
             }
         except ParserAway as error:
             context["away"] = error.message
         except ParserRefused as error:
             context["refused"] = error.message
     response = render(request, "parser_service/serving/_playground_answer.html", context)
-    return replace_url(response, _address(world, text, run))
+    query = urlencode({name: value for name, value in (("text", text), ("run", run)) if value})
+    path = reverse("playground", kwargs={"world": world.name})
+    return replace_url(response, f"{path}?{query}" if query else path)
 
 
 @world_view(Duty.VIEW, WRITE)
@@ -90,6 +96,8 @@ def playground_wrong(request: WorldRequest, world: World) -> HttpResponse:
     """Send an utterance that was answered wrongly to the work queue, with the right form if one is given."""
     sent = request.POST
     run = TrainingRun.objects.filter(world=world, pk=number_in(sent.get("run", ""))).first()
+    given = sent.get("right_form", "").replace("\0", "").strip()
+    is_unchanged = given.split() == sent.get("answered", "").split()
     context: dict[str, Any] = {
         "text": _text_of(sent),
         "run": run.pk if run else "",
@@ -103,7 +111,7 @@ def playground_wrong(request: WorldRequest, world: World) -> HttpResponse:
             context["text"],
             say_parser(run),
             request.user,
-            _changed(sent),
+            "" if is_unchanged else given,
             context["reason"],
         )
     except Refusal as error:
@@ -112,33 +120,11 @@ def playground_wrong(request: WorldRequest, world: World) -> HttpResponse:
     return render(request, "parser_service/serving/_playground_wrong.html", context, status=status)
 
 
-def _changed(sent: QueryDict) -> str:
-    """Return the corrected form; empty if it is the wrong answer, unchanged."""
-    given = sent.get("right_form", "").replace("\0", "").strip()
-    return "" if given.split() == sent.get("answered", "").split() else given
-
-
-def _bars(answer: Mapping[str, Any]) -> list[tuple[Mapping[str, Any], float | None]]:
-    """Return each candidate with its score as a share of 1; None where scores only order them."""
-    kind = answer["score_kind"]
-    return [(each, _share(each["score"], kind)) for each in answer["candidates"]]
-
-
 def _share(score: float, kind: str) -> float | None:
+    """Return a score as a share of 1; None where scores only order the candidates."""
     if kind == ScoreKind.LOG_PROBABILITY:
         return math.exp(min(score, 0.0))
     return min(max(score, 0.0), 1.0) if kind else None
-
-
-def _address(world: World, text: str, run: int) -> str:
-    """Return the URL of the page with the text and the run."""
-    query = QueryDict(mutable=True)
-    if text:
-        query["text"] = text
-    if run:
-        query["run"] = str(run)
-    path = reverse("playground", kwargs={"world": world.name})
-    return f"{path}?{query.urlencode()}" if query else path
 
 
 def _text_of(query: QueryDict) -> str:
