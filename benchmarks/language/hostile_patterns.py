@@ -333,7 +333,17 @@ def _parts(operation: Any, value: Any) -> list[Any]:
 
 def _class_signs(items: Any) -> list[str]:
     """Return up to six characters that a class takes, blanks, letters and digits first."""
-    expression = re.compile(_class_source(items))
+    said = []
+    for operation, value in items:
+        if operation is opcodes.NEGATE:
+            said.append("^")
+        elif operation is opcodes.LITERAL:
+            said.append(re.escape(chr(value)))
+        elif operation is opcodes.RANGE:
+            said.append(f"{re.escape(chr(value[0]))}-{re.escape(chr(value[1]))}")
+        elif operation is opcodes.CATEGORY:
+            said.append(_CATEGORIES[value])
+    expression = re.compile(f"[{''.join(said)}]")
     low = [each[1][0] for each in items if each[0] is opcodes.RANGE] + [
         each[1] for each in items if each[0] is opcodes.LITERAL
     ]
@@ -345,20 +355,6 @@ _CATEGORIES = {
     opcodes.CATEGORY_DIGIT: r"\d", opcodes.CATEGORY_NOT_DIGIT: r"\D", opcodes.CATEGORY_SPACE: r"\s",
     opcodes.CATEGORY_NOT_SPACE: r"\S", opcodes.CATEGORY_WORD: r"\w", opcodes.CATEGORY_NOT_WORD: r"\W",
 }  # fmt: skip
-
-
-def _class_source(items: Any) -> str:
-    said = []
-    for operation, value in items:
-        if operation is opcodes.NEGATE:
-            said.append("^")
-        elif operation is opcodes.LITERAL:
-            said.append(re.escape(chr(value)))
-        elif operation is opcodes.RANGE:
-            said.append(f"{re.escape(chr(value[0]))}-{re.escape(chr(value[1]))}")
-        elif operation is opcodes.CATEGORY:
-            said.append(_CATEGORIES[value])
-    return f"[{''.join(said)}]"
 
 
 def _sample(tree: Any, choice: int, least: int = 0) -> str:

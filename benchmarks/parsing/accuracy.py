@@ -50,7 +50,7 @@ from parser_service.results.table_parts import MARK, MAY_KNOW_CORPORA, may_know_
 
 __all__ = ["main", "read_figures", "tables"]
 
-# What LaTeX does not print as it is, among what names of rows have.
+# How LaTeX writes signs that names of rows have.
 ESCAPES = str.maketrans({MARK: r"\textdagger{}", "_": r"\_", "%": r"\%", "#": r"\#"})
 # Criterion → the word for it in a column's head.
 CRITERIA = {"command": "command", "source_command": "source", BY_FORM: "form"}

@@ -74,14 +74,10 @@ def ratio_interval(
     )  # complex numbers are sorted at once
     kinds, counts = np.unique(pairs, return_counts=True)
     if len(kinds) > _MOST_KINDS:
-        return _limit(numerators, denominators)
+        # The normal interval of a ratio (Cochran, Sampling Techniques, 3rd edition 1977, §2.11).
+        ratio = numerators.sum() / denominators.sum()
+        error = np.sqrt(((numerators - ratio * denominators) ** 2).sum()) / denominators.sum()
+        return max(0.0, float(ratio - Z_95 * error)), min(1.0, float(ratio + Z_95 * error))
     drawn = multinomial_samples(counts, samples, np.random.default_rng(seed)) @ kinds
     low, high = np.percentile(drawn.real / drawn.imag, [2.5, 97.5])
     return float(low), float(high)
-
-
-def _limit(numerators: Floats, denominators: Floats) -> tuple[float, float]:
-    """Return the normal interval of a ratio (Cochran, Sampling Techniques, 3rd edition 1977, §2.11)."""
-    ratio = numerators.sum() / denominators.sum()
-    error = np.sqrt(((numerators - ratio * denominators) ** 2).sum()) / denominators.sum()
-    return max(0.0, float(ratio - Z_95 * error)), min(1.0, float(ratio + Z_95 * error))

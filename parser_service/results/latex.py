@@ -57,7 +57,7 @@ def _table(choices: ResultsChoices, table: AccuracyTable) -> str:
             r"\toprule",
             *_heads(table),
             r"\midrule",
-            *(_row(row, _figures(cells, table)) for row, cells in table.filled),
+            *(_row(row, cells, len(table.measures)) for row, cells in table.filled),
             r"\bottomrule",
             r"\end{tabular}",
             r"\end{table}",
@@ -106,20 +106,16 @@ def _line(first: str, others: Iterable[str]) -> str:
     return rf"{' & '.join([first, *others])} \\"
 
 
-def _row(row: TableRow, figures: Iterable[str]) -> str:
+def _row(row: TableRow, cells: Iterable[tuple[TableColumn, Cell | None]], measures: int) -> str:
+    figures: list[str] = []
+    for _, cell in cells:
+        if cell and cell.figures:
+            figures += map(_figure, cell.figures)
+        else:
+            figures += [cell.status if cell else "--"] * measures
     changes = ", ".join(f"{name} {value}" for name, value in row.changes)
     name = escape(f"{row.title} ({changes})" if changes else row.title)
     return _line(f"{name}{SIGN if may_know_corpora(row.parser) else ''}", figures)
-
-
-def _figures(
-    cells: Iterable[tuple[TableColumn, Cell | None]], table: AccuracyTable
-) -> Iterator[str]:
-    for _, cell in cells:
-        if cell and cell.figures:
-            yield from map(_figure, cell.figures)
-        else:
-            yield from [cell.status if cell else "--"] * len(table.measures)
 
 
 def _figure(figure: AccuracyFigure) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Sequence
 
 from annotations.background.progress import Progress
 from annotations.language.forms import read_form
@@ -15,7 +15,7 @@ from parser_service.analysis.categories import (
     RunEvidence,
     propose_category,
 )
-from parser_service.models import ErrorCategory, Review, TrainingRun
+from parser_service.models import Review, TrainingRun
 from parser_service.reviews.error_evidence import ErrorEvidences, evidence_of_run
 from parser_service.reviews.first_answers import FirstAnswer, read_answers, read_earlier_errors
 from parser_service.reviews.world_categories import ensure_categories
@@ -70,7 +70,13 @@ class _Maker:
         self._categories = ensure_categories(run.world)
         self._of_run: RunEvidence = evidence_of_run(run, attractors)
         self._of_errors = ErrorEvidences(run, answers)
-        self._slices = _read_slices(run, self._categories)
+        # Code and slice of each category that has one, with the keys of the examples of its errors.
+        self._slices: list[tuple[str, str, frozenset[int]]] = []
+        for code, category in self._categories.items():
+            if category.slice is not None:
+                wrong = select(run, category.slice.query).filter(is_exact_match=False).order_by()
+                keys = frozenset(wrong.values_list("example_id", flat=True))
+                self._slices.append((code, category.slice.name, keys))
         self._earlier = read_earlier_errors(run)
         self._known: dict[Hashable, Proposals] = {}
 
@@ -117,16 +123,3 @@ class _Maker:
                 if answered.example in examples:
                     return code, f"It is in the slice “{name}”. {chosen.reason}"
         return chosen.category, chosen.reason
-
-
-def _read_slices(
-    run: TrainingRun, categories: Mapping[str, ErrorCategory]
-) -> list[tuple[str, str, frozenset[int]]]:
-    """Return code and slice of each category that has one, with the keys of the examples of its errors."""
-    slices = []
-    for code, category in categories.items():
-        if category.slice is not None:
-            rows = select(run, category.slice.query).filter(is_exact_match=False).order_by()
-            keys = frozenset(rows.values_list("example_id", flat=True))
-            slices.append((code, category.slice.name, keys))
-    return slices

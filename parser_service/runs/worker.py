@@ -119,8 +119,12 @@ class WorkerTimer(bootsteps.StartStopStep):
         """Do the timer's work once. Errors are logged; the next tick comes anyway."""
         try:
             now = timezone.now()
-            us = {"host": socket.gethostname(), "process_id": os.getpid(), "last_seen": now}
-            us["queue"] = ",".join(self._queues)
+            us = {
+                "host": socket.gethostname(),
+                "process_id": os.getpid(),
+                "last_seen": now,
+                "queue": ",".join(self._queues),
+            }
             Worker.objects.update_or_create(name=self._name, defaults=us)  # the banner reads it
             Worker.objects.filter(last_seen__lt=now - FORGET_AFTER).delete()
             if self._leases.is_trusted():

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import gzip
 import zlib
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from math import isfinite
 from pathlib import Path
-from typing import BinaryIO
 
 from torch import Tensor, tensor
 
@@ -30,9 +29,11 @@ def read_glove(path: Path, wanted: Collection[str], size: int) -> dict[str, Tens
     Raises:
         Refusal: a line is malformed (the message says which), or the archive is damaged.
     """
+    with path.open("rb") as stream:
+        is_compressed = stream.read(2) == _GZIP
     vectors = {}
-    with _open(path) as stream:
-        for number, line in enumerate(_lines(stream, path), start=1):
+    with gzip.open(path) if is_compressed else path.open("rb") as lines:
+        for number, line in enumerate(_lines(lines, path), start=1):
             if line.count(b" ") != size:
                 raise _malformed_line(
                     path, number, f"has {line.count(b' ')} numbers, not {size}", size
@@ -44,15 +45,9 @@ def read_glove(path: Path, wanted: Collection[str], size: int) -> dict[str, Tens
     return vectors
 
 
-def _open(path: Path) -> BinaryIO:
-    with path.open("rb") as stream:
-        is_compressed = stream.read(2) == _GZIP
-    return gzip.open(path) if is_compressed else path.open("rb")  # type: ignore[return-value]
-
-
-def _lines(stream: BinaryIO, path: Path) -> Iterator[bytes]:
+def _lines(lines: Iterable[bytes], path: Path) -> Iterator[bytes]:
     try:
-        for line in stream:
+        for line in lines:
             yield line.rstrip(b"\r\n").rstrip(b" ")
     except (EOFError, gzip.BadGzipFile, zlib.error):
         raise Refusal(

@@ -9,15 +9,14 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
 
-from annotations.language.errors import LanguageError
-from annotations.language.forms import canonical_text, read_form
+from annotations.language.forms import canonical_text
 from parser_service.parsers.interface import Check, Pair, keep_going
 from parser_service.parsers.new_forms.pool import SURE, WayToForm
 from parser_service.parsers.new_forms.short import lengthen, name_of, shorten
 from parser_service.parsers.spreading import spread, visiting_order
 from parser_service.parsers.words import words
+from parser_service.parsers.written_forms import read_or_none
 
 NAME = "geca"
 LONGEST_SPAN = 6  # words
@@ -108,18 +107,15 @@ def recombine(
 
 
 def _examples(pairs: Sequence[Pair]) -> list[tuple[Words, Short]]:
-    read = cache(_shorten)
     some = spread(pairs, MOST_EXAMPLES, lambda pair: pair.form)
-    examples = ((words(pair.utterance), read(pair.form)) for pair in some)
+    # A text that is no form can be an answer, but cannot be recombined.
+    short_of = {
+        text: shorten(form)
+        for text in {pair.form for pair in some}
+        if (form := read_or_none(text)) is not None
+    }
+    examples = ((words(pair.utterance), short_of.get(pair.form)) for pair in some)
     return list(dict.fromkeys((said, short) for said, short in examples if short is not None))
-
-
-def _shorten(text: str) -> Short | None:
-    """Return the short form; None for a text that is none, which can be an answer, but not recombined."""
-    try:
-        return shorten(read_form(text))
-    except LanguageError:
-        return None
 
 
 def _spans(length: int) -> Iterator[tuple[int, int]]:

@@ -8,7 +8,7 @@ from hashlib import sha256
 from typing import Any
 
 from annotations.language.corpus import KNOWN_SHARE, Criterion
-from annotations.models import Grammar, Split, World
+from annotations.models import Split, World
 from annotations.models.description import TemplateStatus
 from parser_service.parsers.registry import entry
 
@@ -59,23 +59,19 @@ def knowledge_hash(world: World, protocol: str) -> str:
         rows["entities"] = list(entities)
     if protocol == "grammar":
         grammar = getattr(world, "grammar", None)
-        rows["grammar"] = _rows_of(grammar) if grammar else {}
+        rows["grammar"] = {}
+        if grammar:
+            columns = ("name", "rule_sources", "template_sources")
+            ready = grammar.templates.filter(status=TemplateStatus.READY)
+            in_order = {
+                "task_categories": grammar.task_categories.order_by("position").values(*columns),
+                "productions": grammar.productions.order_by("position").values(
+                    "source", "nonterminal", "expansion"
+                ),
+                "templates": ready.order_by("position").values("source", "pattern", "form"),
+            }
+            rows["grammar"] = {name: list(each) for name, each in in_order.items()}
     return _hash(rows)
-
-
-def _rows_of(grammar: Grammar) -> dict[str, Any]:
-    categories = ("name", "rule_sources", "template_sources")
-    return {
-        "task_categories": list(grammar.task_categories.order_by("position").values(*categories)),
-        "productions": list(
-            grammar.productions.order_by("position").values("source", "nonterminal", "expansion")
-        ),
-        "templates": list(
-            grammar.templates.filter(status=TemplateStatus.READY)
-            .order_by("position")
-            .values("source", "pattern", "form")
-        ),
-    }
 
 
 def _hash(value: Any) -> str:

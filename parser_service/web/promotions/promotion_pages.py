@@ -122,9 +122,8 @@ def _candidates(world: World, present: TrainingRun | None) -> list[TrainingRun]:
     if present:
         runs = runs.exclude(pk=present.pk)
     listed = list(runs.order_by("-pk")[:MOST_LISTED])
-    return sorted(listed, key=_accuracy, reverse=True)
-
-
-def _accuracy(run: TrainingRun) -> float:
-    score = spoken_score(run)
-    return score.accuracy if score else -1.0
+    return sorted(
+        listed,
+        key=lambda run: score.accuracy if (score := spoken_score(run)) else -1.0,
+        reverse=True,
+    )

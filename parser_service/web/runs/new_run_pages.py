@@ -156,7 +156,10 @@ def choices_in(query: QueryDict, world: World) -> RunChoices:
         return RunChoices(
             recommended_parser(world), note=f"There is no parser called {parser!r} any more."
         )
-    initial = values_of(run, parser) if run else _recommended_values(world)
+    initial = values_of(run, parser) if run else {}
+    spoken = Example.objects.filter(split__world=world, part=Part.TRAIN, source=PARAPHRASED)
+    if run is None and spoken.exists():
+        initial["train_sources"] = TrainSources.BOTH
     names = [*GENERAL, *(PREFIX + each.name for each in config_fields(parser))]
     initial.update({name: query[name] for name in names if name in query})
     protocol, entry = initial.get("protocol"), PARSERS[parser]
@@ -170,12 +173,6 @@ def recommended_parser(world: World) -> str:
     """Return the first of ``RECOMMENDED`` that no run of ``world`` has trained or will; else the last one."""
     there = set(world.runs.scored_or_active().on_all_pairs().values_list("parser", flat=True))
     return next((name for name in RECOMMENDED if name not in there), RECOMMENDED[-1])
-
-
-def _recommended_values(world: World) -> dict[str, Any]:
-    """Return what a new run learns from: paraphrases too, where any split of ``world`` has some to train on."""
-    spoken = Example.objects.filter(split__world=world, part=Part.TRAIN, source=PARAPHRASED)
-    return {"train_sources": TrainSources.BOTH} if spoken.exists() else {}
 
 
 def values_of(run: TrainingRun, parser: str) -> dict[str, Any]:

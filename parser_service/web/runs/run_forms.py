@@ -138,21 +138,16 @@ class RunForm(forms.Form):
             if name.startswith(PREFIX)
         }
         if not self.errors:
-            self._check_config()
+            try:
+                make_config(self.parser, self.config)
+            except Refusal as error:  # beside the field of the hyperparameter that it begins with
+                field = PREFIX + error.message.partition(" ")[0]
+                self.add_error(field if field in self.fields else None, error.message)
             try:
                 self.asked_seeds = seeds_from(cleaned["seed"], cleaned["seeds"])
             except Refusal as error:
                 self.add_error("seeds", error.message)
         return cleaned
-
-    def _check_config(self) -> None:
-        """Let the parser check its hyperparameters; a complaint that begins with the name of one is shown
-        beside its field."""
-        try:
-            make_config(self.parser, self.config)
-        except Refusal as error:
-            field = PREFIX + error.message.partition(" ")[0]
-            self.add_error(field if field in self.fields else None, error.message)
 
 
 def say_default(declared: ConfigField) -> str:
