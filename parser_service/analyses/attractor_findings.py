@@ -9,9 +9,7 @@ import numpy as np
 from annotations.background.progress import Progress
 from annotations.language.corpus import Part
 from parser_service.analyses.target import ROWS_AT_ONCE, SOURCES, Target
-from parser_service.analysis.arrays import Bools
 from parser_service.analysis.attractors import find_attractors
-from parser_service.models import TrainingRun
 
 MOST_INPUTS = 5  # that are kept with a form, to be read on the page
 _NUMBERS = (
@@ -26,8 +24,7 @@ def attractor_findings(target: Target, progress: Progress) -> dict[str, list[dic
     rows = {}
     for source in target.sources:
         progress.check()
-        mask = target.answers.of_source(source)
-        rows[source] = _find(target, mask, _known(target.run, source))
+        rows[source] = _find(target, source)
     return rows
 
 
@@ -37,9 +34,15 @@ def attractors_in(findings: dict[str, Any]) -> frozenset[str]:
     return frozenset(row["form"] for each in rows for row in each if row["is_attractor"])
 
 
-def _find(target: Target, mask: Bools, known: tuple[list[str], list[str]]) -> list[dict[str, Any]]:
-    places = np.flatnonzero(mask).tolist()
+def _find(target: Target, source: str) -> list[dict[str, Any]]:
+    known: tuple[list[str], list[str]] = [], []  # utterances and forms of the training part
+    shared: dict[str, str] = {}
+    training = target.run.split.examples.of(Part.TRAIN, SOURCES[source]).order_by("pk")
+    for utterance, form in training.values_list("utterance", "logical_form").iterator(ROWS_AT_ONCE):
+        known[0].append(utterance)
+        known[1].append(shared.setdefault(form, form))
     answers = target.answers
+    places = np.flatnonzero(answers.of_source(source)).tolist()
     utterances = [answers.utterances[place] for place in places]
     attractors = find_attractors(
         utterances,
@@ -56,15 +59,3 @@ def _find(target: Target, mask: Bools, known: tuple[list[str], list[str]]) -> li
             inputs = attractor.inputs[::step][:MOST_INPUTS].tolist()
             rows.append({**numbers, "inputs": [utterances[place] for place in inputs]})
     return rows
-
-
-def _known(run: TrainingRun, source: str) -> tuple[list[str], list[str]]:
-    """Return the utterances and forms of the training part that are of a source."""
-    rows = run.split.examples.of(Part.TRAIN, SOURCES[source]).order_by("pk")
-    texts: list[str] = []
-    forms: list[str] = []
-    shared: dict[str, str] = {}
-    for utterance, form in rows.values_list("utterance", "logical_form").iterator(ROWS_AT_ONCE):
-        texts.append(utterance)
-        forms.append(shared.setdefault(form, form))
-    return texts, forms

@@ -103,7 +103,15 @@ class TableMaker:
                 grouped[run.parser, run.changed_hyperparameters()].append(run)
         ranked = sorted(grouped.items(), key=lambda item: rank_of(*item[0]))
         rows = [self.row(parser, changes, mine) for (parser, changes), mine in ranked]
-        return AccuracyTable(protocol, self.columns, tuple(_mark_best(rows)), self.measures)
+        best = [_best(cells) for cells in zip(*(row.cells for row in rows), strict=True)]
+        marked = []
+        for number, row in enumerate(rows):
+            cells = tuple(
+                cell and cell.mark_best({at for at, of in enumerate(column) if of == number})
+                for cell, column in zip(row.cells, best, strict=True)
+            )
+            marked.append(replace(row, cells=cells))
+        return AccuracyTable(protocol, self.columns, tuple(marked), self.measures)
 
     def row(self, parser: str, changes: Changes, runs: list[TrainingRun]) -> TableRow:
         cells = tuple(self.cell(parser, column, runs) for column in self.columns)
@@ -194,16 +202,6 @@ def rank_of(parser: str, changes: Changes) -> tuple[int, int, str]:
 def by_part(scores: Iterable[Evaluation], part: str) -> Scores:
     """Return the scores on one part by run and test source."""
     return {(each.run_id, each.test_source): each for each in scores if each.part == part}
-
-
-def _mark_best(rows: list[TableRow]) -> Iterator[TableRow]:
-    best = [_best(cells) for cells in zip(*(row.cells for row in rows), strict=True)]
-    for number, row in enumerate(rows):
-        marked = (
-            cell and cell.mark_best({at for at, of in enumerate(column) if of == number})
-            for cell, column in zip(row.cells, best, strict=True)
-        )
-        yield replace(row, cells=tuple(marked))
 
 
 def _best(cells: Sequence[Cell | None]) -> list[int | None]:

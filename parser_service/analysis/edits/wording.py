@@ -9,7 +9,7 @@ from annotations.language.english import ARTICLES, NO_COMMAND_WORDS, POLITE_OPEN
 from annotations.language.forms import Form, head_predicate
 from parser_service.analysis.edits.edit import EditKind, UtteranceEdit
 from parser_service.analysis.edits.facts import WorldFacts
-from parser_service.analysis.edits.mentions import TokenizedUtterance, UtteranceToken
+from parser_service.analysis.edits.mentions import TokenizedUtterance
 
 SHORTEST_MISSPELLED = 5  # letters; shorter words become other words too easily
 _OPENINGS = sorted((opening.split() for opening in POLITE_OPENINGS), key=len, reverse=True)
@@ -58,8 +58,15 @@ def misspell(
 ) -> Iterator[UtteranceEdit]:
     """Exchange two letters inside one long plain word, unless that makes a word of the world."""
     for word in utterance.mentions:
-        new = _misspelled(word, random) if not word.entity_class else ""
-        if new and new.lower() not in facts.vocabulary:
+        letters = word.text
+        if word.entity_class or len(letters) < SHORTEST_MISSPELLED or not letters.isalpha():
+            continue
+        places = [at for at in range(1, len(letters) - 2) if letters[at] != letters[at + 1]]
+        if not places:
+            continue
+        at = random.choice(places)
+        new = letters[:at] + letters[at + 1] + letters[at] + letters[at + 2 :]
+        if new.lower() not in facts.vocabulary:
             text = utterance.replace(word, new)
             yield UtteranceEdit(EditKind.SPELLING, text, form, word.text, new)
 
@@ -84,17 +91,6 @@ def exchange_synonym(
             written = _like(first.text, new)
             text = utterance.text[: first.start] + written + utterance.text[last.end :]
             yield UtteranceEdit(EditKind.SYNONYM, text, form, old, new)
-
-
-def _misspelled(word: UtteranceToken, random: Random) -> str:
-    letters = word.text
-    if len(letters) < SHORTEST_MISSPELLED or not letters.isalpha():
-        return ""
-    places = [at for at in range(1, len(letters) - 2) if letters[at] != letters[at + 1]]
-    if not places:
-        return ""
-    at = random.choice(places)
-    return letters[:at] + letters[at + 1] + letters[at] + letters[at + 2 :]
 
 
 def _like(model: str, text: str) -> str:

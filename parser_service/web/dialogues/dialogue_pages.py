@@ -64,7 +64,19 @@ def dialogue(request: WorldRequest, world: World, pk: int) -> HttpResponse:
             return redirect("dialogue", world=world.name, pk=pk)
         except Refusal as error:
             trouble = error.message
-    context = {**_context_of(row), "trouble": trouble, "most_text": MOST_CHARACTERS}
+    state, language = state_of(row), WorldLanguage.of(row.world)
+    has_form = state.phase is not Phase.REPHRASING and bool(row.state["parsed"] != "UNKNOWN")
+    context = {
+        "row": row,
+        "asked": asked_of(state),
+        "is_yes_or_no": state.phase in YES_OR_NO,
+        "grounded": to_corpus(state.form) if has_form else "",
+        "english": gloss(state.form, language.predicates) if has_form else "",
+        "plan": plan_of(state, language) if has_form else None,
+        "offers": state.offers,
+        "trouble": trouble,
+        "most_text": MOST_CHARACTERS,
+    }
     status = 422 if trouble else 200
     return render(request, "parser_service/dialogues/dialogue.html", context, status=status)
 
@@ -80,20 +92,6 @@ def dialogue_keep(request: WorldRequest, world: World, pk: int) -> HttpResponse:
         return redirect("dialogue", world=world.name, pk=pk)
     messages.success(request, "Kept as a labelled utterance.")
     return redirect("utterance", world=world.name, pk=utterance.pk)
-
-
-def _context_of(row: Dialogue) -> dict[str, Any]:
-    state, language = state_of(row), WorldLanguage.of(row.world)
-    has_form = state.phase is not Phase.REPHRASING and bool(row.state["parsed"] != "UNKNOWN")
-    return {
-        "row": row,
-        "asked": asked_of(state),
-        "is_yes_or_no": state.phase in YES_OR_NO,
-        "grounded": to_corpus(state.form) if has_form else "",
-        "english": gloss(state.form, language.predicates) if has_form else "",
-        "plan": plan_of(state, language) if has_form else None,
-        "offers": state.offers,
-    }
 
 
 @world_view(Duty.VIEW)
