@@ -212,7 +212,12 @@ class _Lifting:
     ) -> Iterator[tuple[str, ParserAnswer]]:
         """Yield answers as forms of the pattern of which the checker says nothing; known ones are such."""
         for answer in answers:
-            texts = list(self._lift(answer))
+            try:
+                form = read_form(answer.form)
+            except LanguageError:
+                continue
+            lifted = lift_forms(form, self.symbols, self.checker.grammar)
+            texts = [to_template(canonicalize(each)) for each in lifted]
             typed = (text for text in texts if self._is_well_typed(text))
             text = next((text for text in texts if text in known), None) or next(typed, None)
             if text is not None:
@@ -221,14 +226,6 @@ class _Lifting:
     def gloss(self, text: str) -> str:
         """Return the English sentence of a form in the notation of templates."""
         return gloss(make_template(self.pattern, text).form, self.predicates)
-
-    def _lift(self, answer: ParserAnswer) -> Iterator[str]:
-        try:
-            form = read_form(answer.form)
-        except LanguageError:
-            return
-        for lifted in lift_forms(form, self.symbols, self.checker.grammar):
-            yield to_template(canonicalize(lifted))
 
     def _is_well_typed(self, text: str) -> bool:
         template, _ = read_sides(self.pattern, text)
@@ -250,7 +247,12 @@ def duplicate_of(world: World, row: StoredTemplate) -> DuplicateTemplate | None:
     """Return the first template that is ready, says the same as ``row`` and shares a task category with it."""
     if row.status != TemplateStatus.READY:
         return None
-    same = _same(world, row)
+    try:  # the same form, and a pattern that reads the same
+        pattern = template_of(row).pattern
+        others = ready_templates(world).filter(form=row.form).exclude(pk=row.pk)
+        same = [each for each in others if template_of(each).pattern == pattern]
+    except LanguageError:
+        return None
     categories = StoredCategory.objects.filter(grammar=row.grammar_id)
     together = [each for each in categories if row.source in each.template_sources]
     for other in same:
@@ -259,16 +261,6 @@ def duplicate_of(world: World, row: StoredTemplate) -> DuplicateTemplate | None:
             moves = (each for each in categories if row.moved_to(each) and _takes(each, row, taken))
             return DuplicateTemplate(other, tuple(moves))
     return None
-
-
-def _same(world: World, row: StoredTemplate) -> list[StoredTemplate]:
-    """Return the other templates with the same form whose patterns read the same."""
-    try:
-        pattern = template_of(row).pattern
-        others = ready_templates(world).filter(form=row.form).exclude(pk=row.pk)
-        return [each for each in others if template_of(each).pattern == pattern]
-    except LanguageError:
-        return []
 
 
 def _takes(category: StoredCategory, row: StoredTemplate, taken: set[str]) -> bool:

@@ -13,7 +13,7 @@ import unicodedata
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
-from itertools import pairwise
+from itertools import chain, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -70,11 +70,6 @@ class Document:
     def heading(self, anchor: str) -> Heading | None:
         """Return the heading that a link in a document names; None where there is none."""
         return next((each for each in self.headings if each.anchor == ANCHOR + anchor), None)
-
-
-def document_names() -> list[str]:
-    """Return the names of all documents, the first page included."""
-    return sorted(_files(settings.DOCS_DIR))
 
 
 def find_document(name: str) -> Document | None:
@@ -138,17 +133,11 @@ _MARKDOWN = MarkdownIt("commonmark", {"html": True}, renderer_cls=_Renderer).ena
 def _read(name: str, path: Path) -> Document:
     tokens = _MARKDOWN.parse(path.read_text(encoding="utf-8"))
     headings = tuple(_mark_headings(tokens))
-    for token in _with_children(tokens):
+    for token in chain.from_iterable((each, *(each.children or ())) for each in tokens):
         _lead_to_pages(token, name)
         markdown.align_by_class(token)
     html: str = _MARKDOWN.renderer.render(tokens, _MARKDOWN.options, {})
     return Document(name, headings, mark_safe(html))
-
-
-def _with_children(tokens: Sequence[Token]) -> Iterator[Token]:
-    for token in tokens:
-        yield token
-        yield from token.children or ()
 
 
 def _mark_headings(tokens: Sequence[Token]) -> Iterator[Heading]:

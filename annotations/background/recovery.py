@@ -49,7 +49,19 @@ def _take_back(
     work: BackgroundWork, row: QuerySet[BackgroundWork], reason: str, resumes: int
 ) -> bool:
     """Take the work from its worker if ``row`` still selects it. Return whether it did."""
-    values, message = _after_interruption(work, reason, resumes)
+    values: dict[str, Any]
+    if work.cancel_requested:
+        message = f"{reason}, after a request to cancel."
+        values = {"status": Status.CANCELLED, "finished_at": timezone.now()}
+    elif resumes > MOST_RESUMES:
+        message = (
+            f"Its worker was lost {resumes} times, last {work.worker}. Look in that worker's log and "
+            f"in the system's for memory that ran out, then start the {work.noun} again."
+        )
+        values = {"status": Status.LOST, "failure": message, "finished_at": timezone.now()}
+    else:
+        message = f"{reason}; {work.resumption}."
+        values = {"status": Status.QUEUED, "resumes": resumes}
     with transaction.atomic():
         if not row.update(lease_until=None, worker="", activity="", **values):
             return False
@@ -57,19 +69,3 @@ def _take_back(
     if values["status"] == Status.QUEUED:
         wake(work)
     return True
-
-
-def _after_interruption(
-    work: BackgroundWork, reason: str, resumes: int
-) -> tuple[dict[str, Any], str]:
-    """Return the values to store for interrupted work and a line for its log."""
-    ended = {"finished_at": timezone.now()}
-    if work.cancel_requested:
-        return {"status": Status.CANCELLED, **ended}, f"{reason}, after a request to cancel."
-    if resumes > MOST_RESUMES:
-        failure = (
-            f"Its worker was lost {resumes} times, last {work.worker}. Look in that worker's log and "
-            f"in the system's for memory that ran out, then start the {work.noun} again."
-        )
-        return {"status": Status.LOST, "failure": failure, **ended}, failure
-    return {"status": Status.QUEUED, "resumes": resumes}, f"{reason}; {work.resumption}."

@@ -225,7 +225,12 @@ def restore(entry: HistoryEntry, by: User) -> Editable:
     Raises ValidationError where another row says the same by now.
     """
     with transaction.atomic():
-        row = _row_of(entry)
+        row: Editable = entry.instance
+        for field in row._meta.concrete_fields:  # what it refers to may be gone
+            if isinstance(field, models.ForeignKey) and field.many_to_one and field.null:
+                key = getattr(row, field.attname)
+                is_there = field.related_model._default_manager.filter(pk=key).exists()
+                setattr(row, field.attname, key if is_there else None)
         world = _lock(row.owning_world)
         stored = type(row)._default_manager.select_for_update().filter(pk=row.pk).first()
         if stored is not None:
@@ -325,14 +330,3 @@ def _refuse_repeated(model: type[Editable]) -> Iterator[None]:
         broken = next(named, None)
         said = broken.get_violation_error_message() if broken else "There is such a row already."
         raise ValidationError(said) from error
-
-
-def _row_of(entry: HistoryEntry) -> Editable:
-    """Return an unsaved row that says what ``entry`` does, without what it refers to that is gone."""
-    row: Editable = entry.instance
-    for field in row._meta.concrete_fields:
-        if isinstance(field, models.ForeignKey) and field.many_to_one and field.null:
-            key = getattr(row, field.attname)
-            is_there = field.related_model._default_manager.filter(pk=key).exists()
-            setattr(row, field.attname, key if is_there else None)
-    return row

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class MergedField:
-    """One field: what it was (None where that is not known), what each of two people made of it.
+    """One field before (None where that is not known) and after the edits of two people.
 
     ``merged`` is the change of whoever changed it; where both did, differently, it is mine and
     ``is_clash``.

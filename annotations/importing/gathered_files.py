@@ -146,7 +146,7 @@ def _name_of(path: str) -> str:
 
 
 def _follow(path: str, paths: Mapping[str, bytes], problems: list[Problem]) -> bytes | None:
-    """Return the content of a file, or of the one that it is a link to; None where that is not there."""
+    """Return the content of a file, following a link; None where its target is missing."""
     at = path
     for _ in range(MAX_LINKS):
         if at not in paths:

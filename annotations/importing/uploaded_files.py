@@ -26,6 +26,7 @@ from annotations.language.errors import LanguageError, Position
 from annotations.language.grammar import TRIPLE_FILES
 
 GENERATOR_FOLDER = "generator/"
+_TWICE = "two of the files have this name"
 
 
 class UploadedFile(Protocol):
@@ -52,7 +53,7 @@ def files_of(uploads: Iterable[UploadedFile], encoding: str = "") -> GatheredFil
     size = 0
     for path, data in _all(uploads):
         if path in files:
-            raise LanguageError("two of the files have this name", Position(path), "rename one")
+            raise LanguageError(_TWICE, Position(path), "rename one")
         files[path] = data
         size += len(data)
         if size > settings.UPLOAD_MAX_BYTES:
@@ -93,20 +94,26 @@ def is_archive(upload: UploadedFile) -> bool:
 
 @contextmanager
 def unpacked_pairs(upload: UploadedFile, notation: str = Notation.OURS) -> Iterator[Path]:
-    """Unpack the files of a corpus (``gen/train.txt``, ``paraphrasings.txt`` …) in a folder that is gone
-    afterwards. Whatever else the archive holds, and the folders around them, is left out.
+    """Unpack the files of a corpus (``gen/train.txt``, ``paraphrasings.txt`` …) into a temporary folder.
+
+    Other files of the archive, and the folders around, are left out. Sizes are checked as announced and as read.
 
     Raises:
         LanguageError: as ``files_of``.
     """
     with TemporaryDirectory(prefix="gpsr-pairs-") as folder:
         place = _name_alone if notation == Notation.LAMBDA else _place_of_pairs
-        for path, data in _members(upload, place):
-            target = Path(folder, path)
-            if target.exists() and target.read_bytes() != data:
-                raise LanguageError("two of the files have this name", Position(path), "rename one")
-            target.parent.mkdir(exist_ok=True)
-            target.write_bytes(data)
+        with _open(upload, lambda path: bool(place(path))) as archive:
+            for member in archive.infolist():
+                path = "" if member.is_dir() else place(member.filename)
+                if not path:
+                    continue
+                data = read_member(archive, member, settings.UPLOAD_MAX_BYTES)
+                target = Path(folder, path)
+                if target.exists() and target.read_bytes() != data:
+                    raise LanguageError(_TWICE, Position(path), "rename one")
+                target.parent.mkdir(exist_ok=True)
+                target.write_bytes(data)
         yield Path(folder)
 
 
@@ -173,18 +180,6 @@ def _generator_files(upload: UploadedFile) -> Iterator[tuple[str, bytes]]:
                 taken.add(behind)
                 waiting.append(behind)
         yield from ((path, b"") for path in members if path not in taken and folders[path] == top)
-
-
-def _members(upload: UploadedFile, place: Callable[[str], str]) -> Iterator[tuple[str, bytes]]:
-    """Yield the files of an archive, each where ``place`` puts it; those that it puts nowhere are left out.
-
-    Sizes are checked as announced and again as read.
-    """
-    with _open(upload, lambda path: bool(place(path))) as archive:
-        for member in archive.infolist():
-            name = "" if member.is_dir() else place(member.filename)
-            if name:
-                yield name, read_member(archive, member, settings.UPLOAD_MAX_BYTES)
 
 
 @contextmanager

@@ -20,8 +20,7 @@ RESULTS_KEPT_FOR = timedelta(days=7)
 def sweep() -> None:
     """Remove folders of jobs that are over, old results, and what else interrupted jobs have left."""
     folders = [path for path in jobs_folder().glob("*") if path.is_dir()]
-    keys = [int(path.name) for path in folders if path.name.isdigit()]
-    jobs = {job.pk: job for job in Job.objects.filter(pk__in=keys)}
+    jobs = Job.objects.in_bulk([int(path.name) for path in folders if path.name.isdigit()])
     for folder in folders:
         job = jobs.get(int(folder.name)) if folder.name.isdigit() else None
         if job is None:  # files on their way, or of a world that was deleted

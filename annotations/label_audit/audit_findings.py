@@ -65,7 +65,7 @@ class StoredAudit:
 def store_findings(
     world: World, suspects: Sequence[SuspectPair], to_queue: int = 0, by: User | None = None
 ) -> StoredAudit:
-    """Store what an audit found, inside a transaction, in place of what the one before had found.
+    """Replace the findings of the last audit, inside a transaction.
 
     What people have decided about stays as it is, and comes back only where its label has changed since.
     What reviewers doubt stays open.

@@ -130,8 +130,11 @@ def _store(
     upload: Upload | None,
     forms: Mapping[str, str],
 ) -> tuple[int, set[str]] | None:
-    """Find the entities, then write in one short transaction. Returns how many rows are new and which
-    texts were there; None where somebody has changed entities or added one of the texts meanwhile."""
+    """Find the entities, then write in one short transaction.
+
+    Returns the number of new rows and the known texts; None where somebody has changed entities or
+    added one of the texts meanwhile.
+    """
     entities = _stamp_of_entities(world)
     anonymizer = anonymizer_of(world)
     known = find_known(world, wanted)

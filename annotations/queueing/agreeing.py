@@ -12,7 +12,6 @@ from annotations.language.agreement import Agreement, Distances, measure
 from annotations.language.forms import (
     UNKNOWN,
     Constant,
-    Form,
     FormDistances,
     head_predicate,
     read_form,
@@ -136,15 +135,10 @@ def form_distances(known: FormDistances) -> Distances:
     """Return what gives the distances of answers; a verdict has nothing in common with a form."""
 
     def distances(answers: Sequence[Hashable]) -> list[list[float]]:
-        return known.matrix([_as_form(str(answer)) for answer in answers])
+        verdicts = {each: Constant(each) for each in Verdict.values} | {Verdict.UNKNOWN: UNKNOWN}
+        return known.matrix([verdicts.get(each) or read_form(each) for each in map(str, answers)])
 
     return distances
-
-
-def _as_form(answer: str) -> Form:
-    if answer == Verdict.UNKNOWN:
-        return UNKNOWN
-    return Constant(answer) if answer in Verdict.values else read_form(answer)
 
 
 def _slices(

@@ -103,9 +103,9 @@ def _still_theirs(assignment: Assignment | None) -> Assignment | None:
 
 
 def _take_unasked(utterance: Utterance, by: User) -> Assignment | None:
-    """Return an assignment for an answer of ``by`` to which nothing has led them.
+    """Return an assignment for an answer that ``by`` gives without having been asked.
 
-    It is theirs to an item that is still open, its answer taken back, or else that of a free item.
+    It is their own to an open item, with its answer taken back, or else one to a free item.
     """
     done = Assignment.objects.done().filter(person=by, item__in=WorkItem.objects.open())
     assignment = done.filter(item__utterance=utterance, label__isnull=False).first()
@@ -124,8 +124,7 @@ def _take_unasked(utterance: Utterance, by: User) -> Assignment | None:
 def take_answer_back(label: Label, by: User) -> Utterance:
     """Undo an answer; its person holds the item again.
 
-    Raises Refusal where it is somebody else's, and NoLongerYours where others have gone
-    on from it.
+    Raises Refusal where the answer is somebody else's, and NoLongerYours where others have built on it.
     """
     with transaction.atomic():
         utterance = label_answers.take_back(label, by)

@@ -33,7 +33,7 @@ def keep(rows: Iterable[Editable], kind: str, by: User | None = None, reason: st
 
 
 def keep_change(before: Editable, now: Editable, by: User | None = None, reason: str = "") -> None:
-    """Write that one row, as it was ``before``, became what it is ``now``; in one statement where it is new."""
+    """Record that a row changed from ``before`` to ``now``; in one statement where it is new."""
     entries = [_entry_of(now, CHANGED, by, reason)]
     is_known = before.version > 1 and history_of(type(now)).filter(id=now.pk).exists()
     if not is_known:

@@ -90,7 +90,12 @@ class RowPlan(Generic[Row]):
         """Change and remove rows, and leave the new ones to the caller."""
         fields = list(self.fields)
         if issubclass(self.model, Editable):
-            self._keep_history(self.model, by)
+            keep_first(self.model, [row.pk for row in self.changed + self.removed])
+            changed = _editable(self.changed)  # a row that only moves is no new version
+            for row in changed:
+                row.version += 1
+            keep(changed, CHANGED, by, OF_IMPORT)
+            keep(_editable(self.removed), DELETED, by, OF_IMPORT)
             fields.append("version")
         for batch in batches(self.removed):
             self.model._default_manager.filter(pk__in=[row.pk for row in batch]).delete()
@@ -106,15 +111,6 @@ class RowPlan(Generic[Row]):
         if self.restored:
             self.model._default_manager.bulk_create(self.restored, batch_size=BATCH)
             keep(_editable(self.restored), ADDED, by, RESTORED)
-
-    def _keep_history(self, model: type[Editable], by: User | None) -> None:
-        """Keep versions of the rows that changed; one that only moves is no new version."""
-        keep_first(model, [row.pk for row in self.changed + self.removed])
-        changed = _editable(self.changed)
-        for row in changed:
-            row.version += 1
-        keep(changed, CHANGED, by, OF_IMPORT)
-        keep(_editable(self.removed), DELETED, by, OF_IMPORT)
 
 
 def _editable(rows: Iterable[Model]) -> list[Editable]:
@@ -167,8 +163,12 @@ def plan(
             (moved if differing <= PLACE_FIELDS else changed).append(match)
     left = [row for rows in waiting.values() for row in rows]
     kept = [row for row in left if is_kept(row)]
-    if "position" in fields:
-        moved += _move_behind(kept, len(wanted))
+    if "position" in fields:  # those that are kept come behind those that are wanted
+        for position, row in enumerate(sorted(kept, key=attrgetter("position")), len(wanted)):
+            assert isinstance(row, Placed)
+            if row.position != position:
+                row.position = position
+                moved.append(row)
     removed = [row for row in left if not is_kept(row)]
     return RowPlan(stored.model, fields, new, changed, moved, removed, kept)
 
@@ -179,16 +179,6 @@ def _take_over(row: Row, target: Row, fields: Sequence[str]) -> set[str]:
     for name in differing:
         setattr(row, name, getattr(target, name))
     return differing
-
-
-def _move_behind(kept: list[Row], first: int) -> list[Row]:
-    moved: list[Row] = []
-    for position, row in enumerate(sorted(kept, key=attrgetter("position")), start=first):
-        assert isinstance(row, Placed)
-        if row.position != position:
-            row.position = position
-            moved.append(row)
-    return moved
 
 
 def batches(rows: Iterable[Any], size: int = BATCH) -> Iterator[list[Any]]:

@@ -12,8 +12,10 @@ import io
 import json
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from itertools import islice
 from typing import Any, Literal
 
 from charset_normalizer import from_bytes
@@ -353,13 +355,8 @@ def _without_mark_line(text: str) -> str:
 
 def _sample_rows(sample: str, delimiter: str) -> list[list[str]]:
     rows: list[list[str]] = []
-    try:
-        for row in csv.reader(io.StringIO(sample, newline=""), delimiter=delimiter):
-            rows.append(row)
-            if len(rows) == 50:
-                break
-    except csv.Error:
-        pass
+    with suppress(csv.Error):  # the rows before a broken one will do
+        rows.extend(islice(csv.reader(io.StringIO(sample, newline=""), delimiter=delimiter), 50))
     return rows
 
 

@@ -102,21 +102,18 @@ class Watch(threading.Thread):
         while not self._over.wait(PAUSE_SECONDS):
             began = time.perf_counter()
             try:
-                self._act(number)
+                if self._is_writing:
+                    path = f"/w/{WORLD}/templates/new/"
+                    category = first(r'<option value="(\d+)"', self._visitor.get(path))
+                    text = f"a draft {number}"
+                    fields = {"task_category": category, "pattern": text, "form": text}
+                    self._visitor.post(path, {**fields, "status": "draft"})
+                else:
+                    self._visitor.get(PAGES[number % len(PAGES)])
             except OSError:
                 self.failures += 1
             self.seconds.append(time.perf_counter() - began)
             number += 1
-
-    def _act(self, number: int) -> None:
-        if not self._is_writing:
-            self._visitor.get(PAGES[number % len(PAGES)])
-            return
-        path = f"/w/{WORLD}/templates/new/"
-        category = first(r'<option value="(\d+)"', self._visitor.get(path))
-        text = f"a draft {number}"
-        fields = {"task_category": category, "pattern": text, "form": text, "status": "draft"}
-        self._visitor.post(path, fields)
 
     def stop(self) -> dict[str, float]:
         self._over.set()

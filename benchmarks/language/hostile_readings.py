@@ -156,16 +156,12 @@ def slow_reading(reader: str, text: HostileText) -> SlowReading | None:
         for repeats in LOOKS:
             for _, at in itertools.product(range(repeats), range(last + 1)):
                 times[at] = min(times[at], read(SIZES[at]))
-            if not _are_slow(times[: last + 1]):
+            grew = last > 0 and times[last] > max(NOISE, GROWTH * times[last - 1])
+            if times[last] < LIMIT and not grew:
                 break
         else:
             return SlowReading(reader, text, tuple(times[: last + 1]))
     return None
-
-
-def _are_slow(times: list[float]) -> bool:
-    grew = len(times) > 1 and times[-1] > max(NOISE, GROWTH * times[-2])
-    return times[-1] >= LIMIT or grew
 
 
 def main() -> int:

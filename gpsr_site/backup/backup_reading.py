@@ -115,7 +115,13 @@ def _empty() -> None:
     """Delete all rows. The constraints between them are looked at when the transaction ends."""
     with connection.cursor() as cursor:
         names = [table.model._meta.db_table for table in tables()]
-        names += [LogInSession._meta.db_table, *_tables_of_users()]
+        names.append(LogInSession._meta.db_table)
+        # Django's tables that refer to accounts.
+        many = [field.remote_field.through for field in User._meta.many_to_many]
+        referring = [each for each in many if each is not None]
+        others = [relation.related_model for relation in User._meta.related_objects]
+        referring += [each for each in others if each._meta.app_label == "admin"]
+        names += [each._meta.db_table for each in referring]
         quoted = [connection.ops.quote_name(name) for name in names]
         if connection.vendor == "postgresql":
             # CASCADE reaches what refers to accounts and is no part of a backup, such as the admin's log.
@@ -123,18 +129,6 @@ def _empty() -> None:
             return
         for name in quoted:
             cursor.execute(f"DELETE FROM {name}")
-
-
-def _tables_of_users() -> Iterator[str]:
-    """Yield Django's tables that refer to accounts."""
-    for field in User._meta.many_to_many:
-        through = field.remote_field.through
-        if through is not None:
-            yield through._meta.db_table
-    for relation in User._meta.related_objects:
-        model = relation.related_model
-        if model is not None and model._meta.app_label == "admin":
-            yield model._meta.db_table
 
 
 def _fill(archive: zipfile.ZipFile, manifest: BackupManifest, say: Say) -> None:

@@ -125,7 +125,11 @@ class Deadline:
             seconds *= LONG_FACTOR
         began = time.monotonic()
         try:
-            response = self._answer_within(request, seconds)
+            watched = WATCHDOG.begin(seconds)
+            try:
+                response = self.get_response(request)
+            finally:
+                WATCHDOG.end(watched)
         except TookTooLong:
             connections.close_all()  # one of them may be in the middle of an answer
             logger.error("%s %s took over %s s, interrupted", request.method, request.path, seconds)
@@ -140,13 +144,6 @@ class Deadline:
             left = seconds - (time.monotonic() - began)
             response.streaming_content = _bound(iter(response.streaming_content), left)
         return response
-
-    def _answer_within(self, request: HttpRequest, seconds: float) -> HttpResponse:
-        watched = WATCHDOG.begin(seconds)
-        try:
-            return self.get_response(request)
-        finally:
-            WATCHDOG.end(watched)
 
 
 def _bound(pieces: Iterator[bytes], seconds: float) -> Iterator[bytes]:

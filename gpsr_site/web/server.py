@@ -15,6 +15,7 @@ from __future__ import annotations
 import re
 import signal
 import socket
+import sys
 import time
 from typing import Any
 
@@ -210,9 +211,5 @@ def require_free_port(host: str, port: int) -> None:
 def serve(application: Any, host: str, port: int, shares_port: bool = False) -> None:
     """Serve until SIGTERM or SIGINT."""
     server = WebServer(application, host, port, shares_port)
-    signal.signal(signal.SIGTERM, _stop)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit())
     server.run()
-
-
-def _stop(*_: object) -> None:
-    raise SystemExit

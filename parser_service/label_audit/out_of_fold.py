@@ -57,24 +57,13 @@ def answer_out_of_fold(
             for command in commands
             if fold_of.get(source_key(LabelledPair("", command.utterance, command.form))) != fold
         ]
-        answers.update(_ask(parser, seed, train, held_out, progress.check))
+        trained = load_class(parser)(seed=seed)
+        trained.fit(train, observe=_Checking(progress.check))
+        utterances = [pair.utterance for pair in held_out]
+        predicted = trained.predict(utterances, BEAM_WIDTH, progress.check)
+        for pair, candidates in zip(held_out, predicted, strict=True):
+            answers[pair.key] = [ScoredForm(each.form, each.score) for each in candidates]
     return answers
-
-
-def _ask(
-    parser: str,
-    seed: int,
-    train: Sequence[Pair],
-    held_out: Sequence[LabelledPair],
-    check: Check,
-) -> dict[str, list[ScoredForm]]:
-    trained = load_class(parser)(seed=seed)
-    trained.fit(train, observe=_Checking(check))
-    predicted = trained.predict([pair.utterance for pair in held_out], BEAM_WIDTH, check)
-    return {
-        pair.key: [ScoredForm(each.form, each.score) for each in candidates]
-        for pair, candidates in zip(held_out, predicted, strict=True)
-    }
 
 
 class _Checking(Observer):

@@ -38,7 +38,15 @@ def count_categories(
     proposed = _count(_of(world, run, is_proposed=True))
     tags = _of(world, run, is_proposed=False)
     tagged = _count(tags)
-    judged, accepted = _judge(tags)
+    # By proposed category: the tags on answers with a proposal, and those that agree with it.
+    judged: Counter[int] = Counter()
+    accepted: Counter[int] = Counter()
+    proposal = Review.objects.proposed().filter(run=OuterRef("run"), example=OuterRef("example"))
+    beside = tags.annotate(said=Subquery(proposal.values("category")[:1]))
+    pairs = beside.filter(said__isnull=False).values("said", "category").annotate(count=Count("pk"))
+    for said, given, count in pairs.values_list("said", "category", "count"):
+        judged[said] += count
+        accepted[said] += count if said == given else 0
     return [
         CategoryCount(each, *(counts[each.pk] for counts in (proposed, tagged, accepted, judged)))
         for each in categories
@@ -53,19 +61,6 @@ def _of(world: World, run: TrainingRun | None, is_proposed: bool) -> QuerySet[Re
 def _count(rows: QuerySet[Review]) -> Counter[int]:
     counts = rows.values("category").annotate(count=Count("pk"))
     return Counter(dict(counts.values_list("category", "count")))
-
-
-def _judge(tags: QuerySet[Review]) -> tuple[Counter[int], Counter[int]]:
-    """Count by proposed category the tags on answers with a proposal, and those that agree with it."""
-    proposal = Review.objects.proposed().filter(run=OuterRef("run"), example=OuterRef("example"))
-    beside = tags.annotate(said=Subquery(proposal.values("category")[:1]))
-    judged: Counter[int] = Counter()
-    accepted: Counter[int] = Counter()
-    pairs = beside.filter(said__isnull=False).values("said", "category").annotate(count=Count("pk"))
-    for said, given, count in pairs.values_list("said", "category", "count"):
-        judged[said] += count
-        accepted[said] += count if said == given else 0
-    return judged, accepted
 
 
 def agreement_of_reviewers(world: World) -> Agreement:

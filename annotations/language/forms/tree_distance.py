@@ -114,28 +114,25 @@ class FormDistances:
             return 0
         key = (left, right) if left < right else (right, left)
         if key not in self._forests:
-            matched = self._match(first, second)
+            shared = [[self._shared_tree(one, other) for other in second] for one in first]
+            if len(first) == 1 or len(second) == 1:
+                matched = max(map(max, shared))
+            else:
+                # Half a second, which a start can do without.
+                from scipy.optimize import linear_sum_assignment
+
+                rows, columns = linear_sum_assignment(shared, maximize=True)
+                matched = sum(shared[i][j] for i, j in zip(rows, columns, strict=True))
             self._forests[key] = self._best_inside(self._shared_forest, left, right, matched)
         return self._forests[key]
 
     def _best_inside(
         self, shared: Callable[[int, int], int], left: int, right: int, best: int
     ) -> int:
-        """Return ``best``, or what one side shares with a single subtree of the other where that is more."""
+        """Return ``best``, or the most that one side shares with a single subtree of the other."""
         pairs = [(left, child) for child in self._nodes[right].children]
         pairs += [(child, right) for child in self._nodes[left].children]
         for one, other in pairs:
             if min(self._nodes[one].size, self._nodes[other].size) > best:
                 best = max(best, shared(one, other))
         return best
-
-    def _match(self, first: tuple[int, ...], second: tuple[int, ...]) -> int:
-        """Count the nodes that two sets of trees share when each is paired with one of the other."""
-        shared = [[self._shared_tree(left, right) for right in second] for left in first]
-        if len(first) == 1 or len(second) == 1:
-            return max(max(row) for row in shared)
-        # Half a second, which a start can do without.
-        from scipy.optimize import linear_sum_assignment
-
-        rows, columns = linear_sum_assignment(shared, maximize=True)
-        return sum(shared[row][column] for row, column in zip(rows, columns, strict=True))

@@ -66,6 +66,11 @@ class _Reading:
     value: str
     entity: Entity
 
+    @property
+    def rank(self) -> tuple[int, int]:
+        """Those of the lowest rank are meant: the closest likeness, and then the first class."""
+        return self.likeness, _CLASS_ORDER.get(self.entity_class, len(_CLASS_ORDER))
+
 
 class Anonymizer:
     """Finds entities by the longest match of whole words, left to right, ignoring case.
@@ -86,7 +91,11 @@ class Anonymizer:
             for words, reading in _readings(entity):
                 if key := tuple(_TOKEN.findall(words.casefold())):
                     readings[key].append(reading)
-        self._readings = {key: _best(options) for key, options in readings.items()}
+        self._readings: dict[tuple[str, ...], tuple[_Reading, ...]] = {}
+        for key, options in readings.items():
+            closest = min(each.rank for each in options)
+            likely = (each for each in options if each.rank == closest)
+            self._readings[key] = tuple(dict.fromkeys(likely))
         self._longest = max(map(len, self._readings), default=0)
 
     def anonymize(self, text: str) -> Anonymized:
@@ -140,16 +149,6 @@ def _readings(entity: Entity) -> Iterator[tuple[str, _Reading]]:
     for noun in (text, *entity.aliases) if entity_class in _INFLECTED else ():
         for spelling in spellings(noun):
             yield spelling, _Reading(_Likeness.INFLECTED, entity_class, text, entity)
-
-
-def _best(readings: list[_Reading]) -> tuple[_Reading, ...]:
-    """Return the readings that share the closest likeness and then the first class."""
-
-    def rank(reading: _Reading) -> tuple[int, int]:
-        return reading.likeness, _CLASS_ORDER.get(reading.entity_class, len(_CLASS_ORDER))
-
-    closest = min(map(rank, readings))
-    return tuple(dict.fromkeys(each for each in readings if rank(each) == closest))
 
 
 _CLASS_ORDER = {name: place for place, name in enumerate(ENTITY_CLASSES)}

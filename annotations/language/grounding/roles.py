@@ -55,7 +55,11 @@ def context_of(words: Sequence[str], place: int) -> Context:
     verb, cue = ["", "", *before][-2:]
     if cue == "to" and verb in GOING_WORDS:
         cue = "go to"
-    kinds = (_kind(word) for word in reversed(before))
+    # A person or a thing that is not named counts as one of that class.
+    kinds = (
+        "name" if word in PERSON_WORDS else "object" if word in THING_WORDS else class_of(word)
+        for word in reversed(before)
+    )
     return Context("<>" if class_of(cue) else cue, next(filter(None, kinds), ""))
 
 
@@ -102,10 +106,3 @@ def _joins(form: Application) -> bool:
     parts = [each for each in form.arguments if isinstance(each, Application)]
     is_joined = len(parts) == len(form.arguments) > 1
     return form.predicate == CONJUNCTION or (is_joined and not all(map(_describes, parts)))
-
-
-def _kind(word: str) -> str:
-    """Return the class of a token, and the like for words that stand for somebody or something."""
-    if word in PERSON_WORDS:
-        return "name"
-    return "object" if word in THING_WORDS else class_of(word)

@@ -277,21 +277,21 @@ def argument_name(action: str, place: int, argument: Form, entity_class: str = "
     name = names[place]
     if isinstance(name, str):
         return name
-    return name.get(_kind(argument, entity_class)) or name.get("") or f"argument_{place + 1}"
+    kind = argument_kind(argument)
+    if kind in _PLACES or entity_class in ("location", "room"):
+        said = "place"
+    elif kind is ArgumentKind.NUMBER:
+        said = "number"
+    elif isinstance(argument, Unknown):
+        said = "unknown"
+    elif isinstance(argument, Lambda):
+        predicates = {node.predicate for node in walk(argument) if isinstance(node, Application)}
+        said = "person" if predicates & _OF_A_PERSON else "thing"
+    else:
+        said = "name" if kind is ArgumentKind.NAME or entity_class == "name" else "text"
+    return name.get(said) or name.get("") or f"argument_{place + 1}"
 
 
 def question_of(name: str) -> str:
     """Return what to ask the operator for an argument that a command leaves open."""
     return ARGUMENT_QUESTIONS.get(name, f"What is the {name.replace('_', ' ')}?")
-
-
-def _kind(argument: Form, entity_class: str) -> str:
-    kind = argument_kind(argument)
-    if kind in _PLACES or entity_class in ("location", "room"):
-        return "place"
-    if kind is ArgumentKind.NUMBER or isinstance(argument, Unknown):
-        return "number" if kind is ArgumentKind.NUMBER else "unknown"
-    if not isinstance(argument, Lambda):
-        return "name" if kind is ArgumentKind.NAME or entity_class == "name" else "text"
-    names = {node.predicate for node in walk(argument) if isinstance(node, Application)}
-    return "person" if names & _OF_A_PERSON else "thing"

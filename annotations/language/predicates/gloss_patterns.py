@@ -73,16 +73,14 @@ def pattern_of_name(name: str, is_action: bool, signatures: tuple[Signature, ...
     """Make a pattern from the words of the name and from what the predicate takes, and nothing else."""
     words = name.replace("_", " ").replace("-", " ").strip() or name
     arities = sorted({len(each.arguments) for each in signatures}) or [1]
-    if is_action:
-        return " | ".join(_action(words, arity, signatures) for arity in arities)
-    return " | ".join(dict.fromkeys(_description(name, words, arity) for arity in arities))
-
-
-def _action(words: str, arity: int, signatures: tuple[Signature, ...]) -> str:
-    """Return ``verb {1} preposition {2}``; the preposition depends on the kind of the argument."""
-    kinds = next(each.arguments for each in signatures if len(each.arguments) == arity)
-    later = (f"{PREPOSITIONS.get(kind, 'with')} {{{n}}}" for n, kind in enumerate(kinds[1:], 2))
-    return " ".join((words, *(["{1}"] if arity else []), *later))
+    if not is_action:
+        return " | ".join(dict.fromkeys(_description(name, words, arity) for arity in arities))
+    patterns = []  # ``verb {1} preposition {2}``; the preposition depends on the kind of the argument
+    for arity in arities:
+        kinds = next(each.arguments for each in signatures if len(each.arguments) == arity)
+        later = [f"{PREPOSITIONS.get(kind, 'with')} {{{n}}}" for n, kind in enumerate(kinds[1:], 2)]
+        patterns.append(" ".join([words, *["{1}"] * (arity > 0), *later]))
+    return " | ".join(patterns)
 
 
 def _description(name: str, words: str, arity: int) -> str:

@@ -133,7 +133,15 @@ def _read_line(line: str, place: Position) -> set[Signature]:
         raise LanguageError(
             f"line {place.line} has {len(words)} arguments", place, f"{MOST_ARGUMENTS} is the limit"
         )
-    kinds = tuple(_kind(word.removesuffix("?").strip(), place) for word in words)
+    names = [word.removesuffix("?").strip() for word in words]
+    unknown = next((name for name in names if name not in set(ArgumentKind)), None)
+    if unknown is not None:
+        raise LanguageError(
+            f"there is no kind of argument {unknown[:40] or 'without a name'} (line {place.line})",
+            place,
+            f"the kinds are {', '.join(ArgumentKind)}",
+        )
+    kinds = tuple(map(ArgumentKind, names))
     optional = [word.endswith("?") for word in words]
     least = optional.index(True) if True in optional else len(words)
     if not all(optional[least:]):
@@ -143,14 +151,3 @@ def _read_line(line: str, place: Position) -> set[Signature]:
             "write a line for each way to use it",
         )
     return {Signature(kinds[:length]) for length in range(least, len(kinds) + 1)}
-
-
-def _kind(word: str, place: Position) -> ArgumentKind:
-    try:
-        return ArgumentKind(word)
-    except ValueError:
-        raise LanguageError(
-            f"there is no kind of argument {word[:40] or 'without a name'} (line {place.line})",
-            place,
-            f"the kinds are {', '.join(ArgumentKind)}",
-        ) from None

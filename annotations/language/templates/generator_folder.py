@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import chain
@@ -69,15 +70,17 @@ def compose(
     templates = {name.lower(): name for name in file_names if is_template_name(name)}
     roots = sorted(name for name, file in grammar_files.items() if file.defines(ROOT))
     bases = {name: _base(name) for name in roots}
-    names = {name: _category_name(base, bases.values()) for name, base in bases.items()}
+    matches = {name: _NUMBERED.fullmatch(base) for name, base in bases.items()}
+    claims = Counter(match["number"] for match in matches.values() if match)
     compositions: list[Composition] = []
     for file, base in bases.items():
-        match = _NUMBERED.fullmatch(base)
-        inherited = _INHERITED.get(match["number"], ()) if match is not None else ()
+        match = matches[file]
+        inherited = _INHERITED.get(match["number"], ()) if match else ()
         of_files = (*(re.sub(r"(?<!\d)\d+$", number, base) for number in inherited), base)
         wanted = (f"{each}{TEMPLATE_SUFFIX}".lower() for each in of_files)
         own = tuple(templates[name] for name in wanted if name in templates)
-        compositions.append(Composition(names[file], file, own))
+        name = match["number"] if match and claims[match["number"]] == 1 else base
+        compositions.append(Composition(name, file, own))
     numbered = [each for each in compositions if each.name.isdecimal()]
     named = [each for each in compositions if not each.name.isdecimal()]
     numbered.sort(key=lambda each: (int(each.name), each.name))
@@ -92,16 +95,6 @@ def is_template_name(name: str) -> bool:
 def _base(file_name: str) -> str:
     stem = file_name.rsplit(".", 1)[0]
     return re.sub("_grammar$", "", stem, flags=re.IGNORECASE)
-
-
-def _category_name(base: str, bases: Iterable[str]) -> str:
-    """Return the number of a numbered base, unless other files claim the same number."""
-    match = _NUMBERED.fullmatch(base)
-    if match is None:
-        return base
-    rivals = (_NUMBERED.fullmatch(other) for other in bases)
-    claims = sum(rival is not None and rival["number"] == match["number"] for rival in rivals)
-    return match["number"] if claims == 1 else base
 
 
 @dataclass(frozen=True, slots=True)

@@ -59,26 +59,18 @@ class Command(ReportingCommand):
 
 
 def _describe(splits: Sequence[Split]) -> list[dict[str, Any]]:
-    counts = counts_of(splits)
-    return [
-        {
-            "name": split.name,
-            "criterion": split.criterion,
-            "seed": split.seed,
-            "content_hash": split.content_hash,
-            **_unresolved(split),
-            "counts": {
-                each.source: {key: value for key, value in asdict(each).items() if key != "source"}
-                for each in counts[split.pk]
-            },
+    counts, described = counts_of(splits), []
+    for split in splits:
+        row: dict[str, Any] = {
+            name: getattr(split, name) for name in ("name", "criterion", "seed", "content_hash")
         }
-        for split in splits
-    ]
-
-
-def _unresolved(split: Split) -> dict[str, list[str]]:
-    """Return the prompts that are no generated command, whose paraphrases went to the training part."""
-    if split.criterion != Criterion.SOURCE_COMMAND:
-        return {}
-    items = as_items(split.examples.order_by().iterator(chunk_size=BATCH))
-    return {"unresolved_prompts": sorted(unresolved_prompts(items).values())}
+        if split.criterion == Criterion.SOURCE_COMMAND:
+            # Prompts that are no generated command: their paraphrases went to the training part.
+            items = as_items(split.examples.order_by().iterator(chunk_size=BATCH))
+            row["unresolved_prompts"] = sorted(unresolved_prompts(items).values())
+        row["counts"] = {
+            each.source: {key: value for key, value in asdict(each).items() if key != "source"}
+            for each in counts[split.pk]
+        }
+        described.append(row)
+    return described

@@ -185,17 +185,6 @@ class UploadViewSet(RowsViewSet):
         sent = self.read(NewUpload)
         if sent["as_labels"] and not self.world.allows(request.user, Duty.MANAGE):
             raise PermissionDenied("Only admins of this world store forms as labels.")
-        shown, name = self._preview(sent)
-        if sent["preview"]:
-            return Response(shown_as_json(shown, None))
-        _require_storable(shown, sent)
-        upload = Upload(file_name=name[-MOST_CHARACTERS_OF_NAME:])
-        store(self.world, shown, upload, request.user)
-        stored = upload if upload.pk else None
-        return Response(shown_as_json(shown, stored), status=HTTPStatus.CREATED)
-
-    def _preview(self, sent: dict[str, Any]) -> tuple[Preview, str]:
-        """Return how the upload is read, and its name. Raises Refusal."""
         file = sent.get("file")
         data = file.read() if file else sent["text"].encode("utf-8", "replace")
         name = normalise_line(file.name) if file else ""
@@ -207,9 +196,16 @@ class UploadViewSet(RowsViewSet):
             sent["as_labels"],
         )
         try:
-            return preview(self.world, data, name, chosen), name
+            shown = preview(self.world, data, name, chosen)
         except LanguageError as error:
             raise refusal_of_text(error, "file" if file else "text") from error
+        if sent["preview"]:
+            return Response(shown_as_json(shown, None))
+        _require_storable(shown, sent)
+        upload = Upload(file_name=name[-MOST_CHARACTERS_OF_NAME:])
+        store(self.world, shown, upload, request.user)
+        stored = upload if upload.pk else None
+        return Response(shown_as_json(shown, stored), status=HTTPStatus.CREATED)
 
     @extend_schema(request=UndoRequest, responses={200: UndoneSerializer})
     @may_take_long

@@ -153,7 +153,7 @@ def _store_pasted(request: WorldRequest, world: World, shown: Preview) -> HttpRe
 @may_take_long
 @world_view(Duty.ANNOTATE, READ_AND_WRITE)
 def utterances_delete(request: WorldRequest, world: World) -> HttpResponse:
-    """Say which utterances would be deleted: those that are ticked, or all that the filters leave.
+    """Say which utterances would be deleted: the ticked ones, or all that the filters leave.
 
     A POST deletes them, if their number is still its ``total``.
     """

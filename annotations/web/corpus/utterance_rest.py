@@ -71,21 +71,6 @@ class CollectedSerializer(serializers.Serializer[Any]):
     upload = serializers.IntegerField(allow_null=True)
 
 
-def _require_texts(texts: list[str]) -> None:
-    """Raise Refusal where the texts are the lines of a file, such as JSON or a table with a head."""
-    try:
-        format = structure_of(texts)
-    except LanguageError as error:
-        raise refusal_of_text(error, "texts") from error
-    if format:
-        sentence = (
-            f"The texts are the lines of a {format} file, not what people say. Send the file to uploads/, "
-            f"which reads it; with format=text there, each line is an utterance."
-        )
-        problem = {"field": "texts", "message": sentence}
-        raise Refusal(sentence, "lines_of_a_file", problems=[problem])
-
-
 class ExportedLabelSerializer(serializers.Serializer[Any]):
     """An answer that was accepted."""
 
@@ -140,7 +125,17 @@ class UtteranceViewSet(RowsViewSet):
     def create(self, request: ApiRequest, **kwargs: object) -> Response:
         """Takes in new utterances."""
         sent = self.read(NewUtterances)
-        _require_texts(sent["texts"])
+        try:
+            format = structure_of(sent["texts"])
+        except LanguageError as error:
+            raise refusal_of_text(error, "texts") from error
+        if format:
+            sentence = (
+                f"The texts are the lines of a {format} file, not what people say. Send the file to uploads/, "
+                f"which reads it; with format=text there, each line is an utterance."
+            )
+            problem = {"field": "texts", "message": sentence}
+            raise Refusal(sentence, "lines_of_a_file", problems=[problem])
         by = request.user
         upload = Upload(world=self.world, created_by=by, format=UploadFormat.TEXT)
         collected = collect(self.world, sent["texts"], sent["origin"], by, upload)

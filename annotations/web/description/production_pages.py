@@ -123,8 +123,15 @@ def production_preview(request: WorldRequest, world: World) -> HttpResponse:
 
 
 def _read_typed(request: WorldRequest, world: World) -> ProductionEdit | None:
-    """Return the production as typed, or None while a field is empty or invalid."""
-    row = _read_stored(request, world)
+    """Return the production as typed, or None while a field is empty or invalid.
+
+    The URL may name a stored row as ``production``. Raises Http404 if that is not in this world.
+    """
+    row = None
+    if key := request.GET.get("production", ""):
+        row = Production.objects.filter(grammar__world=world, pk=number_in(key)).first()
+        if row is None:
+            raise Http404("No such production.")
     form = ProductionForm(world, row, request.POST, initial=initial_values(row) if row else {})
     form.is_valid()
     names = ("source", "nonterminal", "expansion")
@@ -138,17 +145,6 @@ def _read_typed(request: WorldRequest, world: World) -> ProductionEdit | None:
     if "nonterminal" in form.errors:
         return None
     return ProductionEdit(world, source, nonterminal, expansion, row)
-
-
-def _read_stored(request: WorldRequest, world: World) -> Production | None:
-    """Return the row that the URL names as ``production``. Raises Http404 if it is not in this world."""
-    key = request.GET.get("production", "")
-    if not key:
-        return None
-    row = Production.objects.filter(grammar__world=world, pk=number_in(key)).first()
-    if row is None:
-        raise Http404("No such production.")
-    return row
 
 
 def _completion(world: World, source: str) -> dict[str, Any]:

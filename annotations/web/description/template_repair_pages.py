@@ -59,7 +59,12 @@ def template_repair(request: WorldRequest, world: World, pk: int) -> HttpRespons
         if request.POST.get("form_of"):
             _take_form(request, world, row, version)
         elif request.POST.get("move_to"):
-            _move(request, world, row, version)
+            key = number_in(request.POST["move_to"])
+            category = get_object_or_404(TaskCategory, grammar__world=world, pk=key)
+            checked = check_template(world, category, row.pattern, row.form)
+            values = {**row.moved_to(category), "problems": checked.stored_problems}
+            change(row, values, request.user, version)
+            messages.success(request, f"Moved to task category {category.name}.")
             return redirect("template", world=world.name, pk=pk)
         else:
             delete(row, request.user, version)
@@ -86,13 +91,3 @@ def _take_form(request: WorldRequest, world: World, row: SemanticTemplate, versi
     values = {"form": form, "problems": checked.stored_problems}
     change(row, values, request.user, version)
     messages.success(request, "Both templates have this form now.")
-
-
-def _move(request: WorldRequest, world: World, row: SemanticTemplate, version: int) -> None:
-    """Move ``row`` to the task category that was sent as ``move_to``."""
-    key = number_in(request.POST["move_to"])
-    category = get_object_or_404(TaskCategory, grammar__world=world, pk=key)
-    checked = check_template(world, category, row.pattern, row.form)
-    values = {**row.moved_to(category), "problems": checked.stored_problems}
-    change(row, values, request.user, version)
-    messages.success(request, f"Moved to task category {category.name}.")

@@ -66,7 +66,13 @@ def merge_page(
     A change that only one of both made is taken over. The page sends the form to the same
     address, as an edit of the present version.
     """
-    merged = _merge(form, clash, clash.current, shown) if clash.current else {}
+    merged: dict[str, MergedField] = {}
+    if clash.current:
+        fields = _fields_to_fill_in(form)
+        base = _posted_values(fields, shown(clash.base.instance)) if clash.base else None
+        theirs = _posted_values(fields, shown(clash.current))
+        mine = {field.name: _as_posted(field, field.value()) for field in fields}
+        merged = {each.name: each for each in merge(base, theirs, mine)}
     data: Any = form.data
     data = data.copy()
     now: Any = clash.current or clash.last
@@ -93,16 +99,6 @@ def _fields_to_fill_in(form: forms.Form) -> list[forms.BoundField]:
     return [field for field in form.visible_fields() if not field.field.disabled]
 
 
-def _merge(
-    form: forms.Form, clash: Overtaken, current: Editable, shown: Shown
-) -> dict[str, MergedField]:
-    fields = _fields_to_fill_in(form)
-    mine = {field.name: _as_posted(field, field.value()) for field in fields}
-    theirs = _posted_values(fields, shown(current))
-    base = _posted_values(fields, shown(clash.base.instance)) if clash.base else None
-    return {each.name: each for each in merge(base, theirs, mine)}
-
-
 def _posted_values(fields: list[forms.BoundField], values: Mapping[str, Any]) -> dict[str, str]:
     return {field.name: _as_posted(field, values.get(field.name)) for field in fields}
 
@@ -114,9 +110,11 @@ def _as_posted(field: forms.BoundField, value: Any) -> str:
 
 
 def _sides(form: forms.Form, each: MergedField, by: str) -> list[Side]:
-    """Return a field before, as theirs and as yours, the last two with their changes marked."""
+    """Return a field before, as theirs and as yours, options by their labels and changes marked."""
     is_form = each.name in FORM_FIELDS
-    texts = {value: _label(form[each.name], value) for value in (each.base, each.theirs, each.mine)}
+    options = getattr(form[each.name].field, "choices", ())
+    labels: dict[str | None, str] = {str(key): str(label) for key, label in options}
+    texts = {value: labels.get(value, value or "") for value in (each.base, each.theirs, each.mine)}
     if each.base is None:
         theirs, mine = compare(texts[each.theirs], texts[each.mine], is_form)
         before = []
@@ -125,9 +123,3 @@ def _sides(form: forms.Form, each: MergedField, by: str) -> list[Side]:
         pieces, mine = compare(texts[each.base], texts[each.mine], is_form)
         before = [Side("Before", each.base, [("same", text) for _, text in pieces])]
     return [*before, Side(f"Saved by {by}", each.theirs, theirs), Side("Yours", each.mine, mine)]
-
-
-def _label(field: forms.BoundField, value: str | None) -> str:
-    """Return the label of a chosen option, or the text of another field."""
-    choices = getattr(field.field, "choices", ())
-    return next((str(label) for key, label in choices if str(key) == value), value or "")

@@ -229,9 +229,24 @@ class WorkItemViewSet(RowsViewSet):
     @action(detail=True, methods=["post"])
     def finish(self, request: ApiRequest, **kwargs: object) -> Response:
         """Ends the caller's part of an item, with a label where it is about an utterance."""
-        assignment = self.held()
+        assignment, sent = self.held(), self.read(AnswerSerializer)
+        item = assignment.item
         try:
-            _finish(assignment, request.user, self.read(AnswerSerializer))
+            if end_item(assignment, sent.get("verdict", ""), sent["form"], sent["reason"]):
+                return self.shown()
+            if item.utterance is None:
+                finish(assignment)
+                return self.shown()
+            verdict, version = sent.pop("verdict", Verdict.FORM), sent.pop("version", None)
+            if version is None and not item.is_for_two and verdict != Verdict.SKIP:
+                raise PreconditionRequired(
+                    "Send the version of the utterance as you read it, so that nobody's answer is "
+                    "overwritten unseen."
+                )
+            by = request.user
+            answer(
+                item.utterance, verdict, by=by, version=version or 0, assignment=assignment, **sent
+            )
         except LanguageError as error:
             raise refusal_of_text(error, "form") from error
         return self.shown()
@@ -300,18 +315,3 @@ class WorkItemViewSet(RowsViewSet):
         person = person_called(self.world, sent["person"])
         rows: Any = self.filter_queryset(self.get_queryset())
         return Response({"given": assign_first(rows, person, sent["count"], request.user)})
-
-
-def _finish(assignment: Assignment, by: User, sent: dict[str, Any]) -> None:
-    item = assignment.item
-    if end_item(assignment, sent.get("verdict", ""), sent["form"], sent["reason"]):
-        return
-    if item.utterance is None:
-        finish(assignment)
-        return
-    verdict, version = sent.pop("verdict", Verdict.FORM), sent.pop("version", None)
-    if version is None and not item.is_for_two and verdict != Verdict.SKIP:
-        raise PreconditionRequired(
-            "Send the version of the utterance as you read it, so that nobody's answer is overwritten unseen."
-        )
-    answer(item.utterance, verdict, by=by, version=version or 0, assignment=assignment, **sent)

@@ -67,7 +67,12 @@ def fingerprint_of(request: ApiRequest) -> str:
     """Return a hash of what was sent, files with their contents."""
     digest = hashlib.sha256(request.META.get("QUERY_STRING", "").encode())
     files = [(name, file) for name, some in request.FILES.lists() for file in some]
-    values = {name: value for name, value in _items(request.data) if name not in request.FILES}
+    data: Any = request.data
+    if hasattr(data, "lists"):
+        data = dict(data.lists())
+    elif not isinstance(data, dict):
+        data = {"": data}
+    values = {name: value for name, value in data.items() if name not in request.FILES}
     digest.update(json.dumps(values, sort_keys=True, default=str).encode())
     for name, file in sorted(files, key=lambda each: (each[0], each[1].name)):
         digest.update(f"\0{name}\0{file.name}\0".encode(errors="replace"))

@@ -29,7 +29,13 @@ class Keyset(BasePagination):
         self.address = request.build_absolute_uri()
         order = self._order(request, view.sorts)
         cursors = {name: self._cursor(request, queryset, order, name) for name in PLACES}
-        self.page = page_of(queryset, order, **cursors, size=self._size(request))
+        size = PAGE_SIZE
+        if sent := request.query_params.get("limit", ""):
+            is_number = sent.isascii() and sent.isdigit() and len(sent) < 6
+            if not is_number or not 1 <= int(sent) <= MOST_ROWS:
+                raise ValidationError({"limit": [f"Ask for 1 to {MOST_ROWS} rows."]})
+            size = int(sent)
+        self.page = page_of(queryset, order, **cursors, size=size)
         return self.page.rows
 
     def get_paginated_response(self, data: Any) -> Response:
@@ -65,15 +71,6 @@ class Keyset(BasePagination):
         if sent and (not cursor or read_cursor(rows.model, order, cursor) is None):
             raise ValidationError({name: ["This is no cursor of this list. Begin without one."]})
         return cursor
-
-    def _size(self, request: Request) -> int:
-        sent = request.query_params.get("limit", "")
-        if not sent:
-            return PAGE_SIZE
-        is_number = sent.isascii() and sent.isdigit() and len(sent) < 6
-        if not is_number or not 1 <= int(sent) <= MOST_ROWS:
-            raise ValidationError({"limit": [f"Ask for 1 to {MOST_ROWS} rows."]})
-        return int(sent)
 
     def get_paginated_response_schema(self, schema: dict[str, Any]) -> dict[str, Any]:
         link = {"type": ["string", "null"], "format": "uri"}

@@ -107,8 +107,13 @@ class Workbench:
         ``part`` is train, validation or test; ``source`` generated or paraphrased. By default all
         examples are written.
         """
-        key = split if isinstance(split, int) else self._key_of_split(split)
-        path = f"{self._path}splits/{key}/export/"
+        if isinstance(split, str):
+            rows = self._transport.get(f"{self._path}splits/", q=split, limit=1000)["results"]
+            keys = [int(row["id"]) for row in rows if row["name"] == split]
+            if not keys:
+                raise Refused(404, f"This world has no split called {split!r}.", [])
+            split = keys[0]
+        path = f"{self._path}splits/{split}/export/"
         query = {"as": format, "part": part, "source": source}
         target = Path(file)
         beside = target.with_name(f".{target.name}.part")
@@ -121,14 +126,6 @@ class Workbench:
         finally:
             beside.unlink(missing_ok=True)
         return target
-
-    def _key_of_split(self, name: str) -> int:
-        """Return the number of the split that is called ``name``. Raises Refused where there is none."""
-        rows = self._transport.get(f"{self._path}splits/", q=name, limit=1000)["results"]
-        for row in rows:
-            if row["name"] == name:
-                return int(row["id"])
-        raise Refused(404, f"This world has no split called {name!r}.", [])
 
 
 def _say_broken_off(answered: int, asked: int, why: str = "The connection ended.") -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from collections.abc import Sequence
 from http import HTTPStatus
 from itertools import chain
@@ -76,15 +75,15 @@ class WithGlove(Seq2Seq):
 class WithContext(Seq2Seq):
     """Reads for each word its own vector and, concatenated to it, that of the frozen encoder in context.
 
-    The encoder is not saved with the parser, only its hash: loading looks for it where training did,
-    and refuses another one.
+    The encoder is a transformer, of which the last layer is read, unless a subclass finds another one. It is
+    not saved with the parser, only its hash: loading looks for it where training did, and refuses another one.
     """
 
     _vectors: VectorCache | None = None
 
-    @abstractmethod
-    def _find_encoder(self, encoders: Path | None) -> ContextualEncoder:
+    def _find_encoder(self) -> ContextualEncoder:
         """Load the encoder that the configuration names. Raises Refusal, which says what to put where."""
+        return TransformerWords.named(self.config.encoder, encoders_folder())
 
     def fit(
         self,
@@ -110,7 +109,7 @@ class WithContext(Seq2Seq):
     def _open(self) -> VectorCache:
         """Return the encoder with its cached vectors, loading it the first time."""
         if self._vectors is None:
-            encoder = self._find_encoder(encoders_folder())
+            encoder = self._find_encoder()
             self._shape = ContextShape(encoder.layers, encoder.width)
             self._vectors = VectorCache(encoder, vectors_folder())
         return self._vectors
@@ -148,18 +147,11 @@ class Seq2SeqGloveElmo(WithContext, WithGlove):
     Config = GloveElmoConfig
     config: GloveElmoConfig
 
-    def _find_encoder(self, encoders: Path | None) -> ContextualEncoder:
-        return Elmo.named(self.config.elmo, encoders)
+    def _find_encoder(self) -> ContextualEncoder:
+        return Elmo.named(self.config.elmo, encoders_folder())
 
 
-class WithTransformer(WithContext):
-    """The last layer of the transformer that the configuration names."""
-
-    def _find_encoder(self, encoders: Path | None) -> ContextualEncoder:
-        return TransformerWords.named(self.config.encoder, encoders)
-
-
-class Seq2SeqGloveGpt(WithTransformer, WithGlove):
+class Seq2SeqGloveGpt(WithContext, WithGlove):
     """GloVe beside OpenAI's GPT."""
 
     name = "seq2seq-glove-gpt"
@@ -167,7 +159,7 @@ class Seq2SeqGloveGpt(WithTransformer, WithGlove):
     Config = GloveGptConfig
 
 
-class Seq2SeqGloveBertBase(WithTransformer, WithGlove):
+class Seq2SeqGloveBertBase(WithContext, WithGlove):
     """GloVe beside the smaller BERT."""
 
     name = "seq2seq-glove-bert-base"
@@ -175,7 +167,7 @@ class Seq2SeqGloveBertBase(WithTransformer, WithGlove):
     Config = GloveBertBaseConfig
 
 
-class Seq2SeqGloveBertLarge(WithTransformer, WithGlove):
+class Seq2SeqGloveBertLarge(WithContext, WithGlove):
     """GloVe beside the larger BERT."""
 
     name = "seq2seq-glove-bert-large"
@@ -183,7 +175,7 @@ class Seq2SeqGloveBertLarge(WithTransformer, WithGlove):
     Config = GloveBertLargeConfig
 
 
-class Seq2SeqMiniLm(WithTransformer):
+class Seq2SeqMiniLm(WithContext):
     """Word vectors learned from the training pairs beside a small sentence encoder's words."""
 
     name = "seq2seq-minilm"

@@ -108,9 +108,12 @@ class FineTuning:
     def run_step(self, check: Check) -> None:
         """Train on one batch. Raises Refusal where its loss is not finite."""
         begin = time.monotonic()
-        if self.step % self.batches == 0:
+        epoch, place = divmod(self.step, self.batches)
+        if place == 0:
             self.losses = []
-        batch = self._batch()
+        if self._shuffled[0] != epoch:
+            self._shuffled = epoch, list(self._shuffle(epoch))
+        batch = self._shuffled[1][place]
         self.network.model.train()
         with random_state_kept(), denormals_flushed():
             torch.manual_seed(self.seed * 1_000_003 + self.step)
@@ -146,12 +149,6 @@ class FineTuning:
         if self.step < warm:
             return (self.step + 1) / warm
         return (steps - self.step) / (steps - warm)
-
-    def _batch(self) -> list[TokenizedPair]:
-        epoch, place = divmod(self.step, self.batches)
-        if self._shuffled[0] != epoch:
-            self._shuffled = epoch, list(self._shuffle(epoch))
-        return self._shuffled[1][place]
 
     def _shuffle(self, epoch: int) -> Iterator[list[TokenizedPair]]:
         """Yield the batches of an epoch in random order, each of pairs of similar length."""

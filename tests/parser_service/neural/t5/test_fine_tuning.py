@@ -58,7 +58,7 @@ def test_parts_of_a_step_add_up_to_it():
     for accumulation in (1, 4):
         parser = parser_of(accumulation=accumulation, clip=1e6, precision="fp32")
         training = parser._prepare(TWENTY, Recorder(None))  # in evaluation mode, without dropout
-        training._train_on(training._batch(), lambda: None)
+        training._train_on(next(training._shuffle(0)), lambda: None)
         gradients.append([w.grad.clone() for w in training.network.model.parameters()])
     for one, other in zip(*gradients, strict=True):
         torch.testing.assert_close(one, other, atol=1e-5, rtol=1e-3)
