@@ -6,6 +6,7 @@ from django.urls import URLPattern, URLResolver, include, path
 from rest_framework.routers import SimpleRouter
 
 from annotations.web.background import job_rest
+from annotations.web.campaigns import campaign_rest, submission_rest
 from annotations.web.corpus import (
     command_rest,
     label_rest,
@@ -46,9 +47,12 @@ of_world.register("templates", template_rest.TemplateViewSet, "template")
 of_world.register("commands", command_rest.CommandViewSet, "command")
 of_world.register("forms", command_rest.LogicalFormViewSet, "form")
 of_world.register("paraphrases", paraphrase_rest.ParaphraseViewSet, "paraphrase")
+of_world.register("campaigns", campaign_rest.CampaignViewSet, "campaign")
+of_world.register("contributors", campaign_rest.ContributorViewSet, "contributor")
 of_world.register("utterances", utterance_rest.UtteranceViewSet, "utterance")
 of_world.register("uploads", upload_rest.UploadViewSet, "upload")
 of_world.register("labels", label_rest.LabelViewSet, "label")
+of_world.register("submissions", submission_rest.SubmissionViewSet, "submission")
 of_world.register("splits", split_rest.SplitViewSet, "split")
 of_world.register("jobs", job_rest.JobViewSet, "job")
 of_world.register("comments", comment_rest.CommentViewSet, "comment")

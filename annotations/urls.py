@@ -3,6 +3,7 @@
 from django.urls import path
 
 from annotations.web.background import job_pages
+from annotations.web.campaigns import campaign_pages, submission_pages
 from annotations.web.corpus import command_pages, paraphrase_pages, upload_pages, utterance_pages
 from annotations.web.description import (
     coverage_pages,
@@ -95,6 +96,16 @@ urlpatterns = [
     path("commands/complexity/", command_pages.complexity, name="complexity"),
     path("forms/", command_pages.logical_forms, name="logical_forms"),
     path("forms/<int:pk>/", command_pages.logical_form, name="logical_form"),
+    path("campaigns/", campaign_pages.campaigns, name="campaigns"),
+    path("campaigns/new/", campaign_pages.campaign_new, name="campaign_new"),
+    path("campaigns/<int:pk>/", campaign_pages.campaign_page, name="campaign_page"),
+    path("campaigns/<int:pk>/state/", campaign_pages.campaign_state, name="campaign_state"),
+    path("campaigns/<int:pk>/act/", campaign_pages.campaign_act, name="campaign_act"),
+    path(
+        "contributors/<int:pk>/forget/",
+        campaign_pages.contributor_forget,
+        name="contributor_forget",
+    ),
     path("paraphrases/", paraphrase_pages.paraphrases, name="paraphrases"),
     path("paraphrases/<int:pk>/", paraphrase_pages.paraphrase, name="paraphrase"),
     path("paraphrases/<int:pk>/label/", paraphrase_pages.paraphrase_label, name="paraphrase_label"),
@@ -132,4 +143,15 @@ urlpatterns = [
     path("splits/<int:pk>/changes/", split_pages.split_changes, name="split_changes"),
     path("splits/<int:pk>/renew/", split_pages.split_renew, name="split_renew"),
     path("splits/<int:pk>/near/", split_pages.near_duplicates, name="near_duplicates"),
+    path("submissions/", submission_pages.submissions, name="submissions"),
+    path("submissions/decide/", submission_pages.submissions_decide, name="submissions_decide"),
+    path(
+        "submissions/take-back/",
+        submission_pages.submissions_take_back,
+        name="submissions_take_back",
+    ),
+    path("submissions/<int:pk>/", submission_pages.submission, name="submission"),
+    path(
+        "submissions/<int:pk>/decide/", submission_pages.submission_decide, name="submission_decide"
+    ),
 ]

@@ -9,7 +9,10 @@ from contextvars import ContextVar
 from datetime import UTC, datetime
 from typing import Any
 
-SECRET_ADDRESS = re.compile(r"(/join/|/password/[^/\s?]+/)[^/\s?]+")
+# Keys of links, and who somebody is on a crowd market.
+SECRET_ADDRESS = re.compile(
+    r"(/join/|/password/[^/\s?]+/|[?&](?:PROLIFIC_PID|SESSION_ID|workerId|assignmentId)=)[^/\s?&]+"
+)
 REQUEST_ID: ContextVar[str] = ContextVar("request_id", default="")
 
 

@@ -7,6 +7,7 @@ from django.urls import URLPattern, URLResolver, include, path
 
 from annotations.rest_urls import urlpatterns as corpus_routes
 from annotations.web.background import job_pages
+from annotations.web.campaigns import public_pages
 from annotations.web.editing import comment_pages
 from annotations.web.people import account_pages, own_account_pages
 from annotations.web.people.audit_log_pages import site_log
@@ -40,6 +41,10 @@ urlpatterns = [
     path("account/sessions/end/", own_account_pages.sessions_end, name="sessions_end"),
     path("account/sessions/<slug:handle>/end/", own_account_pages.session_end, name="session_end"),
     path("join/<str:key>/", join, name="join"),
+    path("p/<str:key>/", public_pages.campaign_begin, name="campaign"),
+    path("p/<str:key>/done/", public_pages.campaign_done, name="campaign_done"),
+    path("p/<str:key>/<int:position>/", public_pages.campaign_place, name="campaign_place"),
+    path("p/<str:key>/<int:position>/check/", public_pages.campaign_check, name="campaign_check"),
     path("banner/", banner, name="banner"),
     path("healthz", healthz, name="healthz"),
     path("docs/", documents, name="documents"),

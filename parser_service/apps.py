@@ -24,6 +24,9 @@ class ParserServiceConfig(AppConfig):
         register_verb(JobKind.ANALYSE, "parser_service.analyses.analysis_job.analyse")
         register_verb(JobKind.ANSWER, "parser_service.analyses.tryout_answers.answer")
         register_verb(JobKind.PARSE, "parser_service.serving.batch_job.parse_batch")
+        register_verb(
+            JobKind.PARAPHRASE, "parser_service.paraphrasing.model_contributor.paraphrase_of"
+        )
         register_part("parser_service.robots.archived.ACTION_NAMES")
         register_results("run", lambda keys: TrainingRun.objects.filter(split__in=keys).count())
         keep_encoders_in(

@@ -10,6 +10,7 @@ from parser_service.web.analyses import (
 )
 from parser_service.web.dialogues import dialogue_pages
 from parser_service.web.labelling import audit_pages, label_pages, suggestion_pages
+from parser_service.web.paraphrasing import model_pages
 from parser_service.web.promotions import promotion_pages
 from parser_service.web.results import compare_pages, report_pages, result_pages, slice_pages
 from parser_service.web.reviews import error_category_pages, prediction_pages, review_pages
@@ -124,4 +125,5 @@ urlpatterns = [
         learning_curve_pages.learning_curve_start,
         name="learning_curve_start",
     ),
+    path("campaigns/<int:pk>/model/", model_pages.campaign_model, name="campaign_model"),
 ]

@@ -23,7 +23,7 @@ const builds = [
   {
     ...common,
     format: "esm",
-    entryPoints: ["main", "charts", "tree", "editor", "label", "audit", "refusal", "review"].map((name) =>
+    entryPoints: ["main", "charts", "tree", "editor", "label", "audit", "refusal", "review", "campaign"].map((name) =>
       here(`src/${name}.js`),
     ),
   },

@@ -37,20 +37,20 @@ ROOMS = {
     "annotations": (
         "language", "models", "background", "jobs", "rows", "splits", "markdown", "form_presentation", "figures",
         "people", "lists", "generation", "checking", "suggesting", "importing", "exporting", "worlds", "world_archive",
-        "editing", "renaming", "commenting", "labelling", "queueing", "utterances", "label_audit", "web",
+        "editing", "renaming", "commenting", "labelling", "queueing", "utterances", "label_audit", "campaigns", "web",
         "templatetags",
     ),
     "annotations/web": (
-        "sent_texts", "not_found", "forms", "rest", "background", "editing", "description", "corpus", "splits",
-        "queueing", "people", "worlds",
+        "sent_texts", "not_found", "forms", "rest", "background", "editing", "description", "corpus", "campaigns",
+        "splits", "queueing", "people", "worlds",
     ),
     "annotations/models": (
-        "people", "worlds", "background", "editing", "description", "corpus", "splits", "queueing",
+        "people", "worlds", "background", "editing", "description", "campaigns", "corpus", "splits", "queueing",
     ),
     "annotations/language": (
         "errors", "limits", "text", "decoding", "english", "symbols", "forms", "grammar", "ontology", "predicates",
-        "templates", "assistance", "suggestions", "grounding", "dialogue", "plans", "names", "corpus", "agreement",
-        "label_errors",
+        "templates", "assistance", "suggestions", "grounding", "dialogue", "plans", "names", "corpus",
+        "paraphrases", "agreement", "label_errors",
     ),
     "parser_service/neural": (
         "device", "weights", "pretrained", "training", "word_vectors", "sentence_encoder", "seq2seq",
@@ -80,10 +80,11 @@ ROOMS = {
     "parser_service": (
         "parsers", "neural", "analysis", "models", "promotions", "runs", "robots", "serving", "dialogues",
         "labelling", "results", "slices", "reviews", "analyses", "reports", "benchmarking", "label_audit",
+        "paraphrasing",
     ),
     "parser_service/web": (
         "page_of_run", "runs", "results", "reviews", "analyses", "labelling", "promotions", "robots", "serving",
-        "dialogues",
+        "dialogues", "paraphrasing",
     ),
 }  # fmt: skip
 

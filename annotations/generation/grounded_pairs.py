@@ -9,7 +9,7 @@ from random import Random
 
 from annotations.language.errors import LanguageError
 from annotations.language.forms import canonical_text
-from annotations.language.grounding import ground
+from annotations.language.grounding import Grounded, ground
 from annotations.language.ontology import Ontology
 from annotations.language.templates import (
     Derivation,
@@ -46,14 +46,13 @@ def _draw(
     random: Random,
 ) -> Iterator[tuple[str, str]]:
     """Yield pairs without end, as long as a round over all commands gives any."""
-    sources = {category.name: _Derivations(category) for category in categories}
+    sources = {category.name: GroundedCommands(category) for category in categories}
     while True:
         failure: LanguageError | None = None
         given = 0
         for expansion in random.sample(expansions, len(expansions)):
-            derivation = random.choice(sources[expansion.task_category].of(expansion))
             try:
-                grounded = ground(derivation.symbols, derivation.form, ontology, random)
+                grounded = sources[expansion.task_category].draw(expansion, ontology, random)
             except LanguageError as error:
                 failure = error
                 continue
@@ -63,15 +62,24 @@ def _draw(
             raise failure
 
 
-class _Derivations:
-    """The derivations behind the commands of one category, expanded a template at a time."""
+class GroundedCommands:
+    """The commands of one category with entities in them; derivations are expanded a template at a time."""
 
     def __init__(self, category: TaskCategory) -> None:
         self._category = category
         self._expander = TemplateExpander(category.grammar)
         self._by_text: dict[int, dict[str, list[Derivation]]] = {}
 
-    def of(self, expansion: Expansion) -> list[Derivation]:
+    def draw(self, expansion: Expansion, ontology: Ontology, random: Random) -> Grounded:
+        """Ground the command of ``expansion`` by one of its derivations.
+
+        Raises:
+            LanguageError: the ontology has no value, or too few, for what is asked.
+        """
+        derivation = random.choice(self._derivations_of(expansion))
+        return ground(derivation.symbols, derivation.form, ontology, random)
+
+    def _derivations_of(self, expansion: Expansion) -> list[Derivation]:
         index = expansion.template_index
         if index not in self._by_text:
             by_text: dict[str, list[Derivation]] = defaultdict(list)

@@ -3,6 +3,7 @@ module of their room.
 """
 
 from annotations.models.background import Job, JobKind
+from annotations.models.campaigns import Campaign, CampaignPrompt, Contributor, Submission
 from annotations.models.corpus import (
     Command,
     CommandProposal,
@@ -49,9 +50,12 @@ __all__ = [
     "AuditEntry",
     "AuditFinding",
     "AuditReason",
+    "Campaign",
+    "CampaignPrompt",
     "Command",
     "CommandProposal",
     "Comment",
+    "Contributor",
     "Draft",
     "Duty",
     "EarlierText",
@@ -79,6 +83,7 @@ __all__ = [
     "SemanticTemplate",
     "Split",
     "StoredProblem",
+    "Submission",
     "TaskCategory",
     "Upload",
     "User",

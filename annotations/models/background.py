@@ -138,6 +138,7 @@ class JobKind(models.TextChoices):
     ANALYSE = "analyse", "Error analysis of a run"
     ANSWER = "answer", "Answers of runs to a text"
     PARSE = "parse", "Parse of a batch"
+    PARAPHRASE = "paraphrase", "Paraphrases by a language model"
     DELETE_WORLD = "delete_world", "Deletion of a world"
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from django.db import models
 from django.utils import timezone
 
+from annotations.models.campaigns import Contributor, ContributorKind
 from annotations.models.description import SemanticTemplate
 from annotations.models.editing import Editable
 from annotations.models.people import User
@@ -80,7 +81,7 @@ class Paraphrase(Editable):
 
     ``command`` is the generated command behind the prompt where it is known. Where that is gone,
     ``command_text`` says what it was, so that it is known again when templates make it again; it is
-    empty otherwise. Distances are to the prompt:
+    empty otherwise. ``contributor`` wrote it for a campaign; None where it came in a file. Distances are to the prompt:
     ``edit_distance`` in characters (Levenshtein), ``jaccard_distance`` over words, in 0–1.
     """
 
@@ -101,6 +102,13 @@ class Paraphrase(Editable):
     status = models.CharField(
         max_length=20, choices=paraphrase_status_choices, default=ParaphraseStatus.ACCEPTED
     )
+    contributor = models.ForeignKey(
+        Contributor,
+        null=True,
+        blank=True,
+        on_delete=models.SET_NULL,
+        related_name="paraphrases",
+    )
     position = models.PositiveIntegerField()
 
     objects = ParaphraseQuerySet.as_manager()
@@ -113,6 +121,11 @@ class Paraphrase(Editable):
 
     def __str__(self) -> str:
         return self.utterance
+
+    @property
+    def is_by_model(self) -> bool:
+        """Whether a language model wrote it."""
+        return self.contributor is not None and self.contributor.kind == ContributorKind.MODEL
 
 
 class Origin(models.TextChoices):

@@ -121,6 +121,7 @@ class Example(models.Model):
     ``written_form`` is the form as the file wrote it where that is not the canonical text, so that an
     export gives the file back. ``head_predicate`` (``UNKNOWN`` for a form without any) and ``depth`` are
     those of the form, empty and 0 for a text that is no form; ``word_count`` counts what spaces separate.
+    ``is_by_model`` says that a language model wrote the utterance.
     """
 
     split = models.ForeignKey(Split, on_delete=models.CASCADE, related_name="examples")
@@ -133,6 +134,7 @@ class Example(models.Model):
     logical_form = models.TextField()
     written_form = models.TextField(blank=True)
     grounded_form = models.TextField(blank=True)
+    is_by_model = models.BooleanField(default=False, db_default=False)
     head_predicate = DerivedCharField(
         max_length=HEAD_LENGTH, blank=True, default="", editable=False
     )

@@ -24,14 +24,19 @@ COMMAND_LINE, RULE = "command line", "rule"
 MOST_AT_ONCE = 5_000  # entries that are deleted in one transaction
 SAFE_METHODS = ("GET", "HEAD", "OPTIONS", "TRACE")
 MOST_SUBJECT_CHARACTERS = 200
-# Routes that are posted to and change nothing that others see.
+# Routes that are posted to and change nothing that others see; and contributors of campaigns, who are known by
+# a pseudonym alone also where they are logged in.
 UNRECORDED = re.compile(
     r"_(check|preview|suggestions|completion|consequences)$"
     r"|^(draft|inbox|notice_open|notice-read-all|notice-read|queue_next|work-item-next|tryout_ask|playground_ask)$"
+    r"|^(campaign|campaign_place|campaign_done)$"
 )
 VERBS = {"POST": "create", "PUT": "change", "PATCH": "change", "DELETE": "delete"}
 # What a route does where its name does not say it.
 WHAT = {
+    **dict.fromkeys(("submission_decide", "submissions_decide"), "moderate submissions"),
+    "submissions_take_back": "take back a moderation",
+    **dict.fromkeys(("campaign_model", "campaign-model"), "ask a language model for paraphrases"),
     "login": "log in",
     "join": "join",
     "password": "change password",
@@ -77,6 +82,9 @@ WHAT = {
     "utterances_delete": "delete utterances",
     "utterances_restore": "restore utterances",
     "paraphrase_label": "label a paraphrase",
+    "campaign_new": "launch a campaign",
+    "campaign_act": "close or open a campaign",
+    "contributor_forget": "forget a contributor",
     "split_new": "freeze a split",
     "split_renew": "freeze a split anew",
     "run_new": "start a run",

@@ -71,8 +71,7 @@ def plan_split(
     examples = list(candidates(world))
     items = as_items(examples)
     kept = kept_in_training(items, criterion)
-    assign_parts(examples, split(items, Criterion(criterion), proportions, seed, kept))
-    return examples
+    return assign_parts(examples, split(items, Criterion(criterion), proportions, seed, kept))
 
 
 def unresolved_prompts(items: Iterable[SplitItem]) -> dict[str, str]:
@@ -104,16 +103,21 @@ def as_items(examples: Iterable[Example]) -> list[SplitItem]:
     ]
 
 
-def assign_parts(examples: Sequence[Example], parts: Iterable[Part]) -> None:
-    """Give unsaved examples their parts, and their positions in these."""
+def assign_parts(examples: Sequence[Example], parts: Iterable[Part]) -> list[Example]:
+    """Give unsaved examples their parts and their positions in these, and return those that stay.
+
+    What a language model wrote is for training alone: where its part is another one, it is left out.
+    """
     for example, part in zip(examples, parts, strict=True):
         example.part = str(part)
+    staying = [each for each in examples if each.part == Part.TRAIN or not each.is_by_model]
     # As in pair files: by the number of characters of the utterance.
     following: dict[tuple[str, str], int] = {}
-    for example in sorted(examples, key=lambda each: len(each.utterance)):
+    for example in sorted(staying, key=lambda each: len(each.utterance)):
         place = (example.source, example.part)
         example.position = following.get(place, 0)
         following[place] = example.position + 1
+    return staying
 
 
 class PreparedSplit:
@@ -125,7 +129,7 @@ class PreparedSplit:
     COLUMNS = (
         *("position", "part", "source", "utterance", "source_command", "task_category"),
         *("logical_form", "written_form", "grounded_form"),
-        *("head_predicate", "depth", "word_count"),
+        *("is_by_model", "head_predicate", "depth", "word_count"),
     )
 
     def __init__(
@@ -211,7 +215,7 @@ def candidates(world: World, only_edited: bool = False) -> Iterator[Example]:
             logical_form=command.logical_form.text,
         )
     seen: set[tuple[str, str]] = set()
-    paraphrases = world.paraphrases.accepted().select_related("command")
+    paraphrases = world.paraphrases.accepted().select_related("command", "contributor")
     for said in paraphrases.filter(version__gt=1) if only_edited else paraphrases:
         if (said.utterance, said.logical_form) in seen:
             continue
@@ -223,6 +227,7 @@ def candidates(world: World, only_edited: bool = False) -> Iterator[Example]:
             task_category=said.command.task_category if said.command else "",
             logical_form=said.logical_form,
             grounded_form=said.grounded_form,
+            is_by_model=said.is_by_model,
         )
     for labelled in world.utterances.labelled():
         if (labelled.text, labelled.logical_form) not in seen:

@@ -109,8 +109,9 @@ def plan_anew(old: Split) -> list[Example]:
     parts = split(items, criterion, proportions_of(old), old.seed or 0, kept)
     # A published part may share something with another one; it stays as it was published.
     as_published = (Part(each.part) if each.part else None for each in examples)
-    assign_parts(examples, [was or part for was, part in zip(as_published, parts, strict=True)])
-    return examples
+    return assign_parts(
+        examples, [was or part for was, part in zip(as_published, parts, strict=True)]
+    )
 
 
 def last_of(old: Split) -> Split:

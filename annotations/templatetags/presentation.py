@@ -45,6 +45,7 @@ for written in (
     figures.ago,
 ):
     register.filter(written)
+register.filter("as_markdown", rendered)
 
 PLACE = ("source", "line", "column")
 PATTERN_TOKEN = re.compile(r"(\$\w+|\{[^{}]*\})")

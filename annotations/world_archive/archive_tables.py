@@ -15,8 +15,11 @@ from annotations.models import (
     AuditDecision,
     AuditFinding,
     AuditReason,
+    Campaign,
+    CampaignPrompt,
     Command,
     Comment,
+    Contributor,
     EarlierText,
     Entity,
     Example,
@@ -29,6 +32,7 @@ from annotations.models import (
     SemanticTemplate,
     Split,
     StoredProblem,
+    Submission,
     TaskCategory,
     Utterance,
     WorkItem,
@@ -97,7 +101,9 @@ class ArchiveTable:
     def world_path(self) -> str:
         """The lookup that leads from a row to its world."""
         if not self.owner:
-            return f"{next(iter(self.references))}__world"
+            name, table = next(iter(self.references.items()))
+            above = next(each for each in tables() if each.name == table)
+            return f"{name}__{above.world_path}"
         is_direct = self.model._meta.get_field(self.owner).related_model is World
         return self.owner if is_direct else f"{self.owner}__world"
 
@@ -112,13 +118,38 @@ OUR_TABLES = (
     ArchiveTable("guidelines", Guidelines, "world"),
     ArchiveTable("forms", LogicalForm, "world"),
     ArchiveTable("commands", Command, "world", {"template": "templates", "logical_form": "forms"}),
-    ArchiveTable("paraphrases", Paraphrase, "world", {"command": "commands"}),
+    # The link of a campaign is of one site: the copy gets one of its own.
+    ArchiveTable("campaigns", Campaign, "world", people=("created_by",), left_out=("key",)),
+    ArchiveTable(
+        "campaign_prompts",
+        CampaignPrompt,
+        references={"campaign": "campaigns", "command": "commands"},
+    ),
+    ArchiveTable("contributors", Contributor, references={"campaign": "campaigns"}),
+    ArchiveTable(
+        "paraphrases",
+        Paraphrase,
+        "world",
+        {"command": "commands", "contributor": "contributors"},
+    ),
     ArchiveTable(
         "utterances",
         Utterance,
         "world",
         people=("created_by",),
         left_out=("upload", "deleted_at"),
+    ),
+    ArchiveTable(
+        "submissions",
+        Submission,
+        references={
+            "contributor": "contributors",
+            "prompt": "campaign_prompts",
+            "paraphrase": "paraphrases",
+            "utterance": "utterances",
+        },
+        people=("decided_by",),
+        utterance="utterance",
     ),
     ArchiveTable(
         "labels",

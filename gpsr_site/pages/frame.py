@@ -103,7 +103,10 @@ PLACES = (
         page="paraphrases",
         count="paraphrases",
         waiting=Waiting(count="paraphrases_waiting", noun="paraphrase", reason="to judge"),
-        pages_below=("paraphrase",),
+        pages_below=(
+            *("paraphrase", "submissions", "submission"),
+            *("campaigns", "campaign_new", "campaign_page", "campaign_model", "contributor_forget"),
+        ),
     ),
     Place(
         label="Utterances",

@@ -57,6 +57,10 @@ function onKey(event) {
   if (event.key === "Enter" && event.target === currentRow()) {
     event.preventDefault();
     open(event.target);
+  } else if (event.key === "x" && currentRow()?.querySelector("input[type=checkbox]")) {
+    currentRow().querySelector("input[type=checkbox]").click();
+  } else if (document.querySelector(`[data-key="${CSS.escape(event.key)}"]`)) {
+    document.querySelector(`[data-key="${CSS.escape(event.key)}"]`).click();
   } else if (Object.hasOwn(actions, event.key)) {
     event.preventDefault();
     actions[event.key]();
@@ -66,5 +70,7 @@ function onKey(event) {
 document.addEventListener("keydown", onKey);
 document.addEventListener("click", (event) => {
   if (event.target.closest("[data-keys-open]")) dialog(true);
+  const tick = event.target.closest("[data-tick-all]");
+  if (tick) for (const box of document.getElementsByName(tick.dataset.tickAll)) box.checked = true;
   if (event.target.closest("[data-keys-close]") || event.target.id === "keys") dialog(false);
 });

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 import pytest
 
 from annotations.importing.generator_import import import_generator
-from annotations.models import World
+from annotations.models import Campaign, World
+from tests.launched_campaigns import fill_household, launch_in
 from tests.replaying import made_once
 
 TINY = {
@@ -57,3 +61,15 @@ def tiny_world(world) -> World:
 def import_tiny(world: World) -> World:
     assert not import_generator(world.name, as_bytes(TINY)).problems
     return world
+
+
+@pytest.fixture
+def household(world) -> World:
+    """``world`` with the grammar, entities and commands of the starter world, without paraphrases."""
+    return made_once(fill_household, world)
+
+
+@pytest.fixture
+def launched(household, admin) -> Callable[..., Campaign]:
+    """Launches a campaign: columns of ``Campaign``, and ``choice`` for those of ``PromptChoice``."""
+    return partial(launch_in, household, admin)

@@ -97,3 +97,9 @@ def worker(sample, tmp_path) -> Iterator[RunningWorker]:
 def waiting_run(sample):
     """A run that nobody has begun."""
     return run_requests.request(sample.world, sample.split, "seq2seq", send=False)[0]
+
+
+@pytest.fixture
+def page_without_login(logged_in) -> Page:
+    """A page in the window of somebody who has no account."""
+    return logged_in(None).new_page()

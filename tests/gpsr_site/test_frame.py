@@ -124,7 +124,8 @@ def test_every_page_of_a_world_belongs_to_one_entry():
     parts |= {"learning_curves_table", "learning_curves_data", "learning_curve_start"}
     parts |= {"playground_ask", "playground_wrong", "parser_state"}
     parts |= {"guidelines_preview", "utterances_delete", "utterances_restore"}
-    parts |= {"upload_undo", "upload_redo"}
+    parts |= {"upload_undo", "upload_redo", "campaign_state", "campaign_act"}
+    parts |= {"submission_decide", "submissions_decide", "submissions_take_back"}
     parts |= {"promotion_promote", "promotion_roll_back", "promotion_decline"}
     names = [name for place in PLACES for name in (place.page, *place.pages_below)]
     assert len(names) == len(set(names))

@@ -30,6 +30,7 @@ Fault = Callable[["Handler"], None]
 class Handler(BaseHTTPRequestHandler):
     protocol_version = "HTTP/1.1"
     server: TinyServer
+    body: dict[str, Any]  # of the question
 
     def do_GET(self) -> None:
         self.server.headers.append(dict(self.headers))
@@ -41,7 +42,7 @@ class Handler(BaseHTTPRequestHandler):
             )
 
     def do_POST(self) -> None:
-        body = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
+        self.body = body = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
         server = self.server
         with server.lock:
             server.headers.append(dict(self.headers))

@@ -165,6 +165,11 @@ ARGUMENT_NAMES = _arguments.choices_by_name("names")
 NEEDED_ARGUMENTS = _arguments.words_by_name("needed")
 ARGUMENT_QUESTIONS = _arguments.texts_by_name("questions")
 
+_paraphrases = WordFile("paraphrases")
+COURTESY_WORDS = frozenset(_paraphrases.words("courtesy"))
+CHECK_WORDS = _paraphrases.words("checks")
+DESCRIBED_CLASSES = frozenset(_paraphrases.words("described"))
+
 
 @cache
 def sample_commands() -> tuple[tuple[str, str], ...]:

@@ -13,7 +13,7 @@ from annotations.language.grounding.deanonymizer import (
     ground_like,
     resolve_slots,
 )
-from annotations.language.grounding.grounding import ground
+from annotations.language.grounding.grounding import Grounded, ground
 from annotations.language.grounding.questions import (
     choices_of,
     noun_for,
@@ -32,6 +32,7 @@ __all__ = [
     "Deanonymized",
     "Evidence",
     "FormSlots",
+    "Grounded",
     "Slot",
     "SlotPath",
     "Span",

@@ -43,6 +43,7 @@ class PartCountSerializer(serializers.Serializer[Any]):
     validation = serializers.IntegerField()
     test = serializers.IntegerField()
     forms = serializers.IntegerField()
+    by_models = serializers.IntegerField()
 
 
 class SplitSerializer(serializers.ModelSerializer[Split]):

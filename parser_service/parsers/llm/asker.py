@@ -10,11 +10,11 @@ from datetime import UTC, datetime
 from email.utils import parsedate_to_datetime
 from functools import partial
 from http import HTTPStatus
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from parser_service.parsers.interface import Check
 from parser_service.parsers.llm.crew import Crew
-from parser_service.parsers.llm.exchange import NoReply, Reply, ServerRefusal
+from parser_service.parsers.llm.exchange import NoAnswer, NoReply, Reply, ServerRefusal
 from parser_service.parsers.llm.kept_answers import KeptAnswers, hash_of
 from parser_service.parsers.llm.protocol import (
     CHAT,
@@ -55,18 +55,46 @@ class Asker:
         Raises ServerRefusal, a sentence, where one of them cannot be had, and what ``check`` raises, which is
         called several times a second.
         """
+        answers = []
+        for answer in self._answers_to(questions, check, self._ask):
+            if isinstance(answer, NoAnswer):
+                raise answer
+            answers.append(answer)
+        return answers
+
+    def ask_each(self, questions: Sequence[Question], check: Check) -> list[ModelAnswer | NoAnswer]:
+        """Return the answer to each question, or why there is none.
+
+        Raises ServerRefusal where the server answers nobody, and what ``check`` raises.
+        """
+        return self._answers_to(questions, check, self._ask_or_say_why)
+
+    def _answers_to(
+        self,
+        questions: Sequence[Question],
+        check: Check,
+        ask: Callable[[Question, Crew[ModelAnswer | NoAnswer]], ModelAnswer | NoAnswer],
+    ) -> list[ModelAnswer | NoAnswer]:
         check()
         by_hash = {hash_of(each): each for each in questions}
-        answers = {name: self._answers.find(each) for name, each in by_hash.items()}
-        missing = {name: by_hash[name] for name, answer in answers.items() if answer is None}
+        answers: dict[str, ModelAnswer | NoAnswer] = {
+            name: answer for name, each in by_hash.items() if (answer := self._answers.find(each))
+        }
+        missing = [name for name in by_hash if name not in answers]
         if missing:
             self._require_model(questions[0].model, check)
-            crew = Crew[ModelAnswer](self.server, self._at_once, check)
-            jobs = [partial(self._ask, question) for question in missing.values()]
+            crew = Crew[ModelAnswer | NoAnswer](self.server, self._at_once, check)
+            jobs = [partial(ask, by_hash[name]) for name in missing]
             answers |= zip(missing, crew.run(jobs), strict=True)
-        return [answer for each in questions if (answer := answers[hash_of(each)]) is not None]
+        return [answers[hash_of(each)] for each in questions]
 
-    def _ask(self, question: Question, crew: Crew[ModelAnswer]) -> ModelAnswer:
+    def _ask_or_say_why(self, question: Question, crew: Crew[Any]) -> ModelAnswer | NoAnswer:
+        try:
+            return self._ask(question, crew)
+        except NoAnswer as error:
+            return error
+
+    def _ask(self, question: Question, crew: Crew[Any]) -> ModelAnswer:
         def attempt() -> ModelAnswer:
             reply = self._send(question, crew)
             self._require_success(reply)
@@ -77,7 +105,7 @@ class Asker:
         self._answers.keep(question, named)
         return named
 
-    def _send(self, question: Question, crew: Crew[ModelAnswer]) -> Reply:
+    def _send(self, question: Question, crew: Crew[Any]) -> Reply:
         """Send a question, in other words where the server does not understand the first ones."""
         sent = self.dialect.write(question)
         reply = crew.send("POST", CHAT, sent)
@@ -123,7 +151,7 @@ class Asker:
 
         return self._patiently(attempt, crew)
 
-    def _patiently(self, attempt: Callable[[], T], crew: Crew[T]) -> T:
+    def _patiently(self, attempt: Callable[[], T], crew: Crew[Any]) -> T:
         """Return what an attempt returns; after NoReply try again, later and later. Raises ServerRefusal."""
         patience, name = self.server.patience, self.server.name
         words = ""
@@ -140,7 +168,7 @@ class Asker:
             if number + 1 < patience.tries:
                 doubled = min(patience.first_pause * 2**number, patience.longest_pause)
                 crew.pause(doubled * (1 - JITTER * random.random()) if wanted is None else wanted)
-        raise ServerRefusal(
+        raise NoAnswer(
             f"The language model's server at {name} does not answer: {words}. It was asked "
             f"{patience.tries} times. Answers that came are kept: ask again when it is well."
         )
@@ -163,7 +191,7 @@ class Asker:
                 f"{server} has nothing at {self.server.path}{CHAT} ({said}). Look at GPSR_LLM_URL, which "
                 "often ends in /v1, and at the name of the model."
             )
-        raise ServerRefusal(f"{server} refuses the question ({said}).")
+        raise NoAnswer(f"{server} refuses the question ({said}).")
 
 
 def _retry_after(reply: Reply) -> float | None:

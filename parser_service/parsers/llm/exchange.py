@@ -29,6 +29,10 @@ class ServerRefusal(Refusal):
     code = "language_model_refused"
 
 
+class NoAnswer(ServerRefusal):
+    """This question cannot be answered; others may be."""
+
+
 class NoReply(Exception):
     """Nothing came that can be read; it may next time. A part of a sentence, and the seconds ``after`` which
     the server wants to be asked again, None where it does not say."""
@@ -120,7 +124,7 @@ class Exchange:
         while piece := response.read(PIECE):
             body += piece
             if len(body) > MOST_BYTES:
-                raise ServerRefusal(
+                raise NoAnswer(
                     f"The server at {self._server.name} answers with more than {MOST_BYTES:,} bytes, which is "
                     "no answer of a language model. Look at the address in GPSR_LLM_URL."
                 )

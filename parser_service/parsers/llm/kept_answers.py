@@ -71,6 +71,6 @@ class KeptAnswers:
 
 
 def hash_of(question: Question) -> str:
-    """Return the SHA-256 of the model, the messages, the schema, the seed and the limit."""
+    """Return the SHA-256 of the model, the messages, the schema, the seed, the limit and the temperature."""
     text = json.dumps([FORMAT, asdict(question)], sort_keys=True)
     return sha256(text.encode()).hexdigest()

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from parser_service.parsers.llm.exchange import NoReply, Reply, ServerRefusal
+from parser_service.parsers.llm.exchange import NoAnswer, NoReply, Reply
 
 Message = dict[str, str]
 
@@ -32,6 +32,7 @@ class Question:
     schema: Mapping[str, Any] | None
     seed: int
     max_tokens: int
+    temperature: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +65,7 @@ class Dialect:
         body: dict[str, Any] = {
             "model": question.model,
             "messages": messages,
-            "temperature": 0,
+            "temperature": question.temperature,
             "seed": question.seed,
             self.limit: question.max_tokens,
             "stream": False,
@@ -98,7 +99,7 @@ class Dialect:
 def read_answer(reply: Reply, key: str) -> ModelAnswer:
     """Return the answer in a reply with status 200.
 
-    Raises NoReply where it is none, and ServerRefusal where the model ran out of tokens before it answered.
+    Raises NoReply where it is none, and NoAnswer where the model ran out of tokens before it answered.
     """
     content = _json_of(reply)
     try:
@@ -110,7 +111,7 @@ def read_answer(reply: Reply, key: str) -> ModelAnswer:
         raise NoReply(f"its answer is none of the protocol{detail and f' ({detail})'}") from None
     text = THOUGHTS.sub("", text).strip()
     if not text and choice.get("finish_reason") == "length":
-        raise ServerRefusal(
+        raise NoAnswer(
             "The model had used all its tokens before it answered. Raise max_tokens, switch its thinking "
             "off, or give the server a longer context (docs/guides/llm.md)."
         )

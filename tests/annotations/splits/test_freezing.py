@@ -9,8 +9,10 @@ from annotations.generation.generating import generate_pairs
 from annotations.importing.pair_import import import_pairs
 from annotations.language.errors import LanguageError
 from annotations.models import Command, Example, Paraphrase
+from annotations.models.campaigns import ContributorKind
 from annotations.models.corpus import ParaphraseStatus
 from annotations.splits.freezing import as_items, freeze_split, unresolved_prompts
+from annotations.splits.split_statistics import counts_of
 from tests.sample_world import make_paraphrase
 
 ROOMS = [f"{adjective} {room}" for adjective in ("red", "blue", "old", "new") for room in "abcde"]
@@ -157,3 +159,24 @@ def test_without_generated_commands_prompts_are_what_there_is(full):
     full.commands.all().delete()
     split = freeze_split(full, "first", "source_command")
     assert set(split.examples.values_list("part", flat=True)) == {"train", "validation", "test"}
+
+
+def test_what_a_language_model_wrote_is_trained_on_and_never_tested_on(full):
+    campaign = full.campaigns.create(name="spring")
+    model = campaign.contributors.create(kind=ContributorKind.MODEL, pseudonym="model")
+    person = campaign.contributors.create(pseudonym="person")
+    for row in Paraphrase.objects.all():
+        row.contributor = model if row.utterance.startswith("please") else person
+        row.save(update_fields=["contributor"])
+    split = freeze_split(full, "apart", "source_command")
+    by_models = split.examples.filter(is_by_model=True)
+    assert by_models.exists()
+    assert set(by_models.values_list("part", flat=True)) == {"train"}
+    people = split.examples.filter(source="paraphrased", is_by_model=False)
+    assert set(people.values_list("part", flat=True)) == {"train", "validation", "test"}
+    assert people.count() == Paraphrase.objects.filter(contributor=person).count()
+    counts = {each.source: each for each in counts_of([split])[split.pk]}
+    assert counts["paraphrased"].by_models == by_models.count()
+    assert counts["generated"].by_models == 0
+    positions = people.filter(part="test").values_list("position", flat=True)
+    assert sorted(positions) == list(range(people.filter(part="test").count()))

@@ -12,6 +12,9 @@ from annotations.models import Entity
 from tests.gpsr_site.routes.listing import ROUTES_OF_WORLDS
 from tests.gpsr_site.routes.sample_rows import (
     answer_of_nobody,
+    campaign_key,
+    campaign_row,
+    contributor_row,
     decision_of_nobody,
     dialogue,
     error_category,
@@ -27,6 +30,7 @@ from tests.gpsr_site.routes.sample_rows import (
     run,
     saved_slice,
     split,
+    submission,
     template,
     upload,
     utterance,
@@ -63,6 +67,30 @@ KEYS: dict[str, RouteKeys] = {
     "document": lambda _: {"shelf": "guides", "page": "first-steps"},
     "document_image": lambda _: {"name": "run.png"},
     "join": join_keys,
+    **dict.fromkeys(
+        (
+            *("campaign_page", "campaign_state", "campaign_act", "api:campaign-detail"),
+            *("api:campaign-progress", "api:campaign-close", "api:campaign-reopen"),
+            *("api:campaign-revoke-link", "api:campaign-renew-link"),
+        ),
+        pk_of(campaign_row),
+    ),
+    **dict.fromkeys(
+        ("contributor_forget", "api:contributor-detail", "api:contributor-forget"),
+        pk_of(contributor_row),
+    ),
+    **dict.fromkeys(("campaign", "campaign_done"), campaign_key),
+    **dict.fromkeys(("campaign_model", "api:campaign-model"), pk_of(campaign_row)),
+    **dict.fromkeys(
+        (
+            *("submission", "submission_decide", "api:submission-detail", "api:submission-mend"),
+            *("api:submission-take-back", "api:submission-with-form", "api:submission-with-doubt"),
+        ),
+        pk_of(submission),
+    ),
+    **dict.fromkeys(
+        ("campaign_place", "campaign_check"), lambda sample: {**campaign_key(sample), "position": 1}
+    ),
     **dict.fromkeys(("account_close", "account_link"), pk_of(removable_member)),
     "password_set": lambda _: {"uidb64": "MQ", "token": "none"},
     "token_revoke": lambda _: {"pk": 10**6},

@@ -157,9 +157,22 @@ API_POLICY = [
         Rule(f"api:{name}", *admins(YES))
         for name in ("invitation-list", "invitation-detail", "audit-log")
     ),
+    # Admins let people contribute, and know them by pseudonyms
+    *(
+        Rule(f"api:{name}", *admins(YES))
+        for name in (
+            *("campaign-list", "campaign-detail", "campaign-progress", "contributor-list"),
+            "contributor-detail",
+        )
+    ),
+    *(
+        Rule(f"api:campaign-{name}", *admins(YES), method="post")
+        for name in ("close", "reopen", "revoke-link", "renew-link")
+    ),
+    Rule("api:contributor-forget", *admins(NOTHING), method="post"),
     *(
         Rule(f"api:{name}", *admins(NO_JSON), method="post")
-        for name in ("member-list", "invitation-list")
+        for name in ("member-list", "invitation-list", "campaign-list")
     ),
     Rule("api:member-detail", *admins(NO_VERSION), method="patch"),
     *(
@@ -202,6 +215,14 @@ API_POLICY = [
     Rule("api:parse-jobs", *members(NO_JSON), method="post"),
     Rule("api:parse-wrong", *members(NO_JSON), method="post"),
     # Everybody with a role decides about labels in doubt, reviewers let them be looked for
+    Rule("api:campaign-model", *admins(NO_JSON), method="post"),
+    # What contributors wrote, by pseudonym
+    *(Rule(f"api:submission-{name}", *reviewers(YES)) for name in ("list", "detail")),
+    *(
+        Rule(f"api:submission-{name}", *reviewers(NO_JSON), method="post")
+        for name in ("decide", "mend", "with-form", "with-doubt")
+    ),
+    Rule("api:submission-take-back", *reviewers(CLASH), method="post"),
     Rule("api:audit-finding-decide", *members(NO_JSON), method="post"),
     Rule("api:audit-decision-take-back", *members(CLASH), method="post"),
     *(

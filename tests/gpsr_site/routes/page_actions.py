@@ -21,6 +21,9 @@ PASSWORD = NoRoute(
     "A password is typed by a person and is not sent by programs; it ends their tokens."
 )
 UNSAVED = NoRoute("It keeps what somebody has typed and not saved, for the next look at the page.")
+PEOPLE_ALONE = NoRoute(
+    "It is for people without an account; what a program writes comes by a file."
+)
 
 PAGE_ACTIONS: dict[str, str | NoRoute] = {
     # One's account
@@ -33,6 +36,17 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "join": "post join",
     "inbox": "post notice-read-all",
     "notice_open": "post notice-read",
+    # What contributors write
+    **dict.fromkeys(("campaign", "campaign_place", "campaign_done"), PEOPLE_ALONE),
+    "campaign_check": PEOPLE_ALONE,
+    "submission_decide": "post submission-decide, post submission-mend, post submission-with-form, "
+    "post submission-with-doubt",
+    "submissions_decide": "post submission-decide",
+    "campaign_model": "post campaign-model",
+    "submissions_take_back": "post submission-take-back",
+    "campaign_new": "post campaign-list",
+    "campaign_act": "post campaign-close, post campaign-reopen, post campaign-revoke-link, post campaign-renew-link",
+    "contributor_forget": "post contributor-forget",
     # The site
     "account_close": "patch account-detail",
     "account_link": "post account-link",
@@ -182,6 +196,11 @@ PAGE_VIEWS: dict[str, str | NoRoute] = {
     "logical_form": "get form-detail",
     "paraphrases": "get paraphrase-list",
     "paraphrase": "get paraphrase-detail",
+    "submissions": "get submission-list",
+    "submission": "get submission-detail",
+    "campaigns": "get campaign-list",
+    "campaign_page": "get campaign-detail, get contributor-list, get submission-list",
+    "campaign_state": "get campaign-progress",
     "utterances": "get utterance-list",
     "utterance": "get utterance-detail",
     "uploads": "get upload-list",

@@ -45,6 +45,14 @@ POLICY = [
     # Whoever has the link of an invitation joins
     Rule("join", YES, YES, YES, YES, YES),
     Rule("join", 422, GONE_ON, GONE_ON, GONE_ON, GONE_ON, method="post"),
+    # Whoever has the link of a campaign contributes; who has not begun is led to its first page
+    Rule("campaign", YES, YES, YES, YES, YES),
+    Rule("campaign", 422, 422, 422, 422, 422, method="post"),
+    Rule("campaign_place", *[GONE_ON] * 5),
+    Rule("campaign_place", *[GONE_ON] * 5, method="post"),
+    Rule("campaign_check", YES, YES, YES, YES, YES, method="post"),
+    Rule("campaign_done", *[GONE_ON] * 5),
+    Rule("campaign_done", *[GONE_ON] * 5, method="post"),
     Rule("home", LOG_IN, YES, YES, YES, YES),
     Rule("inbox", LOG_IN, YES, YES, YES, YES),
     Rule("inbox", LOG_IN, GONE_ON, GONE_ON, GONE_ON, GONE_ON, method="post"),
@@ -57,6 +65,13 @@ POLICY = [
     Rule("world_import", LOG_IN, NO, NO, NO, NO, method="post"),
     Rule("world_delete", LOG_IN, NOWHERE, NO, NO, NO),
     Rule("world_delete", LOG_IN, NOWHERE, NO, NO, NO, method="post"),
+    Rule("campaign_model", *ADMINS),
+    Rule("campaign_model", LOG_IN, NOWHERE, NO, NO, 422, method="post"),
+    # Who reviews moderates what contributors wrote
+    *(Rule(name, LOG_IN, NOWHERE, NO, YES, YES) for name in ("submissions", "submission")),
+    Rule("submission_decide", LOG_IN, NOWHERE, NO, 422, 422, method="post"),
+    Rule("submissions_decide", LOG_IN, NOWHERE, NO, GONE_ON, GONE_ON, method="post"),
+    Rule("submissions_take_back", LOG_IN, NOWHERE, NO, GONE_ON, GONE_ON, method="post"),
     # What members look at
     *(
         Rule(name, *MEMBERS)
@@ -265,6 +280,13 @@ POLICY = [
     ),
     Rule("job_cancel", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("job_answer", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
+    # Admins let people contribute
+    *(Rule(name, *ADMINS) for name in ("campaigns", "campaign_page", "campaign_state")),
+    Rule("campaign_new", *ADMINS),
+    Rule("campaign_new", LOG_IN, NOWHERE, NO, NO, 422, method="post"),
+    Rule("campaign_act", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
+    Rule("contributor_forget", *ADMINS),
+    Rule("contributor_forget", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("run_new", *ADMINS),
     Rule("run_new", *ADMINS, method="post"),
     Rule("run_cancel", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),

@@ -11,10 +11,12 @@ from annotations.language.dialogue import DialogueState, Offer, Phase
 from annotations.models import (
     AuditDecision,
     AuditFinding,
+    Campaign,
     Invitation,
     Job,
     Label,
     Membership,
+    Submission,
     Upload,
     User,
     Utterance,
@@ -71,6 +73,37 @@ def key_of(sample: SampleWorld) -> str:
 def join_keys(sample: SampleWorld) -> dict[str, object]:
     invitation(sample)
     return {"key": key_of(sample)}
+
+
+def campaign_row(sample: SampleWorld) -> Campaign:
+    """Return a campaign with a prompt, a contributor, and what they submitted; what is missing is made."""
+    sizes = {"task_size": 1, "free_commands": 0}
+    row, _ = Campaign.objects.get_or_create(world=sample.world, name="first", defaults=sizes)
+    if not row.key:
+        row.key = f"campaign-of-{sample.world}"
+        row.save()
+    texts = {"prompt": "go there", "shown": "go there"}
+    forms = {"logical_form": "go", "grounded_form": "go"}
+    prompt, _ = row.prompts.get_or_create(position=1, defaults={**texts, **forms})
+    contributor, _ = row.contributors.get_or_create(pseudonym="f00d")
+    values = {"prompt": prompt, "text": "move over there", "answered_at": timezone.now()}
+    contributor.submissions.get_or_create(position=1, defaults=values)
+    return row
+
+
+def submission(sample: SampleWorld) -> Submission:
+    """Return what a contributor of the campaign wrote, which nobody has decided about."""
+    row = Submission.objects.answered().filter(contributor__campaign=campaign_row(sample)).first()
+    assert row is not None
+    return row
+
+
+def contributor_row(sample: SampleWorld) -> Model:
+    return campaign_row(sample).contributors.first()
+
+
+def campaign_key(sample: SampleWorld) -> dict[str, object]:
+    return {"key": campaign_row(sample).key}
 
 
 def utterance(sample: SampleWorld) -> Utterance:

@@ -195,6 +195,13 @@ FIELDS_ELSEWHERE = {
     "queue_ask": ("reason",),
     "queue_act": ("step", "person"),
     "queue_settle": ("choice", "form"),
+    "submission_decide": ("decision", "text", "form", "reason"),
+    "submissions_decide": ("decision", "row"),
+    "submissions_take_back": ("at",),
+    "campaign": ("agrees",),
+    "campaign_place": ("text", "shown", "pasted", "advised"),
+    "campaign_check": ("text",),
+    "campaign_done": ("helped",),
     "login": ("username", "password", "next"),
 }
 

@@ -12,6 +12,9 @@ import pytest
 
 from annotations.language.errors import Refusal
 from parser_service.parsers.interface import Cancelled
+from parser_service.parsers.llm.asker import Asker
+from parser_service.parsers.llm.exchange import NoAnswer, ServerRefusal
+from parser_service.parsers.llm.protocol import ModelAnswer
 from parser_service.parsers.llm.server_address import ModelServer
 from tests.parser_service.llm_server import (
     QUICK,
@@ -187,3 +190,31 @@ def test_a_huge_answer_is_not_read_to_its_end(place, tiny):
         ask(place, question())
     assert refused.value.code == "language_model_refused"
     assert len(tiny.asked) == 1
+
+
+def test_each_question_has_its_answer_or_its_fault(place, tiny):
+    def answer(handler):
+        if "bad" in handler.body["messages"][-1]["content"]:
+            return fails(500, "CUDA error")(handler)
+        return says("a")(handler)
+
+    tiny.always = answer
+    asker = Asker(place, 4)
+    outcomes = asker.ask_each([question("one"), question("bad"), question("two")], lambda: None)
+    assert [type(each) for each in outcomes] == [ModelAnswer, NoAnswer, ModelAnswer]
+    asked = len(tiny.asked)
+    asker.ask_each([question("one"), question("two")], lambda: None)
+    assert len(tiny.asked) == asked
+
+
+def test_a_server_that_lets_nobody_in_ends_all_questions(place, tiny):
+    tiny.always = fails(401)
+    with pytest.raises(ServerRefusal) as refused:
+        Asker(place, 2).ask_each([question("one"), question("two")], lambda: None)
+    assert not isinstance(refused.value, NoAnswer)
+
+
+def test_a_question_has_its_temperature(place, tiny):
+    ask(place, replace(question(), temperature=0.7))
+    ask(place, question())
+    assert [each["temperature"] for each in tiny.asked] == [0.7, 0]

@@ -1,0 +1,1 @@
+"""Paraphrases by link: launch a campaign, give prompts, take what contributors write."""

@@ -1,0 +1,52 @@
+"""Verbs: close a campaign and open it again, revoke its link or make a new one, and forget a contributor."""
+
+from __future__ import annotations
+
+from django.db import transaction
+from django.utils import timezone
+
+from annotations.models import Campaign, Contributor, Paraphrase, Utterance
+from annotations.models.campaigns import new_key
+from annotations.rows.history import history_of
+
+
+def close(campaign: Campaign) -> None:
+    """Take nothing any more. What was submitted stays."""
+    if campaign.closed_at is None:
+        campaign.closed_at = timezone.now()
+        campaign.save(update_fields=["closed_at"])
+
+
+def reopen(campaign: Campaign) -> None:
+    """Undo ``close``. A campaign whose time is up stays over."""
+    campaign.closed_at = None
+    campaign.save(update_fields=["closed_at"])
+
+
+def revoke_link(campaign: Campaign) -> None:
+    """Let the link lead nowhere, also for those who have begun."""
+    campaign.key = ""
+    campaign.save(update_fields=["key"])
+
+
+def renew_link(campaign: Campaign) -> None:
+    """Give the campaign another link; the one before leads nowhere any more. Who has begun goes on by the new one."""
+    campaign.key = new_key()
+    campaign.save(update_fields=["key"])
+
+
+def forget(contributor: Contributor) -> int:
+    """Delete a contributor with all that they wrote, accepted or not, and return how many texts that were.
+
+    Its history goes as well, so that nobody brings it back. Frozen splits keep their copies: they never change.
+    """
+    with transaction.atomic():
+        count = contributor.submissions.answered().count()
+        paraphrases = contributor.paraphrases.all()
+        utterances = Utterance.with_deleted.filter(submission__contributor=contributor)
+        for model, rows in ((Paraphrase, paraphrases), (Utterance, utterances)):
+            keys = list(rows.values_list("pk", flat=True))
+            history_of(model).filter(id__in=keys).delete()
+            rows.delete()
+        contributor.delete()
+    return count

@@ -1,0 +1,176 @@
+"""Verb: launch a campaign: draw its prompts from the commands of a world."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from http import HTTPStatus
+from random import Random
+
+from django.db import IntegrityError, transaction
+from django.db.models import Count
+
+from annotations.generation.grounded_pairs import GroundedCommands
+from annotations.language.english import CHECK_WORDS
+from annotations.language.errors import LanguageError, Refusal
+from annotations.language.forms import canonical_text
+from annotations.language.grounding import Grounded
+from annotations.language.ontology import Ontology
+from annotations.language.paraphrases import Named, entities_of
+from annotations.language.predicates import gloss
+from annotations.language.templates import Expansion, generate
+from annotations.models import Campaign, CampaignPrompt, User, World
+from annotations.models.campaigns import Wording
+from annotations.rows.from_rows import ontology_of, predicates_of, task_categories
+from annotations.rows.synchronise import BATCH
+
+MOST_PROMPTS = 20_000
+_TRIES = 4  # for each prompt that shall differ from the others of its form
+
+
+@dataclass(frozen=True, slots=True)
+class PromptChoice:
+    """Which commands become prompts.
+
+    Attributes:
+        task_categories: names; all without any.
+        prompts_per_form: commands and groundings of one form; as many as differ, at most.
+        target_per_form: forms with as many accepted paraphrases are left out.
+    """
+
+    task_categories: tuple[str, ...] = ()
+    prompts_per_form: int = 3
+    target_per_form: int = 10
+    wording: str = Wording.COMMAND
+    seed: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnPrompt:
+    """A prompt that is not stored yet; the columns of ``CampaignPrompt``."""
+
+    expansion: Expansion
+    grounded: Grounded
+    grounded_form: str
+    shown: str
+    entities: tuple[Named, ...]
+
+
+def draw_prompts(world: World, choice: PromptChoice) -> list[DrawnPrompt]:
+    """Draw prompts for each form that is below its target, in random order, as ``choice`` says.
+
+    Commands of one form take turns. The same world, choice and seed give the same prompts. A command for
+    which the ontology has no value is left out.
+
+    Raises:
+        LanguageError: the world makes too many commands to draw from, or a stored text cannot be read.
+        Refusal: nothing is left to ask for, or it would be more than ``MOST_PROMPTS``.
+    """
+    categories = task_categories(world)
+    by_form = _forms_below_target(world, generate(categories).expansions, choice)
+    if len(by_form) * choice.prompts_per_form > MOST_PROMPTS:
+        said = f"{len(by_form):,} forms make too many prompts. Choose fewer task categories."
+        raise Refusal(said, "too_many_prompts")
+    random, ontology, declared = Random(choice.seed), ontology_of(world), predicates_of(world)
+    sources = {category.name: GroundedCommands(category) for category in categories}
+    drawn = []
+    for form in random.sample(list(by_form), len(by_form)):
+        for expansion, grounded in _draw(by_form[form], sources, ontology, choice, random):
+            is_english = choice.wording == Wording.ENGLISH
+            shown = gloss(grounded.form, declared) if is_english else grounded.text
+            grounded_form = canonical_text(grounded.form)
+            entities = entities_of(grounded, ontology)
+            drawn.append(DrawnPrompt(expansion, grounded, grounded_form, shown, entities))
+    if not drawn:
+        said = (
+            "No form is below its target here. Choose other task categories, or raise the target."
+        )
+        raise Refusal(said, "nothing_to_paraphrase")
+    return drawn
+
+
+def launch(campaign: Campaign, choice: PromptChoice, by: User) -> Campaign:
+    """Store an unsaved campaign with its prompts, and with its planted checks. It is open at once.
+
+    Raises:
+        LanguageError, Refusal: as ``draw_prompts``; the world has a campaign of that name.
+    """
+    drawn = draw_prompts(campaign.world, choice)
+    commands = dict(campaign.world.commands.values_list("anonymized_text", "pk"))
+    campaign.wording, campaign.seed = choice.wording, choice.seed
+    campaign.target_per_form, campaign.created_by = choice.target_per_form, by
+    prompts = [
+        CampaignPrompt(
+            command_id=commands.get(each.expansion.command),
+            command_text=each.expansion.command,
+            task_category=each.expansion.task_category,
+            logical_form=each.expansion.form_text,
+            prompt=each.grounded.text,
+            grounded_form=each.grounded_form,
+            shown=each.shown,
+            entities=[
+                {
+                    "text": named.text,
+                    "aliases": list(named.aliases),
+                    "is_described": named.is_described,
+                }
+                for named in each.entities
+            ],
+        )
+        for each in drawn
+    ]
+    prompts += _checks(campaign)
+    for position, prompt in enumerate(prompts, start=1):
+        prompt.campaign, prompt.position = campaign, position
+    try:
+        with transaction.atomic():
+            campaign.save()
+            CampaignPrompt.objects.bulk_create(prompts, batch_size=BATCH)
+    except IntegrityError as error:
+        said = f"This world has a campaign called {campaign.name} already. Choose another name."
+        raise Refusal(said, "name_taken", HTTPStatus.CONFLICT) from error
+    return campaign
+
+
+def _forms_below_target(
+    world: World, expansions: Sequence[Expansion], choice: PromptChoice
+) -> dict[str, list[Expansion]]:
+    accepted = world.paraphrases.accepted().values_list("logical_form").order_by()
+    paraphrases = dict(accepted.annotate(Count("pk")))
+    by_form: dict[str, list[Expansion]] = defaultdict(list)
+    for expansion in expansions:
+        is_chosen = not choice.task_categories or expansion.task_category in choice.task_categories
+        if is_chosen and paraphrases.get(expansion.form_text, 0) < choice.target_per_form:
+            by_form[expansion.form_text].append(expansion)
+    return by_form
+
+
+def _draw(
+    expansions: Sequence[Expansion],
+    sources: dict[str, GroundedCommands],
+    ontology: Ontology,
+    choice: PromptChoice,
+    random: Random,
+) -> Iterator[tuple[Expansion, Grounded]]:
+    """Yield prompts of one form whose texts differ: every command once, then again with other entities."""
+    turns = random.sample(expansions, len(expansions))
+    texts: set[str] = set()
+    for turn in range(choice.prompts_per_form * _TRIES):
+        expansion = turns[turn % len(turns)]
+        try:
+            grounded = sources[expansion.task_category].draw(expansion, ontology, random)
+        except LanguageError:
+            continue
+        if grounded.text not in texts:
+            texts.add(grounded.text)
+            yield expansion, grounded
+        if len(texts) == choice.prompts_per_form:
+            return
+
+
+def _checks(campaign: Campaign) -> Iterator[CampaignPrompt]:
+    """Yield prompts that ask for words, which only somebody who reads writes."""
+    for words in CHECK_WORDS if campaign.check_every else ():
+        asked = f"This one is a check that you read along. Write only these words: {words}"
+        yield CampaignPrompt(prompt=asked, shown=asked, check_words=words)

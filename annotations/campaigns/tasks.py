@@ -1,0 +1,138 @@
+"""Verbs: begin a task of a campaign, and give it prompts of forms that have fewest submissions."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from datetime import timedelta
+from http import HTTPStatus
+from itertools import islice
+from random import Random
+
+from django.db import IntegrityError, transaction
+from django.db.models import Count, Q
+from django.utils import timezone
+
+from annotations.language.errors import Refusal
+from annotations.models import Campaign, CampaignPrompt, Contributor, Submission
+from annotations.models.campaigns import ContributorKind, SubmissionKind
+
+HELD = timedelta(hours=1)  # a prompt that was given counts as taken for so long
+
+
+class CampaignOver(Refusal):
+    """A campaign takes nothing any more."""
+
+    code = "campaign_over"
+    status = HTTPStatus.GONE
+
+    def __init__(self) -> None:
+        super().__init__("This campaign is over. Thank you for your interest.")
+
+
+def require_open(campaign: Campaign) -> None:
+    """Raise CampaignOver where the campaign was closed, its time is up, or it has all that it wanted."""
+    most = campaign.most_submissions
+    answered = Submission.objects.filter(contributor__campaign=campaign).answered()
+    if campaign.is_over or (most is not None and answered.count() >= most):
+        raise CampaignOver
+
+
+def contributor_of(campaign: Campaign, pseudonym: str) -> Contributor | None:
+    """Return the latest task of a contributor; None where they have not begun one."""
+    return campaign.contributors.filter(pseudonym=pseudonym).order_by("-attempt").first()
+
+
+def begin(campaign: Campaign, pseudonym: str, kind: str = ContributorKind.PERSON) -> Contributor:
+    """Return the task of a contributor, with all its places: the one that they have, or a new one.
+
+    A finished task is begun anew only where the campaign allows it. Whoever begins twice at the same
+    moment gets one task.
+
+    Raises:
+        CampaignOver: there is nothing to begin.
+    """
+    latest = contributor_of(campaign, pseudonym)
+    if latest is not None and not (latest.is_finished and campaign.allows_retake):
+        return latest
+    require_open(campaign)
+    attempt = 1 if latest is None else latest.attempt + 1
+    # Chosen before anything is written: others write meanwhile.
+    prompts = choose_prompts(campaign, campaign.task_size, pseudonym)
+    checks = list(campaign.prompts.exclude(check_words=""))
+    try:
+        with transaction.atomic():
+            contributor = Contributor.objects.create(
+                campaign=campaign,
+                pseudonym=pseudonym,
+                attempt=attempt,
+                kind=kind,
+                consented_at=timezone.now(),
+            )
+            Submission.objects.bulk_create(_places(contributor, prompts, checks))
+    except IntegrityError:
+        return campaign.contributors.get(pseudonym=pseudonym, attempt=attempt)
+    return contributor
+
+
+def choose_prompts(campaign: Campaign, size: int, pseudonym: str = "") -> list[CampaignPrompt]:
+    """Return ``size`` different prompts, or all that there are, forms with fewest submissions first.
+
+    A form comes twice only when every other one has come. What ``pseudonym`` had before comes last.
+    """
+    random = Random(f"{campaign.seed}:{pseudonym}:{timezone.now().timestamp()}")
+    rewrites = campaign.prompts.filter(check_words="")
+    by_form: dict[str, list[int]] = defaultdict(list)
+    for key, form in rewrites.values_list("pk", "logical_form"):
+        by_form[form].append(key)
+    of_prompt = _taken(campaign, "prompt")
+    of_form = Counter[str]()
+    for form, prompts in by_form.items():
+        of_form[form] = sum(of_prompt[key] for key in prompts)
+    had = set(
+        Submission.objects.filter(
+            contributor__campaign=campaign, contributor__pseudonym=pseudonym
+        ).values_list("prompt_id", flat=True)
+    )
+    for prompts in by_form.values():
+        random.shuffle(prompts)
+        prompts.sort(key=lambda key: (key in had, of_prompt[key]))
+    forms = random.sample(list(by_form), len(by_form))
+    forms.sort(key=lambda form: of_form[form])
+    longest = max(map(len, by_form.values()), default=0)
+    rounds = (
+        by_form[form][turn]
+        for turn in range(longest)
+        for form in forms
+        if turn < len(by_form[form])
+    )
+    chosen = list(islice(rounds, size))
+    random.shuffle(chosen)
+    rows = CampaignPrompt.objects.in_bulk(chosen)
+    return [rows[key] for key in chosen]
+
+
+def _taken(campaign: Campaign, column: str) -> Counter[int]:
+    """Count the submissions of each prompt: what was answered, and what was given within the last hour."""
+    is_taken = ~Q(text="") | Q(given_at__gt=timezone.now() - HELD)
+    rows = Submission.objects.filter(
+        is_taken, contributor__campaign=campaign, kind=SubmissionKind.REWRITE
+    )
+    return Counter(dict(rows.order_by().values_list(column).annotate(Count("pk"))))
+
+
+def _places(
+    contributor: Contributor, prompts: list[CampaignPrompt], checks: list[CampaignPrompt]
+) -> list[Submission]:
+    """Return the places of a task: prompts, a check after every so many, and free commands at the end."""
+    campaign = contributor.campaign
+    places: list[tuple[str, CampaignPrompt | None]] = []
+    for number, prompt in enumerate(prompts, start=1):
+        places.append((SubmissionKind.REWRITE, prompt))
+        if checks and number % campaign.check_every == 0:
+            check = checks[(contributor.pk + number // campaign.check_every) % len(checks)]
+            places.append((SubmissionKind.CHECK, check))
+    places += [(SubmissionKind.FREE, None)] * campaign.free_commands
+    return [
+        Submission(contributor=contributor, position=position, kind=kind, prompt=prompt)
+        for position, (kind, prompt) in enumerate(places, start=1)
+    ]

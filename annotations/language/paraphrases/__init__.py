@@ -1,0 +1,55 @@
+"""Paraphrases of prompts: what to tell their writers, what to tell moderators, and what a language model writes."""
+
+from __future__ import annotations
+
+from annotations.language.paraphrases.known_words import KnownWords
+from annotations.language.paraphrases.model_replies import rewrites_in
+from annotations.language.paraphrases.prompt_entities import entities_of
+from annotations.language.paraphrases.rewrite_checks import (
+    Named,
+    RewriteFault,
+    RewriteWarning,
+    check_rewrite,
+    lost_entities,
+)
+from annotations.language.paraphrases.rewrite_requests import (
+    INSTRUCTIONS,
+    LONGEST_INSTRUCTIONS,
+    check_instructions,
+    instructions_version,
+    rewrite_request,
+)
+from annotations.language.paraphrases.submission_flags import (
+    Flag,
+    FlagCode,
+    FreeCommand,
+    Rewrite,
+    check_flags,
+    free_command_flags,
+    rewrite_flags,
+)
+from annotations.language.paraphrases.word_folding import folded_words
+
+__all__ = [
+    "INSTRUCTIONS",
+    "LONGEST_INSTRUCTIONS",
+    "Flag",
+    "FlagCode",
+    "FreeCommand",
+    "KnownWords",
+    "Named",
+    "Rewrite",
+    "RewriteFault",
+    "RewriteWarning",
+    "check_flags",
+    "check_instructions",
+    "check_rewrite",
+    "entities_of",
+    "folded_words",
+    "free_command_flags",
+    "instructions_version",
+    "lost_entities",
+    "rewrite_flags",
+    "rewrite_request",
+    "rewrites_in",
+]

@@ -1,0 +1,35 @@
+"""Which entities a prompt names, so that a rewrite can be checked for them."""
+
+from __future__ import annotations
+
+from annotations.language.english import DESCRIBED_CLASSES
+from annotations.language.grounding import Grounded
+from annotations.language.ontology import Entity, Ontology
+from annotations.language.paraphrases.rewrite_checks import Named, lost_entities
+
+
+def entities_of(grounded: Grounded, ontology: Ontology) -> tuple[Named, ...]:
+    """Return what ``grounded.text`` names, in the order of its wildcards, each once.
+
+    An obfuscated entity is called by its category or its room. What the text does not say, such as the
+    question that a person asks, is left out.
+    """
+    named = (
+        _as_named(wildcard.entity_class, entity, grounded.text, ontology)
+        for wildcard, entity in grounded.values
+    )
+    return tuple(dict.fromkeys(each for each in named if each is not None))
+
+
+def _as_named(
+    entity_class: str | None, entity: Entity, text: str, ontology: Ontology
+) -> Named | None:
+    is_described = entity_class in DESCRIBED_CLASSES
+    whole = Named(entity.text, entity.aliases, is_described)
+    category = entity.attribute("category")
+    vague = (category and ontology.singular(category), entity.attribute("room"))
+    for named in (whole, *(Named(name) for name in vague if name)):
+        # A description counts as said only where the prompt has all of it.
+        if not lost_entities(text, [Named(named.text)]):
+            return named
+    return None

@@ -1,0 +1,212 @@
+"""The form that launches a campaign, and what its lists may be filtered by."""
+
+from __future__ import annotations
+
+from datetime import date, datetime, time, timedelta
+from typing import Any
+
+import django_filters
+from django import forms
+from django.utils import timezone
+
+from annotations.campaigns.launching import PromptChoice
+from annotations.lists.filtering import Choices, PageFilters, Search
+from annotations.models import Campaign, World
+from annotations.models.campaigns import (
+    LONGEST_CAMPAIGN_NAME,
+    MOST_CHARACTERS_OF_TEXT,
+    Wording,
+    contributor_kind_choices,
+    wording_choices,
+)
+from annotations.people.access import WorldRequest
+from annotations.web.forms import choice_field
+
+MOST_PROMPTS_PER_FORM = 20
+MOST_REWRITES, MOST_FREE_COMMANDS = 100, 20
+MOST_SUBMISSIONS = 1_000_000
+INTRODUCTION = (
+    "You will see commands that somebody could give to a robot at home. Say each of them in your own words: "
+    "use other words or another order, but ask for the same. Write as you would speak."
+)
+EXAMPLES = """\
+- *bring me the apple from the table* → **could you get the apple that is on the table**
+- *tell me how many people are in the kitchen* → **count the people in the kitchen and say the number**
+"""
+CONSENT = (
+    "What you write is used for research and may be published. Nobody asks for your name: you are known by a "
+    "random number. You may stop at any time."
+)
+THANKS = "Everything is saved. You have helped robots to understand people."
+
+
+def text_field(label: str, initial: str) -> forms.CharField:
+    return forms.CharField(
+        label=label,
+        required=False,
+        initial=initial,
+        max_length=MOST_CHARACTERS_OF_TEXT,
+        strip=False,
+        widget=forms.Textarea(attrs={"rows": 4}),
+    )
+
+
+def number_field(label: str, initial: int, most: int, help_text: str, least: int = 0) -> Any:
+    return forms.IntegerField(
+        label=label, initial=initial, min_value=least, max_value=most, help_text=help_text
+    )
+
+
+class CampaignForm(forms.Form):
+    """What people are asked, how much of it, and in which words. Every field but the name may stay as it is."""
+
+    name = forms.CharField(
+        max_length=LONGEST_CAMPAIGN_NAME, help_text="Contributors do not see it."
+    )
+    task_categories = forms.MultipleChoiceField(
+        label="Task categories",
+        required=False,
+        widget=forms.CheckboxSelectMultiple,
+        help_text="None: all of them.",
+    )
+    wording = forms.ChoiceField(
+        label="What is shown",
+        choices=wording_choices,
+        initial=Wording.COMMAND,
+        help_text="The English of the form sounds odd, but puts fewer words into people's mouths.",
+    )
+    target_per_form = number_field(
+        "Paraphrases per form", 10, 1_000, "Forms that have as many are left out.", 1
+    )
+    prompts_per_form = number_field(
+        "Prompts per form", 3, MOST_PROMPTS_PER_FORM, "Commands and entities, where they differ.", 1
+    )
+    task_size = number_field("Rewrites", 12, MOST_REWRITES, "in one task", 1)
+    free_commands = number_field("Free commands", 2, MOST_FREE_COMMANDS, "of their own, at the end")
+    check_every = number_field(
+        "Check after every", 0, MOST_REWRITES, "rewrites; 0 plants no checks"
+    )
+    taboo_words = number_field(
+        "Words to avoid", 0, 10, "the most used ones of a form; 0 shows none"
+    )
+    ends_at = forms.DateField(
+        label="Last day",
+        required=False,
+        widget=forms.DateInput(attrs={"type": "date"}),
+        help_text="Empty: until you close it.",
+    )
+    most_submissions = forms.IntegerField(
+        label="Submissions at most",
+        required=False,
+        min_value=1,
+        max_value=MOST_SUBMISSIONS,
+        help_text="Empty: as many as come.",
+    )
+    price = forms.DecimalField(
+        label="Price of a task",
+        required=False,
+        min_value=0,
+        max_digits=7,
+        decimal_places=2,
+        help_text="Empty: people are not paid.",
+    )
+    currency = forms.CharField(required=False, max_length=8, initial="EUR")
+    completion_code = forms.CharField(
+        label="Completion code", required=False, max_length=40, help_text="Shown at the end."
+    )
+    return_url = forms.URLField(
+        label="Link back",
+        required=False,
+        max_length=500,
+        assume_scheme="https",
+        help_text="Where the crowd market wants people back.",
+    )
+    allows_model_help = forms.BooleanField(label="People may use a language model", required=False)
+    allows_retake = forms.BooleanField(label="People may do more than one task", required=False)
+    seed = number_field("Seed", 0, 2**31 - 1, "The same seed draws the same prompts.")
+    introduction = text_field("Introduction", INTRODUCTION)
+    examples = text_field("Examples", EXAMPLES)
+    consent = text_field("Consent", CONSENT)
+    thanks = text_field("Thanks", THANKS)
+
+    OF_CHOICE = ("task_categories", "prompts_per_form", "target_per_form", "wording", "seed")
+    TASK = ("task_size", "free_commands", "target_per_form")
+    WHAT = ("prompts_per_form", "wording", "taboo_words", "check_every", "seed")
+    END = ("ends_at", "most_submissions", "price", "currency", "completion_code", "return_url")
+    MAY = ("allows_model_help", "allows_retake")
+    TEXTS = ("introduction", "examples", "consent", "thanks")
+
+    def __init__(self, world: World, *args: Any, **kwargs: Any):
+        super().__init__(*args, **kwargs)
+        names = world.commands.order_by("task_category").values_list("task_category", flat=True)
+        choice_field(self, "task_categories").choices = [
+            (name, name) for name in names.distinct() if name
+        ]
+
+    def clean_ends_at(self) -> datetime | None:
+        """Return the end of the last day, of which something has to be left."""
+        day: date | None = self.cleaned_data["ends_at"]
+        if day is None:
+            return None
+        try:
+            end = timezone.make_aware(datetime.combine(day + timedelta(days=1), time.min))
+        except OverflowError:
+            raise forms.ValidationError("Choose an earlier day.") from None
+        if end <= timezone.now():
+            raise forms.ValidationError("This day is over. Choose a later one.")
+        return end
+
+    @property
+    def choice(self) -> PromptChoice:
+        """Return which prompts are drawn, once the form is valid."""
+        chosen = {name: self.cleaned_data[name] for name in self.OF_CHOICE}
+        return PromptChoice(**{**chosen, "task_categories": tuple(chosen["task_categories"])})
+
+    def unsaved(self, world: World) -> Campaign:
+        """Return the campaign that a valid form describes."""
+        columns = self.cleaned_data.keys() - {"task_categories", "prompts_per_form"}
+        return Campaign(world=world, **{name: self.cleaned_data[name] for name in columns})
+
+    def group(self, names: tuple[str, ...]) -> list[forms.BoundField]:
+        return [self[name] for name in names]
+
+    @property
+    def what(self) -> list[forms.BoundField]:
+        return self.group(self.WHAT)
+
+    @property
+    def task(self) -> list[forms.BoundField]:
+        return self.group(self.TASK)
+
+    @property
+    def end(self) -> list[forms.BoundField]:
+        return self.group(self.END)
+
+    @property
+    def may(self) -> list[forms.BoundField]:
+        return self.group(self.MAY)
+
+    @property
+    def texts(self) -> list[forms.BoundField]:
+        return self.group(self.TEXTS)
+
+
+def campaign_choices(request: WorldRequest) -> Choices:
+    """Return the campaigns of the world."""
+    return [(str(key), name) for key, name in request.world.campaigns.values_list("pk", "name")]
+
+
+class CampaignFilters(PageFilters):
+    q = Search("name")
+
+
+class ContributorFilters(PageFilters):
+    q = Search("pseudonym")
+    kind = django_filters.ChoiceFilter(label="Kind", choices=contributor_kind_choices)
+
+
+class ContributorQuery(ContributorFilters):
+    """Those of REST, which lists the contributors of all campaigns."""
+
+    campaign = django_filters.ChoiceFilter(label="Campaign")
+    world_choices = {"campaign": campaign_choices}

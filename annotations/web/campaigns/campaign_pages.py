@@ -1,0 +1,137 @@
+"""Campaigns of a world: what admins launch, follow, close, and whom they forget."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from django.contrib import messages
+from django.db.models import Min, QuerySet
+from django.http import HttpResponse
+from django.shortcuts import get_object_or_404, redirect, render
+from django.views.decorators.cache import never_cache
+
+from annotations.campaigns.closing import close, forget, renew_link, reopen, revoke_link
+from annotations.campaigns.launching import DrawnPrompt, draw_prompts, launch
+from annotations.campaigns.progress import progress_of
+from annotations.language.english import say_count
+from annotations.language.errors import LanguageError, Refusal
+from annotations.lists.listing import Listing, Sort, render_list
+from annotations.models import Campaign, CampaignPrompt, Contributor, Duty, World
+from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
+from annotations.people.allowances import may_take_long
+from annotations.people.audit_log import note
+from annotations.web.campaigns.campaign_forms import (
+    CampaignFilters,
+    CampaignForm,
+    ContributorFilters,
+)
+from annotations.web.campaigns.campaign_links import link_of
+from annotations.web.forms import posted, sentence_of
+
+MOST_SHOWN = 8  # prompts of a preview, and of a campaign's page
+SORTS = {"newest": Sort("Launched", "-created_at"), "name": Sort("Campaign", "name")}
+CONTRIBUTOR_SORTS = {"began": Sort("Began", "-began_at")}
+# What a button does, and what is said afterwards.
+STEPS: dict[str, tuple[Callable[[Campaign], None], str]] = {
+    "close": (close, "Closed. Nobody can write any more; what came in stays."),
+    "open": (reopen, "Open again."),
+    "revoke": (revoke_link, "The link leads nowhere now."),
+    "renew": (renew_link, "This campaign has a new link. The old one leads nowhere."),
+}
+
+
+@world_view(Duty.MANAGE)
+def campaigns(request: WorldRequest, world: World) -> HttpResponse:
+    """List the campaigns, each with how much has come in."""
+    listing = Listing(request, CampaignFilters, world.campaigns.counted(), SORTS)
+    return render_list(request, "annotations/campaigns/campaigns.html", {"listing": listing})
+
+
+@may_take_long
+@world_view(Duty.MANAGE, READ_AND_WRITE)
+def campaign_new(request: WorldRequest, world: World) -> HttpResponse:
+    """Show the form that launches a campaign; its other button only previews the prompts."""
+    initial = {"name": f"Campaign {world.campaigns.count() + 1}"}
+    form = CampaignForm(world, posted(request), initial=initial)
+    context: dict[str, Any] = {"form": form}
+    if form.is_bound and form.is_valid():
+        try:
+            if "launch" in request.POST:
+                row = launch(form.unsaved(world), form.choice, request.user)
+                note(request, row.name)
+                messages.success(request, "Launched. Send the link to whoever shall contribute.")
+                return redirect("campaign_page", world=world.name, pk=row.pk)
+            context |= preview_of(draw_prompts(world, form.choice))
+        except LanguageError as error:
+            form.add_error(None, sentence_of(error))
+        except Refusal as refusal:
+            field = "name" if refusal.code == "name_taken" else None
+            form.add_error(field, refusal.message)
+    status = 422 if form.errors else 200
+    return render(request, "annotations/campaigns/campaign_new.html", context, status=status)
+
+
+def preview_of(drawn: list[DrawnPrompt]) -> dict[str, Any]:
+    forms = {each.expansion.form_text for each in drawn}
+    step = -(-len(drawn) // MOST_SHOWN)  # from all over: those of one form stand together
+    return {"prompts": drawn[::step], "count": len(drawn), "forms": len(forms)}
+
+
+@never_cache
+@world_view(Duty.MANAGE)
+def campaign_page(request: WorldRequest, world: World, pk: int) -> HttpResponse:
+    """Show one campaign: its link, how far it is, and who contributes."""
+    row = get_object_or_404(world.campaigns.select_related("world"), pk=pk)
+    listing = Listing(request, ContributorFilters, row.contributors.counted(), CONTRIBUTOR_SORTS)
+    context = {
+        "campaign": row,
+        "link": link_of(request, row),
+        "progress": progress_of(row),
+        "prompts": one_of_each(row)[:MOST_SHOWN],
+        "listing": listing,
+    }
+    return render_list(request, "annotations/campaigns/campaign_page.html", context)
+
+
+def one_of_each(campaign: Campaign) -> QuerySet[CampaignPrompt]:
+    """Return the first prompt of each form."""
+    rows = campaign.prompts.filter(check_words="").order_by()
+    first = rows.values("logical_form").annotate(first=Min("pk")).values("first")
+    return campaign.prompts.filter(pk__in=first)
+
+
+@world_view(Duty.MANAGE)
+def campaign_state(request: WorldRequest, world: World, pk: int) -> HttpResponse:
+    """Show how far a campaign is: the part of its page that is loaded again and again."""
+    row = get_object_or_404(world.campaigns.select_related("world"), pk=pk)
+    context = {"campaign": row, "progress": progress_of(row)}
+    return render(request, "annotations/campaigns/_campaign_state.html", context)
+
+
+@world_view(Duty.MANAGE, WRITE)
+def campaign_act(request: WorldRequest, world: World, pk: int) -> HttpResponse:
+    """Close a campaign, open it again, revoke its link or make another: as ``step`` says."""
+    row = get_object_or_404(world.campaigns, pk=pk)
+    step = request.POST.get("step", "")
+    if step in STEPS:
+        act, said = STEPS[step]
+        act(row)
+        note(request, f"{row.name}: {step}")
+        messages.success(request, said)
+    else:
+        messages.error(request, "There is no such step.")
+    return redirect("campaign_page", world=world.name, pk=pk)
+
+
+@world_view(Duty.MANAGE, READ_AND_WRITE)
+def contributor_forget(request: WorldRequest, world: World, pk: int) -> HttpResponse:
+    """Ask whether to delete a contributor with what they wrote, which cannot be undone; a POST does it."""
+    rows = Contributor.objects.filter(campaign__world=world).select_related("campaign")
+    row = get_object_or_404(rows, pk=pk)
+    if request.method != "POST":
+        return render(request, "annotations/campaigns/contributor_forget.html", {"row": row})
+    count = forget(row)
+    note(request, f"{row.campaign.name}: {row.pseudonym}")
+    messages.success(request, f"{row.pseudonym} is forgotten; {say_count(count, 'text')} went too.")
+    return redirect("campaign_page", world=world.name, pk=row.campaign_id)

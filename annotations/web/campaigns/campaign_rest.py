@@ -1,0 +1,229 @@
+"""Campaigns, who contributes to them, and what they submit. People are known by pseudonyms alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from http import HTTPStatus
+from typing import Any
+
+from django.db.models import QuerySet
+from drf_spectacular.utils import extend_schema
+from rest_framework import serializers
+from rest_framework.decorators import action
+from rest_framework.response import Response
+
+from annotations.campaigns.closing import close, forget, renew_link, reopen, revoke_link
+from annotations.campaigns.launching import launch
+from annotations.campaigns.progress import progress_of
+from annotations.models import Campaign, Contributor, Duty, Scope
+from annotations.models.campaigns import (
+    LONGEST_CAMPAIGN_NAME,
+    MOST_CHARACTERS_OF_TEXT,
+    Wording,
+    wording_choices,
+)
+from annotations.people.allowances import may_take_long
+from annotations.people.audit_log import note
+from annotations.web.campaigns.campaign_forms import (
+    CONSENT,
+    EXAMPLES,
+    INTRODUCTION,
+    MOST_FREE_COMMANDS,
+    MOST_PROMPTS_PER_FORM,
+    MOST_REWRITES,
+    MOST_SUBMISSIONS,
+    THANKS,
+    CampaignFilters,
+    CampaignForm,
+    ContributorQuery,
+)
+from annotations.web.campaigns.campaign_links import link_of
+from annotations.web.rest.fields import Fields, LineField
+from annotations.web.rest.idempotency import once
+from annotations.web.rest.permissions import ApiRequest
+from annotations.web.rest.problem_details import refusal_of_form
+from annotations.web.rest.routes import RowsViewSet
+
+READ_BY_ADMINS = dict.fromkeys(("list", "retrieve"), Duty.MANAGE)
+READ_SCOPES = dict.fromkeys(("list", "retrieve"), Scope.READ)
+
+
+class CampaignSerializer(serializers.ModelSerializer[Campaign]):
+    """A task that people do by a public ``link``, which is empty where it was revoked."""
+
+    link = serializers.SerializerMethodField()
+    is_over = serializers.BooleanField()
+    people = serializers.IntegerField()
+    finished = serializers.IntegerField()
+    answers = serializers.IntegerField()
+    created_by = serializers.CharField(source="created_by.username", default=None)
+
+    class Meta:
+        model = Campaign
+        fields = [
+            *("id", "name", "link", "is_over", "wording", "task_size", "free_commands"),
+            *("target_per_form", "taboo_words", "check_every", "allows_model_help"),
+            *("allows_retake", "price", "currency", "completion_code", "return_url", "ends_at"),
+            *("most_submissions", "seed", "introduction", "examples", "consent", "thanks"),
+            *("people", "finished", "answers", "created_by", "created_at", "closed_at"),
+        ]
+
+    def get_link(self, row: Campaign) -> str:
+        return link_of(self.context["request"], row)
+
+
+class MarkdownField(serializers.CharField):
+    def __init__(self, default: str, **options: Any):
+        options |= {"max_length": MOST_CHARACTERS_OF_TEXT, "default": default}
+        super().__init__(allow_blank=True, trim_whitespace=False, **options)
+
+
+class NewCampaign(Fields):
+    """What people are asked. Without ``task_categories`` all commands are drawn from; texts are Markdown."""
+
+    name = LineField(max_length=LONGEST_CAMPAIGN_NAME)
+    task_categories = serializers.ListField(child=LineField(max_length=60), default=list)
+    wording = serializers.ChoiceField(choices=wording_choices(), default=Wording.COMMAND)
+    target_per_form = serializers.IntegerField(min_value=1, max_value=1_000, default=10)
+    prompts_per_form = serializers.IntegerField(
+        min_value=1, max_value=MOST_PROMPTS_PER_FORM, default=3
+    )
+    task_size = serializers.IntegerField(min_value=1, max_value=MOST_REWRITES, default=12)
+    free_commands = serializers.IntegerField(min_value=0, max_value=MOST_FREE_COMMANDS, default=2)
+    check_every = serializers.IntegerField(min_value=0, max_value=MOST_REWRITES, default=0)
+    taboo_words = serializers.IntegerField(min_value=0, max_value=10, default=0)
+    allows_model_help = serializers.BooleanField(default=False)
+    allows_retake = serializers.BooleanField(default=False)
+    price = serializers.DecimalField(7, 2, min_value=0, allow_null=True, default=None)
+    currency = LineField(max_length=8, allow_blank=True, default="")
+    completion_code = LineField(max_length=40, allow_blank=True, default="")
+    return_url = serializers.URLField(max_length=500, allow_blank=True, default="")
+    ends_at = serializers.DateField(allow_null=True, default=None, help_text="the last day")
+    most_submissions = serializers.IntegerField(
+        min_value=1, max_value=MOST_SUBMISSIONS, allow_null=True, default=None
+    )
+    seed = serializers.IntegerField(min_value=0, max_value=2**31 - 1, default=0)
+    introduction = MarkdownField(INTRODUCTION)
+    examples = MarkdownField(EXAMPLES)
+    consent = MarkdownField(CONSENT)
+    thanks = MarkdownField(THANKS)
+
+
+class ProgressOfCampaignSerializer(serializers.Serializer[Any]):
+    """How far a campaign is. ``seconds_left`` is until all forms are reached at this rate; null where nothing
+    comes in, or nothing is missing. ``cost`` is that of the tasks that were finished; null without a price."""
+
+    forms = serializers.IntegerField()
+    reached = serializers.IntegerField()
+    missing = serializers.IntegerField()
+    rewrites = serializers.IntegerField()
+    accepted = serializers.IntegerField()
+    waiting = serializers.IntegerField()
+    people = serializers.IntegerField()
+    finished = serializers.IntegerField()
+    per_hour = serializers.FloatField()
+    seconds_left = serializers.FloatField(allow_null=True)
+    cost = serializers.DecimalField(12, 2, allow_null=True)
+
+
+class CampaignViewSet(RowsViewSet):
+    """The campaigns."""
+
+    model = Campaign
+    serializer_class = CampaignSerializer
+    filterset_class = CampaignFilters
+    STEPS = ("close", "reopen", "revoke_link", "renew_link")
+    duties = {**READ_BY_ADMINS, **dict.fromkeys(("create", "progress", *STEPS), Duty.MANAGE)}
+    scopes = {**READ_SCOPES, "progress": Scope.READ}
+    sorts = {"newest": "-created_at", "name": "name", "id": "pk"}
+
+    def rows(self) -> QuerySet[Campaign]:
+        return self.world.campaigns.counted().select_related("created_by", "world")
+
+    @extend_schema(request=NewCampaign, responses={201: CampaignSerializer})
+    @may_take_long
+    @once
+    def create(self, request: ApiRequest, **kwargs: object) -> Response:
+        """Launches a campaign: draws its prompts. It is open at once."""
+        form = CampaignForm(self.world, self.read(NewCampaign))
+        if not form.is_valid():
+            raise refusal_of_form(form)
+        row = launch(form.unsaved(self.world), form.choice, request.user)
+        note(request, row.name)
+        response = self.show(self.rows().get(pk=row.pk), HTTPStatus.CREATED)
+        response["Location"] = request.build_absolute_uri(f"{request.path}{row.pk}/")
+        return response
+
+    @extend_schema(responses={200: ProgressOfCampaignSerializer})
+    @action(detail=True)
+    def progress(self, request: ApiRequest, **kwargs: object) -> Response:
+        """Counts what has come in: forms reached, pace, time left, cost."""
+        return Response(ProgressOfCampaignSerializer(progress_of(self.get_object())).data)
+
+    @extend_schema(request=None, responses={200: CampaignSerializer})
+    @action(detail=True, methods=["post"])
+    def close(self, request: ApiRequest, **kwargs: object) -> Response:
+        """Closes a campaign: it takes nothing any more, and what came in stays."""
+        return self._do(close)
+
+    @extend_schema(request=None, responses={200: CampaignSerializer})
+    @action(detail=True, methods=["post"])
+    def reopen(self, request: ApiRequest, **kwargs: object) -> Response:
+        """Opens a closed campaign again."""
+        return self._do(reopen)
+
+    @extend_schema(request=None, responses={200: CampaignSerializer})
+    @action(detail=True, methods=["post"], url_path="revoke-link")
+    def revoke_link(self, request: ApiRequest, **kwargs: object) -> Response:
+        """Lets the link lead nowhere."""
+        return self._do(revoke_link)
+
+    @extend_schema(request=None, responses={200: CampaignSerializer})
+    @action(detail=True, methods=["post"], url_path="renew-link")
+    def renew_link(self, request: ApiRequest, **kwargs: object) -> Response:
+        """Makes another link, in place of the one before."""
+        return self._do(renew_link)
+
+    def _do(self, verb: Callable[[Campaign], None]) -> Response:
+        row = self.get_object()
+        verb(row)
+        note(self.request, row.name)
+        return self.show(self.get_object())
+
+
+class ContributorSerializer(serializers.ModelSerializer[Contributor]):
+    """Somebody who did a task, by a pseudonym; ``settings`` are those of a language model."""
+
+    campaign = serializers.IntegerField(source="campaign_id")
+    answers = serializers.IntegerField()
+    flagged = serializers.IntegerField()
+
+    class Meta:
+        model = Contributor
+        fields = [
+            *("id", "campaign", "kind", "pseudonym", "attempt", "consented_at"),
+            *("had_model_help", "settings", "began_at", "finished_at", "answers", "flagged"),
+        ]
+
+
+class ContributorViewSet(RowsViewSet):
+    """Who contributes to the campaigns."""
+
+    model = Contributor
+    serializer_class = ContributorSerializer
+    filterset_class = ContributorQuery
+    duties = {**READ_BY_ADMINS, "forget": Duty.MANAGE}
+    scopes = READ_SCOPES
+    sorts = {"began": "-began_at", "id": "pk"}
+
+    def rows(self) -> QuerySet[Contributor]:
+        return Contributor.objects.filter(campaign__world=self.world).counted()
+
+    @extend_schema(request=None, responses={204: None})
+    @action(detail=True, methods=["post"])
+    def forget(self, request: ApiRequest, **kwargs: object) -> Response:
+        """Deletes a contributor with all that they wrote, because they ask for it."""
+        row = self.get_object()
+        forget(row)
+        note(request, f"{row.campaign.name}: {row.pseudonym}")
+        return Response(status=HTTPStatus.NO_CONTENT)

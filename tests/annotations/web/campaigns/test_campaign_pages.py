@@ -1,0 +1,132 @@
+"""What admins see of campaigns, and what they do with them."""
+
+from __future__ import annotations
+
+from datetime import timedelta
+
+import pytest
+from django.utils import timezone
+
+from annotations.campaigns.answering import save_answer
+from annotations.campaigns.tasks import begin
+from annotations.models import AuditEntry, Campaign, Contributor
+from annotations.web.campaigns.campaign_forms import CampaignForm
+from tests.launched_campaigns import small_campaign
+
+
+def sent(world, **values):
+    """What the form holds as it is shown, with other ``values``."""
+    form = CampaignForm(world, initial={"name": "Campaign 1"})
+    given = {**{name: form[name].value() for name in form.fields}, **values}
+    return {name: each for name, each in given.items() if each is not None and each is not False}
+
+
+def page(client, path: str = "") -> str:
+    answer = client.get(f"/w/home/campaigns/{path}")
+    assert answer.status_code == 200
+    return answer.content.decode()
+
+
+def test_without_campaigns_the_list_says_what_to_do(adam):
+    assert "No campaigns yet" in page(adam)
+    assert "/w/home/campaigns/new/" in page(adam)
+
+
+def test_the_form_as_it_is_launches_a_campaign(adam, household):
+    answer = adam.post("/w/home/campaigns/new/", sent(household, launch="1"))
+    campaign = Campaign.objects.get()
+    assert answer.url == f"/w/home/campaigns/{campaign.pk}/"
+    assert (campaign.task_size, campaign.free_commands, campaign.target_per_form) == (12, 2, 10)
+    assert not campaign.allows_model_help and "research" in campaign.consent
+    assert campaign.prompts.count() > 50
+    assert AuditEntry.objects.get().what == "launch a campaign"
+    shown = page(adam, f"{campaign.pk}/")
+    assert f"http://testserver/p/{campaign.key}/" in shown
+    assert "0 of" in shown
+
+
+def test_a_preview_stores_nothing(adam, household):
+    answer = adam.post("/w/home/campaigns/new/", sent(household, preview="1"))
+    assert answer.status_code == 200
+    assert answer.context["count"] > 50 and 5 < len(answer.context["prompts"]) <= 8
+    assert not Campaign.objects.exists()
+
+
+@pytest.mark.parametrize(
+    ("values", "field"),
+    [
+        ({"name": ""}, "name"),
+        ({"task_size": "0"}, "task_size"),
+        ({"task_categories": ["nothing"]}, "task_categories"),
+        ({"ends_at": "2020-01-01"}, "ends_at"),
+        ({"ends_at": "9999-12-31"}, "ends_at"),
+        ({"return_url": "javascript:alert(1)"}, "return_url"),
+        ({"price": "-1"}, "price"),
+    ],
+)
+def test_what_cannot_be_is_said_beside_its_field(adam, household, values, field):
+    answer = adam.post("/w/home/campaigns/new/", sent(household, launch="1", **values))
+    assert answer.status_code == 422
+    assert field in answer.context["form"].errors
+    assert not Campaign.objects.exists()
+
+
+def test_a_name_is_taken_once(adam, household):
+    for status in (302, 422):
+        answer = adam.post("/w/home/campaigns/new/", sent(household, launch="1", name="first"))
+        assert answer.status_code == status
+    assert "name" in answer.context["form"].errors
+
+
+def test_a_world_without_commands_has_nothing_to_ask_for(adam, world):
+    answer = adam.post("/w/home/campaigns/new/", sent(world, launch="1"))
+    assert answer.status_code == 422
+    assert "No form is below its target" in answer.content.decode()
+
+
+def test_the_last_day_counts_as_a_whole(adam, household):
+    today = timezone.now().date()
+    values = sent(household, launch="1", ends_at=today.isoformat())
+    adam.post("/w/home/campaigns/new/", values)
+    assert timezone.now() < Campaign.objects.get().ends_at <= timezone.now() + timedelta(days=1)
+
+
+def test_buttons_close_open_and_change_the_link(adam, world):
+    campaign = small_campaign(world)
+    key = campaign.key
+
+    def act(step: str) -> Campaign:
+        answer = adam.post(f"/w/home/campaigns/{campaign.pk}/act/", {"step": step})
+        assert answer.url == f"/w/home/campaigns/{campaign.pk}/"
+        return Campaign.objects.get()
+
+    assert act("close").closed_at
+    assert "Open again" in page(adam, f"{campaign.pk}/")
+    assert not act("open").closed_at
+    assert act("revoke").key == ""
+    assert "The link was revoked" in page(adam, f"{campaign.pk}/")
+    assert act("renew").key not in ("", key)
+    assert act("nothing").key
+
+
+def test_the_page_shows_who_contributes_and_how_far_it_is(adam, world):
+    campaign = small_campaign(world, price="1.50", currency="EUR")
+    contributor = begin(campaign, "f00d")
+    for place in contributor.submissions.all():
+        save_answer(place, place.prompt.shown if place.prompt else "water the plants", 9)
+    shown = page(adam, f"{campaign.pk}/")
+    assert "f00d" in shown and "0.00 EUR" in shown
+    assert "2 rewrites and 1 free command." in shown
+    assert "Rewrites" in page(adam, f"{campaign.pk}/state/")
+    assert "first" in page(adam)
+
+
+def test_a_contributor_is_forgotten_after_a_question(adam, world):
+    campaign = small_campaign(world)
+    contributor = begin(campaign, "f00d")
+    save_answer(contributor.submissions.first(), "do it")
+    path = f"/w/home/contributors/{contributor.pk}/forget/"
+    assert "cannot be undone" in adam.get(path).content.decode()
+    assert Contributor.objects.exists()
+    assert adam.post(path).url == f"/w/home/campaigns/{campaign.pk}/"
+    assert not Contributor.objects.exists()
