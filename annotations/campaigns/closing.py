@@ -5,8 +5,9 @@ from __future__ import annotations
 from django.db import transaction
 from django.utils import timezone
 
-from annotations.models import Campaign, Contributor, Utterance
+from annotations.models import Campaign, Contributor, Paraphrase, Utterance
 from annotations.models.campaigns import new_key
+from annotations.rows.history import history_of
 
 
 def close(campaign: Campaign) -> None:
@@ -41,7 +42,12 @@ def forget(contributor: Contributor) -> int:
     """
     with transaction.atomic():
         count = contributor.submissions.answered().count()
-        Utterance.objects.filter(submission__contributor=contributor).delete()
+        said = Utterance.with_deleted.filter(submission__contributor=contributor)
+        keys = list(said.values_list("pk", flat=True))
+        said.delete()
         contributor.paraphrases.all().delete()
+        # Nor does the history bring anything of it back.
+        history_of(Utterance).filter(id__in=keys).delete()
+        history_of(Paraphrase).filter(contributor_id=contributor.pk).delete()
         contributor.delete()
     return count
