@@ -39,9 +39,9 @@ def small_campaign(world: World, **values: Any) -> Campaign:
         start=1,
     ):
         campaign.prompts.create(
-            logical_form=f"form{position}",
+            logical_form=f"( go {position} )",
             prompt=text,
-            grounded_form=f"form{position}",
+            grounded_form=f"( go {position} )",
             shown=text,
             entities=[{"text": entity, "aliases": [], "is_described": False}],
             position=position,

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from django.db import transaction
+from django.db.models import Q
 from django.utils import timezone
 
-from annotations.models import Campaign, Contributor, Paraphrase, Utterance
+from annotations.models import Campaign, Contributor, Origin, Paraphrase, Utterance
 from annotations.models.campaigns import new_key
 from annotations.rows.history import history_of
 
@@ -41,12 +42,16 @@ def forget(contributor: Contributor) -> int:
     Its history goes as well, so that nobody brings it back. Frozen splits keep their copies: they never change.
     """
     with transaction.atomic():
-        count = contributor.submissions.answered().count()
-        paraphrases = contributor.paraphrases.all()
-        utterances = Utterance.with_deleted.filter(submission__contributor=contributor)
-        for model, rows in ((Paraphrase, paraphrases), (Utterance, utterances)):
-            keys = list(rows.values_list("pk", flat=True))
-            history_of(model).filter(id__in=keys).delete()
-            rows.delete()
+        texts = list(contributor.submissions.answered().values_list("text", flat=True))
+        # A decision that was taken back has left its utterance deleted.
+        was_theirs = Q(deleted_at__isnull=False, text__in=texts, origin=Origin.CONTRIBUTOR)
+        said = Utterance.with_deleted.filter(
+            was_theirs | Q(submission__contributor=contributor), world=contributor.campaign.world
+        )
+        keys = list(said.values_list("pk", flat=True))
+        Utterance.with_deleted.filter(pk__in=keys).delete()
+        contributor.paraphrases.all().delete()
+        history_of(Utterance).filter(id__in=keys).delete()
+        history_of(Paraphrase).filter(contributor_id=contributor.pk).delete()
         contributor.delete()
-    return count
+    return len(texts)

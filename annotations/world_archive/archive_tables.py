@@ -118,8 +118,14 @@ OUR_TABLES = (
     ArchiveTable("guidelines", Guidelines, "world"),
     ArchiveTable("forms", LogicalForm, "world"),
     ArchiveTable("commands", Command, "world", {"template": "templates", "logical_form": "forms"}),
-    # The link of a campaign is of one site: the copy gets one of its own.
-    ArchiveTable("campaigns", Campaign, "world", people=("created_by",), left_out=("key",)),
+    # The link of a campaign is of one site, where the copy gets another one; its code is a secret.
+    ArchiveTable(
+        "campaigns",
+        Campaign,
+        "world",
+        people=("created_by",),
+        left_out=("key", "completion_code"),
+    ),
     ArchiveTable(
         "campaign_prompts",
         CampaignPrompt,

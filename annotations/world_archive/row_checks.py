@@ -26,6 +26,7 @@ FILE_NAMES = {
 }
 FORMS = {
     "forms": ("text",),
+    "campaign_prompts": ("logical_form", "grounded_form"),
     "paraphrases": ("logical_form", "grounded_form"),
     "utterances": ("logical_form",),
     "labels": ("form",),
@@ -35,13 +36,14 @@ FORMS = {
     "examples": ("logical_form", "grounded_form"),
 }
 # References that archives of earlier releases do not have, by table.
-ADDED_REFERENCES = {"splits": {"follows"}}
+ADDED_REFERENCES = {"splits": {"follows"}, "paraphrases": {"contributor"}}
 TYPES: tuple[tuple[type[models.Field[Any, Any]], type | tuple[type, ...], str], ...] = (
     (models.CharField, str, "a text"),
     (models.TextField, str, "a text"),
     (models.BooleanField, bool, "true or false"),
     (models.FloatField, (int, float), "a number"),
     (models.IntegerField, int, "a whole number"),
+    (models.DecimalField, str, "a number in quotation marks"),
     (models.DateTimeField, str, "a time"),
 )
 
@@ -170,7 +172,35 @@ def _is_shares(value: Any) -> bool:
     return is_numbers and len(value) in (0, 3) and all(0 <= each <= 1 for each in value)
 
 
+def _is_named(value: Any) -> bool:
+    """Return whether these are entities of a prompt."""
+    return isinstance(value, list) and all(
+        isinstance(row, dict)
+        and row.keys() == {"text", "aliases", "is_described"}
+        and isinstance(row["text"], str)
+        and _is_texts(row["aliases"])
+        and isinstance(row["is_described"], bool)
+        for row in value
+    )
+
+
+def _is_flags(value: Any) -> bool:
+    """Return whether these are flags of a submission."""
+    return isinstance(value, list) and all(
+        _is_text_by_text(row) and row.keys() == {"code", "evidence"} for row in value
+    )
+
+
+def _is_settings(value: Any) -> bool:
+    """Return whether these are settings of a model: names with texts or numbers."""
+    of_types = (str, int, float, bool, type(None))
+    return isinstance(value, dict) and all(isinstance(each, of_types) for each in value.values())
+
+
 SHAPES: Shapes = {
+    "entities": _is_named,
+    "flags": _is_flags,
+    "settings": _is_settings,
     "aliases": _is_texts,
     "attributes": _is_text_by_text,
     "rule_sources": _is_some_texts,

@@ -99,6 +99,11 @@ def _member(
             yield target.take()
 
 
+def _as_json(value: Any) -> str:
+    """Write a time or a decimal number as text."""
+    return value.isoformat() if isinstance(value, datetime) else str(value)
+
+
 def _lines(
     table: ArchiveTable, world: World, numbers: Numbers, blind: User | None
 ) -> Iterator[str]:
@@ -124,7 +129,7 @@ def _lines(
         for name in table.people:
             person = getattr(row, name)
             values[name] = person.username if person else None
-        yield json.dumps(values, ensure_ascii=False, default=datetime.isoformat) + "\n"
+        yield json.dumps(values, ensure_ascii=False, default=_as_json) + "\n"
 
 
 def _readable_files(world: World) -> Iterator[tuple[str, Iterable[str]]]:
@@ -156,4 +161,4 @@ def _history_lines(kind: EditableKind, entries: Any) -> Iterator[str]:
             "at": entry.history_date,
             **{name: getattr(entry, name) for name in kind.model.edited_fields},
         }
-        yield json.dumps(values, ensure_ascii=False, default=datetime.isoformat) + "\n"
+        yield json.dumps(values, ensure_ascii=False, default=_as_json) + "\n"

@@ -256,7 +256,7 @@ class _Loader:
                 self._links.append((row, name, values.get(name)))
                 continue
             is_optional = table.model._meta.get_field(name).null
-            setattr(row, f"{name}_id", self._key(values[name], other, is_optional, place))
+            setattr(row, f"{name}_id", self._key(values.get(name), other, is_optional, place))
         for name in table.people:
             setattr(row, f"{name}_id", self._people.get(values.get(name) or ""))
         if table.subjects:

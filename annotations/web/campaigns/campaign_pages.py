@@ -132,6 +132,6 @@ def contributor_forget(request: WorldRequest, world: World, pk: int) -> HttpResp
     if request.method != "POST":
         return render(request, "annotations/campaigns/contributor_forget.html", {"row": row})
     count = forget(row)
-    note(request, f"{row.campaign.name}: {row.pseudonym}")
+    note(request, row.campaign.name)
     messages.success(request, f"{row.pseudonym} is forgotten; {say_count(count, 'text')} went too.")
     return redirect("campaign_page", world=world.name, pk=row.campaign_id)

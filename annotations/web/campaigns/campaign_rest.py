@@ -225,5 +225,5 @@ class ContributorViewSet(RowsViewSet):
         """Deletes a contributor with all that they wrote, because they ask for it."""
         row = self.get_object()
         forget(row)
-        note(request, f"{row.campaign.name}: {row.pseudonym}")
+        note(request, row.campaign.name)
         return Response(status=HTTPStatus.NO_CONTENT)

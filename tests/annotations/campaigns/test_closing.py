@@ -5,9 +5,11 @@ import pytest
 from annotations.campaigns.answering import save_answer
 from annotations.campaigns.closing import close, forget, renew_link, reopen, revoke_link
 from annotations.campaigns.tasks import CampaignOver, begin
+from annotations.editing.edits import change
 from annotations.models import Campaign, Contributor, Paraphrase, Submission, Utterance
 from annotations.models.campaigns import SubmissionStatus
 from annotations.rows.history import history_of
+from annotations.utterances.utterance_deletion import delete_utterance
 from tests.launched_campaigns import small_campaign
 from tests.sample_world import make_paraphrase
 
@@ -39,7 +41,7 @@ def test_a_link_is_revoked_and_renewed(campaign):
     assert len(campaign.key) > 20
 
 
-def test_who_is_forgotten_leaves_nothing(campaign, world):
+def test_who_is_forgotten_leaves_nothing(campaign, world, admin):
     one, two = begin(campaign, "one"), begin(campaign, "two")
     for contributor in (one, two):
         accepted = make_paraphrase(
@@ -53,10 +55,13 @@ def test_who_is_forgotten_leaves_nothing(campaign, world):
             save_answer(place, f"{contributor} said so")
             status = SubmissionStatus.ACCEPTED
             Submission.objects.filter(pk=place.pk).update(status=status, **columns)
+        change(accepted, {"status": "disputed"}, admin, accepted.version)
+        delete_utterance(said, admin, said.version)
     assert forget(one) == 2
     assert list(Contributor.objects.all()) == [two]
     assert Submission.objects.count() == 3
     assert Paraphrase.objects.get().contributor == two
-    assert Utterance.objects.get().anonymized_text == "two"
-    for model in (Paraphrase, Utterance):
-        assert not history_of(model).exclude(id=model.objects.get().pk).exists()
+    assert Utterance.with_deleted.get().anonymized_text == "two"
+    histories = (history_of(Paraphrase).all(), history_of(Utterance).all())
+    assert {row.contributor_id for row in histories[0]} == {two.pk}
+    assert {row.text for row in histories[1]} == {"hi two"}

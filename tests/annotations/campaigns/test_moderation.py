@@ -3,6 +3,7 @@ from __future__ import annotations
 import pytest
 
 from annotations.campaigns.answering import save_answer
+from annotations.campaigns.closing import forget
 from annotations.campaigns.moderation import (
     DecidedAlready,
     accept,
@@ -18,6 +19,7 @@ from annotations.editing.edits import change
 from annotations.language.corpus import distance
 from annotations.language.errors import LanguageError, Refusal
 from annotations.models import Origin, Paraphrase, Submission, Utterance
+from annotations.rows.history import history_of
 from tests.at_once import at_once
 
 
@@ -134,3 +136,14 @@ def test_a_doubted_label_goes_to_the_audit(submissions, admin):
     assert finding.status == "open"
     with pytest.raises(DecidedAlready):
         accept_with_doubt(submissions[0], "again", admin)
+
+
+def test_who_is_forgotten_leaves_no_decision_that_was_taken_back(submissions, admin):
+    accept(submissions, admin)
+    for row in submissions:
+        take_back(row, admin)
+    assert Utterance.with_deleted.exists()
+    assert forget(submissions[0].contributor) == 4
+    assert not Utterance.with_deleted.exists()
+    assert not history_of(Utterance).exists()
+    assert not history_of(Paraphrase).exists()

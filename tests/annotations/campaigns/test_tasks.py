@@ -3,6 +3,8 @@ from __future__ import annotations
 from collections import Counter
 from datetime import timedelta
 from decimal import Decimal
+from functools import partial
+from random import Random
 
 import pytest
 from django.utils import timezone
@@ -13,8 +15,9 @@ from annotations.campaigns.pseudonyms import market_id_in, pseudonym_of
 from annotations.campaigns.tasks import CampaignOver, begin, choose_prompts
 from annotations.language.errors import Refusal
 from annotations.language.paraphrases import RewriteFault
-from annotations.models import Contributor, Submission
+from annotations.models import Campaign, Contributor, Submission
 from tests.at_once import at_once
+from tests.launched_campaigns import small_campaign
 
 
 def codes(submission: Submission) -> list[str]:
@@ -239,3 +242,53 @@ def test_a_pseudonym_tells_nothing_and_is_of_one_campaign(launched):
 )
 def test_the_market_says_who_somebody_is(query, found):
     assert market_id_in(query) == found
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_whatever_the_sizes_forms_are_given_evenly_and_no_prompt_twice(world, seed):
+    random = Random(seed)
+    campaign = Campaign.objects.create(
+        world=world, name="any", task_size=random.randint(1, 9), free_commands=0, allows_retake=True
+    )
+    sizes = [random.randint(1, 4) for _ in range(random.randint(1, 8))]
+    for form, size in enumerate(sizes):
+        for number in range(size):
+            text = f"{form} {number}"
+            position = campaign.prompts.count() + 1
+            values = {"logical_form": str(form), "prompt": text, "shown": text}
+            campaign.prompts.create(position=position, **values)
+    for number in range(random.randint(1, 12)):
+        before = Counter(Submission.objects.values_list("prompt__logical_form", flat=True))
+        task = begin(campaign, f"contributor {number}").submissions.select_related("prompt")
+        prompts = [place.prompt for place in task]
+        assert len({prompt.pk for prompt in prompts}) == len(prompts)
+        assert len(prompts) == min(campaign.task_size, sum(sizes))
+        forms = Counter(prompt.logical_form for prompt in prompts)
+        # A form comes again only where every other one has come as often as it can.
+        most = max(forms.values())
+        assert all(forms[str(form)] >= min(size, most - 1) for form, size in enumerate(sizes))
+        # Forms that are left out had at least as many as any that came once and is not left out.
+        left = [before[str(form)] for form in range(len(sizes)) if not forms[str(form)]]
+        assert not left or min(left) >= max(before[form] for form in forms)
+
+
+def test_who_does_several_tasks_gets_other_prompts_while_there_are_some(world):
+    campaign = small_campaign(world, task_size=1, free_commands=0, allows_retake=True)
+    given = []
+    for _ in range(2):
+        contributor = begin(campaign, "one")
+        place = contributor.submissions.get()
+        given.append(place.prompt_id)
+        save_answer(place, "do it", 9)
+        finish(contributor, had_model_help=False)
+    assert len(set(given)) == 2
+
+
+@pytest.mark.django_db(transaction=True)
+def test_of_two_who_save_one_place_at_once_one_is_stored_whole(launched):
+    place = begin(launched(), "one").submissions.order_by("position").first()
+    texts = {"xyzzy plugh asdf": ["gibberish"], place.prompt.shown: ["copy"]}
+    at_once(*(partial(save_answer, place, text) for text in texts))
+    place.refresh_from_db()
+    assert set(texts[place.text]) <= set(codes(place))
+    assert {"gibberish", "copy"} - set(codes(place))

@@ -58,7 +58,8 @@ def everything_of(world: World) -> dict[str, list[dict]]:
     for table in tables():
         rows = list(table.model.objects.filter(**{table.world_path: world}).order_by("pk"))
         numbers[table.model] = {row.pk: number for number, row in enumerate(rows)}
-        contents[table.name] = [_values(row, numbers) for row in rows]
+        apart = {"id", "created_at", "world", "grammar", "ontology", *table.left_out}
+        contents[table.name] = [_values(row, numbers, apart) for row in rows]
     world.refresh_from_db()
     kept = ("description", "revision", "generated_revision")
     contents["world"] = [{name: getattr(world, name) for name in kept}]
@@ -68,11 +69,11 @@ def everything_of(world: World) -> dict[str, list[dict]]:
     return contents
 
 
-def _values(row, numbers) -> dict:
+def _values(row, numbers, apart) -> dict:
     values = {}
     for field in row._meta.concrete_fields:
         value = getattr(row, field.attname)
-        if field.name in ("id", "created_at", "world", "grammar", "ontology"):
+        if field.name in apart:
             continue
         if isinstance(field, ForeignKey) and field.related_model in numbers and value is not None:
             value = numbers[field.related_model][value]

@@ -8,6 +8,8 @@ import pytest
 from django.apps import apps
 from django.db import models
 
+from annotations.campaigns import answering
+from annotations.campaigns.tasks import begin
 from annotations.commenting import SUBJECTS, add_comment
 from annotations.editing.edits import change, delete
 from annotations.generation.generating import generate_pairs
@@ -46,6 +48,8 @@ from tests.annotations.world_archive.packing import (
     same_again,
 )
 from tests.doubted_labels import doubt, say
+from tests.launched_campaigns import small_campaign
+from tests.sample_world import make_paraphrase
 
 
 def test_the_starter_world(db):
@@ -230,3 +234,52 @@ def not_of_the_world():
     """What goes with a world and is no part of it: not written by people, or for one person alone."""
     names = ("Job", "Proposal", "CommandProposal", "Draft", "Notice", "Invitation", "Upload")
     return {model for model in apps.get_models() if model.__name__ in names}
+
+
+def test_campaigns_with_all_that_came_in_have_another_link(world, admin):
+    campaign = small_campaign(
+        world,
+        price="1.50",
+        currency="EUR",
+        completion_code="C0FFEE",
+        created_by=admin,
+        check_every=1,
+    )
+    campaign.prompts.create(
+        prompt="write “yes”", shown="write “yes”", check_words="yes", position=3
+    )
+    contributor = begin(campaign, "f00d")
+    for place in contributor.submissions.select_related("prompt"):
+        answering.save_answer(
+            place, place.prompt.shown if place.prompt else "x", 1.5, was_pasted=True
+        )
+    answering.finish(contributor, had_model_help=True)
+    contributor.settings = {"name": "some model", "temperature": 0.7, "seed": None}
+    contributor.save()
+    accepted = make_paraphrase(
+        world, grounded_form="( go )", logical_form="( go )", contributor=contributor
+    )
+    place = contributor.submissions.filter(kind="rewrite").first()
+    place.paraphrase, place.decided_by, place.status = accepted, admin, "accepted"
+    place.save()
+    again = same_again(world)
+    copy = again.campaigns.get()
+    assert copy.key not in ("", campaign.key)
+    assert copy.completion_code == ""
+    (known,) = copy.contributors.all()
+    assert known.submissions.exclude(flags=[]).count() > 1
+    assert again.paraphrases.get().contributor == known
+
+
+def test_an_archive_of_an_earlier_release_has_paraphrases_without_contributors(world):
+    make_paraphrase(world, grounded_form="( go )", logical_form="( go )")
+    members = members_of(pack(world))
+    row = json.loads(members["rows/paraphrases.jsonl"])
+    del row["contributor"]
+    members["rows/paraphrases.jsonl"] = json.dumps(row).encode() + b"\n"
+    manifest = json.loads(members["world.json"])
+    for name in ("campaigns", "campaign_prompts", "contributors", "submissions"):
+        del members[f"rows/{name}.jsonl"], manifest["rows"][name]
+    members["world.json"] = json.dumps(manifest).encode()
+    import_world("again", pack_members(members))
+    assert World.objects.get(name="again").paraphrases.count() == 1
