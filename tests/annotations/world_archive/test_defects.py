@@ -15,6 +15,7 @@ from annotations.language.errors import LanguageError
 from annotations.models import World
 from annotations.splits.freezing import freeze_split
 from annotations.world_archive import world_import
+from annotations.world_archive.row_checks import SHAPES
 from annotations.world_archive.world_import import import_world
 from tests.annotations.rows_of import counts
 from tests.annotations.world_archive.packing import members_of, pack, pack_members
@@ -214,3 +215,21 @@ def test_a_name_that_is_taken_in_the_meantime(members, monkeypatch):
     with pytest.raises(LanguageError, match="“again”"):
         import_world("again", pack_members(members))
     assert set(World.objects.values_list("name", flat=True)) == {"again", "home"}
+
+
+@pytest.mark.parametrize(
+    ("column", "value"),
+    [
+        ("entities", {}),
+        ("entities", [{"text": "tea"}]),
+        ("entities", [{"text": "tea", "aliases": [1], "is_described": False}]),
+        ("entities", [{"text": "tea", "aliases": [], "is_described": 0}]),
+        ("flags", [{"code": "copy"}]),
+        ("flags", [{"code": "copy", "evidence": 1}]),
+        ("flags", ["copy"]),
+        ("settings", []),
+        ("settings", {"name": ["x"]}),
+    ],
+)
+def test_what_prompts_submissions_and_contributors_cannot_hold(column, value):
+    assert not SHAPES[column](value)

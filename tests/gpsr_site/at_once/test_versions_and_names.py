@@ -16,7 +16,7 @@ from django.db import connection
 from django.test import Client
 from django.urls import reverse
 
-from annotations.models import ApiToken, Editable, Entity, Membership, Split, User, World
+from annotations.models import ApiToken, Campaign, Editable, Entity, Membership, Split, User, World
 from annotations.models.worlds import Role
 from parser_service.models import ErrorCategory, Slice
 from tests.at_once import at_once
@@ -134,6 +134,7 @@ MADE = {
     "api:worlds": lambda: World.objects.filter(name="attic"),
     "api:import-world": lambda: World.objects.exclude(name__in=["home", "cellar"]),
     "api:split-list": lambda: Split.objects.filter(name="mine"),
+    "api:campaign-list": lambda: Campaign.objects.filter(name="spring"),
     "api:slice-list": lambda: Slice.objects.filter(name="wrong ones"),
     "api:error-category-list": lambda: ErrorCategory.objects.filter(name="Slip"),
     "api:member-list": lambda: Membership.objects.filter(
@@ -177,6 +178,11 @@ PAGES = {
         **{"name": "mine", "criterion": "command", "seed": "0"},
         **{"train": "70", "validation": "10", "test": "20", "freeze": "yes"},
     },
+    "campaign_new": {
+        **{"name": "spring", "wording": "command", "target_per_form": "10", "seed": "0"},
+        **{"prompts_per_form": "1", "task_size": "2", "free_commands": "0", "check_every": "0"},
+        **{"taboo_words": "0", "launch": "yes"},
+    },
     "people": NAMES["api:member-list"],
 }
 # The page that makes what a route of the API makes.
@@ -188,6 +194,7 @@ ROUTE_OF_PAGE = {
     "slices": "api:slice-list",
     "error_categories": "api:error-category-list",
     "split_new": "api:split-list",
+    "campaign_new": "api:campaign-list",
     "people": "api:member-list",
 }
 

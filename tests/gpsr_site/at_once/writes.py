@@ -82,6 +82,7 @@ NAMES: dict[str, dict[str, Any]] = {
     "api:worlds": {"name": "attic"},
     "api:import-world": {"name": "attic"},
     "api:split-list": {"name": "mine"},
+    "api:campaign-list": {"name": "spring"},
     "api:slice-list": {"name": "wrong ones", "query": "outcome=wrong"},
     "api:error-category-list": {"name": "Slip", "description": "", "slice": None},
     "api:member-list": {"name": "someone in home", "roles": ["annotator"]},
@@ -129,7 +130,16 @@ NAMELESS = {
     *("work-item-assign", "work-item-finish", "work-item-give-back", "work-item-next"),
     *("work-item-skip", "work-item-take", "work-item-withdraw", "work-item-assign-many"),
     *("comment-restore", "error-category-move", "account-link", "join", "sessions-end"),
-    *("notice-read", "notice-read-all", "upload-list", "upload-undo", "upload-redo", "parse-jobs"),
+    *("campaign-close", "campaign-reopen", "campaign-revoke-link", "campaign-renew-link"),
+    *(
+        "contributor-forget",
+        "notice-read",
+        "notice-read-all",
+        "upload-list",
+        "upload-undo",
+        "upload-redo",
+        "parse-jobs",
+    ),
 }
 
 
