@@ -59,8 +59,8 @@ function onKey(event) {
     open(event.target);
   } else if (event.key === "x" && currentRow()?.querySelector("input[type=checkbox]")) {
     currentRow().querySelector("input[type=checkbox]").click();
-  } else if (document.querySelector(`[data-key="${CSS.escape(event.key)}"]`)) {
-    document.querySelector(`[data-key="${CSS.escape(event.key)}"]`).click();
+  } else if (document.querySelector(`[data-page-key="${CSS.escape(event.key)}"]`)) {
+    document.querySelector(`[data-page-key="${CSS.escape(event.key)}"]`).click();
   } else if (Object.hasOwn(actions, event.key)) {
     event.preventDefault();
     actions[event.key]();

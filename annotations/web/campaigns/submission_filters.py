@@ -61,7 +61,7 @@ class FlagFilter(django_filters.ChoiceFilter):
 class SubmissionFilters(PageFilters):
     q = Search("text", "prompt__shown")
     status = django_filters.ChoiceFilter(label="Status", choices=submission_status_choices)
-    flag = FlagFilter(label="Flag", choices=flag_choices)
+    flag = FlagFilter(label="Flag", choices=flag_choices())
     by = django_filters.ChoiceFilter(
         "contributor__kind", label="By", choices=contributor_kind_choices
     )

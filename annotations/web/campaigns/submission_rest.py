@@ -64,7 +64,7 @@ class SubmissionSerializer(serializers.ModelSerializer[Submission]):
         ]
 
 
-class Decision(Fields):
+class NewDecisions(Fields):
     """What becomes of some submissions. Those about which somebody has decided are left as they are."""
 
     ids = serializers.ListField(
@@ -93,7 +93,7 @@ class OtherForm(Fields):
     form = serializers.CharField(max_length=MAX_FORM)
 
 
-class Doubt(Fields):
+class DoubtedLabel(Fields):
     """What a rewrite may mean instead."""
 
     reason = serializers.CharField(max_length=LONGEST_REASON)
@@ -116,11 +116,11 @@ class SubmissionViewSet(RowsViewSet):
         related = ("contributor__campaign", "prompt")
         return rows.exclude(kind=SubmissionKind.CHECK).select_related(*related)
 
-    @extend_schema(request=Decision, responses={200: DecidedSerializer})
+    @extend_schema(request=NewDecisions, responses={200: DecidedSerializer})
     @action(detail=False, methods=["post"])
     def decide(self, request: ApiRequest, **kwargs: object) -> Response:
         """Accepts or rejects submissions that nobody has decided about."""
-        sent = self.read(Decision)
+        sent = self.read(NewDecisions)
         rows = list(self.rows().filter(pk__in=sent["ids"]))
         return Response({"decided": DECISIONS[sent["decision"]](rows, request.user)})
 
@@ -145,9 +145,9 @@ class SubmissionViewSet(RowsViewSet):
         accept_with_form(self.get_object(), self.read(OtherForm)["form"], request.user)
         return self.show(self.get_object())
 
-    @extend_schema(request=Doubt, responses={200: SubmissionSerializer})
+    @extend_schema(request=DoubtedLabel, responses={200: SubmissionSerializer})
     @action(detail=True, methods=["post"], url_path="accept-with-doubt")
     def with_doubt(self, request: ApiRequest, **kwargs: object) -> Response:
         """Accepts a rewrite and sends its label to the audit."""
-        accept_with_doubt(self.get_object(), self.read(Doubt)["reason"], request.user)
+        accept_with_doubt(self.get_object(), self.read(DoubtedLabel)["reason"], request.user)
         return self.show(self.get_object())

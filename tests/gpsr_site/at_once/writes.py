@@ -130,6 +130,8 @@ NAMELESS = {
     *("work-item-assign", "work-item-finish", "work-item-give-back", "work-item-next"),
     *("work-item-skip", "work-item-take", "work-item-withdraw", "work-item-assign-many"),
     *("comment-restore", "error-category-move", "account-link", "join", "sessions-end"),
+    *("campaign-model", "submission-decide", "submission-mend", "submission-take-back"),
+    *("submission-with-form", "submission-with-doubt"),
     *("campaign-close", "campaign-reopen", "campaign-revoke-link", "campaign-renew-link"),
     *(
         "contributor-forget",
