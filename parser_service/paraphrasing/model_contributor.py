@@ -29,7 +29,7 @@ from parser_service.parsers.llm.protocol import Question
 from parser_service.parsers.llm.server_address import problem_of, server
 
 AT_ONCE = 4  # questions that the server has at a time
-TOGETHER = 8  # prompts after which what was written is stored
+TOGETHER = 8  # prompts that are asked before what came of them is stored
 MOST_TOKENS = 1_000  # of a reply
 MOST_SILENT = 24  # prompts in a row without an answer, after which the server is away
 
@@ -65,8 +65,8 @@ def paraphrase_of(job: Job, progress: Progress) -> dict[str, Any]:
 def paraphrase(campaign: Campaign, settings: ModelSettings, progress: Progress) -> dict[str, Any]:
     """Ask the model for rewrites of prompts whose forms want more, within its budget.
 
-    Forms of which rewrites were dropped have their turn again, with other prompts. What it wrote is stored every
-    ``TOGETHER`` prompts, and the server's answers are kept, so that a job after an interruption asks nothing
+    Forms of which rewrites were dropped have their turn again, with other prompts. What it wrote is stored
+    prompt by prompt, and the server's answers are kept, so that a job after an interruption asks nothing
     twice. A prompt that the server does not answer is asked again by the next job.
 
     Returns:
@@ -90,20 +90,22 @@ def paraphrase(campaign: Campaign, settings: ModelSettings, progress: Progress) 
         total = min(settings.budget, done + len(wanted))
         progress.report(done / total, f"{done:,} of {total:,} prompts")
         answers = asker.ask_each(_questions(some, settings), progress.check)
-        with progress.writing():
-            for asked, answer in zip(some, answers, strict=True):
-                if isinstance(answer, NoAnswer):
-                    silent.append(asked.prompt.pk)
-                    in_a_row += 1
-                    continue
-                in_a_row = 0
-                counts["asked"] += 1
-                rewrites = rewrites_in(answer.text)[: asked.number]
-                for each in store_rewrites(contributor, asked.prompt, answer.text, rewrites):
-                    if each.status == SubmissionStatus.PENDING:
-                        counts["rewrites"] += 1
-                    else:
-                        dropped.update(flag["code"] for flag in each.flags)
+        for asked, answer in zip(some, answers, strict=True):
+            if isinstance(answer, NoAnswer):
+                silent.append(asked.prompt.pk)
+                in_a_row += 1
+                continue
+            in_a_row = 0
+            counts["asked"] += 1
+            rewrites = rewrites_in(answer.text)[: asked.number]
+            # A transaction for each prompt: flags are worked out within, and others write meanwhile.
+            with progress.writing():
+                stored = store_rewrites(contributor, asked.prompt, answer.text, rewrites)
+            for each in stored:
+                if each.status == SubmissionStatus.PENDING:
+                    counts["rewrites"] += 1
+                else:
+                    dropped.update(flag["code"] for flag in each.flags)
         if in_a_row >= MOST_SILENT and isinstance(answers[-1], NoAnswer):
             raise answers[-1]
     return {

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import lru_cache
 
 from rapidfuzz.distance import Levenshtein
 
@@ -146,6 +147,7 @@ def _least_seconds(rewrite: Rewrite) -> float:
     return max(LEAST_SECONDS, edits / MOST_EDITS_A_SECOND)
 
 
+@lru_cache(maxsize=2**15)  # each new text is compared with all earlier ones of its contributor
 def _bare(text: str) -> str:
     """Return the words of ``text`` without courtesy and articles."""
     words = folded_words(text)
