@@ -84,7 +84,7 @@ def choose_prompts(campaign: Campaign, size: int, pseudonym: str = "") -> list[C
     by_form: dict[str, list[int]] = defaultdict(list)
     for key, form in rewrites.values_list("pk", "logical_form"):
         by_form[form].append(key)
-    of_prompt = _taken(campaign, "prompt")
+    of_prompt = _taken(campaign)
     of_form = Counter[str]()
     for form, prompts in by_form.items():
         of_form[form] = sum(of_prompt[key] for key in prompts)
@@ -111,13 +111,13 @@ def choose_prompts(campaign: Campaign, size: int, pseudonym: str = "") -> list[C
     return [rows[key] for key in chosen]
 
 
-def _taken(campaign: Campaign, column: str) -> Counter[int]:
+def _taken(campaign: Campaign) -> Counter[int]:
     """Count the submissions of each prompt: what was answered, and what was given within the last hour."""
     is_taken = ~Q(text="") | Q(given_at__gt=timezone.now() - HELD)
     rows = Submission.objects.filter(
         is_taken, contributor__campaign=campaign, kind=SubmissionKind.REWRITE
     )
-    return Counter(dict(rows.order_by().values_list(column).annotate(Count("pk"))))
+    return Counter(dict(rows.order_by().values_list("prompt").annotate(Count("pk"))))
 
 
 def _places(

@@ -74,14 +74,6 @@ def new_key() -> str:
 
 
 class CampaignQuerySet(models.QuerySet["Campaign"]):
-    def open(self) -> CampaignQuerySet:
-        """Return those that somebody can begin now, as far as dates tell."""
-        now = timezone.now()
-        has_time = Q(ends_at__isnull=True) | Q(ends_at__gt=now)
-        return self.filter(
-            has_time, closed_at__isnull=True, world__deletion_requested_at__isnull=True
-        )
-
     def for_key(self, key: str) -> Campaign | None:
         """Return the campaign whose link holds ``key``, also one that is over; None where no link holds it."""
         rows = self.filter(world__deletion_requested_at__isnull=True).select_related("world")

@@ -31,7 +31,7 @@ from annotations.models.corpus import MOST_CHARACTERS
 from annotations.models.queueing import LONGEST_REASON
 from annotations.people.access import WRITE, WorldRequest, world_view
 from annotations.people.allowances import may_take_long
-from annotations.web.campaigns.submission_filters import FLAG_LABELS, SubmissionFilters
+from annotations.web.campaigns.submission_filters import SubmissionFilters
 from annotations.web.editing.undo import say_with_undo
 
 SORTS = {
@@ -39,11 +39,8 @@ SORTS = {
     "text": Sort("Submission", "text"),
     "status": Sort("Status", "status"),
 }
-KEYS = [
-    ("a", "accept the submission"),
-    ("r", "reject it"),
-    ("x", "tick it"),
-]
+KEYS_OF_LIST = [("x", "tick the row, or take the tick away")]
+KEYS = [("a", "accept the submission"), ("r", "reject it")]
 OTHERS_SHOWN = 30  # of the same contributor
 
 
@@ -71,8 +68,7 @@ def submissions(request: WorldRequest, world: World) -> HttpResponse:
     listing = Listing(request, SubmissionFilters, submissions_of(world), SORTS)
     context = {
         "listing": listing,
-        "flag_labels": FLAG_LABELS,
-        "page_keys": KEYS,
+        "page_keys": KEYS_OF_LIST,
         "n_waiting": submissions_of(world).awaiting_moderation().count(),
     }
     return render_list(request, "annotations/campaigns/submissions.html", context)
@@ -167,8 +163,7 @@ def _show(request: WorldRequest, row: Submission, error: str = "", status: int =
     context = {
         "row": row,
         "error": error,
-        "flag_labels": FLAG_LABELS,
-        "page_keys": KEYS[:2],
+        "page_keys": KEYS,
         "others": others[:OTHERS_SHOWN],
         "sent": request.POST,
         "most_characters": MOST_CHARACTERS,
