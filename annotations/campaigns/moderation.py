@@ -33,7 +33,7 @@ from annotations.models.campaigns import SubmissionKind, SubmissionStatus
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.utterances.utterance_deletion import delete_utterances
 
-MOST_AT_ONCE = 1_000  # submissions of one decision
+MOST_AT_ONCE = 500  # submissions of one decision: the world is held meanwhile
 
 
 class DecidedAlready(Refusal):
