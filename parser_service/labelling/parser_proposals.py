@@ -16,7 +16,6 @@ from annotations.rows.synchronise import batches
 from parser_service.labelling.known_forms import derived_forms, nearest_forms
 from parser_service.labelling.label_candidates import PERSON, is_label
 from parser_service.models import TrainingRun
-from parser_service.parsers.conditions import TrainSources
 from parser_service.parsers.interface import Candidate, Parser
 from parser_service.parsers.registry import title_of
 from parser_service.serving.default_runs import best_run
@@ -77,7 +76,7 @@ def _answer_command(
 
 def _answer(rows: list[Utterance], run: TrainingRun, parser: Parser, progress: Progress) -> None:
     """Replace what an earlier run answered to these utterances."""
-    is_anonymous = run.train_sources == TrainSources.GENERATED
+    is_anonymous = run.train_sources == "gen"
     texts = [row.anonymized_text if is_anonymous else row.text for row in rows]
     answers = parser.predict(texts, BEAM_WIDTH, progress.check)
     made = [
