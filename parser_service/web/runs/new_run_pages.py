@@ -168,7 +168,7 @@ def choices_in(query: QueryDict, world: World) -> RunChoices:
 
 def all_sources(world: World, split: int | None) -> str:
     """Return all that a split can be trained on: the one with the key ``split``, else the newest."""
-    chosen = world.splits.filter(pk=split).first() or world.splits.first()
+    chosen = world.splits.filter(pk=split or 0).first() or world.splits.first()
     if chosen is None:
         return "gen"
     sources = chosen.examples.of(Part.TRAIN).order_by().values_list("source", flat=True)
