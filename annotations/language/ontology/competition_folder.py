@@ -1,0 +1,324 @@
+"""Read the folder of a competition since 2024: Markdown with names, rooms, locations and objects.
+
+Such a folder holds ``names/names.md``, ``maps/room_names.md``, ``maps/location_names.md`` and ``objects/objects.md``
+(docs/reference/formats.md, Competition folders). All other files are no part of the language.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+from annotations.language.decoding import read_text
+from annotations.language.errors import LanguageError, Position, Problem, error_at, warning_at
+from annotations.language.ontology.entities import Entity, Ontology
+from annotations.language.ontology.ontology_checks import ontology_problems
+
+NAMES, ROOMS = "names/names.md", "maps/room_names.md"
+LOCATIONS, OBJECTS = "maps/location_names.md", "objects/objects.md"
+COMPETITION_FILES = (NAMES, ROOMS, LOCATIONS, OBJECTS)
+
+MOST_LINES = 20_000  # of a file
+_RULER = re.compile(r"[|:\-\s]*-[|:\-\s]*")
+_HEADING = re.compile(r"#+\s*(?P<text>.*?)[\s#]*")
+_CLASS = re.compile(
+    r"class\s+(?P<plural>[^()]*[^()\s])\s*(?:\((?P<singular>[^()]*)\))?", re.IGNORECASE
+)
+_PLACEMENT = re.compile(r"\s*\(\s*p\s*\)\s*", re.IGNORECASE)
+_REMARK = re.compile(r"\s*\((?P<remark>[^()]*)\)$")
+_NOTHING = ("", "-", "–", "—")
+_NO_NAME = re.compile(r"[^\w .,'’&/+\-]")
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """The text of a cell, with single spaces, and where it stands."""
+
+    text: str
+    position: Position
+
+
+@dataclass(slots=True)
+class Table:
+    """A table below a ``heading``: the cells of its head and of its rows, without the ruler."""
+
+    heading: Cell
+    head: list[Cell]
+    rows: list[list[Cell]] = field(default_factory=list)
+
+
+def place_in_folder(path: str) -> str:
+    """Return which of ``COMPETITION_FILES`` stands at ``path``, whatever folders it lies in; empty for none."""
+    parts = path.lower().replace("\\", "/").split("/")
+    known = "/".join(parts[-2:])
+    return known if known in COMPETITION_FILES else ""
+
+
+def read_competition(files: Mapping[str, bytes]) -> tuple[Ontology, tuple[Problem, ...]]:
+    """Read the files of a folder, given as one of ``COMPETITION_FILES`` → content.
+
+    Locations have no room, since the folder does not say it: it is asked for apart. A category stands once for each
+    location where its objects belong.
+
+    Returns:
+        The rows, and every problem with its place; errors are returned, not raised.
+    """
+    problems: list[Problem] = []
+    tables = {name: _tables(files, name, problems) for name in COMPETITION_FILES}
+    names = list(_read_column(tables[NAMES], "name", ("name", "names"), problems))
+    rooms = list(_read_column(tables[ROOMS], "room", ("name", "names", "room", "rooms"), problems))
+    locations, belongs = _read_locations(tables[LOCATIONS], problems)
+    objects = list(_read_objects(tables[OBJECTS], belongs, problems))
+    ontology = Ontology((*objects, *rooms, *locations, *names))
+    problems += ontology_problems(ontology)
+    return ontology, tuple(sorted(problems))
+
+
+def _tables(files: Mapping[str, bytes], name: str, problems: list[Problem]) -> list[Table]:
+    """Return the tables of a file; none, and an error, where it is missing or cannot be read."""
+    if name not in files:
+        problems.append(
+            error_at(Position(name), "the folder has no such file", "add it, or choose its folder")
+        )
+        return []
+    try:
+        text, changes = read_text(files[name], name)
+        problems += changes
+        lines = text.split("\n")
+        if len(lines) > MOST_LINES:
+            raise LanguageError(
+                f"the file has {len(lines):,} lines", Position(name), f"{MOST_LINES:,} is the limit"
+            )
+    except LanguageError as error:
+        problems.append(error.problem)
+        return []
+    found = list(_find_tables(lines, name, problems))
+    if not found and not any(each.position.source == name for each in problems):
+        problems.append(
+            error_at(
+                Position(name),
+                "there is no table here",
+                "write | Name | below it a ruler, then rows",
+            )
+        )
+    return found
+
+
+def _find_tables(lines: list[str], name: str, problems: list[Problem]) -> Iterator[Table]:
+    """Yield each table, which a ruler makes of the line above it; rows go on up to the next heading."""
+    heading, table = Cell("", Position(name)), None
+    is_in_table = False
+    for number, line in enumerate(lines, start=1):
+        stripped = line.strip()
+        below = lines[number].strip() if number < len(lines) else ""
+        if stripped.startswith("#"):
+            if table is not None:
+                yield table
+            match = _HEADING.fullmatch(stripped)
+            heading, table = Cell(match["text"] if match else "", Position(name, number)), None
+            is_in_table = False
+        elif _RULER.fullmatch(stripped):
+            continue
+        elif "|" in stripped and _RULER.fullmatch(below):
+            if table is not None:
+                yield table
+            table, is_in_table = Table(heading, _cells(line, name, number)), True
+        elif "|" in stripped and table is not None:
+            table.rows.append(_cells(line, name, number))
+        elif stripped.startswith("|") and not is_in_table:
+            place = Position(name, number)
+            problems.append(
+                error_at(place, "this table has no ruler", "write | --- | below its head")
+            )
+            is_in_table = True  # said once
+    if table is not None:
+        yield table
+
+
+def _cells(line: str, name: str, number: int) -> list[Cell]:
+    """Return the cells of a row. Its first and its last stroke may be missing."""
+    start = len(line) - len(line.lstrip())
+    inner = line.strip()
+    if inner.startswith("|"):
+        start, inner = start + 1, inner[1:]
+    cells, at = [], start
+    for text in inner.removesuffix("|").split("|"):
+        column = at + len(text) - len(text.lstrip()) + 1
+        cells.append(Cell(" ".join(text.split()), Position(name, number, column)))
+        at += len(text) + 1
+    return cells
+
+
+def _read_column(
+    tables: Iterable[Table], entity_class: str, heads: tuple[str, ...], problems: list[Problem]
+) -> Iterator[Entity]:
+    """Yield the rows of the first column that is called one of ``heads``."""
+    seen: set[str] = set()
+    for table in tables:
+        at = _column(table, heads)
+        if at is None:
+            continue
+        for row in table.rows:
+            cell = row[at] if at < len(row) else row[0]
+            if _require_name(cell, entity_class, seen, problems):
+                yield Entity(entity_class, cell.text, position=cell.position)
+
+
+def _column(table: Table, heads: tuple[str, ...]) -> int | None:
+    titles = [cell.text.casefold() for cell in table.head]
+    return next((at for at, title in enumerate(titles) if title in heads), None)
+
+
+def _require_name(cell: Cell, entity_class: str, seen: set[str], problems: list[Problem]) -> bool:
+    """Return whether a cell holds a new name. Say what is wrong with one that does not."""
+    if cell.text in _NOTHING[1:]:
+        return False  # a place that was left free
+    if not cell.text:
+        problems.append(
+            error_at(cell.position, f"this {entity_class} has no name", "write it here")
+        )
+    elif odd := _NO_NAME.search(cell.text):
+        place = cell.position.shifted(odd.start())
+        problems.append(
+            error_at(
+                place, f"a name cannot have the character {odd[0]}", "write letters and digits"
+            )
+        )
+    elif cell.text.casefold() in seen:
+        problems.append(
+            warning_at(cell.position, f"{cell.text} stands here twice", "keep one of the rows")
+        )
+    else:
+        seen.add(cell.text.casefold())
+        return True
+    return False
+
+
+def _read_locations(
+    tables: Iterable[Table], problems: list[Problem]
+) -> tuple[list[Entity], dict[str, list[Cell]]]:
+    """Return the locations, and location → the cells that name what belongs there."""
+    locations: list[Entity] = []
+    belongs: dict[str, list[Cell]] = defaultdict(list)
+    seen: set[str] = set()
+    for table in tables:
+        at = _column(table, ("name", "names"))
+        if at is None:
+            continue
+        for row in table.rows:
+            if at >= len(row):
+                place = row[-1].position
+                problems.append(error_at(place, "this row has no name", "write number, name"))
+                continue
+            written, place = row[at].text, row[at].position
+            parts = _PLACEMENT.split(written, maxsplit=1)
+            if not _require_name(Cell(parts[0], place), "location", seen, problems):
+                continue
+            is_placement = len(parts) > 1
+            attributes = {"isBeacon": "true", "isPlacement": "true" if is_placement else "false"}
+            locations.append(Entity("location", parts[0], (), attributes, place))
+            # "cooking table (p) cleaning supplies": somebody forgot the stroke between two cells.
+            beside = [Cell(parts[1], place)] if is_placement and parts[1] else []
+            for cell in (*row[at + 1 : at + 2], *beside):
+                for text in cell.text.split(","):
+                    if text.strip() not in _NOTHING:
+                        belongs[parts[0]].append(Cell(text.strip(), cell.position))
+    if locations and not any(each.is_set("isPlacement") for each in locations):
+        problems.append(
+            error_at(
+                Position(LOCATIONS),
+                "no location has (p), so nothing can be put anywhere",
+                "write (p) after the names of locations where objects can be placed",
+            )
+        )
+    return locations, belongs
+
+
+def _read_objects(
+    tables: Iterable[Table], belongs: Mapping[str, list[Cell]], problems: list[Problem]
+) -> Iterator[Entity]:
+    """Yield the categories, one for each place where their objects belong, each before its objects."""
+    classes: dict[
+        str, tuple[str, str, list[Entity]]
+    ] = {}  # folded plural → plural, singular, objects
+    homes: dict[str, str] = {}  # folded object → its first class
+    for table in tables:
+        heading = table.heading
+        match = _CLASS.fullmatch(heading.text)
+        if match is None:
+            problems.append(
+                error_at(
+                    heading.position,
+                    "this table belongs to no class",
+                    "write # Class drinks (drink)",
+                )
+            )
+            continue
+        plural = " ".join(match["plural"].replace("_", " ").split())
+        singular = " ".join((match["singular"] or "").replace("_", " ").split()) or plural
+        if plural.casefold() in classes:
+            problems.append(
+                error_at(
+                    heading.position, f"there are two classes {plural}", "give one another name"
+                )
+            )
+            continue
+        objects: list[Entity] = []
+        classes[plural.casefold()] = plural, singular, objects
+        seen: set[str] = set()
+        for row in table.rows:
+            text = row[0].text.replace("_", " ").strip()
+            remark = _REMARK.search(text)
+            named = Cell(text[: remark.start()] if remark else text, row[0].position)
+            if not _require_name(named, "object", seen, problems):
+                continue
+            first = homes.setdefault(named.text.casefold(), plural)
+            if first != plural:
+                sentence = f"{named.text} is among the {first} too"
+                problems.append(warning_at(named.position, sentence, "both are kept"))
+            attributes = {"category": plural, **({"remark": remark["remark"]} if remark else {})}
+            objects.append(Entity("object", named.text, (), attributes, named.position))
+    places = _places_of(classes, belongs, problems)
+    for key, (plural, singular, objects) in classes.items():
+        attributes = {"singular": singular} if singular != plural else {}
+        for place in places[key] or [""]:
+            kept = {"defaultLocation": place} if place else {}
+            position = objects[0].position if objects else Position(OBJECTS)
+            yield Entity("category", plural, (), {**kept, **attributes}, position)
+        yield from objects
+
+
+def _places_of(
+    classes: Mapping[str, tuple[str, str, list[Entity]]],
+    belongs: Mapping[str, list[Cell]],
+    problems: list[Problem],
+) -> dict[str, list[str]]:
+    """Return folded plural → the locations where the objects of a class belong, as the map says it in plural or
+    singular."""
+    known: dict[str, str] = {}
+    for key, (plural, singular, _) in classes.items():
+        for name in (plural, singular):
+            known.setdefault(_stem(name), key)
+    places: dict[str, list[str]] = defaultdict(list)
+    for location, cells in belongs.items():
+        for cell in cells:
+            key = known.get(_stem(cell.text))
+            if key is None:
+                sentence = f"no objects are of the class {cell.text}"
+                problems.append(warning_at(cell.position, sentence, "name a class of objects.md"))
+            elif location not in places[key]:
+                places[key].append(location)
+    return places
+
+
+def _stem(name: str) -> str:
+    """Return a name without case, underscores and the ending of a plural."""
+    folded = " ".join(name.casefold().replace("_", " ").split())
+    if folded.endswith("ies"):
+        return f"{folded[:-3]}y"
+    for ending in ("shes", "ches", "sses", "xes", "zes"):
+        if folded.endswith(ending):
+            return folded[:-2]
+    return folded.removesuffix("s")
