@@ -304,12 +304,12 @@ def _places_of(
     places: dict[str, list[str]] = defaultdict(list)
     for location, cells in belongs.items():
         for cell in cells:
-            key = known.get(_stem(cell.text))
-            if key is None:
+            named = known.get(_stem(cell.text))
+            if named is None:
                 sentence = f"no objects are of the class {cell.text}"
                 problems.append(warning_at(cell.position, sentence, "name a class of objects.md"))
-            elif location not in places[key]:
-                places[key].append(location)
+            elif location not in places[named]:
+                places[named].append(location)
     return places
 
 

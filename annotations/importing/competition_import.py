@@ -1,0 +1,177 @@
+"""Import the folder of a competition since 2024 into a world: its names, rooms, locations and objects."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from annotations import models
+from annotations.background.progress import UNWATCHED, Progress
+from annotations.checking.world_problems import check_again
+from annotations.importing.import_reports import Refusable
+from annotations.importing.target_world import lock_world, require_world_name
+from annotations.language.decoding import read_tree
+from annotations.language.errors import LanguageError, Position, Problem, error_at
+from annotations.language.ontology import Entity, Ontology
+from annotations.language.ontology.competition_folder import place_in_folder, read_competition
+from annotations.models import User, World
+from annotations.rows.decisions import respect
+from annotations.rows.history import keys_changed_by_people
+from annotations.rows.stored_problems import as_json
+from annotations.rows.synchronise import Changes, RowPlan, plan
+
+# What the folder decides. Entities of other classes stay as the world has them.
+CLASSES = ("object", "category", "room", "location", "name")
+
+
+@dataclass(frozen=True, slots=True)
+class CompetitionReport(Refusable):
+    """What was read and done. ``entities`` counts them by class, ``without_room`` locations whose room nobody has said.
+
+    With an error among the ``problems`` nothing was stored. ``left_out`` are entities that people have deleted or
+    renamed here.
+    """
+
+    world: str
+    entities: Mapping[str, int] = field(default_factory=dict)
+    without_room: tuple[str, ...] = ()
+    problems: tuple[Problem, ...] = ()
+    changes: Changes = field(default_factory=Changes)
+    left_out: tuple[str, ...] = ()
+
+    def as_json(self) -> dict[str, Any]:
+        told = {name: getattr(self, name) for name in ("world", "without_room", "left_out")}
+        return {
+            **{
+                name: list(value) if isinstance(value, tuple) else value
+                for name, value in told.items()
+            },
+            "entities": dict(self.entities),
+            "problems": [as_json(problem) for problem in self.problems],
+            "changes": asdict(self.changes),
+        }
+
+
+def import_competition(
+    world_name: str,
+    source: Path | Mapping[str, bytes],
+    by: User | None = None,
+    progress: Progress = UNWATCHED,
+    brings_back: bool = False,
+) -> CompetitionReport:
+    """Make the names, rooms, locations and objects of a world those of a folder.
+
+    Grammar, templates and the entities of other classes stay. A location that the world has keeps its room, and an
+    entity what people have changed in it. The same folder twice changes nothing.
+
+    Args:
+        world_name: created if it does not exist.
+        source: a folder, which the four files may lie in at any depth; or path → bytes.
+        by: who asked; they become the admin of a world that this creates.
+        brings_back: whether entities that people have deleted here are restored.
+
+    Returns:
+        What was read and done. If any problem is an error, nothing was stored.
+    """
+    try:
+        require_world_name(world_name)
+        files, problems = _gather(source)
+    except LanguageError as error:
+        return CompetitionReport(world_name, problems=(error.problem,))
+    progress.report(0.2, "reading the files")
+    ontology, unread = read_competition(files)
+    report = CompetitionReport(
+        world_name,
+        entities=dict(Counter(each.entity_class for each in ontology.entities)),
+        problems=tuple(sorted((*problems, *unread))),
+    )
+    if report.is_refused:
+        return report
+    progress.report(0.6, "writing")
+    with progress.writing():
+        world = lock_world(world_name, by)
+        stored, _ = models.Ontology.objects.select_related("world").get_or_create(world=world)
+        planned = plan_competition(stored, ontology, brings_back)
+        changes = planned.apply(by)
+        check_again(world, models.Entity)
+        report = replace(
+            report,
+            changes=changes,
+            without_room=tuple(_without_room(world)),
+            left_out=tuple(f"{row} ({why})" for row, why in planned.left_out),
+        )
+        progress.conclude(report.as_json())
+    return report
+
+
+def plan_competition(
+    stored: models.Ontology, read: Ontology, brings_back: bool = False
+) -> RowPlan[models.Entity]:
+    """Plan the entities of ``CLASSES``; those of other classes come behind them, as they are."""
+    rows = list(stored.entities.order_by("position"))
+    rooms = {row.text: row.attributes["room"] for row in rows if row.attributes.get("room")}
+    changed_by_people = keys_changed_by_people(models.Entity, stored.world)
+    changed = {_key_of(row): row for row in rows if row.pk in changed_by_people}
+    wanted = [_row_of(stored, each, rooms) for each in read.entities]
+    for row in wanted:
+        if kept := changed.get(_key_of(row)):
+            row.aliases, row.attributes = kept.aliases, kept.attributes
+    for row in rows:
+        if row.entity_class not in CLASSES:
+            texts = {"entity_class": row.entity_class, "text": row.text, "aliases": row.aliases}
+            place = {"attributes": row.attributes, "source": row.source, "line": row.line}
+            wanted.append(models.Entity(ontology=stored, **texts, **place))
+    for position, row in enumerate(wanted):
+        row.position = position
+    fields = ["aliases", "attributes", "source", "line", "position"]
+    return respect(
+        plan(stored.entities.all(), wanted, _key_of, fields), stored.world, _key_of, brings_back
+    )
+
+
+def _row_of(stored: models.Ontology, entity: Entity, rooms: Mapping[str, str]) -> models.Entity:
+    attributes = dict(entity.attributes)
+    room = rooms.get(entity.text) if entity.entity_class == "location" else None
+    return models.Entity(
+        ontology=stored,
+        entity_class=entity.entity_class,
+        text=entity.text,
+        aliases=list(entity.aliases),
+        attributes={**attributes, "room": room} if room else attributes,
+        source=entity.position.source,
+        line=entity.position.line,
+    )
+
+
+def _key_of(row: models.Entity) -> tuple[str, str, str]:
+    """Return what tells entities apart: a category stands once for each place where its objects belong."""
+    beside = {"category": "defaultLocation", "object": "category"}.get(row.entity_class, "")
+    return row.entity_class, row.text, row.attributes.get(beside, "")
+
+
+def _without_room(world: World) -> list[str]:
+    locations = models.Entity.objects.filter(ontology__world=world, entity_class="location")
+    return [each.text for each in locations.order_by("position") if not each.attributes.get("room")]
+
+
+def _gather(source: Path | Mapping[str, bytes]) -> tuple[dict[str, bytes], list[Problem]]:
+    """Return the files of the folder by their place in it. Raises LanguageError where two have one place."""
+    problems: list[Problem] = []
+    if isinstance(source, Path):
+        files, problems = read_tree(source, lambda path: bool(place_in_folder(path)))
+    else:
+        files = dict(source)
+    gathered: dict[str, bytes] = {}
+    for path in sorted(files, key=lambda path: (path.count("/"), path)):
+        place = place_in_folder(path)
+        if place and place in gathered:
+            sentence = f"there are two files {place}"
+            problems.append(
+                error_at(Position(path), sentence, "choose the folder of one competition")
+            )
+        elif place:
+            gathered[place] = files[path]
+    return gathered, problems

@@ -1,0 +1,37 @@
+"""``import_competition DIR --world NAME``: imports the folder of a competition since 2024."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from django.core.management.base import CommandParser
+
+from annotations.importing.competition_import import import_competition
+from annotations.management.base import RefusedReport, ReportingCommand, add_brings_back
+
+
+class Command(ReportingCommand):
+    help = (
+        "Imports names, rooms, locations and objects from the Markdown folder of a competition. What the world has of "
+        "these is replaced; grammar and templates stay. Refused whole where a file has an error."
+    )
+
+    audited = "import files"
+
+    def add_options(self, parser: CommandParser) -> None:
+        parser.add_argument("folder", type=Path)
+        parser.add_argument("--world", required=True, help="made where there is none")
+        add_brings_back(parser)
+
+    def report(
+        self, *, folder: Path, world: str, bring_back: bool, **options: Any
+    ) -> Mapping[str, Any]:
+        report = import_competition(world, folder, brings_back=bring_back)
+        if report.is_refused:
+            raise RefusedReport.because(report.errors, report.as_json(), folder)
+        return report.as_json()
+
+    def audit_subject(self, report: Mapping[str, Any], options: Mapping[str, Any]) -> str:
+        return str(options["folder"])
