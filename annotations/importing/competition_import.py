@@ -64,8 +64,8 @@ def import_competition(
 ) -> CompetitionReport:
     """Make the names, rooms, locations and objects of a world those of a folder.
 
-    Grammar, templates and the entities of other classes stay. A location that the world has keeps its room, and an
-    entity what people have changed in it. The same folder twice changes nothing.
+    Grammar, templates and the entities of other classes stay. A location keeps its room, and an entity the aliases and
+    attributes that people have added. The same folder twice changes nothing.
 
     Args:
         world_name: created if it does not exist.
@@ -118,7 +118,8 @@ def plan_competition(
     wanted = [_row_of(stored, each, rooms) for each in read.entities]
     for row in wanted:
         if kept := changed.get(_key_of(row)):
-            row.aliases, row.attributes = kept.aliases, kept.attributes
+            # The folder decides what it says; rooms, aliases and the like are what people have added.
+            row.aliases, row.attributes = kept.aliases, {**kept.attributes, **row.attributes}
     for row in rows:
         if row.entity_class not in CLASSES:
             texts = {"entity_class": row.entity_class, "text": row.text, "aliases": row.aliases}

@@ -28,6 +28,7 @@ _CLASS = re.compile(
 )
 _PLACEMENT = re.compile(r"\s*\(\s*p\s*\)\s*", re.IGNORECASE)
 _REMARK = re.compile(r"\s*\((?P<remark>[^()]*)\)$")
+_PROSE = ("- ", "* ", "+ ", "![", "[", ">")  # begins of lists, pictures, links and quotations
 _NOTHING = ("", "-", "–", "—")
 _NO_NAME = re.compile(r"[^\w .,'’&/+\-]")
 
@@ -107,32 +108,31 @@ def _tables(files: Mapping[str, bytes], name: str, problems: list[Problem]) -> l
 
 
 def _find_tables(lines: list[str], name: str, problems: list[Problem]) -> Iterator[Table]:
-    """Yield each table, which a ruler makes of the line above it; rows go on up to the next heading."""
+    """Yield each table, which a ruler makes of the line above it; rows go on up to the next heading or table."""
     heading, table = Cell("", Position(name)), None
-    is_in_table = False
+    is_inside = False  # whether the line above belongs to a table
     for number, line in enumerate(lines, start=1):
+        place = Position(name, number)
         stripped = line.strip()
         below = lines[number].strip() if number < len(lines) else ""
+        is_row = "|" in stripped and not stripped.startswith(_PROSE)
+        if is_inside and _RULER.fullmatch(stripped):
+            continue
         if stripped.startswith("#"):
             if table is not None:
                 yield table
             match = _HEADING.fullmatch(stripped)
-            heading, table = Cell(match["text"] if match else "", Position(name, number)), None
-            is_in_table = False
-        elif _RULER.fullmatch(stripped):
-            continue
-        elif "|" in stripped and _RULER.fullmatch(below):
+            heading, table = Cell(match["text"] if match else "", place), None
+        elif is_row and not is_inside and _RULER.fullmatch(below):
             if table is not None:
                 yield table
-            table, is_in_table = Table(heading, _cells(line, name, number)), True
-        elif "|" in stripped and table is not None:
+            table = Table(heading, _cells(line, name, number))
+        elif is_row and table is not None:
             table.rows.append(_cells(line, name, number))
-        elif stripped.startswith("|") and not is_in_table:
-            place = Position(name, number)
-            problems.append(
-                error_at(place, "this table has no ruler", "write | --- | below its head")
-            )
-            is_in_table = True  # said once
+        elif stripped.startswith("|") and not is_inside:
+            hint = "write | --- | below its head"
+            problems.append(error_at(place, "this table has no ruler", hint))
+        is_inside = is_row
     if table is not None:
         yield table
 
