@@ -56,7 +56,7 @@ def save_answer(
 
     Raises:
         Refusal: the text is too long or no text, or the task is finished.
-        CampaignOver: the campaign is over.
+        CampaignOver: the campaign ended, and the time is up in which those who have begun may finish.
     """
     wanted = normalise_line(text)
     require_writable(wanted, Position())
@@ -85,8 +85,8 @@ def save_answer(
 
 
 def _require_changeable(submission: Submission) -> None:
-    if submission.contributor.campaign.is_over:
-        raise CampaignOver
+    if submission.contributor.campaign.is_locked:
+        raise CampaignOver(has_begun=True)
     if submission.contributor.is_finished or submission.status != SubmissionStatus.PENDING:
         said = "This task is finished. What you wrote is kept."
         raise Refusal(said, "task_finished", HTTPStatus.CONFLICT)

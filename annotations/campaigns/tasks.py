@@ -20,13 +20,14 @@ HELD = timedelta(hours=1)  # a prompt that was given counts as taken for so long
 
 
 class CampaignOver(Refusal):
-    """A campaign takes nothing any more."""
+    """A campaign takes nothing any more, from new people or from anybody."""
 
     code = "campaign_over"
     status = HTTPStatus.GONE
 
-    def __init__(self) -> None:
-        super().__init__("This campaign is over. Thank you for your interest.")
+    def __init__(self, has_begun: bool = False) -> None:
+        thanks = "What you wrote is kept. Thank you." if has_begun else "Thank you for your interest."
+        super().__init__(f"This campaign is over. {thanks}")
 
 
 def require_open(campaign: Campaign) -> None:

@@ -7,6 +7,7 @@ somebody submits becomes a ``Paraphrase`` or an ``Utterance`` when a moderator a
 from __future__ import annotations
 
 import secrets
+from datetime import datetime, timedelta
 
 from django.db import models
 from django.db.models import Count, Q
@@ -19,6 +20,8 @@ MOST_CHARACTERS_OF_TEXT = 8_000  # of a text that contributors read
 LONGEST_CAMPAIGN_NAME = 60
 LONGEST_PSEUDONYM = 32
 MOST_PLACES = 400  # of a task
+# Who has begun may finish for so long after a campaign was closed or its time was up.
+GRACE = timedelta(days=1)
 
 
 class Wording(models.TextChoices):
@@ -97,8 +100,9 @@ class Campaign(models.Model):
     ``free_commands`` commands of their own make a task; a form has enough with ``target_per_form``
     paraphrases. ``taboo_words`` says how many of a form's most used words are shown as not to be used;
     ``check_every`` plants a check among so many prompts (0: none). It ends when it is closed, at ``ends_at``,
-    or with ``most_submissions``. ``price`` is what a task costs, in ``currency``. ``key`` is the secret part of
-    the link; it is empty where the link was revoked.
+    or with ``most_submissions``. At most ``most_per_hour`` tasks are begun by the link. ``price`` is what a task costs,
+    in ``currency``. ``key`` is the secret part of the link; it is empty where the link was revoked. ``version``
+    counts from 1 how often its texts, its end and its payment were changed.
     """
 
     world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="campaigns")
@@ -121,6 +125,7 @@ class Campaign(models.Model):
     return_url = models.URLField(max_length=500, blank=True)
     ends_at = models.DateTimeField(null=True, blank=True)
     most_submissions = models.PositiveIntegerField(null=True, blank=True)
+    most_per_hour = models.PositiveIntegerField(default=1_000)
     key = models.CharField(max_length=40, blank=True, default=new_key, db_index=True)
     seed = models.PositiveIntegerField(default=0)
     created_by = models.ForeignKey(
@@ -128,6 +133,7 @@ class Campaign(models.Model):
     )
     created_at = models.DateTimeField(default=timezone.now)
     closed_at = models.DateTimeField(null=True, blank=True)
+    version = models.PositiveIntegerField(default=1)
 
     objects = CampaignQuerySet.as_manager()
 
@@ -145,10 +151,26 @@ class Campaign(models.Model):
         return self.name
 
     @property
+    def ended_at(self) -> datetime | None:
+        """When it was closed, or its time was up; None before. How much was submitted is not looked at."""
+        now = timezone.now()
+        ends = [each for each in (self.closed_at, self.ends_at) if each is not None and each <= now]
+        return min(ends, default=None)
+
+    @property
     def is_over(self) -> bool:
-        """Whether it was closed, or its time is up. How much was submitted is not looked at."""
-        is_late = self.ends_at is not None and self.ends_at <= timezone.now()
-        return self.closed_at is not None or is_late
+        """Whether nobody can begin any more."""
+        return self.ended_at is not None
+
+    @property
+    def grace_ends_at(self) -> datetime | None:
+        """Until when those who have begun may finish; None while it is open."""
+        return None if self.ended_at is None else self.ended_at + GRACE
+
+    @property
+    def is_locked(self) -> bool:
+        """Whether nobody can write any more, also of those who have begun."""
+        return self.grace_ends_at is not None and self.grace_ends_at <= timezone.now()
 
 
 class CampaignPrompt(models.Model):
@@ -227,6 +249,7 @@ class Contributor(models.Model):
                 fields=["campaign", "pseudonym", "attempt"], name="contributor_once"
             )
         ]
+        indexes = [models.Index(fields=["campaign", "began_at"])]
 
     def __str__(self) -> str:
         return self.pseudonym

@@ -18,22 +18,20 @@ from django.views.decorators.cache import never_cache
 from django.views.decorators.http import require_http_methods
 
 from annotations.campaigns.answering import finish, save_answer, warnings_for
+from annotations.campaigns.limits import TooOften, count_answer, count_task
 from annotations.campaigns.pseudonyms import DEVICE, market_id_in, new_device, pseudonym_of
 from annotations.campaigns.taboo import taboo_words_for
-from annotations.campaigns.tasks import begin, contributor_of, require_open
+from annotations.campaigns.tasks import CampaignOver, begin, contributor_of, require_open
 from annotations.language.errors import Refusal
 from annotations.language.paraphrases import RewriteFault, RewriteWarning
 from annotations.models import Campaign, Contributor, Submission
 from annotations.models.campaigns import MOST_PLACES
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.people.access import READ_AND_WRITE, WRITE
-from annotations.people.rate_limits import BEGUN_TASKS, SAVED_ANSWERS
 
 KNOWN_FOR = 30 * 24 * 3600  # seconds for which a browser is known
 LONGEST_LOOK = 24 * 3600  # seconds; who looks at a prompt for longer was away
 SHOWN = "annotations.campaigns.shown"  # salts what is signed
-TOO_OFTEN = "This is more than one person writes. Wait a minute, and go on."
-TOO_MANY = "Too many people begin from this address. Try again in an hour."
 ELSEWHERE = "This task was begun in another browser. Go on there: what you wrote is kept."
 # What a writer is told; {} is the evidence.
 WARNINGS = {
@@ -138,7 +136,8 @@ def visit_to(campaign: Campaign, request: HttpRequest) -> Visit:
 def campaign_begin(visit: Visit) -> HttpResponse:
     """Say what the campaign is about, and begin a task for whoever agrees."""
     contributor, campaign = visit.contributor, visit.campaign
-    has_to_begin = contributor is None or (contributor.is_finished and campaign.allows_retake)
+    may_retake = campaign.allows_retake and not campaign.is_over
+    has_to_begin = contributor is None or (contributor.is_finished and may_retake)
     if visit.request.method != "POST":
         if has_to_begin:
             require_open(campaign)
@@ -149,10 +148,8 @@ def campaign_begin(visit: Visit) -> HttpResponse:
         if not visit.request.POST.get("agrees"):
             missing = "Tick the box to begin: without your consent nothing is stored."
             return visit.page("begin", 422, has_to_begin=True, missing=missing)
-        if BEGUN_TASKS.take(str(visit.request.META["REMOTE_ADDR"])) is None:
-            refusal = Refusal(TOO_MANY, "too_often", HTTPStatus.TOO_MANY_REQUESTS)
-            refusal.wait = BEGUN_TASKS.seconds
-            raise refusal
+        require_open(campaign)
+        count_task(campaign, str(visit.request.META["REMOTE_ADDR"]))
         contributor = begin(campaign, visit.pseudonym)
     assert contributor is not None
     return visit.to(next_place(contributor))
@@ -166,6 +163,8 @@ def campaign_place(visit: Visit, position: int) -> HttpResponse:
         return visit.to()
     if place.contributor.is_finished:
         return visit.to("done")
+    if visit.campaign.is_locked:
+        raise CampaignOver(has_begun=True)
     request = visit.request
     if request.method != "POST":
         return show_place(visit, place)
@@ -173,10 +172,12 @@ def campaign_place(visit: Visit, position: int) -> HttpResponse:
     if not form.is_valid():
         return show_place(visit, place, form, status=422)
     text = form.cleaned_data["text"]
-    if SAVED_ANSWERS.take(f"{place.contributor_id}") is None:
-        form.add_error("text", TOO_OFTEN)
-        response = show_place(visit, place, form, HTTPStatus.TOO_MANY_REQUESTS)
-        response["Retry-After"] = str(SAVED_ANSWERS.seconds)
+    try:
+        count_answer(place.contributor)
+    except TooOften as refusal:
+        form.add_error("text", refusal.message)
+        response = show_place(visit, place, form, refusal.status)
+        response["Retry-After"] = str(refusal.wait)
         return response
     seconds = seconds_since(form.cleaned_data["shown"], place)
     save_answer(place, text, seconds, was_pasted=form.cleaned_data["pasted"])
