@@ -99,6 +99,7 @@ urlpatterns = [
     path("campaigns/", campaign_pages.campaigns, name="campaigns"),
     path("campaigns/new/", campaign_pages.campaign_new, name="campaign_new"),
     path("campaigns/<int:pk>/", campaign_pages.campaign_page, name="campaign_page"),
+    path("campaigns/<int:pk>/edit/", campaign_pages.campaign_edit, name="campaign_edit"),
     path("campaigns/<int:pk>/state/", campaign_pages.campaign_state, name="campaign_state"),
     path("campaigns/<int:pk>/act/", campaign_pages.campaign_act, name="campaign_act"),
     path(

@@ -83,6 +83,7 @@ WHAT = {
     "utterances_restore": "restore utterances",
     "paraphrase_label": "label a paraphrase",
     "campaign_new": "launch a campaign",
+    "campaign_edit": "change a campaign",
     "campaign_act": "close or open a campaign",
     "contributor_forget": "forget a contributor",
     "split_new": "freeze a split",

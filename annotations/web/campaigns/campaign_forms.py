@@ -9,6 +9,7 @@ import django_filters
 from django import forms
 from django.utils import timezone
 
+from annotations.campaigns.changing import CHANGEABLE, has_consents
 from annotations.campaigns.launching import PromptChoice
 from annotations.lists.filtering import Choices, PageFilters, Search
 from annotations.models import Campaign, World
@@ -25,6 +26,7 @@ from annotations.web.forms import choice_field
 MOST_PROMPTS_PER_FORM = 20
 MOST_REWRITES, MOST_FREE_COMMANDS = 100, 20
 MOST_SUBMISSIONS = 1_000_000
+MOST_TASKS_PER_HOUR = 100_000
 INTRODUCTION = (
     "You will see commands that somebody could give to a robot at home. Say each of them in your own words: "
     "use other words or another order, but ask for the same. Write as you would speak."
@@ -102,6 +104,9 @@ class CampaignForm(forms.Form):
         max_value=MOST_SUBMISSIONS,
         help_text="Empty: as many as come.",
     )
+    most_per_hour = number_field(
+        "Tasks an hour", 1_000, MOST_TASKS_PER_HOUR, "begun by the link, at most", 1
+    )
     price = forms.DecimalField(
         label="Price of a task",
         required=False,
@@ -132,7 +137,10 @@ class CampaignForm(forms.Form):
     OF_CHOICE = ("task_categories", "prompts_per_form", "target_per_form", "wording", "seed")
     TASK = ("task_size", "free_commands", "target_per_form")
     WHAT = ("prompts_per_form", "wording", "taboo_words", "check_every", "seed")
-    END = ("ends_at", "most_submissions", "price", "currency", "completion_code", "return_url")
+    END = (
+        *("ends_at", "most_submissions", "most_per_hour", "price", "currency"),
+        *("completion_code", "return_url"),
+    )
     MAY = ("allows_model_help", "allows_retake")
     TEXTS = ("introduction", "examples", "consent", "thanks")
 
@@ -189,6 +197,48 @@ class CampaignForm(forms.Form):
     @property
     def texts(self) -> list[forms.BoundField]:
         return self.group(self.TEXTS)
+
+
+class CampaignChangeForm(CampaignForm):
+    """What may still be changed of a campaign that was launched."""
+
+    version = forms.IntegerField(widget=forms.HiddenInput)
+
+    def __init__(self, campaign: Campaign, *args: Any, **kwargs: Any):
+        self.campaign = campaign
+        super().__init__(campaign.world, *args, initial=values_of(campaign), **kwargs)
+        for name in self.fields.keys() - {*CHANGEABLE, "version"}:
+            del self.fields[name]
+        consent = self.fields["consent"]
+        if has_consents(campaign):
+            consent.widget.attrs["readonly"] = True
+            consent.help_text = "Somebody has agreed to it, so it stays as it is."
+        else:
+            consent.help_text = "It can be changed until somebody has agreed to it."
+
+    def clean_ends_at(self) -> datetime | None:
+        """Return as ``CampaignForm`` does; the day that it has may be over."""
+        if self.cleaned_data["ends_at"] == last_day_of(self.campaign):
+            return self.campaign.ends_at
+        return super().clean_ends_at()
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """Return the values of a valid form, without its version."""
+        return {name: self.cleaned_data[name] for name in CHANGEABLE}
+
+
+def values_of(campaign: Campaign) -> dict[str, Any]:
+    """Return what the fields of ``CampaignChangeForm`` show."""
+    values = {name: getattr(campaign, name) for name in CHANGEABLE}
+    return {**values, "ends_at": last_day_of(campaign), "version": campaign.version}
+
+
+def last_day_of(campaign: Campaign) -> date | None:
+    """Return the last whole day of a campaign; None where it has no end."""
+    if campaign.ends_at is None:
+        return None
+    return timezone.localdate(campaign.ends_at - timedelta(microseconds=1))
 
 
 def campaign_choices(request: WorldRequest) -> Choices:

@@ -11,6 +11,7 @@ from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.views.decorators.cache import never_cache
 
+from annotations.campaigns.changing import CampaignChanged, change_campaign
 from annotations.campaigns.closing import close, forget, renew_link, reopen, revoke_link
 from annotations.campaigns.launching import DrawnPrompt, draw_prompts, launch
 from annotations.campaigns.progress import progress_of
@@ -22,9 +23,11 @@ from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world
 from annotations.people.allowances import may_take_long
 from annotations.people.audit_log import note
 from annotations.web.campaigns.campaign_forms import (
+    CampaignChangeForm,
     CampaignFilters,
     CampaignForm,
     ContributorFilters,
+    values_of,
 )
 from annotations.web.campaigns.campaign_links import link_of
 from annotations.web.forms import posted, sentence_of
@@ -34,9 +37,9 @@ SORTS = {"newest": Sort("Launched", "-created_at"), "name": Sort("Campaign", "na
 CONTRIBUTOR_SORTS = {"began": Sort("Began", "-began_at")}
 # What a button does, and what is said afterwards.
 STEPS: dict[str, tuple[Callable[[Campaign], None], str]] = {
-    "close": (close, "Closed. Nobody can write any more; what came in stays."),
+    "close": (close, "Closed. Nobody can begin any more; who has begun may finish within a day."),
     "open": (reopen, "Open again."),
-    "revoke": (revoke_link, "The link leads nowhere now."),
+    "revoke": (revoke_link, "The link leads nowhere now, also for those who have begun."),
     "renew": (renew_link, "This campaign has a new link. The old one leads nowhere."),
 }
 
@@ -92,6 +95,42 @@ def campaign_page(request: WorldRequest, world: World, pk: int) -> HttpResponse:
         "listing": listing,
     }
     return render_list(request, "annotations/campaigns/campaign_page.html", context)
+
+
+@world_view(Duty.MANAGE, READ_AND_WRITE)
+def campaign_edit(request: WorldRequest, world: World, pk: int) -> HttpResponse:
+    """Show the form with the texts, the end and the payment of a campaign; a POST saves them as its next version."""
+    row = get_object_or_404(world.campaigns.select_related("world"), pk=pk)
+    form = CampaignChangeForm(row, posted(request))
+    context: dict[str, Any] = {"campaign": row, "form": form}
+    status = 422 if form.errors else 200
+    if form.is_bound and form.is_valid():
+        try:
+            changed = change_campaign(row, form.values, form.cleaned_data["version"])
+        except CampaignChanged as clash:
+            # What they wrote stays in the form, which is now about the present version.
+            context |= {"clash": clash.message, "others": others_of(form, clash.current)}
+            form.data = {**form.data.dict(), "version": clash.current.version}
+            status = clash.status
+        except Refusal as refusal:
+            form.add_error("consent", refusal.message)
+            status = refusal.status
+        else:
+            note(request, f"{row.name}: {', '.join(changed)}")
+            said = f"Saved as version {row.version + 1}." if changed else "Nothing has changed."
+            messages.success(request, said)
+            return redirect("campaign_page", world=world.name, pk=pk)
+    return render(request, "annotations/campaigns/campaign_edit.html", context, status=status)
+
+
+def others_of(form: CampaignChangeForm, current: Campaign) -> list[tuple[str, object]]:
+    """Return the label and the stored value of each field that the form would change in ``current``."""
+    stored = {**values_of(current), "ends_at": current.ends_at}
+    return [
+        (str(form[name].label), stored[name])
+        for name, value in form.values.items()
+        if stored[name] != value
+    ]
 
 
 def one_of_each(campaign: Campaign) -> QuerySet[CampaignPrompt]:

@@ -12,6 +12,7 @@ from rest_framework import serializers
 from rest_framework.decorators import action
 from rest_framework.response import Response
 
+from annotations.campaigns.changing import change_campaign
 from annotations.campaigns.closing import close, forget, renew_link, reopen, revoke_link
 from annotations.campaigns.launching import launch
 from annotations.campaigns.progress import progress_of
@@ -32,10 +33,13 @@ from annotations.web.campaigns.campaign_forms import (
     MOST_PROMPTS_PER_FORM,
     MOST_REWRITES,
     MOST_SUBMISSIONS,
+    MOST_TASKS_PER_HOUR,
     THANKS,
+    CampaignChangeForm,
     CampaignFilters,
     CampaignForm,
     ContributorQuery,
+    values_of,
 )
 from annotations.web.campaigns.campaign_links import link_of
 from annotations.web.rest.fields import Fields, LineField
@@ -53,6 +57,9 @@ class CampaignSerializer(serializers.ModelSerializer[Campaign]):
 
     link = serializers.SerializerMethodField()
     is_over = serializers.BooleanField()
+    grace_ends_at = serializers.DateTimeField(
+        allow_null=True, help_text="until when those who have begun may finish"
+    )
     people = serializers.IntegerField()
     finished = serializers.IntegerField()
     answers = serializers.IntegerField()
@@ -64,8 +71,9 @@ class CampaignSerializer(serializers.ModelSerializer[Campaign]):
             *("id", "name", "link", "is_over", "wording", "task_size", "free_commands"),
             *("target_per_form", "taboo_words", "check_every", "allows_model_help"),
             *("allows_retake", "price", "currency", "completion_code", "return_url", "ends_at"),
-            *("most_submissions", "seed", "introduction", "examples", "consent", "thanks"),
-            *("people", "finished", "answers", "created_by", "created_at", "closed_at"),
+            *("most_submissions", "most_per_hour", "seed", "introduction", "examples"),
+            *("consent", "thanks", "people", "finished", "answers", "created_by"),
+            *("created_at", "closed_at", "grace_ends_at", "version"),
         ]
 
     def get_link(self, row: Campaign) -> str:
@@ -73,7 +81,7 @@ class CampaignSerializer(serializers.ModelSerializer[Campaign]):
 
 
 class MarkdownField(serializers.CharField):
-    def __init__(self, default: str, **options: Any):
+    def __init__(self, default: Any = serializers.empty, **options: Any):
         options |= {"max_length": MOST_CHARACTERS_OF_TEXT, "default": default}
         super().__init__(allow_blank=True, trim_whitespace=False, **options)
 
@@ -102,11 +110,32 @@ class NewCampaign(Fields):
     most_submissions = serializers.IntegerField(
         min_value=1, max_value=MOST_SUBMISSIONS, allow_null=True, default=None
     )
+    most_per_hour = serializers.IntegerField(
+        min_value=1, max_value=MOST_TASKS_PER_HOUR, default=1_000, help_text="tasks begun"
+    )
     seed = serializers.IntegerField(min_value=0, max_value=2**31 - 1, default=0)
     introduction = MarkdownField(INTRODUCTION)
     examples = MarkdownField(EXAMPLES)
     consent = MarkdownField(CONSENT)
     thanks = MarkdownField(THANKS)
+
+
+class CampaignChange(Fields):
+    """What may be changed after the launch. The consent stays once somebody has agreed to it."""
+
+    price = serializers.DecimalField(7, 2, min_value=0, allow_null=True)
+    currency = LineField(max_length=8, allow_blank=True)
+    completion_code = LineField(max_length=40, allow_blank=True)
+    return_url = serializers.URLField(max_length=500, allow_blank=True)
+    ends_at = serializers.DateField(allow_null=True, help_text="the last day")
+    most_submissions = serializers.IntegerField(
+        min_value=1, max_value=MOST_SUBMISSIONS, allow_null=True
+    )
+    most_per_hour = serializers.IntegerField(min_value=1, max_value=MOST_TASKS_PER_HOUR)
+    introduction = MarkdownField()
+    examples = MarkdownField()
+    consent = MarkdownField()
+    thanks = MarkdownField()
 
 
 class ProgressOfCampaignSerializer(serializers.Serializer[Any]):
@@ -133,7 +162,9 @@ class CampaignViewSet(RowsViewSet):
     serializer_class = CampaignSerializer
     filterset_class = CampaignFilters
     STEPS = ("close", "reopen", "revoke_link", "renew_link")
-    duties = {**READ_BY_ADMINS, **dict.fromkeys(("create", "progress", *STEPS), Duty.MANAGE)}
+    CHANGES = ("create", "partial_update", "progress", *STEPS)
+    duties = {**READ_BY_ADMINS, **dict.fromkeys(CHANGES, Duty.MANAGE)}
+    conditional = ("partial_update",)
     scopes = {**READ_SCOPES, "progress": Scope.READ}
     sorts = {"newest": "-created_at", "name": "name", "id": "pk"}
 
@@ -154,6 +185,18 @@ class CampaignViewSet(RowsViewSet):
         response["Location"] = request.build_absolute_uri(f"{request.path}{row.pk}/")
         return response
 
+    @extend_schema(request=CampaignChange, responses={200: CampaignSerializer})
+    def partial_update(self, request: ApiRequest, **kwargs: object) -> Response:
+        """Changes texts, end and payment; prompts and the size of a task stay."""
+        with self.matching() as row:
+            sent = self.read(CampaignChange, partial=True)
+            form = CampaignChangeForm(row, {**values_of(row), **sent})
+            if not form.is_valid():
+                raise refusal_of_form(form)
+            changed = change_campaign(row, form.values, row.version)
+        note(request, f"{row.name}: {', '.join(changed)}")
+        return self.show(self.get_object())
+
     @extend_schema(responses={200: ProgressOfCampaignSerializer})
     @action(detail=True)
     def progress(self, request: ApiRequest, **kwargs: object) -> Response:
@@ -163,7 +206,7 @@ class CampaignViewSet(RowsViewSet):
     @extend_schema(request=None, responses={200: CampaignSerializer})
     @action(detail=True, methods=["post"])
     def close(self, request: ApiRequest, **kwargs: object) -> Response:
-        """Closes a campaign: it takes nothing any more, and what came in stays."""
+        """Closes a campaign: nobody can begin any more, and who has begun may finish until ``grace_ends_at``."""
         return self._do(close)
 
     @extend_schema(request=None, responses={200: CampaignSerializer})

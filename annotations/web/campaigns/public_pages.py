@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import wraps
+from hashlib import sha256
 from http import HTTPStatus
 
 from django import forms
@@ -138,17 +139,24 @@ def campaign_begin(visit: Visit) -> HttpResponse:
     contributor, campaign = visit.contributor, visit.campaign
     may_retake = campaign.allows_retake and not campaign.is_over
     has_to_begin = contributor is None or (contributor.is_finished and may_retake)
+    if has_to_begin:
+        require_open(campaign)
+    elif contributor and not contributor.is_finished and campaign.is_locked:
+        raise CampaignOver(has_begun=True)
+    digest = sha256(campaign.consent.encode()).hexdigest()[:16]
     if visit.request.method != "POST":
-        if has_to_begin:
-            require_open(campaign)
         if market_id_in(visit.request.GET):
             return visit.to()  # the id leaves the address, and with it every log of it
-        return visit.page("begin", has_to_begin=has_to_begin)
+        return visit.page("begin", has_to_begin=has_to_begin, consent_digest=digest)
     if has_to_begin:
+        missing = ""
         if not visit.request.POST.get("agrees"):
             missing = "Tick the box to begin: without your consent nothing is stored."
-            return visit.page("begin", 422, has_to_begin=True, missing=missing)
-        require_open(campaign)
+        elif visit.request.POST.get("consent", digest) != digest:
+            missing = "This text was changed while you read it. Read it again, then tick the box."
+        if missing:
+            context = {"has_to_begin": True, "missing": missing, "consent_digest": digest}
+            return visit.page("begin", 422, **context)
         count_task(campaign, str(visit.request.META["REMOTE_ADDR"]))
         contributor = begin(campaign, visit.pseudonym)
     assert contributor is not None
