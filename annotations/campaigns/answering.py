@@ -8,6 +8,7 @@ from http import HTTPStatus
 from django.db import transaction
 from django.utils import timezone
 
+from annotations.campaigns.limits import count_save
 from annotations.campaigns.tasks import CampaignOver
 from annotations.language.errors import Position, Refusal
 from annotations.language.limits import require_writable
@@ -80,6 +81,7 @@ def save_answer(
             "contributor__campaign"
         )
         _require_changeable(held.get(pk=submission.pk))
+        count_save(stored.contributor)
         stored.save(update_fields=["text", "was_pasted", "seconds", "answered_at", "flags"])
     return stored
 

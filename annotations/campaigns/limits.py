@@ -2,7 +2,8 @@
 
 By the link, ``Campaign.most_per_hour`` tasks are begun in an hour, wherever they come from; the tasks themselves are
 counted. From one address ``BEGUN_TASKS`` are begun: a class may sit behind it. The address is that of
-``gpsr_site.web.proxies``, and it is not stored. One contributor saves ``SAVED_ANSWERS``.
+``gpsr_site.web.proxies``, and it is not stored. One contributor saves ``MOST_SAVES`` answers in a minute; the row of
+the contributor counts them, in the transaction that saves.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import math
 from datetime import timedelta
 from http import HTTPStatus
 
+from django.db.models import F
 from django.utils import timezone
 
 from annotations.language.errors import Refusal
@@ -18,9 +20,9 @@ from annotations.models import Campaign, Contributor
 from annotations.models.campaigns import ContributorKind
 from annotations.people.rate_limits import Rate
 
-HOUR = timedelta(hours=1)
+HOUR, MINUTE = timedelta(hours=1), timedelta(minutes=1)
 BEGUN_TASKS = Rate("campaign", limit=300, seconds=3600)
-SAVED_ANSWERS = Rate("answers", limit=60, seconds=60)
+MOST_SAVES = 60
 
 
 class TooOften(Refusal):
@@ -49,8 +51,20 @@ def count_task(campaign: Campaign, address: str) -> None:
         raise TooOften(said, BEGUN_TASKS.seconds)
 
 
-def count_answer(contributor: Contributor) -> None:
-    """Count an answer that is about to be saved. Raises TooOften where it is more than one person writes."""
-    if SAVED_ANSWERS.take(f"{contributor.pk}") is None:
+def require_patience(contributor: Contributor) -> None:
+    """Raise TooOften where the contributor has saved more within a minute than one person writes."""
+    if contributor.saves_since is None or contributor.saves < MOST_SAVES:
+        return
+    left = contributor.saves_since + MINUTE - timezone.now()
+    if left > timedelta():
         said = "This is more than one person writes. Wait a minute, and go on."
-        raise TooOften(said, SAVED_ANSWERS.seconds)
+        raise TooOften(said, math.ceil(left.total_seconds()))
+
+
+def count_save(contributor: Contributor) -> None:
+    """Count an answer that is saved. Call it in the transaction that saves."""
+    now = timezone.now()
+    since = contributor.saves_since
+    is_same_minute = since is not None and since + MINUTE > now
+    values = {"saves": F("saves") + 1} if is_same_minute else {"saves": 1, "saves_since": now}
+    Contributor.objects.filter(pk=contributor.pk).update(**values)

@@ -225,7 +225,8 @@ class Contributor(models.Model):
 
     ``pseudonym`` is a keyed hash of the device or of a crowd market's id; ``attempt`` counts from 1 where a
     campaign allows to begin again. ``had_model_help`` is what they said at the end, None before. ``settings``
-    are those of a model: its name, the version of the instructions, temperature and seed.
+    are those of a model: its name, the version of the instructions, temperature and seed. ``saves`` counts what was
+    saved in the minute that began at ``saves_since``.
     """
 
     campaign = models.ForeignKey(Campaign, on_delete=models.CASCADE, related_name="contributors")
@@ -239,6 +240,8 @@ class Contributor(models.Model):
     settings = models.JSONField(default=dict, blank=True)
     began_at = models.DateTimeField(default=timezone.now)
     finished_at = models.DateTimeField(null=True, blank=True)
+    saves = models.PositiveIntegerField(default=0)
+    saves_since = models.DateTimeField(null=True, blank=True)
 
     objects = ContributorQuerySet.as_manager()
 

@@ -19,7 +19,7 @@ from django.views.decorators.cache import never_cache
 from django.views.decorators.http import require_http_methods
 
 from annotations.campaigns.answering import finish, save_answer, warnings_for
-from annotations.campaigns.limits import TooOften, count_answer, count_task
+from annotations.campaigns.limits import TooOften, count_task, require_patience
 from annotations.campaigns.pseudonyms import DEVICE, market_id_in, new_device, pseudonym_of
 from annotations.campaigns.taboo import taboo_words_for
 from annotations.campaigns.tasks import CampaignOver, begin, contributor_of, require_open
@@ -29,6 +29,7 @@ from annotations.models import Campaign, Contributor, Submission
 from annotations.models.campaigns import MOST_PLACES
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.people.access import READ_AND_WRITE, WRITE
+from annotations.people.allowances import only_reads
 
 KNOWN_FOR = 30 * 24 * 3600  # seconds for which a browser is known
 LONGEST_LOOK = 24 * 3600  # seconds; who looks at a prompt for longer was away
@@ -181,7 +182,7 @@ def campaign_place(visit: Visit, position: int) -> HttpResponse:
         return show_place(visit, place, form, status=422)
     text = form.cleaned_data["text"]
     try:
-        count_answer(place.contributor)
+        require_patience(place.contributor)
     except TooOften as refusal:
         form.add_error("text", refusal.message)
         response = show_place(visit, place, form, refusal.status)
@@ -195,6 +196,7 @@ def campaign_place(visit: Visit, position: int) -> HttpResponse:
     return visit.to(position + 1 if position < place.contributor.submissions.count() else "done")
 
 
+@only_reads
 @public_view(WRITE)
 def campaign_check(visit: Visit, position: int) -> HttpResponse:
     """Answer, as JSON, what to tell the writer of a text; nothing is stored."""
