@@ -26,7 +26,9 @@ class CampaignChanged(Refusal):
     status = HTTPStatus.PRECONDITION_FAILED
 
     def __init__(self, current: Campaign) -> None:
-        super().__init__("Somebody has changed this campaign in the meantime. Compare, then save again.")
+        super().__init__(
+            "Somebody has changed this campaign in the meantime. Compare, then save again."
+        )
         self.current = current
 
 

@@ -26,7 +26,9 @@ class CampaignOver(Refusal):
     status = HTTPStatus.GONE
 
     def __init__(self, has_begun: bool = False) -> None:
-        thanks = "What you wrote is kept. Thank you." if has_begun else "Thank you for your interest."
+        thanks = (
+            "What you wrote is kept. Thank you." if has_begun else "Thank you for your interest."
+        )
         super().__init__(f"This campaign is over. {thanks}")
 
 

@@ -59,9 +59,7 @@ class Browser:
             raise RuntimeError(f"{path}: {status} {body[:200]}")
         return location or body
 
-    async def send(
-        self, step: str, method: str, path: str, form: str = ""
-    ) -> tuple[int, str, str]:
+    async def send(self, step: str, method: str, path: str, form: str = "") -> tuple[int, str, str]:
         cookies = "; ".join(f"{name}={value}" for name, value in self.cookies.items())
         request = (
             f"{method} {path} HTTP/1.1\r\nHost: 127.0.0.1:{self.port}\r\nAccept-Encoding: gzip\r\n"
@@ -88,7 +86,9 @@ class Browser:
         return int(lines[0].split()[1]), fields.get("location", ""), body.decode(errors="replace")
 
 
-async def contribute(browser: Browser, path: str, number: int, pause: float, sent: set[str]) -> None:
+async def contribute(
+    browser: Browser, path: str, number: int, pause: float, sent: set[str]
+) -> None:
     """Do the whole task, with about ``pause`` seconds at each place. What was saved is put into ``sent``."""
     page = await browser.get("open the link", path)
     for file in set(re.findall(r'(?:src|href)="(/static/[^"]+)"', page)):
@@ -98,9 +98,11 @@ async def contribute(browser: Browser, path: str, number: int, pause: float, sen
     while not place.endswith("/done/"):
         page = await browser.get("show a place", place)
         hidden = dict(re.findall(r'<input type="hidden" name="(\w+)" value="([^"]*)"', page))
-        prompt = re.search(r'<blockquote[^>]*>(.*?)</blockquote>', page, re.DOTALL)
+        prompt = re.search(r"<blockquote[^>]*>(.*?)</blockquote>", page, re.DOTALL)
         shown = html.unescape(prompt[1]) if prompt else "water the plants in the garden"
-        text = f"would you kindly {shown} for person {number} at {urlsplit(place).path.split('/')[3]}"
+        text = (
+            f"would you kindly {shown} for person {number} at {urlsplit(place).path.split('/')[3]}"
+        )
         for part in range(1, ADVICE_CALLS + 1):
             await asyncio.sleep(pause / (ADVICE_CALLS + 1) * random.uniform(0.5, 1.5))
             typed = text[: len(text) * part // ADVICE_CALLS]

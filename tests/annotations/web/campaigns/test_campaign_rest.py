@@ -115,8 +115,10 @@ def test_texts_end_and_payment_are_changed_at_a_version(call_as, admin, world):
 
 @pytest.mark.parametrize(
     "body",
-    [{"task_size": 3}, {"ends_at": "2020-01-01"}, {"return_url": "javascript:alert(1)"}]
-    + [{"most_per_hour": 0}, {"price": "-1"}, {"thanks": None}, {"introduction": "x" * 8_001}],
+    [
+        *({"task_size": 3}, {"ends_at": "2020-01-01"}, {"return_url": "javascript:alert(1)"}),
+        *({"most_per_hour": 0}, {"price": "-1"}, {"thanks": None}, {"consent": "x" * 8_001}),
+    ],
 )
 def test_what_cannot_be_changed_is_said(call_as, admin, world, body):
     campaign = small_campaign(world)
