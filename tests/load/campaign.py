@@ -2,12 +2,16 @@
 
     python -m tests.load.campaign                      # 200 people in two minutes, on SQLite
     python -m tests.load.campaign --database postgres://postgres@127.0.0.1:5432/gpsr_load
+    python -m tests.load.campaign --flood 10000        # one address begins anew with every post
 
 Starts ``manage.py serve`` with its defaults on a database of its own (SQLite in a temporary folder unless one is
 named, which has to be empty). Everybody does what a browser does: loads the page with its styles and scripts, asks
 for advice twice while writing, saves, and follows to the next place, with a pause at each place as the whole has to
 fit into ``--seconds``. Says how long each step took, and how busy the machine was and with what. Exits with 1 where
 an answer was an error, where what was sent is not what is stored, or where somebody has not finished.
+
+With ``--flood`` somebody without a cookie posts so often instead, four at a time, and says how many tasks began and
+how long the refused posts took. Exits with 1 where more began than the limit, or where an answer was another error.
 """
 
 from __future__ import annotations
@@ -33,6 +37,8 @@ from tests.load.work_queue import ROOT, say, server
 REWRITES, FREE_COMMANDS = 12, 2
 ADVICE_CALLS = 2  # at each place
 MOST_SECONDS = 600
+FLOODING = 4  # connections that post at once
+MOST_POSTS = 20_000
 STEPS = ("open the link", "load a file", "agree", "show a place", "advise", "save", "finish")
 
 
@@ -140,6 +146,28 @@ async def everybody(
     return times, sent, errors
 
 
+async def flood(port: int, path: str, posts: int) -> tuple[dict[str, list[float]], Counter[int]]:
+    """Agree ``posts`` times, each time as somebody new. Returns the times by status, and how often each came."""
+    times: dict[str, list[float]] = defaultdict(list)
+    statuses: Counter[int] = Counter()
+
+    async def some(count: int) -> None:
+        browser = Browser(port, {"": []})
+        await browser.get("", path)
+        token = {"csrftoken": browser.cookies["csrftoken"]}
+        form = urlencode({"csrfmiddlewaretoken": token["csrftoken"], "agrees": "on"})
+        for _ in range(count):
+            browser.cookies = dict(token)
+            began = time.perf_counter()
+            status, _, _ = await browser.send("", "POST", path, form)
+            times[f"answered {status}"].append(time.perf_counter() - began)
+            statuses[status] += 1
+        browser.writer.close()
+
+    await asyncio.gather(*(some(posts // FLOODING) for _ in range(FLOODING)))
+    return times, statuses
+
+
 def busy_seconds() -> float:
     """Return the processor time of everything on this machine since it started."""
     user, nice, system, _, _, *interrupts = map(int, Path("/proc/stat").read_text().split()[1:8])
@@ -170,10 +198,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--people", type=int, default=200)
     parser.add_argument("--seconds", type=float, default=120.0)
+    parser.add_argument(
+        "--flood", type=int, default=0, help="posts of one address, instead of people"
+    )
     parser.add_argument("--database", default="", help="a URL; its database has to be empty")
     arguments = parser.parse_args()
-    if arguments.seconds > MOST_SECONDS:
-        parser.error(f"--seconds: at most {MOST_SECONDS}")
+    if arguments.seconds > MOST_SECONDS or arguments.flood > MOST_POSTS:
+        parser.error(f"at most {MOST_SECONDS} seconds, and {MOST_POSTS} posts")
     with tempfile.TemporaryDirectory(prefix="gpsr-load-") as folder:
         os.environ.update(GPSR_VAR_DIR=folder, DJANGO_SETTINGS_MODULE="gpsr_site.settings")
         os.environ.pop("DATABASE_URL", None)
@@ -185,19 +216,24 @@ def main() -> None:
         with server() as (process, port):
             before = (cpu_seconds(process.pid), busy_seconds(), time.process_time())
             began = time.perf_counter()
-            times, sent, errors = asyncio.run(
-                everybody(port, path, arguments.people, arguments.seconds)
-            )
+            if arguments.flood:
+                times, statuses = asyncio.run(flood(port, path, arguments.flood))
+            else:
+                times, sent, errors = asyncio.run(
+                    everybody(port, path, arguments.people, arguments.seconds)
+                )
             passed = time.perf_counter() - began
             after = (cpu_seconds(process.pid), busy_seconds(), time.process_time())
         from django.db import connection
 
+        from annotations.campaigns.limits import BEGUN_TASKS
         from annotations.models import Contributor, Submission
 
         stored = set(Submission.objects.answered().values_list("text", flat=True))
+        begun = Contributor.objects.count()
         finished = Contributor.objects.filter(finished_at__isnull=False).count()
         connection.close()
-    for step in STEPS:
+    for step in (*STEPS, *sorted(times.keys() - set(STEPS))):
         if times[step]:
             say(step, times[step])
     served, busy, asked = (end - start for start, end in zip(before, after, strict=True))
@@ -207,6 +243,9 @@ def main() -> None:
         f"{served / passed:.2f}, this script {asked / passed:.2f}, everything else "
         f"{max(0, busy - served - asked) / passed:.2f}"
     )
+    if arguments.flood:
+        print(f"{begun} tasks began; answers by status: {dict(statuses)}")
+        sys.exit(begun > BEGUN_TASKS.limit or bool(set(statuses) - {302, 429}))
     print(f"{finished} of {arguments.people} people have finished")
     print(f"{len(sent)} answers were saved, {len(sent - stored)} of them are lost")
     for error, count in errors.most_common():
