@@ -110,7 +110,7 @@ def campaign_edit(request: WorldRequest, world: World, pk: int) -> HttpResponse:
         except CampaignChanged as clash:
             # What they wrote stays in the form, which is now about the present version.
             context |= {"clash": clash.message, "others": others_of(form, clash.current)}
-            form.data = {**form.data.dict(), "version": clash.current.version}
+            form.data = {**request.POST.dict(), "version": clash.current.version}
             status = clash.status
         except Refusal as refusal:
             form.add_error("consent", refusal.message)

@@ -156,8 +156,9 @@ def campaign_begin(visit: Visit) -> HttpResponse:
         elif visit.request.POST.get("consent", digest) != digest:
             missing = "This text was changed while you read it. Read it again, then tick the box."
         if missing:
-            context = {"has_to_begin": True, "missing": missing, "consent_digest": digest}
-            return visit.page("begin", 422, **context)
+            return visit.page(
+                "begin", 422, has_to_begin=True, missing=missing, consent_digest=digest
+            )
         count_task(campaign, str(visit.request.META["REMOTE_ADDR"]))
         contributor = begin(campaign, visit.pseudonym)
     assert contributor is not None
