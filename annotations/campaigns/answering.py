@@ -10,6 +10,7 @@ from django.utils import timezone
 
 from annotations.campaigns.limits import count_save
 from annotations.campaigns.tasks import CampaignOver
+from annotations.labelling.proposal_requests import request_readings
 from annotations.language.errors import Position, Refusal
 from annotations.language.limits import require_writable
 from annotations.language.paraphrases import (
@@ -82,7 +83,9 @@ def save_answer(
         )
         _require_changeable(held.get(pk=submission.pk))
         count_save(stored.contributor)
-        stored.save(update_fields=["text", "was_pasted", "seconds", "answered_at", "flags"])
+        stored.read_by_run = None
+        columns = ("text", "was_pasted", "seconds", "answered_at", "flags", "read_by_run")
+        stored.save(update_fields=columns)
     return stored
 
 
@@ -108,6 +111,7 @@ def finish(contributor: Contributor, had_model_help: bool) -> Contributor:
     if not contributor.is_finished:
         contributor.finished_at, contributor.had_model_help = timezone.now(), had_model_help
         contributor.save(update_fields=["finished_at", "had_model_help"])
+        request_readings(contributor.campaign.world)
     return contributor
 
 

@@ -6,7 +6,7 @@ from django.db import migrations, models
 class Migration(migrations.Migration):
 
     dependencies = [
-        ('annotations', '0036_examples_by_models'),
+        ('annotations', '0038_submissions_that_a_parser_read'),
     ]
 
     operations = [
