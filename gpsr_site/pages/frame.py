@@ -105,7 +105,14 @@ PLACES = (
         waiting=Waiting(count="paraphrases_waiting", noun="paraphrase", reason="to judge"),
         pages_below=(
             *("paraphrase", "submissions", "submission"),
-            *("campaigns", "campaign_new", "campaign_page", "campaign_model", "contributor_forget"),
+            *(
+                "campaigns",
+                "campaign_new",
+                "campaign_page",
+                "campaign_results",
+                "campaign_model",
+                "contributor_forget",
+            ),
         ),
     ),
     Place(
