@@ -165,7 +165,7 @@ def plan_results(
     prompts: _OldPrompts | _NewPrompts
     prompts = _NewPrompts(plan, source) if campaign.pk is None else _OldPrompts(campaign)
     seen = _known_assignments(campaign)
-    problems = plan.problems
+    problems, has_matched = plan.problems, False
     for number, assignment in enumerate(table.assignments):
         if number % CHECK_EVERY == 0:
             progress.report(0.1 + 0.8 * number / len(table.assignments), "looking at the answers")
@@ -185,12 +185,13 @@ def plan_results(
                 message = "this answers no prompt of the campaign; left out"
                 hint = "choose the campaign whose task file it was, or make a new one"
                 problems.append(warning_at(place, message, hint))
+        has_matched = has_matched or bool(matched)
         answers = len(assignment.rewrites) + len(assignment.free_commands)
         seconds = None if assignment.seconds is None else assignment.seconds / answers
         submissions = list(_submissions(matched, assignment.free_commands, seconds))
         if submissions:
             plan.contributors.append(PlannedContributor(assignment, seconds, submissions))
-    if plan.unmatched and not plan.contributors:
+    if plan.unmatched and not has_matched:
         message = f"no answer in this table is to a prompt of {campaign.name}"
         hint = "choose its campaign, or make a new one"
         plan.problems[:] = [*table.problems, error_at(Position(source), message, hint)]

@@ -16,7 +16,8 @@ HEAD = [
     *("Answer.utterance1", "Answer.utterance2", "Answer.custom1", "Answer.comment"),
 ]
 GO, TEA = '( go " attic " )', '( bring " tea, hot " )'
-PROMPTS = ["go up", "( go "  <room> " )", GO, "get tea", TEA]
+UP = '( go " <room> " )'
+PROMPTS = ["go up", '( go "  <room> " )', GO, "get tea", TEA]
 ROWS = [
     ["H1", "W1", "Approved", "70", *PROMPTS, "Would you go up, please?", "NA", "", ""],
     ["H1", "W2", "Rejected", "3", *PROMPTS, "asdf", "asdf", "", ""],
@@ -24,7 +25,7 @@ ROWS = [
     ["H3", "W4", "Approved", "9", *PROMPTS, "", "", "", ""],
 ]
 EXPECTED = [
-    ("W1", 70.0, [("go up", '( go " <room> " )', GO, "Would you go up, please?"), ("get tea", "", TEA, "NA")], ()),
+    ("W1", 70.0, [("go up", UP, GO, "Would you go up, please?"), ("get tea", "", TEA, "NA")], ()),
     ("W3", None, [("get tea", "", TEA, "tea; now")], ("dance",)),
 ]  # fmt: skip
 
@@ -137,7 +138,7 @@ def test_what_is_wrong_with_a_row_has_its_line_and_its_cell():
 )
 def test_a_table_of_another_kind_or_a_broken_one_is_an_error(text):
     (problem,) = read(text).problems
-    assert problem.is_error and problem.hint or "columns" in problem.message
+    assert problem.is_error
 
 
 def test_a_table_is_bounded(monkeypatch):
@@ -146,7 +147,9 @@ def test_a_table_is_bounded(monkeypatch):
 
 
 def test_what_does_not_show_is_left_out():
-    rows = [["H1", "W1", "", "", "go\u200b up", "", GO, "", "", "cafe\u0301,\xa0please", "", "", ""]]
+    rows = [
+        ["H1", "W1", "", "", "go\u200b up", "", GO, "", "", "cafe\u0301,\xa0please", "", "", ""]
+    ]
     (assignment,) = read(table(rows)).assignments
     assert [(each.command, each.text) for each in assignment.rewrites] == [
         ("go up", "caf\u00e9, please")
@@ -156,5 +159,5 @@ def test_what_does_not_show_is_left_out():
 def test_the_line_with_which_excel_names_the_separator_is_none_of_the_table():
     head = "WorkerId;Input.command1;Input.parse_ground1;Answer.utterance1"
     text = f"sep=;\n{head}\nw;go on;( a );walk, on\nw;go on;( a;walk\n"
-    assert [each.rewrites[0].text for each in read(text).assignments][0] == "walk, on"
+    assert read(text).assignments[0].rewrites[0].text == "walk, on"
     assert places(text) == [(4, 3, True)]
