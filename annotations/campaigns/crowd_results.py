@@ -6,6 +6,7 @@ import json
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from datetime import datetime
 from http import HTTPStatus
 from typing import Any
 
@@ -35,14 +36,19 @@ from annotations.language.text import normalise_line
 from annotations.models import Campaign, CampaignPrompt, Contributor, Submission, User, World
 from annotations.models.campaigns import ContributorKind, SubmissionKind
 from annotations.rows.from_rows import ontology_of
+from annotations.rows.staging import insert_prepared, prepared
 from annotations.rows.stored_problems import as_json, first_problems
 from annotations.rows.synchronise import BATCH, batches
 
 MOST_EXAMPLES = 12
 PLAIN_EXAMPLES = 3  # of them without a flag
 CHECK_EVERY = 50  # assignments
-ASSIGNMENT = (
-    "assignment"  # salts the hash by which one is known again, and names it in the settings
+# Salts the hash by which an assignment is known again, and names it in the settings of its contributor.
+ASSIGNMENT = "assignment"
+# The columns of a submission: where it stands, and what needs no transaction to be known.
+_PLACE = ("contributor_id", "position", "prompt_id")
+_COLUMNS = (
+    *("kind", "text", "raw", "seconds", "was_pasted", "flags", "given_at", "answered_at", "status"),
 )
 
 
@@ -209,35 +215,33 @@ def store_results(
     Raises:
         Refusal: the world has another campaign of the new one's name.
     """
-    campaign = plan.campaign
+    campaign, now = plan.campaign, timezone.now()
     progress.report(0.9, "writing")
+    # Others write to the world only before and after the transaction, so that what can be done before it is.
+    rows = []
+    for each in plan.contributors:
+        progress.check()
+        rows.append(prepared(Submission, _COLUMNS, _unplaced(each, now)))
     with progress.writing():
         # Who imports at the same moment waits here, and finds these.
         World.objects.select_for_update().get(pk=campaign.world_id)
         if campaign.pk is None:
-            if campaign.world.campaigns.filter(name=campaign.name).exists():
-                said = f"This world has a campaign called {campaign.name} already. Choose another name."
-                raise Refusal(said, "name_taken", HTTPStatus.CONFLICT)
-            campaign.save()
-            for position, prompt in enumerate(plan.prompts, start=1):
-                prompt.campaign, prompt.position = campaign, position
-            CampaignPrompt.objects.bulk_create(plan.prompts, batch_size=BATCH)
+            _store_campaign(plan)
         known = _known_assignments(campaign)
         attempts = Counter[str]()
         for pseudonym, attempt in campaign.contributors.values_list("pseudonym", "attempt"):
             attempts[pseudonym] = max(attempts[pseudonym], attempt)
-        now = timezone.now()
-        new: list[PlannedContributor] = []
-        rows: list[Contributor] = []
-        for each in plan.contributors:
+        contributors: list[Contributor] = []
+        new: list[int] = []
+        for place, each in enumerate(plan.contributors):
             digest = _digest(campaign, each.assignment)
             if digest in known:
                 plan.repeated += 1
                 continue
-            new.append(each)
+            new.append(place)
             pseudonym = pseudonym_of(campaign, each.assignment.market, each.assignment.worker)
             attempts[pseudonym] += 1
-            rows.append(
+            contributors.append(
                 Contributor(
                     campaign=campaign,
                     kind=ContributorKind.FILE,
@@ -248,31 +252,48 @@ def store_results(
                     finished_at=now,
                 )
             )
-        plan.contributors = new
-        for some in batches(rows, BATCH):
+        for some in batches(contributors, BATCH):
             progress.check()
             Contributor.objects.bulk_create(some)
+        plan.contributors = [plan.contributors[place] for place in new]
         submissions = (
-            Submission(
-                contributor=row,
-                position=position,
-                kind=SubmissionKind.FREE if each.prompt is None else SubmissionKind.REWRITE,
-                prompt=each.prompt,
-                text=each.text,
-                seconds=planned.seconds,
-                flags=as_rows(each.flags),
-                given_at=now,
-                answered_at=now,
+            [contributor.pk, position, submission.prompt and submission.prompt.pk, *values]
+            for contributor, place, planned in zip(
+                contributors, new, plan.contributors, strict=True
             )
-            for row, planned in zip(rows, new, strict=True)
-            for position, each in enumerate(planned.submissions, start=1)
+            for position, (submission, values) in enumerate(
+                zip(planned.submissions, rows[place], strict=True), start=1
+            )
         )
         for batch in batches(submissions, BATCH):
             progress.check()
-            Submission.objects.bulk_create(batch)
+            insert_prepared(Submission, (*_PLACE, *_COLUMNS), batch)
         report = plan.report(table)
         progress.conclude(report)
     return report
+
+
+def _unplaced(planned: PlannedContributor, now: datetime) -> Iterator[Submission]:
+    for each in planned.submissions:
+        yield Submission(
+            kind=SubmissionKind.FREE if each.prompt is None else SubmissionKind.REWRITE,
+            text=each.text,
+            seconds=planned.seconds,
+            flags=as_rows(each.flags),
+            given_at=now,
+            answered_at=now,
+        )
+
+
+def _store_campaign(plan: ResultPlan) -> None:
+    campaign = plan.campaign
+    if campaign.world.campaigns.filter(name=campaign.name).exists():
+        said = f"This world has a campaign called {campaign.name} already. Choose another name."
+        raise Refusal(said, "name_taken", HTTPStatus.CONFLICT)
+    campaign.save()
+    for position, prompt in enumerate(plan.prompts, start=1):
+        prompt.campaign, prompt.position = campaign, position
+    CampaignPrompt.objects.bulk_create(plan.prompts, batch_size=BATCH)
 
 
 def _known_assignments(campaign: Campaign) -> set[str]:
