@@ -98,6 +98,7 @@ urlpatterns = [
     path("forms/<int:pk>/", command_pages.logical_form, name="logical_form"),
     path("campaigns/", campaign_pages.campaigns, name="campaigns"),
     path("campaigns/new/", campaign_pages.campaign_new, name="campaign_new"),
+    path("campaigns/results/", campaign_pages.campaign_results, name="campaign_results"),
     path("campaigns/<int:pk>/", campaign_pages.campaign_page, name="campaign_page"),
     path("campaigns/<int:pk>/edit/", campaign_pages.campaign_edit, name="campaign_edit"),
     path("campaigns/<int:pk>/state/", campaign_pages.campaign_state, name="campaign_state"),

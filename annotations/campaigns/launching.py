@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from http import HTTPStatus
 from random import Random
+from typing import Any
 
 from django.db import IntegrityError, transaction
 from django.db.models import Count
@@ -109,14 +110,7 @@ def launch(campaign: Campaign, choice: PromptChoice, by: User) -> Campaign:
             prompt=each.grounded.text,
             grounded_form=each.grounded_form,
             shown=each.shown,
-            entities=[
-                {
-                    "text": named.text,
-                    "aliases": list(named.aliases),
-                    "is_described": named.is_described,
-                }
-                for named in each.entities
-            ],
+            entities=[row_of(named) for named in each.entities],
         )
         for each in drawn
     ]
@@ -131,6 +125,11 @@ def launch(campaign: Campaign, choice: PromptChoice, by: User) -> Campaign:
         said = f"This world has a campaign called {campaign.name} already. Choose another name."
         raise Refusal(said, "name_taken", HTTPStatus.CONFLICT) from error
     return campaign
+
+
+def row_of(named: Named) -> dict[str, Any]:
+    """Return an entity as ``CampaignPrompt.entities`` has it."""
+    return {"text": named.text, "aliases": list(named.aliases), "is_described": named.is_described}
 
 
 def _forms_below_target(

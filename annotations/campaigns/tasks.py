@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from datetime import timedelta
+from heapq import heapify, heappop, heappush
 from http import HTTPStatus
 from itertools import islice
 from random import Random
@@ -78,40 +79,60 @@ def begin(campaign: Campaign, pseudonym: str, kind: str = ContributorKind.PERSON
 
 
 def choose_prompts(campaign: Campaign, size: int, pseudonym: str = "") -> list[CampaignPrompt]:
-    """Return ``size`` different prompts, or all that there are, forms with fewest submissions first.
+    """Return ``size`` different prompts, or all that there are, in random order, as a ``Dealer`` deals them.
 
-    A form comes twice only when every other one has come. What ``pseudonym`` had before comes last.
+    What ``pseudonym`` had before comes last.
     """
-    random = Random(f"{campaign.seed}:{pseudonym}:{timezone.now().timestamp()}")
-    rewrites = campaign.prompts.filter(check_words="")
-    by_form: dict[str, list[int]] = defaultdict(list)
-    for key, form in rewrites.values_list("pk", "logical_form"):
-        by_form[form].append(key)
-    of_prompt = _taken(campaign)
-    of_form = Counter[str]()
-    for form, prompts in by_form.items():
-        of_form[form] = sum(of_prompt[key] for key in prompts)
-    had = set(
-        Submission.objects.filter(
-            contributor__campaign=campaign, contributor__pseudonym=pseudonym
-        ).values_list("prompt_id", flat=True)
-    )
-    for prompts in by_form.values():
-        random.shuffle(prompts)
-        prompts.sort(key=lambda key: (key in had, of_prompt[key]))
-    forms = random.sample(list(by_form), len(by_form))
-    forms.sort(key=lambda form: of_form[form])
-    longest = max(map(len, by_form.values()), default=0)
-    rounds = (
-        by_form[form][turn]
-        for turn in range(longest)
-        for form in forms
-        if turn < len(by_form[form])
-    )
-    chosen = list(islice(rounds, size))
-    random.shuffle(chosen)
+    chosen = Dealer(campaign, pseudonym).deal(size)
     rows = CampaignPrompt.objects.in_bulk(chosen)
     return [rows[key] for key in chosen]
+
+
+class Dealer:
+    """Deals the prompts of a campaign, forms with fewest submissions first.
+
+    What it has dealt counts as taken for what it deals next. A form comes twice in one task only when every
+    other one has come; of its prompts the one comes first that was taken least.
+    """
+
+    def __init__(self, campaign: Campaign, pseudonym: str = "") -> None:
+        self._random = Random(f"{campaign.seed}:{pseudonym}:{timezone.now().timestamp()}")
+        self._prompts: dict[str, list[int]] = defaultdict(list)
+        rewrites = campaign.prompts.filter(check_words="")
+        for key, form in rewrites.values_list("pk", "logical_form"):
+            self._prompts[form].append(key)
+        self._taken = _taken(campaign)
+        had = Submission.objects.filter(
+            contributor__campaign=campaign, contributor__pseudonym=pseudonym
+        )
+        self._had = set(had.values_list("prompt_id", flat=True))
+        self._forms = [
+            (sum(self._taken[key] for key in prompts), self._random.random(), form)
+            for form, prompts in self._prompts.items()
+        ]
+        heapify(self._forms)
+
+    def deal(self, size: int) -> list[int]:
+        """Return the keys of ``size`` different prompts, or of all that there are, in random order."""
+        turns = [heappop(self._forms) for _ in range(min(size, len(self._forms)))]
+        for _, _, form in turns:
+            self._random.shuffle(self._prompts[form])
+            self._prompts[form].sort(key=lambda key: (key in self._had, self._taken[key]))
+        longest = max((len(self._prompts[form]) for _, _, form in turns), default=0)
+        rounds = (
+            (form, self._prompts[form][turn])
+            for turn in range(longest)
+            for _, _, form in turns
+            if turn < len(self._prompts[form])
+        )
+        dealt = list(islice(rounds, size))
+        of_form = Counter(form for form, _ in dealt)
+        for taken, _, form in turns:
+            heappush(self._forms, (taken + of_form[form], self._random.random(), form))
+        chosen = [key for _, key in dealt]
+        self._taken.update(chosen)
+        self._random.shuffle(chosen)
+        return chosen
 
 
 def _taken(campaign: Campaign) -> Counter[int]:

@@ -225,7 +225,8 @@ class Contributor(models.Model):
 
     ``pseudonym`` is a keyed hash of the device or of a crowd market's id; ``attempt`` counts from 1 where a
     campaign allows to begin again. ``had_model_help`` is what they said at the end, None before. ``settings``
-    are those of a model: its name, the version of the instructions, temperature and seed. ``saves`` counts what was
+    are those of a model: its name, the version of the instructions, temperature and seed; of somebody in a file
+    of results, ``assignment`` is a keyed hash by which what they did is not imported twice. ``saves`` counts what was
     saved in the minute that began at ``saves_since``.
     """
 

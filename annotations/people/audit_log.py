@@ -82,6 +82,7 @@ WHAT = {
     "utterances_delete": "delete utterances",
     "utterances_restore": "restore utterances",
     "paraphrase_label": "label a paraphrase",
+    **dict.fromkeys(("campaign_results", "campaign-results"), "check crowd results"),
     "campaign_new": "launch a campaign",
     "campaign_edit": "change a campaign",
     "campaign_act": "close or open a campaign",

@@ -110,6 +110,7 @@ PLACES = (
                 "campaign_new",
                 "campaign_page",
                 "campaign_edit",
+                "campaign_results",
                 "campaign_model",
                 "contributor_forget",
             ),

@@ -40,6 +40,7 @@ PAGES = {
     "paraphrases": "paraphrases/",
     "campaigns": "campaigns/",
     "campaign-new": "campaigns/new/",
+    "campaign-results": "campaigns/results/",
     "deleted": "history/template/deleted/",
     "utterances": "utterances/",
     "utterances-new": "utterances/new/",

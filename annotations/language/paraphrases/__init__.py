@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from annotations.language.paraphrases.known_words import KnownWords
 from annotations.language.paraphrases.model_replies import rewrites_in
-from annotations.language.paraphrases.prompt_entities import entities_of
+from annotations.language.paraphrases.prompt_entities import entities_in, entities_of
 from annotations.language.paraphrases.rewrite_checks import (
     Named,
     RewriteFault,
@@ -24,6 +24,7 @@ from annotations.language.paraphrases.submission_flags import (
     FlagCode,
     FreeCommand,
     Rewrite,
+    bare_words,
     check_flags,
     free_command_flags,
     rewrite_flags,
@@ -41,9 +42,11 @@ __all__ = [
     "Rewrite",
     "RewriteFault",
     "RewriteWarning",
+    "bare_words",
     "check_flags",
     "check_instructions",
     "check_rewrite",
+    "entities_in",
     "entities_of",
     "folded_words",
     "free_command_flags",

@@ -11,6 +11,7 @@ from django.utils import timezone
 
 from annotations.campaigns.changing import CHANGEABLE, has_consents
 from annotations.campaigns.launching import PromptChoice
+from annotations.language.decoding import ENCODINGS
 from annotations.lists.filtering import Choices, PageFilters, Search
 from annotations.models import Campaign, World
 from annotations.models.campaigns import (
@@ -239,6 +240,46 @@ def last_day_of(campaign: Campaign) -> date | None:
     if campaign.ends_at is None:
         return None
     return timezone.localdate(campaign.ends_at - timedelta(microseconds=1))
+
+
+class ResultsForm(forms.Form):
+    """Results of a crowd market, and the campaign that they are of; without one they get a campaign of their own."""
+
+    file = forms.FileField(
+        help_text="A table (CSV) with WorkerId, Input.command1, Answer.utterance1 and so on, or a zip archive "
+        "with one.",
+    )
+    campaign = forms.ChoiceField(
+        label="Prompts of",
+        required=False,
+        help_text="The campaign whose task file it was. A new one is made of the prompts in the file, and is closed.",
+    )
+    name = forms.CharField(
+        label="Name of the new campaign", required=False, max_length=LONGEST_CAMPAIGN_NAME
+    )
+    encoding = forms.ChoiceField(
+        required=False, choices=[("", "as recognised"), *ENCODINGS.items()]
+    )
+
+    def __init__(self, world: World, *args: Any, **kwargs: Any):
+        super().__init__(*args, **kwargs)
+        rows = [(str(key), name) for key, name in world.campaigns.values_list("pk", "name")]
+        choice_field(self, "campaign").choices = [("", "a new campaign"), *rows]
+        self._world = world
+
+    def clean(self) -> None:
+        super().clean()
+        if "campaign" in self.cleaned_data and "name" in self.cleaned_data:
+            if self.cleaned_data["campaign"] and self.cleaned_data["name"]:
+                self.add_error("name", "Leave it empty: you have chosen a campaign.")
+            elif not (self.cleaned_data["campaign"] or self.cleaned_data["name"]):
+                self.add_error("name", "Name the new campaign, or choose one that is here.")
+
+    @property
+    def chosen(self) -> Campaign | None:
+        """Return the campaign that a valid form names; None for a new one."""
+        key = self.cleaned_data["campaign"]
+        return self._world.campaigns.get(pk=key) if key else None
 
 
 def campaign_choices(request: WorldRequest) -> Choices:

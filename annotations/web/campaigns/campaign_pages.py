@@ -11,8 +11,10 @@ from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.views.decorators.cache import never_cache
 
+from annotations.campaigns.campaign_files import MOST_TASKS
 from annotations.campaigns.changing import CampaignChanged, change_campaign
 from annotations.campaigns.closing import close, forget, renew_link, reopen, revoke_link
+from annotations.campaigns.crowd_jobs import start_results_import
 from annotations.campaigns.launching import DrawnPrompt, draw_prompts, launch
 from annotations.campaigns.progress import progress_of
 from annotations.language.english import say_count
@@ -20,13 +22,14 @@ from annotations.language.errors import LanguageError, Refusal
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.models import Campaign, CampaignPrompt, Contributor, Duty, World
 from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
-from annotations.people.allowances import may_take_long
+from annotations.people.allowances import may_take_long, takes_files
 from annotations.people.audit_log import note
 from annotations.web.campaigns.campaign_forms import (
     CampaignChangeForm,
     CampaignFilters,
     CampaignForm,
     ContributorFilters,
+    ResultsForm,
     values_of,
 )
 from annotations.web.campaigns.campaign_links import link_of
@@ -75,6 +78,27 @@ def campaign_new(request: WorldRequest, world: World) -> HttpResponse:
     return render(request, "annotations/campaigns/campaign_new.html", context, status=status)
 
 
+@takes_files
+@world_view(Duty.MANAGE, READ_AND_WRITE)
+def campaign_results(request: WorldRequest, world: World) -> HttpResponse:
+    """Take the results of a crowd market; a job checks them, and asks before it imports them."""
+    initial = {"campaign": request.GET.get("campaign", "")}
+    form = ResultsForm(world, posted(request), request.FILES or None, initial=initial)
+    if form.is_bound and form.is_valid():
+        sent = form.cleaned_data
+        values = form.chosen, sent["name"], sent["encoding"]
+        try:
+            job = start_results_import(world, sent["file"], request.user, *values)
+        except Refusal as refusal:
+            form.add_error("name", refusal.message)
+        else:
+            note(request, sent["name"] or str(form.chosen))
+            return redirect("job", pk=job.pk)
+    status = 422 if form.errors else 200
+    context = {"form": form}
+    return render(request, "annotations/campaigns/campaign_results.html", context, status=status)
+
+
 def preview_of(drawn: list[DrawnPrompt]) -> dict[str, Any]:
     forms = {each.expansion.form_text for each in drawn}
     step = -(-len(drawn) // MOST_SHOWN)  # from all over: those of one form stand together
@@ -93,6 +117,7 @@ def campaign_page(request: WorldRequest, world: World, pk: int) -> HttpResponse:
         "progress": progress_of(row),
         "prompts": one_of_each(row)[:MOST_SHOWN],
         "listing": listing,
+        "most_tasks": MOST_TASKS,
     }
     return render_list(request, "annotations/campaigns/campaign_page.html", context)
 

@@ -7,15 +7,21 @@ from http import HTTPStatus
 from typing import Any
 
 from django.db.models import QuerySet
+from django.http import StreamingHttpResponse
+from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.decorators import action
 from rest_framework.response import Response
 
+from annotations.campaigns.campaign_files import MOST_TASKS, accepted_triples, task_file
 from annotations.campaigns.changing import change_campaign
 from annotations.campaigns.closing import close, forget, renew_link, reopen, revoke_link
+from annotations.campaigns.crowd_jobs import start_results_import
 from annotations.campaigns.launching import launch
 from annotations.campaigns.progress import progress_of
+from annotations.exporting.split_export import SplitFormat
+from annotations.language.decoding import ENCODINGS
 from annotations.models import Campaign, Contributor, Duty, Scope
 from annotations.models.campaigns import (
     LONGEST_CAMPAIGN_NAME,
@@ -23,8 +29,9 @@ from annotations.models.campaigns import (
     Wording,
     wording_choices,
 )
-from annotations.people.allowances import may_take_long
+from annotations.people.allowances import may_take_long, takes_files
 from annotations.people.audit_log import note
+from annotations.web.background.job_rest import JobSerializer, address_of_job
 from annotations.web.campaigns.campaign_forms import (
     CONSENT,
     EXAMPLES,
@@ -39,14 +46,18 @@ from annotations.web.campaigns.campaign_forms import (
     CampaignFilters,
     CampaignForm,
     ContributorQuery,
+    ResultsForm,
     values_of,
 )
 from annotations.web.campaigns.campaign_links import link_of
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.idempotency import once
+from annotations.web.rest.negotiation import AnyType
+from annotations.web.rest.parsing import FilesParser
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import RowsViewSet
+from annotations.web.rest.streaming import attachment
 
 READ_BY_ADMINS = dict.fromkeys(("list", "retrieve"), Duty.MANAGE)
 READ_SCOPES = dict.fromkeys(("list", "retrieve"), Scope.READ)
@@ -138,6 +149,29 @@ class CampaignChange(Fields):
     thanks = MarkdownField()
 
 
+class TaskQuery(serializers.Serializer[Any]):
+    """How many tasks a file has."""
+
+    tasks = serializers.IntegerField(min_value=1, max_value=MOST_TASKS, default=100)
+
+
+class ImportedResults(serializers.Serializer[Any]):
+    """Results of a crowd market: of ``campaign``, or of a new one called ``name``, made of the prompts in the file."""
+
+    file = serializers.FileField(help_text="A table, or a zip archive with one.")
+    campaign = serializers.IntegerField(required=False)
+    name = serializers.CharField(max_length=LONGEST_CAMPAIGN_NAME, required=False)
+    encoding = serializers.ChoiceField(
+        choices=list(ENCODINGS), required=False, help_text="Recognised where it is not told."
+    )
+
+
+class CheckedResultsSerializer(serializers.Serializer[Any]):
+    """The job that checks the results. Where it waits for an answer, POST to its ``answer/`` or ``cancel/``."""
+
+    job = JobSerializer()
+
+
 class ProgressOfCampaignSerializer(serializers.Serializer[Any]):
     """How far a campaign is. ``seconds_left`` is until all forms are reached at this rate; null where nothing
     comes in, or nothing is missing. ``cost`` is that of the tasks that were finished; null without a price."""
@@ -162,10 +196,11 @@ class CampaignViewSet(RowsViewSet):
     serializer_class = CampaignSerializer
     filterset_class = CampaignFilters
     STEPS = ("close", "reopen", "revoke_link", "renew_link")
-    CHANGES = ("create", "partial_update", "progress", *STEPS)
+    FILES = ("tasks", "triples")
+    CHANGES = ("create", "partial_update", "results", "progress", *FILES, *STEPS)
     duties = {**READ_BY_ADMINS, **dict.fromkeys(CHANGES, Duty.MANAGE)}
     conditional = ("partial_update",)
-    scopes = {**READ_SCOPES, "progress": Scope.READ}
+    scopes = {**READ_SCOPES, **dict.fromkeys(("progress", *FILES), Scope.READ)}
     sorts = {"newest": "-created_at", "name": "name", "id": "pk"}
 
     def rows(self) -> QuerySet[Campaign]:
@@ -202,6 +237,46 @@ class CampaignViewSet(RowsViewSet):
     def progress(self, request: ApiRequest, **kwargs: object) -> Response:
         """Counts what has come in: forms reached, pace, time left, cost."""
         return Response(ProgressOfCampaignSerializer(progress_of(self.get_object())).data)
+
+    @extend_schema(parameters=[TaskQuery], responses={(200, "text/csv"): OpenApiTypes.STR})
+    @may_take_long
+    @action(detail=True, pagination_class=None, content_negotiation_class=AnyType)
+    def tasks(self, request: ApiRequest, **kwargs: object) -> StreamingHttpResponse:
+        """Streams a file of tasks for a crowd market, a row each: forms with fewest submissions first."""
+        query = TaskQuery(data=request.query_params)
+        query.is_valid(raise_exception=True)
+        row = self.get_object()
+        pieces = task_file(row, query.validated_data["tasks"])
+        return attachment(pieces, SplitFormat.CSV, f"{self.world.name}-campaign-{row.pk}-tasks.csv")
+
+    @extend_schema(responses={(200, "text/plain"): OpenApiTypes.STR})
+    @may_take_long
+    @action(detail=True, pagination_class=None, content_negotiation_class=AnyType)
+    def triples(self, request: ApiRequest, **kwargs: object) -> StreamingHttpResponse:
+        """Streams the accepted rewrites as triples: paraphrase, prompt, grounded form."""
+        row = self.get_object()
+        pieces = accepted_triples(row)
+        name = f"{self.world.name}-campaign-{row.pk}-paraphrasings.txt"
+        return attachment(pieces, SplitFormat.TXT, name)
+
+    @extend_schema(
+        request={"multipart/form-data": ImportedResults}, responses={202: CheckedResultsSerializer}
+    )
+    @takes_files
+    @action(detail=False, methods=["post"], parser_classes=[FilesParser])
+    @once
+    def results(self, request: ApiRequest, **kwargs: object) -> Response:
+        """Checks the results of a crowd market, by a job that then waits for an answer. Nothing is imported before."""
+        form = ResultsForm(self.world, request.data, request.FILES)
+        if not form.is_valid():
+            raise refusal_of_form(form)
+        sent, campaign = form.cleaned_data, form.chosen
+        values = campaign, sent["name"], sent["encoding"]
+        job = start_results_import(self.world, sent["file"], request.user, *values)
+        note(request, sent["name"] or str(campaign))
+        location = {"Location": address_of_job(request, job)}
+        done = CheckedResultsSerializer({"job": job}).data
+        return Response(done, status=HTTPStatus.ACCEPTED, headers=location)
 
     @extend_schema(request=None, responses={200: CampaignSerializer})
     @action(detail=True, methods=["post"])

@@ -133,6 +133,7 @@ NAMELESS = {
     *("campaign-model", "submission-decide", "submission-mend", "submission-take-back"),
     *("submission-with-form", "submission-with-doubt"),
     *("campaign-close", "campaign-reopen", "campaign-revoke-link", "campaign-renew-link"),
+    "campaign-results",
     *(
         "contributor-forget",
         "notice-read",

@@ -72,6 +72,7 @@ KEYS: dict[str, RouteKeys] = {
             *("campaign_page", "campaign_state", "campaign_act", "api:campaign-detail"),
             *("api:campaign-progress", "api:campaign-close", "api:campaign-reopen"),
             *("api:campaign-revoke-link", "api:campaign-renew-link"),
+            *("api:campaign-tasks", "api:campaign-triples"),
         ),
         pk_of(campaign_row),
     ),

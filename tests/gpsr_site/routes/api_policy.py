@@ -162,6 +162,7 @@ API_POLICY = [
         Rule(f"api:{name}", *admins(YES))
         for name in (
             *("campaign-list", "campaign-detail", "campaign-progress", "contributor-list"),
+            *("campaign-tasks", "campaign-triples"),
             "contributor-detail",
         )
     ),
@@ -193,7 +194,10 @@ API_POLICY = [
     Rule("api:utterance-detail", *annotators(NO_VERSION), method="delete"),
     Rule("api:history", *annotators(NO_JSON), method="post"),
     Rule("api:rename", *annotators(NO_VERSION), method="post"),
-    *(Rule(f"api:{name}", *admins(400), method="post") for name in ("import", "import-pairs")),
+    *(
+        Rule(f"api:{name}", *admins(400), method="post")
+        for name in ("import", "import-pairs", "campaign-results")
+    ),
     Rule("api:job-cancel", *admins(YES), method="post"),
     Rule("api:job-answer", *admins(CLASH), method="post"),  # it asks nothing
     Rule("api:utterance-candidates", *annotators(YES)),
@@ -217,7 +221,7 @@ API_POLICY = [
     # Everybody with a role decides about labels in doubt, reviewers let them be looked for
     Rule("api:campaign-model", *admins(NO_JSON), method="post"),
     # What contributors wrote, by pseudonym
-    *(Rule(f"api:submission-{name}", *reviewers(YES)) for name in ("list", "detail")),
+    *(Rule(f"api:submission-{name}", *reviewers(YES)) for name in ("list", "detail", "export")),
     *(
         Rule(f"api:submission-{name}", *reviewers(NO_JSON), method="post")
         for name in ("decide", "mend", "with-form", "with-doubt")

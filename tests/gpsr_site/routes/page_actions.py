@@ -44,6 +44,7 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "submissions_decide": "post submission-decide",
     "campaign_model": "post campaign-model",
     "submissions_take_back": "post submission-take-back",
+    "campaign_results": "post campaign-results",
     "campaign_new": "post campaign-list",
     "campaign_act": "post campaign-close, post campaign-reopen, post campaign-revoke-link, post campaign-renew-link",
     "contributor_forget": "post contributor-forget",

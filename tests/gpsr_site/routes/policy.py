@@ -282,7 +282,8 @@ POLICY = [
     Rule("job_answer", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     # Admins let people contribute
     *(Rule(name, *ADMINS) for name in ("campaigns", "campaign_page", "campaign_state")),
-    Rule("campaign_new", *ADMINS),
+    *(Rule(name, *ADMINS) for name in ("campaign_new", "campaign_results")),
+    Rule("campaign_results", LOG_IN, NOWHERE, NO, NO, 422, method="post"),
     Rule("campaign_new", LOG_IN, NOWHERE, NO, NO, 422, method="post"),
     Rule("campaign_act", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("contributor_forget", *ADMINS),
