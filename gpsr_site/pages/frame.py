@@ -105,6 +105,7 @@ PLACES = (
         waiting=Waiting(count="paraphrases_waiting", noun="paraphrase", reason="to judge"),
         pages_below=(
             *("paraphrase", "submissions", "submission"),
+            *("paraphrase_figures", "paraphrase_forms", "paraphrase_contributors"),
             *("campaigns", "campaign_new", "campaign_page", "campaign_model", "contributor_forget"),
         ),
     ),

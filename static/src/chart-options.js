@@ -82,6 +82,22 @@ function lineOf(one, colour) {
   };
 }
 
+// Bars side by side; the name stands on the highest one.
+function barsOf(one, colour) {
+  const highest = one.values.indexOf(Math.max(...one.values));
+  return {
+    type: "bar",
+    name: one.name,
+    data: one.values.map((value, at) => (at === highest ? { value, label: { show: true } } : value)),
+    barGap: "0%",
+    barCategoryGap: "20%",
+    itemStyle: { color: colour },
+    label: { position: "top", formatter: "{a}", color: colour, fontSize: 12 },
+    labelLayout: { moveOverlap: "shiftX" },
+    emphasis: { disabled: true },
+  };
+}
+
 // A line across the chart at one value of x.
 function markOf(mark, palette) {
   if (mark == null) return undefined;
@@ -158,6 +174,7 @@ function numberAxis(axis, palette) {
 export function optionOf(data, element) {
   const palette = paletteOf(element, data.series);
   const isPoints = data.kind === "points";
+  const isBars = data.kind === "bars";
   const longest = Math.max(...data.series.map((one) => one.name.length)) * 6.5;
   const nameWidth = isPoints ? Math.min(longest, 0.35 * element.clientWidth) : longest;
   return {
@@ -165,7 +182,7 @@ export function optionOf(data, element) {
     aria: { enabled: true },
     grid: {
       left: 8,
-      right: nameWidth + 12,
+      right: isBars ? 8 : nameWidth + 12,
       top: 32,
       bottom: data.x.label ? 32 : 8,
       containLabel: true,
@@ -173,10 +190,11 @@ export function optionOf(data, element) {
     tooltip: tooltipOf(palette),
     xAxis: isPoints ? numberAxis(data.x, palette) : categoryAxis(data.x, palette),
     yAxis: valueAxis(data.y, palette),
-    series: data.series.flatMap((one, at) =>
-      isPoints
-        ? pointsOf(one, palette.series[at], nameWidth + 12)
-        : { ...lineOf(one, palette.series[at]), markLine: at === 0 ? markOf(data.mark, palette) : undefined },
-    ),
+    series: data.series.flatMap((one, at) => {
+      const colour = palette.series[at];
+      if (isPoints) return pointsOf(one, colour, nameWidth + 12);
+      if (isBars) return barsOf(one, colour);
+      return { ...lineOf(one, colour), markLine: at === 0 ? markOf(data.mark, palette) : undefined };
+    }),
   };
 }
