@@ -20,7 +20,7 @@ from annotations.language.paraphrases import (
 from annotations.models import Campaign, World
 from annotations.models.campaigns import ContributorKind
 
-TARGET_PER_FORM = 10
+TARGET_PER_FORM, MOST_WANTED = 10, 1_000
 SAMPLE = 100  # paraphrases whose vocabulary is compared
 MOST_POINTS = 40  # of a curve
 
@@ -134,12 +134,7 @@ class FormCount:
         return self.people + self.models
 
 
-@dataclass(frozen=True, slots=True)
-class _Row:
-    utterance: str
-    edits: int
-    jaccard: float
-    is_by_model: bool
+_Said = tuple[str, int, float]  # the utterance, with its distances
 
 
 def figures_of(world: World, campaign: Campaign | None = None) -> ParaphraseFigures:
@@ -151,29 +146,29 @@ def figures_of(world: World, campaign: Campaign | None = None) -> ParaphraseFigu
     accepted = world.paraphrases.accepted().order_by("position")
     chosen = accepted if campaign is None else accepted.filter(contributor__campaign=campaign)
     columns = ("utterance", "edit_distance", "jaccard_distance", "logical_form")
-    people: list[_Row] = []
-    models: list[_Row] = []
+    by: dict[bool, list[_Said]] = {False: [], True: []}
     of_form: dict[str, Counter[bool]] = defaultdict(Counter)
-    for *values, form, kind in chosen.values_list(*columns, "contributor__kind"):
-        row = _Row(*values, kind == ContributorKind.MODEL)
-        (models if row.is_by_model else people).append(row)
-        of_form[form][row.is_by_model] += 1
+    for said, edits, jaccard, form, kind in chosen.values_list(*columns, "contributor__kind"):
+        is_by_model = kind == ContributorKind.MODEL
+        by[is_by_model].append((said, edits, jaccard))
+        of_form[form][is_by_model] += 1
     forms = form_counts(world, campaign)
     category_of = {each.form: each.task_category for each in forms}
-    said: dict[str, Counter[bool]] = defaultdict(Counter)
+    in_category: dict[str, Counter[bool]] = defaultdict(Counter)
     for form, counts in of_form.items():
-        said[category_of.get(form, "")] += counts
+        in_category[category_of.get(form, "")] += counts
     of_category = Counter(each.task_category for each in forms)
     short = Counter(each.task_category for each in forms if each.lacks)
-    sample = min(SAMPLE, len(people), len(models))
+    sample = min(SAMPLE, *map(len, by.values()))
     return ParaphraseFigures(
-        people=_summary(people, sample),
-        models=_summary(models, sample),
+        people=_summary(by[False], sample),
+        models=_summary(by[True], sample),
         categories=tuple(
             CategoryCount(
-                name, of_category[name], short[name], said[name][False], said[name][True]
+                *(name, of_category[name], short[name]),
+                *(in_category[name][False], in_category[name][True]),
             )
-            for name in sorted({*of_category, *said})
+            for name in sorted({*of_category, *in_category})
         ),
         target=target_of(campaign),
         sample=sample,
@@ -216,15 +211,15 @@ def form_counts(
     return sorted(rows, key=lambda row: (-row.lacks, row.task_category, row.form))
 
 
-def _summary(rows: Sequence[_Row], sample: int) -> ParaphrasesBy:
-    words = [folded_words(row.utterance) for row in rows]
+def _summary(rows: Sequence[_Said], sample: int) -> ParaphrasesBy:
+    words = [folded_words(said) for said, _, _ in rows]
     growth = vocabulary_growth(words)
     return ParaphrasesBy(
         count=len(rows),
-        edits=fmean(row.edits for row in rows) if rows else None,
-        jaccard=fmean(row.jaccard for row in rows) if rows else None,
-        edit_counts=EDIT_BINS.counts(row.edits for row in rows),
-        jaccard_counts=JACCARD_BINS.counts(row.jaccard for row in rows),
+        edits=fmean(edits for _, edits, _ in rows) if rows else None,
+        jaccard=fmean(jaccard for _, _, jaccard in rows) if rows else None,
+        edit_counts=EDIT_BINS.counts(edits for _, edits, _ in rows),
+        jaccard_counts=JACCARD_BINS.counts(jaccard for _, _, jaccard in rows),
         words=growth[-1] if growth else 0,
         sample_words=expected_vocabulary(words, sample) if sample else None,
         growth=tuple(growth),

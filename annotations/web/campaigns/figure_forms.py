@@ -6,13 +6,13 @@ from typing import Any
 
 from django import forms
 
+from annotations.campaigns.paraphrase_figures import MOST_WANTED
 from annotations.lists.filtering import task_category_choices
 from annotations.models import Campaign, World
 from annotations.people.access import WorldRequest
 from annotations.web.campaigns.campaign_forms import campaign_choices
 from annotations.web.forms import choice_field
 
-MOST_WANTED = 1_000  # paraphrases per form
 SHORT, REACHED = "short", "reached"
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
 
 from django.http import HttpResponse
@@ -92,7 +93,7 @@ def paraphrase_contributors(request: WorldRequest, world: World) -> HttpResponse
     return render_list(request, "annotations/campaigns/figure_contributors.html", context)
 
 
-def query_of(**values: object) -> str:
+def query_of(**values: str | int | None) -> str:
     """Return the query of an address, without what is empty."""
     return urlencode({name: value for name, value in values.items() if value})
 
@@ -113,10 +114,7 @@ def edit_chart(figures: ParaphraseFigures) -> dict[str, Any]:
 
 def jaccard_chart(figures: ParaphraseFigures) -> dict[str, Any]:
     ends = [*JACCARD_BINS.starts, 1]
-    values = [
-        f"{decimals(start, 1)}–{decimals(end, 1)}"
-        for start, end in zip(ends, ends[1:], strict=False)
-    ]
+    values = [f"{decimals(start, 1)}–{decimals(end, 1)}" for start, end in pairwise(ends)]
     lines = [(name, side.jaccard_counts) for name, side in sides_of(figures)]
     return _histogram("Jaccard distance of the words", values, lines)
 
