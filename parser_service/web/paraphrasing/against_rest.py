@@ -11,7 +11,7 @@ from rest_framework.response import Response
 
 from annotations.models import Duty, Scope
 from annotations.people.allowances import may_take_long
-from annotations.web.rest.fields import Fields
+from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import Figures
@@ -22,14 +22,13 @@ from parser_service.paraphrasing.people_against_models import (
     run_pairs,
     start_people_against_models,
 )
-from parser_service.parsers.registry import PARSERS
 from parser_service.web.runs.run_rest import RunSerializer, StartedRunsSerializer
 
 
 class NewParaphraseRuns(Fields):
     """Which parser is trained on either."""
 
-    parser = serializers.ChoiceField(choices=list(PARSERS))
+    parser = LineField(max_length=60)
 
 
 class PartOfScoreSerializer(serializers.Serializer[Any]):
