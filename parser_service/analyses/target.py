@@ -34,7 +34,8 @@ class FirstAnswers:
 
     def of_source(self, source: str) -> Bools:
         """Return which examples are of one of ``SOURCES``: [examples]."""
-        return self.sources == list(SOURCES).index(source)
+        is_of_it: Bools = self.sources == list(SOURCES).index(source)
+        return is_of_it
 
 
 class Target:

@@ -168,7 +168,7 @@ def choices_in(query: QueryDict, world: World) -> RunChoices:
 
 def all_sources(world: World, split: int | None) -> str:
     """Return all that a split can be trained on: the one with the key ``split``, else the newest."""
-    chosen = world.splits.filter(pk=split).first() or world.splits.first()
+    chosen = world.splits.filter(pk=split or 0).first() or world.splits.first()
     if chosen is None:
         return "gen"
     sources = chosen.examples.of(Part.TRAIN).order_by().values_list("source", flat=True)
@@ -240,7 +240,11 @@ def parser_groups(world: World, split: Split | None) -> list[ParserGroup]:
             entry,
             tuple(gap.name for gap in find_gaps(make_config(name), anywhere=False)),
             seconds.get(name),
-            tuple(scores.get(name, {}).items()),
+            tuple(
+                (words, scores[name][source])
+                for source, words in SOURCE_WORDS.items()
+                if source in scores[name]
+            ),
         )
         for name, entry in PARSERS.items()
     ]
@@ -287,6 +291,5 @@ def _scores(world: World, split: Split | None) -> dict[str, dict[str, ShownScore
         of_runs[row.run.parser, row.run_id].append(row)
     for (parser, _), of_run in of_runs.items():
         for (_, source), score in shown_scores(of_run, split.criterion).items():
-            name = SOURCE_WORDS[source]
-            best[parser][name] = max(score, best[parser].get(name, score), key=rank)
+            best[parser][source] = max(score, best[parser].get(source, score), key=rank)
     return best

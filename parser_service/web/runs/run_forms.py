@@ -15,7 +15,6 @@ from parser_service.parsers.conditions import (
     SOURCES,
     TRAIN_SOURCES,
     Protocol,
-    in_words,
     sources_of,
 )
 from parser_service.parsers.hyperparameters.fields import ConfigField
@@ -72,7 +71,7 @@ class RunForm(forms.Form):
         ]
         self.fields["protocol"].initial = entry(parser).protocols[0]
         choice_field(self, "train_sources").choices = [
-            (each, in_words(each)) for each in offered_sources(world)
+            (each, ", ".join(sources_of(each))) for each in offered_sources(world)
         ]
         for declared in config_fields(parser):
             self.fields[PREFIX + declared.name] = field_for(declared)
