@@ -82,21 +82,24 @@ function lineOf(one, colour) {
   };
 }
 
-// Bars side by side; the name stands on the highest one.
-function barsOf(one, colour) {
-  const highest = one.values.indexOf(Math.max(...one.values));
+// Bars side by side. The name, with a square in their colour, stands above the chart, `right` pixels from its left edge
+// at most: on the bars it would cover those of another series.
+function barsOf(one, colour, right) {
   return {
     type: "bar",
     name: one.name,
-    data: one.values.map((value, at) => (at === highest ? { value, label: { show: true } } : value)),
+    data: one.values.map((value, at) => (at === 0 ? { value, label: { show: true } } : value)),
     barGap: "0%",
     barCategoryGap: "20%",
     itemStyle: { color: colour },
-    label: { position: "top", formatter: "{a}", color: colour, fontSize: 12 },
-    labelLayout: { moveOverlap: "shiftX" },
+    label: { formatter: "\u25a0 {a}", color: colour, fontSize: 12 },
+    labelLayout: { x: right, y: 12, align: "right", verticalAlign: "middle" },
     emphasis: { disabled: true },
   };
 }
+
+const BAR_NAME = 6.5; // pixels of a letter
+const widthOfName = (one) => BAR_NAME * one.name.length + 28;
 
 // A line across the chart at one value of x.
 function markOf(mark, palette) {
@@ -193,7 +196,10 @@ export function optionOf(data, element) {
     series: data.series.flatMap((one, at) => {
       const colour = palette.series[at];
       if (isPoints) return pointsOf(one, colour, nameWidth + 12);
-      if (isBars) return barsOf(one, colour);
+      if (isBars) {
+        const after = data.series.slice(at + 1).reduce((width, each) => width + widthOfName(each), 0);
+        return barsOf(one, colour, element.clientWidth - 8 - after);
+      }
       return { ...lineOf(one, colour), markLine: at === 0 ? markOf(data.mark, palette) : undefined };
     }),
   };

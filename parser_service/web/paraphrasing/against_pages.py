@@ -29,7 +29,7 @@ from parser_service.web.runs.new_run_pages import recommended_parser
 @never_cache
 @world_view(Duty.VIEW)
 def paraphrase_runs(request: WorldRequest, world: World) -> HttpResponse:
-    """Show the runs on either, and the button that starts them."""
+    """Show the runs on each, and the button that starts them."""
     pairs = run_pairs(world)
     parsers = trainable_parsers()
     recommended = recommended_parser(world)

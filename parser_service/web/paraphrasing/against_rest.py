@@ -26,7 +26,7 @@ from parser_service.web.runs.run_rest import RunSerializer, StartedRunsSerialize
 
 
 class NewParaphraseRuns(Fields):
-    """Which parser is trained on either."""
+    """Which parser is trained on each."""
 
     parser = LineField(max_length=60)
 
