@@ -3,7 +3,7 @@
 from django.urls import path
 
 from annotations.web.background import job_pages
-from annotations.web.campaigns import campaign_pages, submission_pages
+from annotations.web.campaigns import campaign_pages, figure_pages, submission_pages
 from annotations.web.corpus import command_pages, paraphrase_pages, upload_pages, utterance_pages
 from annotations.web.description import (
     coverage_pages,
@@ -110,6 +110,13 @@ urlpatterns = [
     ),
     path("paraphrases/", paraphrase_pages.paraphrases, name="paraphrases"),
     path("paraphrases/<int:pk>/", paraphrase_pages.paraphrase, name="paraphrase"),
+    path("paraphrases/figures/", figure_pages.paraphrase_figures, name="paraphrase_figures"),
+    path("paraphrases/figures/forms/", figure_pages.paraphrase_forms, name="paraphrase_forms"),
+    path(
+        "paraphrases/figures/contributors/",
+        figure_pages.paraphrase_contributors,
+        name="paraphrase_contributors",
+    ),
     path("paraphrases/<int:pk>/label/", paraphrase_pages.paraphrase_label, name="paraphrase_label"),
     path("paraphrases/<int:pk>/check/", paraphrase_pages.paraphrase_check, name="paraphrase_check"),
     path("utterances/", utterance_pages.utterances, name="utterances"),

@@ -93,6 +93,7 @@ WHAT = {
     "run_cancel": "cancel a run",
     "run_retrain": "retrain a run",
     "learning_curve_start": "start runs of a learning curve",
+    **dict.fromkeys(("paraphrase_runs_start", "paraphrase-runs"), "train on people and on models"),
     "analysis_start": "analyse errors",
     "analysis_cancel": "cancel an error analysis",
     "review_tag": "tag an answer",

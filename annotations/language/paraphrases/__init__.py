@@ -1,4 +1,4 @@
-"""Paraphrases of prompts: what to tell their writers, what to tell moderators, and what a language model writes."""
+"""Paraphrases of prompts: what to tell their writers and moderators, what a language model writes, their vocabulary."""
 
 from __future__ import annotations
 
@@ -29,6 +29,7 @@ from annotations.language.paraphrases.submission_flags import (
     free_command_flags,
     rewrite_flags,
 )
+from annotations.language.paraphrases.vocabulary import expected_vocabulary, vocabulary_growth
 from annotations.language.paraphrases.word_folding import folded_words
 
 __all__ = [
@@ -48,6 +49,7 @@ __all__ = [
     "check_rewrite",
     "entities_in",
     "entities_of",
+    "expected_vocabulary",
     "folded_words",
     "free_command_flags",
     "instructions_version",
@@ -55,4 +57,5 @@ __all__ = [
     "rewrite_flags",
     "rewrite_request",
     "rewrites_in",
+    "vocabulary_growth",
 ]

@@ -20,6 +20,7 @@ from annotations.campaigns.progress import progress_of
 from annotations.language.english import say_count
 from annotations.language.errors import LanguageError, Refusal
 from annotations.lists.listing import Listing, Sort, render_list
+from annotations.lists.paging import number_in
 from annotations.models import Campaign, CampaignPrompt, Contributor, Duty, World
 from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
 from annotations.people.allowances import may_take_long, takes_files
@@ -57,8 +58,14 @@ def campaigns(request: WorldRequest, world: World) -> HttpResponse:
 @may_take_long
 @world_view(Duty.MANAGE, READ_AND_WRITE)
 def campaign_new(request: WorldRequest, world: World) -> HttpResponse:
-    """Show the form that launches a campaign; its other button only previews the prompts."""
-    initial = {"name": f"Campaign {world.campaigns.count() + 1}"}
+    """Show the form that launches a campaign; its other button only previews the prompts.
+
+    The address may choose ``task_categories`` and ``target_per_form`` beforehand.
+    """
+    initial: dict[str, Any] = {"name": f"Campaign {world.campaigns.count() + 1}"}
+    initial["task_categories"] = request.GET.getlist("task_categories")
+    if target := number_in(request.GET.get("target_per_form", "")):
+        initial["target_per_form"] = target
     form = CampaignForm(world, posted(request), initial=initial)
     context: dict[str, Any] = {"form": form}
     if form.is_bound and form.is_valid():

@@ -102,6 +102,7 @@ NAMELESS = {
     *(
         "run-list",
         "run-learning-curve",
+        "paraphrase-runs",
         "run-retrain",
         "run-analysis",
         "run-cancel",

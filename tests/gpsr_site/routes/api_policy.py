@@ -33,6 +33,10 @@ READABLE = (
     *(
         "paraphrase-list",
         "paraphrase-detail",
+        "paraphrase-figures",
+        "paraphrase-forms",
+        "paraphrase-contributors",
+        "paraphrase-runs",
         "utterance-list",
         "utterance-detail",
         "split-list",
@@ -261,6 +265,7 @@ API_POLICY = [
         for method in ("patch", "delete")
     ),
     Rule("api:run-learning-curve", *admins(NO_JSON), method="post"),
+    Rule("api:paraphrase-runs", *admins(NO_JSON), method="post"),
     Rule("api:run-analysis", *reviewers(202), method="post"),
     Rule("api:run-cancel", *admins(CLASH), method="post"),  # it has ended
     Rule("api:run-retrain", *admins(400), method="post"),  # there is no newer split
