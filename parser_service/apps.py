@@ -13,6 +13,7 @@ class ParserServiceConfig(AppConfig):
     def ready(self) -> None:
         from annotations.background import register
         from annotations.jobs.kinds import register_verb
+        from annotations.labelling.proposal_requests import register_parsers
         from annotations.models import JobKind
         from annotations.splits.stale import register_results
         from annotations.worlds.parts import register_part
@@ -27,6 +28,7 @@ class ParserServiceConfig(AppConfig):
         register_verb(
             JobKind.PARAPHRASE, "parser_service.paraphrasing.model_contributor.paraphrase_of"
         )
+        register_parsers(lambda world: TrainingRun.objects.succeeded().filter(world=world).exists())
         register_part("parser_service.robots.archived.ACTION_NAMES")
         register_results("run", lambda keys: TrainingRun.objects.filter(split__in=keys).count())
         keep_encoders_in(

@@ -9,6 +9,7 @@ from django.db import transaction
 from django.utils import timezone
 
 from annotations.campaigns.tasks import CampaignOver
+from annotations.labelling.proposal_requests import request_readings
 from annotations.language.errors import Position, Refusal
 from annotations.language.limits import require_writable
 from annotations.language.paraphrases import (
@@ -80,7 +81,9 @@ def save_answer(
             "contributor__campaign"
         )
         _require_changeable(held.get(pk=submission.pk))
-        stored.save(update_fields=["text", "was_pasted", "seconds", "answered_at", "flags"])
+        stored.read_by_run = None
+        columns = ("text", "was_pasted", "seconds", "answered_at", "flags", "read_by_run")
+        stored.save(update_fields=columns)
     return stored
 
 
@@ -106,6 +109,7 @@ def finish(contributor: Contributor, had_model_help: bool) -> Contributor:
     if not contributor.is_finished:
         contributor.finished_at, contributor.had_model_help = timezone.now(), had_model_help
         contributor.save(update_fields=["finished_at", "had_model_help"])
+        request_readings(contributor.campaign.world)
     return contributor
 
 

@@ -18,7 +18,7 @@ from annotations.language.errors import Position, Refusal
 from annotations.language.forms import canonical_text, read_form
 from annotations.language.grounding import ground_like
 from annotations.language.limits import require_writable
-from annotations.language.paraphrases import lost_entities
+from annotations.language.paraphrases import FlagCode, lost_entities
 from annotations.language.text import normalise_line
 from annotations.models import (
     Origin,
@@ -128,9 +128,12 @@ def mend(submission: Submission, text: str) -> Submission:
             row.text = wanted
             names = named_in(row.prompt) if row.prompt else ()
             lost = ", ".join(lost_entities(wanted, names))
-            kept = [flag for flag in row.flags if flag["code"] != "lost_entity"]
-            row.flags = [*kept, {"code": "lost_entity", "evidence": lost}] if lost else kept
-            row.save(update_fields=["raw", "text", "flags"])
+            told_anew = (FlagCode.LOST_ENTITY, FlagCode.OTHER_FORM)
+            row.flags = [flag for flag in row.flags if flag["code"] not in told_anew]
+            if lost:
+                row.flags.append({"code": FlagCode.LOST_ENTITY, "evidence": lost})
+            row.read_by_run = None
+            row.save(update_fields=["raw", "text", "flags", "read_by_run"])
     return row
 
 

@@ -32,6 +32,7 @@ def manifest_of(split: Split, part: str | None = None, source: str | None = None
         "criterion": split.criterion,
         "seed": split.seed,
         "proportions": split.proportions,
+        "tests_on_models": split.tests_on_models,
         "content_hash": split.content_hash,
         "created_at": split.created_at.isoformat(),
         "chosen": chosen,

@@ -1,18 +1,47 @@
-"""Ask a worker for what a trained parser answers: to unlabelled utterances, or to a command without a form."""
+"""Ask a worker for what a trained parser answers: to unlabelled utterances and to what contributors wrote, or to a
+command without a form."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from datetime import timedelta
+
+from django.utils import timezone
+
 from annotations.jobs import request_job, request_job_once
-from annotations.models import Job, JobKind, User, World
+from annotations.models import Job, JobKind, Submission, User, World
+
+BETWEEN_READINGS = timedelta(
+    minutes=2
+)  # of campaigns, where many contributors finish within an hour
+
+# Each says whether a world has a parser that could answer.
+_PARSERS: list[Callable[[World], bool]] = []
+
+
+def register_parsers(has_parser: Callable[[World], bool]) -> None:
+    """Ask ``has_parser`` whether a world has a parser. For the ``ready`` of an app that trains some."""
+    _PARSERS.append(has_parser)
 
 
 def request_proposals(world: World, by: User | None = None) -> Job | None:
-    """Queue the job, unless one waits already or no utterance is unlabelled; None then."""
-    if not world.utterances.unlabelled().exists():
+    """Queue the job, unless one waits already, or no utterance is unlabelled and no submission waits; None then."""
+    submitted = Submission.objects.filter(contributor__campaign__world=world)
+    if not world.utterances.unlabelled().exists() and not submitted.awaiting_moderation().exists():
         return None
     waiting = world.jobs.queued().filter(kind=JobKind.PROPOSE).exclude(arguments__has_key="command")
     job, is_new = request_job_once(waiting, JobKind.PROPOSE, world, by)
     return job if is_new else None
+
+
+def request_readings(world: World) -> Job | None:
+    """Queue the job once somebody has submitted or decided something, unless it was asked for lately or no parser
+    could answer; None then."""
+    if not any(has_parser(world) for has_parser in _PARSERS):
+        return None
+    since = timezone.now() - BETWEEN_READINGS
+    lately = world.jobs.filter(kind=JobKind.PROPOSE, queued_at__gte=since)
+    return None if lately.exists() else request_proposals(world)
 
 
 def last_request(world: World, command: str, run: int) -> Job | None:

@@ -254,8 +254,8 @@ class Submission(models.Model):
     """One place of a contributor's task, and what they wrote there; ``text`` is empty until then.
 
     ``raw`` is the reply of a model that the text was read from. ``seconds`` is how long the prompt was looked
-    at. ``flags`` are rows of ``{"code", "evidence"}``. What was accepted is a ``paraphrase``, or, as a free
-    command, an ``utterance``.
+    at. ``flags`` are rows of ``{"code", "evidence"}``; ``read_by_run`` is the number of the run that was last asked
+    what the text means. What was accepted is a ``paraphrase``, or, as a free command, an ``utterance``.
     """
 
     contributor = models.ForeignKey(
@@ -273,6 +273,7 @@ class Submission(models.Model):
     seconds = models.FloatField(null=True, blank=True)
     was_pasted = models.BooleanField(default=False)
     flags = models.JSONField(default=list, blank=True)
+    read_by_run = models.PositiveBigIntegerField(null=True, blank=True)
     given_at = models.DateTimeField(default=timezone.now)
     answered_at = models.DateTimeField(null=True, blank=True)
     status = models.CharField(

@@ -55,8 +55,13 @@ class DerivedCharField(DerivedField, PlainCharField):
 
 
 class Source(models.TextChoices):
+    """Who said an example: the grammar, somebody who rewrote a command, a language model that rewrote one, or
+    somebody to whom no command was shown."""
+
     GENERATED = "generated"
     PARAPHRASED = "paraphrased"
+    MODEL = "model"
+    SAID = "said"
 
 
 def criterion_choices() -> list[tuple[str, str]]:
@@ -84,7 +89,8 @@ class Split(models.Model):
     """``content_hash`` is the SHA-256 of all examples; ``seed`` is null for an imported split.
 
     ``proportions`` are the shares of train, validation and test that were asked for, fractions of 1; empty
-    where nobody asked for any. ``follows`` is the split that this one freezes anew.
+    where nobody asked for any. ``tests_on_models`` says that what language models wrote is in validation and test
+    too. ``follows`` is the split that this one freezes anew.
     """
 
     world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="splits")
@@ -92,6 +98,7 @@ class Split(models.Model):
     criterion = models.CharField(max_length=20, choices=criterion_choices)
     seed = models.PositiveBigIntegerField(null=True, blank=True)
     proportions = models.JSONField(default=list, blank=True)
+    tests_on_models = models.BooleanField(default=False, db_default=False)
     follows = models.ForeignKey(
         "self", null=True, blank=True, on_delete=models.SET_NULL, related_name="followed_by"
     )
@@ -121,7 +128,6 @@ class Example(models.Model):
     ``written_form`` is the form as the file wrote it where that is not the canonical text, so that an
     export gives the file back. ``head_predicate`` (``UNKNOWN`` for a form without any) and ``depth`` are
     those of the form, empty and 0 for a text that is no form; ``word_count`` counts what spaces separate.
-    ``is_by_model`` says that a language model wrote the utterance.
     """
 
     split = models.ForeignKey(Split, on_delete=models.CASCADE, related_name="examples")
@@ -134,7 +140,6 @@ class Example(models.Model):
     logical_form = models.TextField()
     written_form = models.TextField(blank=True)
     grounded_form = models.TextField(blank=True)
-    is_by_model = models.BooleanField(default=False, db_default=False)
     head_predicate = DerivedCharField(
         max_length=HEAD_LENGTH, blank=True, default="", editable=False
     )

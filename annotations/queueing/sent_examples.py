@@ -103,7 +103,7 @@ def find_subjects(world: World, examples: Iterable[Example]) -> dict[str, ItemSu
 
 def _paraphrases(world: World, examples: Mapping[str, Example]) -> Behind:
     """Prefer paraphrases with the label of the example, then accepted ones."""
-    texts = [text for text, each in examples.items() if each.source == Source.PARAPHRASED]
+    texts = [text for text, each in examples.items() if each.source != Source.GENERATED]
     rows = world.paraphrases.filter(utterance__in=texts).order_by("position")
     best: dict[str, Paraphrase] = {}
 

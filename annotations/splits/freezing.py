@@ -32,15 +32,17 @@ def freeze_split(
     proportions: Sequence[float] = DEFAULT_PROPORTIONS,
     by: User | None = None,
     must_be_new: bool = False,
+    tests_on_models: bool = False,
 ) -> Split:
     """Freeze the commands, accepted paraphrases and labelled utterances of ``world`` as the split ``name``.
 
     Args:
         criterion: what two parts never share: a ``command``, ``source_command`` or
-            ``logical_form``, over generated and paraphrased examples together.
+            ``logical_form``, over the examples of all sources together.
         seed: the same world, criterion, proportions and seed give the same split.
         proportions: shares of train, validation and test that sum to 1.
         must_be_new: refuse a name that is taken, whatever the split of that name holds.
+        tests_on_models: put what language models wrote into validation and test too.
 
     Returns:
         The split; the one that is there already where it holds just the same.
@@ -49,9 +51,11 @@ def freeze_split(
         LanguageError: there is nothing to split, the proportions are no shares of a whole, or the name is taken by
             a split with other examples.
     """
-    examples = plan_split(world, criterion, seed, proportions)
+    examples = plan_split(world, criterion, seed, proportions, tests_on_models)
     with (
-        PreparedSplit(name, criterion, examples, seed, proportions) as prepared,
+        PreparedSplit(
+            name, criterion, examples, seed, proportions, tests_on_models=tests_on_models
+        ) as prepared,
         transaction.atomic(),
     ):
         World.objects.select_for_update().get(pk=world.pk)
@@ -66,12 +70,14 @@ def plan_split(
     criterion: str = Criterion.COMMAND,
     seed: int = 0,
     proportions: Sequence[float] = DEFAULT_PROPORTIONS,
+    tests_on_models: bool = False,
 ) -> list[Example]:
     """Return the examples that ``freeze_split`` would store, each with its part and position. Raises likewise."""
     examples = list(candidates(world))
     items = as_items(examples)
     kept = kept_in_training(items, criterion)
-    return assign_parts(examples, split(items, Criterion(criterion), proportions, seed, kept))
+    parts = split(items, Criterion(criterion), proportions, seed, kept)
+    return assign_parts(examples, parts, tests_on_models)
 
 
 def unresolved_prompts(items: Iterable[SplitItem]) -> dict[str, str]:
@@ -103,14 +109,21 @@ def as_items(examples: Iterable[Example]) -> list[SplitItem]:
     ]
 
 
-def assign_parts(examples: Sequence[Example], parts: Iterable[Part]) -> list[Example]:
+def assign_parts(
+    examples: Sequence[Example], parts: Iterable[Part], tests_on_models: bool = False
+) -> list[Example]:
     """Give unsaved examples their parts and their positions in these, and return those that stay.
 
-    What a language model wrote is for training alone: where its part is another one, it is left out.
+    Unless the split ``tests_on_models``, what a language model wrote is for training alone: where its part is
+    another one, it is left out.
     """
     for example, part in zip(examples, parts, strict=True):
         example.part = str(part)
-    staying = [each for each in examples if each.part == Part.TRAIN or not each.is_by_model]
+    staying = [
+        each
+        for each in examples
+        if tests_on_models or each.part == Part.TRAIN or each.source != Source.MODEL
+    ]
     # As in pair files: by the number of characters of the utterance.
     following: dict[tuple[str, str], int] = {}
     for example in sorted(staying, key=lambda each: len(each.utterance)):
@@ -129,7 +142,7 @@ class PreparedSplit:
     COLUMNS = (
         *("position", "part", "source", "utterance", "source_command", "task_category"),
         *("logical_form", "written_form", "grounded_form"),
-        *("is_by_model", "head_predicate", "depth", "word_count"),
+        *("head_predicate", "depth", "word_count"),
     )
 
     def __init__(
@@ -140,6 +153,7 @@ class PreparedSplit:
         seed: int | None = None,
         proportions: Sequence[float] = (),
         follows: Split | None = None,
+        tests_on_models: bool = False,
     ) -> None:
         """Raises LanguageError where no split can have the name."""
         try:
@@ -152,6 +166,7 @@ class PreparedSplit:
         self.seed = seed
         self.proportions = list(proportions)
         self.follows = follows
+        self.tests_on_models = tests_on_models
         self.examples = sorted(examples, key=lambda each: (each.source, each.part, each.position))
         self.content_hash = content_hash(map(_freeze, self.examples))
         self._staging = Staging(Example, self.COLUMNS)
@@ -188,6 +203,7 @@ class PreparedSplit:
             seed=self.seed,
             proportions=self.proportions,
             follows=self.follows,
+            tests_on_models=self.tests_on_models,
             content_hash=self.content_hash,
             created_by=by,
         )
@@ -221,18 +237,17 @@ def candidates(world: World, only_edited: bool = False) -> Iterator[Example]:
             continue
         seen.add((said.utterance, said.logical_form))
         yield Example(
-            source=Source.PARAPHRASED,
+            source=Source.MODEL if said.is_by_model else Source.PARAPHRASED,
             utterance=said.utterance,
             source_command=said.command.anonymized_text if said.command else said.prompt,
             task_category=said.command.task_category if said.command else "",
             logical_form=said.logical_form,
             grounded_form=said.grounded_form,
-            is_by_model=said.is_by_model,
         )
     for labelled in world.utterances.labelled():
         if (labelled.text, labelled.logical_form) not in seen:
             yield Example(
-                source=Source.PARAPHRASED,
+                source=Source.SAID,
                 utterance=labelled.text,
                 source_command=labelled.text,  # no command is behind it
                 logical_form=labelled.logical_form,

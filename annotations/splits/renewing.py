@@ -32,8 +32,9 @@ LONGEST_NAME = 80
 
 KINDS_OF_CHANGE = ("added", "removed", "relabelled", "moved")
 
-# Source and utterance: what an example of an old and of a new split have in common.
-Said = tuple[str, str]
+# Whether it was generated, and the utterance: what an example of an old and of a new split have in common. The other
+# sources are one here, since splits that were frozen earlier call labelled utterances paraphrased.
+Said = tuple[bool, str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +82,13 @@ def freeze_anew(old: Split, by: User | None = None) -> Split:
     if changes_between(old, examples).is_none:
         raise LanguageError(f"nothing has changed since {old} was frozen")
     prepared = PreparedSplit(
-        name_after(old), old.criterion, examples, old.seed or 0, proportions_of(old), old
+        name_after(old),
+        old.criterion,
+        examples,
+        old.seed or 0,
+        proportions_of(old),
+        old,
+        old.tests_on_models,
     )
     with prepared, transaction.atomic():
         World.objects.select_for_update().get(pk=old.world_id)
@@ -109,9 +116,8 @@ def plan_anew(old: Split) -> list[Example]:
     parts = split(items, criterion, proportions_of(old), old.seed or 0, kept)
     # A published part may share something with another one; it stays as it was published.
     as_published = (Part(each.part) if each.part else None for each in examples)
-    return assign_parts(
-        examples, [was or part for was, part in zip(as_published, parts, strict=True)]
-    )
+    parts_now = [was or part for was, part in zip(as_published, parts, strict=True)]
+    return assign_parts(examples, parts_now, old.tests_on_models)
 
 
 def last_of(old: Split) -> Split:
@@ -177,7 +183,7 @@ Labels = tuple[tuple[str, str], ...]
 def _labels(rows: Iterable[tuple[str, str, str, str]]) -> dict[Said, Labels]:
     labels: dict[Said, Labels] = {}
     for source, utterance, form, part in rows:
-        said = source, utterance
+        said = source == Source.GENERATED, utterance
         labels[said] = (*labels.get(said, ()), (form, part))
     return {said: tuple(sorted(each)) for said, each in labels.items()}
 
@@ -222,10 +228,10 @@ def _examples_of_today(old: Split) -> list[Example]:
     today = candidates(old.world, only_edited=True)
     by_said: dict[Said, list[Example]] = defaultdict(list)
     for example in today:
-        by_said[example.source, example.utterance].append(example)
+        by_said[example.source == Source.GENERATED, example.utterance].append(example)
     frozen: dict[Said, list[Example]] = defaultdict(list)
     for row in old.examples.order_by("pk").iterator(chunk_size=BATCH):
-        frozen[row.source, row.utterance].append(row)
+        frozen[row.source == Source.GENERATED, row.utterance].append(row)
     # What people have deleted, do not accept, or have found to have no form stays out.
     rejected = old.world.paraphrases.exclude(status=ParaphraseStatus.ACCEPTED)
     deleted = history_of(Paraphrase).filter(world=old.world, history_type=DELETED)
@@ -237,7 +243,7 @@ def _examples_of_today(old: Split) -> list[Example]:
         *deleted.values_list("utterance", flat=True),
         *without_form.values_list("text", flat=True),
     }
-    withdrawn = {(Source.PARAPHRASED.value, text) for text in texts}
+    withdrawn = {(False, text) for text in texts}
     examples: list[Example] = []
     for said, rows in frozen.items():
         now = by_said.pop(said, None)
@@ -269,13 +275,13 @@ def _parts_to_keep(old: Split, items: Sequence[SplitItem], criterion: Criterion)
     for part, *texts in rows.iterator(chunk_size=BATCH):
         item = SplitItem(*texts)
         of_key[item.key(criterion)][part] += 1
-        of_said.setdefault((item.source, item.utterance), part)
+        of_said.setdefault((item.source == Source.GENERATED, item.utterance), part)
     wanted: dict[str, Counter[str]] = defaultdict(Counter)
     for item in items:
         key = item.key(criterion)
         if key in of_key:
             wanted[key] = of_key[key]
-        elif part_before := of_said.get((item.source, item.utterance)):
+        elif part_before := of_said.get((item.source == Source.GENERATED, item.utterance)):
             wanted[key][part_before] += 1
     order = list(Part)
     return {

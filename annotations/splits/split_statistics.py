@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
-from django.db.models import Count, Q
+from django.db.models import Count
 
 from annotations.language.corpus import (
     MOST_COMPARISONS,
@@ -28,14 +28,13 @@ KEPT_SPLITS = 64
 
 @dataclass(frozen=True, slots=True)
 class PartCounts:
-    """Pairs of one source by part; ``by_models`` of them were written by a language model."""
+    """Pairs of one source by part, and how many different forms they have."""
 
     source: str
     train: int
     validation: int
     test: int
     forms: int
-    by_models: int
 
     @property
     def total(self) -> int:
@@ -50,10 +49,10 @@ def counts_of(splits: Iterable[Split]) -> dict[int, list[PartCounts]]:
         Count("pk")
     ):
         sizes[key][source, part] = count
-    totals = {
-        (key, source): (forms, by_models)
-        for key, source, forms, by_models in examples.values_list("split_id", "source").annotate(
-            Count("logical_form", distinct=True), by_models=Count("pk", filter=Q(is_by_model=True))
+    forms = {
+        (key, source): count
+        for key, source, count in examples.values_list("split_id", "source").annotate(
+            Count("logical_form", distinct=True)
         )
     }
     return {
@@ -63,10 +62,10 @@ def counts_of(splits: Iterable[Split]) -> dict[int, list[PartCounts]]:
                 sizes[split.pk].get((source, Part.TRAIN), 0),
                 sizes[split.pk].get((source, Part.VALIDATION), 0),
                 sizes[split.pk].get((source, Part.TEST), 0),
-                *totals[split.pk, source],
+                forms[split.pk, source],
             )
             for source in Source
-            if (split.pk, source) in totals
+            if (split.pk, source) in forms
         ]
         for split in splits
     }
@@ -76,7 +75,6 @@ def counts_of_planned(examples: Sequence[Example]) -> list[PartCounts]:
     """Return the counts of examples that are not stored."""
     sizes = Counter((example.source, example.part) for example in examples)
     forms = Counter(source for source, _ in {(each.source, each.logical_form) for each in examples})
-    by_models = Counter(each.source for each in examples if each.is_by_model)
     return [
         PartCounts(
             source,
@@ -84,7 +82,6 @@ def counts_of_planned(examples: Sequence[Example]) -> list[PartCounts]:
             sizes[source, Part.VALIDATION],
             sizes[source, Part.TEST],
             forms[source],
-            by_models[source],
         )
         for source in Source
         if forms[source]

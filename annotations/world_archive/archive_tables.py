@@ -155,6 +155,7 @@ OUR_TABLES = (
             "utterance": "utterances",
         },
         people=("decided_by",),
+        left_out=("read_by_run",),
         utterance="utterance",
     ),
     ArchiveTable(

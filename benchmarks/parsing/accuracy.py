@@ -43,7 +43,7 @@ from benchmarks.parsing.accuracy_figures import (  # noqa: E402
     read_figures,
 )
 from parser_service.benchmarking.benchmark_cells import CellFile  # noqa: E402
-from parser_service.parsers.conditions import SETTINGS, Protocol  # noqa: E402
+from parser_service.parsers.conditions import PAPERS_SETTINGS, Protocol  # noqa: E402
 from parser_service.parsers.registry import PARSERS  # noqa: E402
 from parser_service.results.published import published_accuracy  # noqa: E402
 from parser_service.results.table_parts import MARK, MAY_KNOW_CORPORA, may_know_corpora  # noqa: E402
@@ -98,7 +98,7 @@ def _table(protocol: str, figures: pd.DataFrame) -> AccuracyTable:
     measured = set(zip(figures["setting"], figures["criterion"], strict=True))
     columns = tuple(
         (setting, by, figure)
-        for setting, by, figure in product(map(str, SETTINGS), CRITERIA, FIGURES)
+        for setting, by, figure in product(map(str, PAPERS_SETTINGS), CRITERIA, FIGURES)
         if (setting, by) in measured and (figure == ACCURACY) == (by != BY_FORM)
     )
     by_row = dict(list(figures.groupby(ROW)))

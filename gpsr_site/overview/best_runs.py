@@ -14,12 +14,12 @@ from annotations.models import Split, World
 from annotations.models.background import Status
 from parser_service.models import Evaluation
 from parser_service.models.evaluations import ShownScore, shown_scores
-from parser_service.parsers.conditions import Protocol, only_source
+from parser_service.parsers.conditions import Protocol, in_words, only_source
 from parser_service.parsers.registry import PARSERS
 
 PART = "validation"
 # The harder source first: people say things as no grammar does.
-SOURCES = {"para": "paraphrases", "gen": "generated commands", "mixed": "commands and paraphrases"}
+SOURCES = ("para", "said", "gen", "model", "mixed")  # the first that is tested counts
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,4 +109,4 @@ def best_runs(world: World) -> BestRuns | None:
     comparable.sort(key=lambda each: (not each.alone, each.accuracy, each.score.run_id))
     best = {each.score.run.protocol: each for each in comparable}
     runs = tuple(BestRun(world, best[each]) for each in Protocol if each in best)
-    return BestRuns(newest.run.split, SOURCES[source], runs)
+    return BestRuns(newest.run.split, in_words(source), runs)

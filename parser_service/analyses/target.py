@@ -8,13 +8,13 @@ from functools import cached_property
 import numpy as np
 
 from annotations.language.corpus import Part
-from annotations.models.splits import Source
 from parser_service.analysis.arrays import Bools, Floats, Ints
 from parser_service.models import TrainingRun
+from parser_service.parsers import conditions
 
 ROWS_AT_ONCE = 10_000
-# The names that results use for the sources of examples; paraphrases are what people say, so they are first.
-SOURCES = {"para": Source.PARAPHRASED, "gen": Source.GENERATED}
+# The names that results use for the sources of examples; what people say is first.
+SOURCES = {name: conditions.SOURCES[name] for name in ("para", "said", "model", "gen")}
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -30,11 +30,12 @@ class FirstAnswers:
     answers: list[str]
     scores: Floats
     is_right: Bools
-    is_generated: Bools
+    sources: Ints  # places in SOURCES
 
     def of_source(self, source: str) -> Bools:
-        """Return which examples are of a source, ``para`` or ``gen``: [examples]."""
-        return self.is_generated if source == "gen" else ~self.is_generated
+        """Return which examples are of one of ``SOURCES``: [examples]."""
+        is_of_it: Bools = self.sources == list(SOURCES).index(source)
+        return is_of_it
 
 
 class Target:
@@ -58,7 +59,8 @@ class Target:
         )
         forms: dict[str, str] = {}
         keys, utterances, labels, answers = [], [], [], []
-        scores, right, generated = [], [], []
+        scores, right, sources = [], [], []
+        places = {source: place for place, source in enumerate(SOURCES.values())}
         for key, utterance, label, answer, score, is_right, source in rows.iterator(ROWS_AT_ONCE):
             keys.append(key)
             utterances.append(utterance)
@@ -66,7 +68,7 @@ class Target:
             answers.append(forms.setdefault(answer, answer))
             scores.append(score)
             right.append(is_right)
-            generated.append(source == Source.GENERATED)
+            sources.append(places[source])
         return FirstAnswers(
             examples=np.array(keys, dtype=np.int64),
             utterances=utterances,
@@ -74,7 +76,7 @@ class Target:
             answers=answers,
             scores=np.array(scores, dtype=np.float64),
             is_right=np.array(right, dtype=np.bool_),
-            is_generated=np.array(generated, dtype=np.bool_),
+            sources=np.array(sources, dtype=np.int64),
         )
 
     def forget_answers(self) -> None:

@@ -10,7 +10,13 @@ from typing import Any, NamedTuple
 
 from annotations.language.corpus import Criterion
 from annotations.language.errors import Refusal
-from parser_service.parsers.conditions import GENERATED, TEST_SOURCES, Protocol, Setting
+from parser_service.parsers.conditions import (
+    GENERATED,
+    TEST_SOURCES,
+    Protocol,
+    Setting,
+    sources_of,
+)
 from parser_service.parsers.registry import config_values, entry, make_config
 
 
@@ -63,7 +69,7 @@ class Trial:
 
     @property
     def train_sources(self) -> tuple[str, ...]:
-        return Setting.read(self.setting).train_sources.sources
+        return sources_of(Setting.read(self.setting).train_sources)
 
     @property
     def test_sources(self) -> tuple[str, ...]:

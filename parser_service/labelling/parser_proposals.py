@@ -15,8 +15,8 @@ from annotations.queueing.enqueuing import WantedItem, enqueue
 from annotations.rows.synchronise import batches
 from parser_service.labelling.known_forms import derived_forms, nearest_forms
 from parser_service.labelling.label_candidates import PERSON, is_label
+from parser_service.labelling.submission_readings import read_submissions
 from parser_service.models import TrainingRun
-from parser_service.parsers.conditions import TrainSources
 from parser_service.parsers.interface import Candidate, Parser
 from parser_service.parsers.registry import title_of
 from parser_service.serving.default_runs import best_run
@@ -29,7 +29,8 @@ UNSURE_SHARE = 0.1  # scores compare within one parser only, so the least sure t
 
 
 def propose(job: Job, progress: Progress) -> dict[str, Any]:
-    """Store what the best run answers to every unlabelled utterance that has no answer of it yet.
+    """Store what the best run answers to every unlabelled utterance that has no answer of it yet, and flag what
+    contributors wrote that it reads as another form.
 
     A job with a ``command`` and a ``run`` among its arguments stores what that run answers to the command.
     Returns the report of the job. Without a trained parser there is nothing to do, and the report
@@ -59,7 +60,8 @@ def propose(job: Job, progress: Progress) -> dict[str, Any]:
         _answer(some, run, parser, progress)
         done += len(some)
     enqueue_doubts(job.world, rows, progress)
-    return {"proposed": done, "parser": run.parser, "run": run.pk}
+    read = read_submissions(job.world, run, parser, progress)
+    return {"proposed": done, "parser": run.parser, "run": run.pk, **read}
 
 
 def _answer_command(
@@ -77,7 +79,7 @@ def _answer_command(
 
 def _answer(rows: list[Utterance], run: TrainingRun, parser: Parser, progress: Progress) -> None:
     """Replace what an earlier run answered to these utterances."""
-    is_anonymous = run.train_sources == TrainSources.GENERATED
+    is_anonymous = run.train_sources == "gen"
     texts = [row.anonymized_text if is_anonymous else row.text for row in rows]
     answers = parser.predict(texts, BEAM_WIDTH, progress.check)
     made = [

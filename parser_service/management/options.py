@@ -10,11 +10,11 @@ from typing import Any
 from annotations.language.corpus import Criterion
 from annotations.language.errors import Refusal
 from parser_service.benchmarking.trials import Declared, TrialColumn
-from parser_service.parsers.conditions import SETTINGS, Protocol, TrainSources
+from parser_service.parsers.conditions import PAPERS_SETTINGS, SOURCES, TRAIN_SOURCES, Protocol
 from parser_service.parsers.registry import PARSERS, config_fields
 
 COLUMN_PARTS: tuple[Sequence[str], Sequence[str], Sequence[str]] = (
-    [str(setting) for setting in SETTINGS],
+    [str(setting) for setting in PAPERS_SETTINGS],
     list(Criterion),
     list(Protocol),
 )
@@ -89,13 +89,14 @@ def read_seeds(option: str, text: str, at_least: int = 0) -> range:
 
 
 def read_sources(text: str) -> str:
-    """Read ``gen,para``, in either order and with a comma or a plus, as ``gen+para``. Raises Refusal."""
+    """Read ``para,gen``, in any order and with commas or pluses, as ``gen+para``. Raises Refusal."""
     named = set(text.replace(",", "+").split("+"))
-    for sources in TrainSources:
+    for sources in TRAIN_SOURCES:
         if named == set(sources.split("+")):
-            return str(sources)
+            return sources
+    names = ", ".join(SOURCES)
     raise Refusal(
-        f"--sources is {text!r}; it has to be gen, para or gen,para.", "sources_unreadable"
+        f"--sources is {text!r}; it has to be one or more of {names}.", "sources_unreadable"
     )
 
 

@@ -10,7 +10,7 @@ from django.db import models
 
 from annotations.language.corpus import KNOWN, Criterion, harmonic_mean
 from parser_service.models.runs import TrainingRun
-from parser_service.parsers.conditions import TEST_SOURCES
+from parser_service.parsers.conditions import TEST_SOURCES, only_source
 
 if TYPE_CHECKING:
     from parser_service.analysis.clustered import Interval
@@ -32,7 +32,7 @@ class EvaluationQuerySet(models.QuerySet["Evaluation"]):
 
 
 class Evaluation(models.Model):
-    """Exact match of one run on one test source (``gen``, ``para`` or ``mixed``) of one part.
+    """Exact match of one run on one of ``TEST_SOURCES`` of one part.
 
     Fractions of 1; the interval at 95 % is that of a bootstrap of clusters, which ``outcomes`` counts
     (``analysis.outcomes``). Of a split by form, ``known`` is a part too: pairs held out of the training
@@ -61,6 +61,11 @@ class Evaluation(models.Model):
 
     def __str__(self) -> str:
         return f"{self.run}: {self.accuracy:.3f} on {self.test_source} {self.part}"
+
+    @property
+    def source(self) -> str:
+        """The source of its examples; empty where they have several."""
+        return only_source(self.test_source) or ""
 
 
 @dataclass(frozen=True, slots=True)

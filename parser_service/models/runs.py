@@ -73,7 +73,7 @@ class TrainingRunQuerySet(WorkQuerySet["TrainingRun"]):
 class TrainingRun(BackgroundWork):
     """One parser trained once.
 
-    ``train_sources`` is ``gen``, ``para`` or ``gen+para``. ``train_share`` is the share of their training
+    ``train_sources`` is one of ``TRAIN_SOURCES``, such as ``gen+para``. ``train_share`` is the share of their training
     pairs that the seed draws, above 0 and up to 1, and ``train_pairs`` how many that are, None before
     the run is scored. ``answered_by`` is the model that answered, as its server reports it, empty where
     the parser answers itself. ``content_key`` hashes all that decides the result; a second request for the same
@@ -89,7 +89,7 @@ class TrainingRun(BackgroundWork):
     parser_version = models.PositiveIntegerField()
     config = models.JSONField(default=dict)
     protocol = models.CharField(max_length=12, choices=protocol_choices)
-    train_sources = models.CharField(max_length=12)
+    train_sources = models.CharField(max_length=24)
     train_share = models.FloatField(default=1.0)
     train_pairs = models.PositiveIntegerField(null=True, blank=True)
     seed = models.PositiveBigIntegerField(default=0)

@@ -19,6 +19,7 @@ from annotations.campaigns.model_rewrites import (
 )
 from annotations.campaigns.tasks import require_open
 from annotations.jobs.requesting import request_job_once
+from annotations.labelling.proposal_requests import request_readings
 from annotations.language.errors import Refusal
 from annotations.language.paraphrases import check_instructions, rewrite_request, rewrites_in
 from annotations.models import Campaign, Job, JobKind, User
@@ -108,6 +109,7 @@ def paraphrase(campaign: Campaign, settings: ModelSettings, progress: Progress) 
                     dropped.update(flag["code"] for flag in each.flags)
         if in_a_row >= MOST_SILENT and isinstance(answers[-1], NoAnswer):
             raise answers[-1]
+    request_readings(campaign.world)
     return {
         "campaign": campaign.pk,
         "asked": counts["asked"],

@@ -19,7 +19,7 @@ from sklearn.linear_model import LogisticRegression
 
 from annotations.language.errors import Refusal
 from annotations.language.grounding import Anonymizer
-from parser_service.parsers.conditions import PARAPHRASED, Protocol
+from parser_service.parsers.conditions import GENERATED, Protocol
 from parser_service.parsers.hyperparameters.linear import LinearConfig
 from parser_service.parsers.interface import (
     TRAINING,
@@ -282,7 +282,7 @@ def _draw(train: Sequence[Pair], seed: int) -> list[Pair]:
     if len(train) <= MOST_PAIRS:
         return list(train)
     order = np.random.default_rng(seed).permutation(len(train))
-    paraphrases_first = sorted(order, key=lambda at: train[at].source != PARAPHRASED)
+    paraphrases_first = sorted(order, key=lambda at: train[at].source == GENERATED)
     seen: Counter[str] = Counter()
     turns = {}
     for at in paraphrases_first:

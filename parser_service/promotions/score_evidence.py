@@ -7,29 +7,35 @@ from typing import Any
 
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.models.evaluations import ShownScore, shown_scores
+from parser_service.parsers.conditions import in_words
 
-SPOKEN = "para"  # the test source of paraphrases
+SPOKEN = (
+    "para",
+    "said",
+)  # test sources of what people say; the first that a run was tested on counts
 # What runs are compared on: the test part is looked at when the choice is made.
 COMPARED_ON = "validation"
 
 
 def spoken_low(run: TrainingRun) -> float | None:
-    """Return the lower end of the 95 % interval on validation paraphrases, a fraction of 1; None for a run that
-    was not asked any, or by form was asked for unseen forms alone."""
-    shown = shown_scores(run.evaluations.all(), run.split.criterion).get((COMPARED_ON, SPOKEN))
+    """Return the lower end of the 95 % interval on validation paraphrases, a fraction of 1, and where there are none,
+    on what people said; None for a run that was not asked any, or by form was asked for unseen forms alone."""
+    scores = shown_scores(run.evaluations.all(), run.split.criterion)
+    shown = next((scores[COMPARED_ON, of] for of in SPOKEN if (COMPARED_ON, of) in scores), None)
     return None if shown is None or shown.alone else shown.interval[0]
 
 
 def is_right_on_paraphrases(run: TrainingRun) -> bool:
-    """Return whether the run was tested on paraphrases, and is right on some."""
-    return run.evaluations.filter(test_source=SPOKEN, correct__gt=0).exists()
+    """Return whether the run was tested on paraphrases, or on what people said, and is right on some."""
+    return run.evaluations.filter(test_source__in=SPOKEN, correct__gt=0).exists()
 
 
 def spoken_score(run: TrainingRun) -> Evaluation | None:
-    """Return the score on validation paraphrases, None for a run that was not asked any."""
-    wanted = (SPOKEN, COMPARED_ON)
+    """Return the score on validation paraphrases, where there are none that on what people said; None for a run
+    that was not asked any."""
     scores = run.evaluations.all()  # which may have been fetched already
-    return next((each for each in scores if (each.test_source, each.part) == wanted), None)
+    asked = {each.test_source: each for each in scores if each.part == COMPARED_ON}
+    return next((asked[source] for source in SPOKEN if source in asked), None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +46,10 @@ class ComparedScore:
     part: str
     score: ShownScore | None
     before: ShownScore | None
+
+    @property
+    def tested_on(self) -> str:
+        return in_words(self.test_source)
 
     @property
     def change(self) -> float | None:
@@ -53,7 +63,9 @@ def compare_scores(run: TrainingRun, before: TrainingRun | None) -> list[Compare
     """Return the scores of ``run`` beside those of ``before``, paraphrases first."""
     mine = shown_scores(run.evaluations.all(), run.split.criterion)
     theirs = shown_scores(before.evaluations.all(), before.split.criterion) if before else {}
-    order = sorted({*mine, *theirs}, key=lambda key: (key[1] != SPOKEN, key[1], key[0] == "test"))
+    order = sorted(
+        {*mine, *theirs}, key=lambda key: (key[1] not in SPOKEN, key[1], key[0] == "test")
+    )
     return [
         ComparedScore(source, part, mine.get((part, source)), theirs.get((part, source)))
         for part, source in order

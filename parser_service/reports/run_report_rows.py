@@ -14,13 +14,13 @@ from annotations.form_presentation import Pieces, difference
 from parser_service.analyses.probes.probe_kinds import PROBE_KINDS
 from parser_service.analysis.sensitivity import ALL_KINDS
 from parser_service.models import ErrorCategory, Prediction, Review, TrainingRun
+from parser_service.parsers.conditions import in_words
 from parser_service.reports.charts import Line, draw_lines
 
 MOST_EXAMPLES = 3  # of a category
 MOST_ATTRACTORS = 15
 MOST_WRONG = 2_000
 ROWS_AT_ONCE = 200
-SOURCES = {"para": "paraphrases", "gen": "generated commands"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +80,7 @@ def attractor_tables(
 ) -> Iterator[tuple[str, Sequence[Mapping[str, Any]], int]]:
     """Yield source in words, its first rows, and how many there are."""
     for source, rows in findings.items():
-        yield SOURCES.get(source, source), rows[:MOST_ATTRACTORS], len(rows)
+        yield in_words(source), rows[:MOST_ATTRACTORS], len(rows)
 
 
 def refusal_curves(findings: Mapping[str, Mapping[str, Any]]) -> SafeString:

@@ -18,7 +18,7 @@ from annotations.language.corpus import KNOWN, Criterion
 from annotations.models import Split, World
 from parser_service.analysis.comparing import is_better
 from parser_service.models import Evaluation, TrainingRun
-from parser_service.parsers.conditions import SETTINGS, Protocol, only_source
+from parser_service.parsers.conditions import PAPERS_SETTINGS, SETTINGS, Protocol, only_source
 from parser_service.parsers.registry import PARSERS
 from parser_service.results.accuracy_cells import Cell, newest_of_each_seed
 from parser_service.results.measures import Measure
@@ -54,7 +54,7 @@ def accuracy_tables(
     maker = TableMaker(
         world=world,
         part=part,
-        columns=tuple(columns_of(runs, splits)),
+        columns=tuple(columns_of(runs, splits, scores)),
         scores=by_part(scores, part),
         known=by_part(scores, KNOWN),
         published=published_criteria(splits),
@@ -65,12 +65,23 @@ def accuracy_tables(
     return [table for table in tables if table.rows]
 
 
-def columns_of(runs: Iterable[TrainingRun], splits: list[Split]) -> Iterator[TableColumn]:
-    """Yield a column for each setting and split with a run, in the order of the paper."""
+def columns_of(
+    runs: Iterable[TrainingRun], splits: list[Split], scores: Iterable[Evaluation]
+) -> Iterator[TableColumn]:
+    """Yield a column for each setting and split with a run, in the order of the paper; those that it lacks only
+    where something is scored."""
+    splits_of = {run.pk: run.split_id for run in runs}
     trained = {(run.train_sources, run.split_id) for run in runs}
+    tested = {(each.test_source, splits_of[each.run_id]) for each in scores}
     is_telling = len({split.criterion for split in splits}) == len(splits)
     for train_sources, test_source in SETTINGS:
-        shown = [split for split in splits if (train_sources, split.pk) in trained]
+        is_papers = (train_sources, test_source) in PAPERS_SETTINGS
+        shown = [
+            split
+            for split in splits
+            if (train_sources, split.pk) in trained
+            and (is_papers or (test_source, split.pk) in tested)
+        ]
         for split in shown:
             label = SHORT_CRITERIA[Criterion(split.criterion)] if is_telling else split.name
             yield TableColumn(

@@ -13,7 +13,7 @@ from django.utils.http import urlencode
 from annotations.language.corpus import KNOWN
 from annotations.models import Split, World
 from parser_service.models import Evaluation, TrainingRun
-from parser_service.parsers.conditions import SETTINGS, Setting
+from parser_service.parsers.conditions import Setting, settings_of
 from parser_service.parsers.registry import title_of
 from parser_service.results.accuracy_cells import Cell
 from parser_service.results.accuracy_tables import TableMaker, by_part, rank_of
@@ -152,8 +152,8 @@ def curves_url(world: World, run: TrainingRun, test_source: str = "", part: str 
     tested on in the accuracy table."""
     setting = next(
         setting
-        for setting in SETTINGS
-        if setting.train_sources == run.train_sources and test_source in ("", setting.test_source)
+        for setting in settings_of(run.train_sources)
+        if test_source in ("", setting.test_source)
     )
     chosen = {"split": run.split.name, "setting": str(setting), "protocol": run.protocol}
     if part:

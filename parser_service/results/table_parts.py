@@ -11,7 +11,7 @@ from django.utils.http import urlencode
 from annotations.language.corpus import Criterion
 from annotations.models import Split
 from parser_service.models import TrainingRun
-from parser_service.parsers.conditions import Protocol
+from parser_service.parsers.conditions import Protocol, in_words
 from parser_service.parsers.registry import PARSERS, title_of
 from parser_service.results.accuracy_cells import Cell
 from parser_service.results.measures import Measure
@@ -26,12 +26,6 @@ APART = {
     Criterion.COMMAND: "a command",
     Criterion.SOURCE_COMMAND: "a source command",
     Criterion.LOGICAL_FORM: "a logical form",
-}
-IN_WORDS = {
-    "gen": "generated commands",
-    "para": "paraphrases",
-    "gen+para": "generated commands and paraphrases",
-    "mixed": "generated commands and paraphrases together",
 }
 WHAT_IT_KNOWS = {
     Protocol.STRICT: "Training pairs only.",
@@ -119,7 +113,7 @@ class AccuracyTable:
         return [
             (
                 f"{train} → {test}",
-                f"Trained on {IN_WORDS[train]}, tested on {IN_WORDS[test]}",
+                f"Trained on {in_words(train)}, tested on {in_words(test)}",
                 len(list(columns)),
             )
             for (train, test), columns in grouped

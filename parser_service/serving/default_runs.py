@@ -16,7 +16,7 @@ from parser_service.parsers.registry import Needs, needing
 from parser_service.promotions.promoting import promoted_run
 
 # What a person says is what counts; of runs that were never tested on it, the next best.
-EVIDENCE = ("para", "mixed", "gen")
+EVIDENCE = ("para", "said", "mixed", "gen")
 
 # Criteria under which a figure says how well known forms are answered, which is what most people ask for.
 BY_COMMAND = (Criterion.COMMAND, Criterion.SOURCE_COMMAND)

@@ -38,8 +38,9 @@ class OfferedRun:
 
     @property
     def accuracy(self) -> float:
-        """The one to rank by: of both sources together where there are both."""
-        best = [self.scores[source] for source in ("mixed", "para", "gen") if source in self.scores]
+        """The one to rank by: of commands and paraphrases together where there are both."""
+        order = ("mixed", "para", "said", "gen", "model")
+        best = [self.scores[source] for source in order if source in self.scores]
         return best[0].accuracy if best else 0.0
 
 

@@ -39,7 +39,7 @@ NOTHING_KEPT: Mapping[str, Part] = MappingProxyType({})
 
 @dataclass(frozen=True, slots=True)
 class SplitItem:
-    """What decides which part an example goes to. ``source`` is ``generated`` or ``paraphrased``.
+    """What decides which part an example goes to. ``source`` is ``generated``, ``paraphrased``, ``model`` or ``said``.
 
     For a generated example the source command is the command itself, for a paraphrase the
     anonymized command that it rewrites. If it is empty, the utterance is used.

@@ -13,13 +13,17 @@ from annotations.language.errors import LanguageError, Position, Problem, error_
 from annotations.language.forms import Form, canonical_text, read_form
 from annotations.language.text import TextChanges, normalise_record, say_changes
 
-# Part → file name, and folder → (source, criterion) of the published corpus.
+# Part → file name, and folder → (source, criterion): of the published corpus, and what others wrote.
 PART_FILES = {"train": "train.txt", "validation": "val.txt", "test": "test.txt"}
 CORPUS_FOLDERS = {
     "gen": ("generated", "command"),
     "para": ("paraphrased", "command"),
     "gen_logical": ("generated", "logical_form"),
     "para_logical": ("paraphrased", "logical_form"),
+    "model": ("model", "command"),
+    "said": ("said", "command"),
+    "model_logical": ("model", "logical_form"),
+    "said_logical": ("said", "logical_form"),
 }
 TRIPLES_FILE = "paraphrasings.txt"
 _FORM_STARTS = ("(", "UNKNOWN")

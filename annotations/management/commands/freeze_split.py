@@ -35,9 +35,22 @@ class Command(ReportingCommand):
         parser.add_argument(
             "--parts", default="70,10,20", help="percentages of train, validation and test"
         )
+        parser.add_argument(
+            "--tests-on-models",
+            action="store_true",
+            help="put what language models wrote into validation and test too",
+        )
 
     def report(
-        self, *, world: str, name: str, criterion: str, seed: int, parts: str, **options: Any
+        self,
+        *,
+        world: str,
+        name: str,
+        criterion: str,
+        seed: int,
+        parts: str,
+        tests_on_models: bool,
+        **options: Any,
     ) -> Mapping[str, Any]:
         chosen = find_world(world)
         criteria = list(dict.fromkeys(each.strip() for each in criterion.split(",")))
@@ -51,7 +64,12 @@ class Command(ReportingCommand):
             sentence = f"“{parts}” is not three percentages, such as 70,10,20."
             raise CommandError(sentence) from None
         with transaction.atomic():
-            splits = [freeze_split(chosen, names[each], each, seed, shares) for each in criteria]
+            splits = [
+                freeze_split(
+                    chosen, names[each], each, seed, shares, tests_on_models=tests_on_models
+                )
+                for each in criteria
+            ]
         return {"world": world, "splits": _describe(splits)}
 
     def audit_subject(self, report: Mapping[str, Any], options: Mapping[str, Any]) -> str:

@@ -21,8 +21,10 @@ from annotations.campaigns.moderation import (
     reject,
     take_back,
 )
+from annotations.labelling.proposal_requests import request_readings
 from annotations.language.english import say_count
 from annotations.language.errors import Refusal
+from annotations.language.paraphrases import FlagCode
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.lists.paging import number_in
 from annotations.models import Duty, Submission, User, World
@@ -108,6 +110,7 @@ def submission_decide(request: WorldRequest, world: World, pk: int) -> HttpRespo
     except Refusal as refusal:
         return _show(request, row, str(refusal), HTTPStatus.UNPROCESSABLE_ENTITY)
     row.refresh_from_db()
+    request_readings(world)
     _say_decided(request, world, [row])
     return _to_the_next(world, row)
 
@@ -127,6 +130,7 @@ def submissions_decide(request: WorldRequest, world: World) -> HttpResponse:
         messages.warning(request, "Tick submissions that wait, then choose what becomes of them.")
     else:
         verb(rows, request.user)
+        request_readings(world)
         _say_decided(request, world, rows)
     return redirect(f"{reverse('submissions', args=[world.name])}?status=pending")
 
@@ -162,6 +166,9 @@ def _show(request: WorldRequest, row: Submission, error: str = "", status: int =
     others = row.contributor.submissions.answered().exclude(pk=row.pk).select_related("prompt")
     context = {
         "row": row,
+        "other_form": next(
+            (flag["evidence"] for flag in row.flags if flag["code"] == FlagCode.OTHER_FORM), ""
+        ),
         "error": error,
         "page_keys": KEYS,
         "others": others[:OTHERS_SHOWN],

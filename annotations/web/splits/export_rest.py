@@ -65,7 +65,7 @@ class ExportQuery(ManifestQuery):
         if query["as"] == SplitFormat.TXT and not ("part" in query and "source" in query):
             raise serializers.ValidationError(
                 "A text export is one pair file: add part=train|validation|test and "
-                "source=generated|paraphrased."
+                f"source={'|'.join(Source)}."
             )
         return query
 
@@ -80,6 +80,7 @@ class ManifestSerializer(serializers.Serializer[Any]):
     criterion = serializers.CharField()
     seed = serializers.IntegerField(allow_null=True)
     proportions = serializers.ListField(child=serializers.FloatField())
+    tests_on_models = serializers.BooleanField()
     content_hash = serializers.CharField()
     created_at = serializers.DateTimeField()
     chosen = serializers.DictField(child=serializers.CharField())

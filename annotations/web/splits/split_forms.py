@@ -25,6 +25,11 @@ class SplitForm(forms.Form):
     seed = forms.IntegerField(
         initial=0, min_value=0, max_value=2**32 - 1, help_text="The same seed gives the same split."
     )
+    tests_on_models = forms.BooleanField(
+        label="Test on what language models wrote too",
+        required=False,
+        help_text="Else only what people said is tested on; what models wrote is trained on.",
+    )
     train = forms.FloatField(label="Train, %", initial=70, min_value=0, max_value=100)
     validation = forms.FloatField(label="Validation, %", initial=10, min_value=0, max_value=100)
     test = forms.FloatField(label="Test, %", initial=20, min_value=0, max_value=100)
@@ -51,5 +56,7 @@ class SplitForm(forms.Form):
     def choice(self) -> dict[str, Any]:
         """Return the arguments of ``freeze_split`` and ``plan_split``, once the form is valid."""
         shares = [self.cleaned_data[part] / 100 for part in self.SHARES]
-        chosen = {name: self.cleaned_data[name] for name in ("criterion", "seed")}
+        chosen = {
+            name: self.cleaned_data[name] for name in ("criterion", "seed", "tests_on_models")
+        }
         return {**chosen, "proportions": shares}

@@ -43,7 +43,6 @@ class PartCountSerializer(serializers.Serializer[Any]):
     validation = serializers.IntegerField()
     test = serializers.IntegerField()
     forms = serializers.IntegerField()
-    by_models = serializers.IntegerField()
 
 
 class SplitSerializer(serializers.ModelSerializer[Split]):
@@ -58,7 +57,7 @@ class SplitSerializer(serializers.ModelSerializer[Split]):
         model = Split
         fields = [
             *("id", "name", "criterion", "seed", "proportions", "counts", "content_hash"),
-            *("follows", "created_by", "created_at"),
+            *("tests_on_models", "follows", "created_by", "created_at"),
         ]
 
     @extend_schema_field(PartCountSerializer(many=True))
@@ -68,7 +67,8 @@ class SplitSerializer(serializers.ModelSerializer[Split]):
 
 
 class NewSplit(Fields):
-    """``proportions`` are the shares of train, validation and test, which sum to 1."""
+    """``proportions`` are the shares of train, validation and test, which sum to 1. With ``tests_on_models``
+    what language models wrote is in validation and test too."""
 
     name = serializers.SlugField(max_length=80)
     criterion = serializers.ChoiceField(choices=criterion_choices(), default=Criterion.COMMAND)
@@ -79,6 +79,7 @@ class NewSplit(Fields):
         max_length=3,
         default=list(DEFAULT_PROPORTIONS),
     )
+    tests_on_models = serializers.BooleanField(default=False)
 
 
 class SplitViewSet(RowsViewSet):

@@ -25,7 +25,7 @@ from parser_service.management.options import (
     read_names,
     read_seeds,
 )
-from parser_service.parsers.conditions import SETTINGS, Protocol
+from parser_service.parsers.conditions import PAPERS_SETTINGS, Protocol
 from parser_service.parsers.registry import PARSERS
 
 
@@ -127,7 +127,7 @@ def _add_choice_of_cells(parser: CommandParser) -> None:
     """Add the options that choose what the table has: parsers, columns, seeds and splits."""
     for name, known in (
         ("--parsers", PARSERS),
-        ("--train-test", [str(setting) for setting in SETTINGS]),
+        ("--train-test", [str(setting) for setting in PAPERS_SETTINGS]),
         ("--criteria", list(Criterion)),
         ("--protocols", list(Protocol)),
     ):

@@ -9,6 +9,7 @@ from random import Random
 
 from annotations.language.errors import LanguageError
 from annotations.language.forms import Application, read_form
+from parser_service.parsers.conditions import GENERATED
 from parser_service.parsers.interface import Pair
 from parser_service.parsers.spreading import spread
 from parser_service.parsers.words import words
@@ -77,7 +78,7 @@ def _draw_known(by_form: dict[str, list[Pair]], random: Random) -> list[Pair]:
     number = min(MOST_KNOWN, -int(-len(many) * KNOWN_SHARE))
     drawn: list[Pair] = []
     for alike in random.sample(many, number):
-        paraphrases = [pair for pair in alike if pair.source == "paraphrased"]
+        paraphrases = [pair for pair in alike if pair.source != GENERATED]
         first = random.choice(paraphrases or alike)
         nearest = sorted(alike, key=lambda pair: -_likeness(pair, first))
         drawn += nearest[: max(1, len(alike) // PART)]

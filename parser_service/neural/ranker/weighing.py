@@ -9,6 +9,7 @@ import torch
 from parser_service.neural.ranker.calibration import DecisionRule, weigh
 from parser_service.neural.ranker.model import RankerModel
 from parser_service.neural.ranker.ranked_forms import RankedForms
+from parser_service.parsers.conditions import GENERATED
 from parser_service.parsers.interface import Check, Pair
 from parser_service.parsers.spreading import spread
 
@@ -35,7 +36,7 @@ def weigh_by(
     number = {form: at for at, form in enumerate(ranked.forms)}
     targets = torch.tensor([number.get(pair.form, -1) for pair in asked])
     scores = model.scores([pair.utterance for pair in asked], check)
-    spoken = torch.tensor([pair.source == "paraphrased" for pair in asked])
+    spoken = torch.tensor([pair.source != GENERATED for pair in asked])
     decision = weigh(novelty, scores, targets, spoken)
     logs = decision.log_probabilities(scores)
     of_targets = logs[targets >= 0].gather(1, targets[targets >= 0, None])

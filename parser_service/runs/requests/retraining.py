@@ -9,6 +9,7 @@ from annotations.models import Split
 from annotations.splits.renewing import last_of
 from parser_service.models import TrainingRun
 from parser_service.models.runs import TrainingRunQuerySet
+from parser_service.runs.requests.run_requests import sources_on
 
 MOST_RUNS = 200  # the newest of a split that are looked at
 
@@ -30,7 +31,7 @@ def retrainable(split: Split) -> list[Retrainable]:
     )
     newest: dict[str, TrainingRun] = {}
     for run in before.order_by("-pk")[:MOST_RUNS]:
-        newest.setdefault(_configuration(run), run)
+        newest.setdefault(_configuration(run, sources_on(split, run)), run)
     again = _by_configuration(TrainingRun.objects.filter(split=split).for_table())
     return [Retrainable(run, again.get(key)) for key, run in newest.items()]
 
@@ -42,17 +43,17 @@ def retrained(run: TrainingRun) -> tuple[Split | None, TrainingRun | None]:
     if newest.pk == run.split_id:
         return None, None
     same = TrainingRun.objects.filter(split=newest, parser=run.parser, seed=run.seed)
-    return newest, _by_configuration(same).get(_configuration(run))
+    return newest, _by_configuration(same).get(_configuration(run, sources_on(newest, run)))
 
 
 def _by_configuration(runs: TrainingRunQuerySet) -> dict[str, TrainingRun]:
     """Return the newest run of each configuration that has or will have a result."""
     found: dict[str, TrainingRun] = {}
     for run in runs.scored_or_active().order_by("-pk")[:MOST_RUNS]:
-        found.setdefault(_configuration(run), run)
+        found.setdefault(_configuration(run, run.train_sources), run)
     return found
 
 
-def _configuration(run: TrainingRun) -> str:
-    values = run.parser, run.protocol, run.train_sources, run.train_share, run.seed, run.config
+def _configuration(run: TrainingRun, train_sources: str) -> str:
+    values = run.parser, run.protocol, train_sources, run.train_share, run.seed, run.config
     return json.dumps(values, sort_keys=True)

@@ -8,12 +8,20 @@ from typing import Any
 from django.db import transaction
 
 from annotations.background import wake
+from annotations.language.corpus import Part
 from annotations.language.errors import Refusal
 from annotations.models import Split, User, World
 from annotations.models.background import Status
 from parser_service.models import TrainingRun
 from parser_service.parsers import registry
-from parser_service.parsers.conditions import TrainSources
+from parser_service.parsers.conditions import (
+    MODEL,
+    PARAPHRASED,
+    SAID,
+    TRAIN_SOURCES,
+    sources_of,
+    written_sources,
+)
 from parser_service.parsers.hyperparameters.fields import refuse_unnamed
 from parser_service.parsers.pretrained_files import refuse_missing_weights
 from parser_service.runs.requests.content_key import content_key
@@ -29,7 +37,7 @@ def request(
     parser: str,
     config: Mapping[str, Any] | None = None,
     protocol: str = "strict",
-    train_sources: str = TrainSources.GENERATED,
+    train_sources: str = "gen",
     seed: int = 0,
     by: User | None = None,
     send: bool = True,
@@ -70,7 +78,7 @@ def request(
 def retrain(run: TrainingRun, split: Split, by: User | None = None) -> tuple[TrainingRun, bool]:
     """Request the same configuration on another split. Returns and raises as ``request`` does.
 
-    ``run`` and what it was trained on stay as they are.
+    ``run`` and what it was trained on stay as they are. The new run learns from ``sources_on`` the split.
     """
     return request(
         run.world,
@@ -78,12 +86,28 @@ def retrain(run: TrainingRun, split: Split, by: User | None = None) -> tuple[Tra
         run.parser,
         run.config,
         run.protocol,
-        run.train_sources,
+        sources_on(split, run),
         run.seed,
         by,
         anywhere=True,  # its weights were admitted when it was started
         train_share=run.train_share,
     )
+
+
+def sources_on(split: Split, run: TrainingRun) -> str:
+    """Return what a run like ``run`` learns from on ``split``.
+
+    Where it learned from paraphrases, these are also the sources that its own split had no training pairs of: what
+    people have labelled and models have written since.
+    """
+    learned = sources_of(run.train_sources)
+    if PARAPHRASED not in learned:
+        return run.train_sources
+    before, now = (
+        set(each.examples.of(Part.TRAIN).order_by().values_list("source", flat=True).distinct())
+        for each in (run.split, split)
+    )
+    return written_sources({*learned, *((now - before) & {MODEL, SAID})})
 
 
 def request_seeds(
@@ -140,8 +164,8 @@ def _refuse_what_cannot_be_trained(
         raise Refusal(
             f"{parser} has no protocol {protocol!r}; it has: {allowed}.", "unknown_protocol"
         )
-    if train_sources not in list(TrainSources):
-        allowed = ", ".join(TrainSources)
+    if train_sources not in TRAIN_SOURCES:
+        allowed = ", ".join(TRAIN_SOURCES)
         raise Refusal(
             f"No train sources are called {train_sources!r}; there are: {allowed}.",
             "unknown_train_sources",
@@ -150,7 +174,7 @@ def _refuse_what_cannot_be_trained(
         raise Refusal(
             f"The seed {seed} has to lie between 0 and {LARGEST_SEED}.", "seeds_out_of_range"
         )
-    for source in TrainSources(train_sources).sources:
+    for source in sources_of(train_sources):
         if not split.examples.filter(part="train", source=source).exists():
             raise Refusal(
                 f"The split {split} has no {source} examples to train on.", "no_training_examples"

@@ -14,7 +14,7 @@ from annotations.rows.synchronise import BATCH, batches
 from parser_service.analysis.outcomes import interval_of_outcomes, outcomes_of
 from parser_service.analysis.scores import NO_ANSWER, judge, score
 from parser_service.models import Evaluation, Prediction, TrainingRun
-from parser_service.parsers.conditions import TEST_SOURCES, TrainSources
+from parser_service.parsers.conditions import TEST_SOURCES, sources_of
 from parser_service.parsers.interface import TRAINING, Candidate, Pair, Parser
 from parser_service.runs import lifecycle
 from parser_service.runs.training.cross_fitting import calibrated_folds
@@ -93,7 +93,7 @@ def _asked(run: TrainingRun, parser: Parser, validation: Sequence[Pair]) -> Iter
     """Yield the examples of the validation part, in folds, and those of the test part."""
     examples = list(run.split.examples.filter(part=Part.VALIDATION))
     clusters = [cluster_of(each, run.split.criterion) for each in examples]
-    sources = TrainSources(run.train_sources).sources
+    sources = sources_of(run.train_sources)
     calibrating = [at for at, example in enumerate(examples) if example.source in sources]
     folds = calibrated_folds(
         parser,

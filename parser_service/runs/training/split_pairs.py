@@ -7,13 +7,13 @@ from collections.abc import Collection, Iterable
 from annotations.language.corpus import Criterion, Part, SplitItem, draw_share, hold_out_known
 from annotations.language.text import normalise
 from annotations.models import Example, Split
-from parser_service.parsers.conditions import TrainSources
+from parser_service.parsers.conditions import sources_of
 from parser_service.parsers.interface import Pair
 
 
 def pairs_of(split: Split, part: str, train_sources: str) -> list[Pair]:
     """Return the pairs of ``part`` from ``train_sources``, in the order of the split."""
-    sources = TrainSources(train_sources).sources
+    sources = sources_of(train_sources)
     return as_pairs(split.examples.filter(part=part, source__in=sources))
 
 
@@ -30,7 +30,7 @@ def training_pairs(
     They are drawn by what the split's criterion keeps together. A smaller share is part of every
     larger one of the same seed. ``without`` are the keys of examples that are held out.
     """
-    sources = TrainSources(train_sources).sources
+    sources = sources_of(train_sources)
     examples = list(split.examples.filter(part=Part.TRAIN, source__in=sources))
     left = [each for each in examples if each.pk not in without]
     if share == 1:

@@ -16,6 +16,7 @@ from parser_service.analyses.state import analysis_of
 from parser_service.analyses.stored_findings import findings_of
 from parser_service.analyses.target import SOURCES, parts_of
 from parser_service.models import TrainingRun
+from parser_service.parsers.conditions import in_words
 from parser_service.web.page_of_run import head_of
 
 
@@ -35,9 +36,9 @@ def defaults(request: WorldRequest, world: World, pk: int) -> HttpResponse:
         "analysis": analysis_of(run),
         "parts": parts,
         "part": part,
-        "sources": sources,
+        "sources": [(name, in_words(name)) for name in sources],
         "source": source,
-        "of_part": urlencode({"part": part, "source": str(SOURCES.get(source, ""))}),
+        "of_part": urlencode({"part": part, "source": SOURCES.get(source, "")}),
         "attractors": attractors.get(source),
         "paper_runs": paper_runs,
         "paper_texts": paper_texts(paper_runs),

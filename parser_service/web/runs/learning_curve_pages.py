@@ -14,7 +14,13 @@ from annotations.language.errors import Refusal
 from annotations.models import Duty, Split, World
 from annotations.people.access import WRITE, WorldRequest, world_view
 from parser_service.models import TrainingRun
-from parser_service.parsers.conditions import SETTINGS, Protocol, Setting
+from parser_service.parsers.conditions import (
+    PAPERS_SETTINGS,
+    SETTINGS,
+    Protocol,
+    Setting,
+    settings_of,
+)
 from parser_service.results.learning_curves import LearningCurves, curves_url, learning_curves
 from parser_service.results.measures import Measure
 from parser_service.results.result_choices import PARTS, default_part, scored_splits
@@ -82,7 +88,7 @@ def n_seeds_of(text: str) -> int:
 
 def tested_with(run: TrainingRun) -> list[str]:
     """Return the test sources of the accuracy table for what ``run`` was trained on."""
-    return [each.test_source for each in SETTINGS if each.train_sources == run.train_sources]
+    return [each.test_source for each in settings_of(run.train_sources)]
 
 
 def context_of(request: WorldRequest, world: World) -> dict[str, object]:
@@ -104,7 +110,8 @@ def context_of(request: WorldRequest, world: World) -> dict[str, object]:
         "choices": choices,
         "splits": splits,
         "settings": [
-            (str(each), f"{each.train_sources} → {each.test_source}") for each in SETTINGS
+            (str(each), f"{each.train_sources} → {each.test_source}")
+            for each in curve_settings(world, choices.setting)
         ],
         "protocols": list(Protocol),
         "parts": PARTS,
@@ -112,6 +119,16 @@ def context_of(request: WorldRequest, world: World) -> dict[str, object]:
         "chart_title": f"{shown.measure.in_words.capitalize()} by training pairs, {choices.part} part",
         "query": request.GET.urlencode(),
     }
+
+
+def curve_settings(world: World, chosen: Setting) -> list[Setting]:
+    """Return the settings to choose from: those of the paper, those of the runs of ``world``, and ``chosen``."""
+    trained = set(world.runs.scored_or_active().order_by().values_list("train_sources", flat=True))
+    return [
+        each
+        for each in SETTINGS
+        if each in PAPERS_SETTINGS or each == chosen or each.train_sources in trained
+    ]
 
 
 def read_choices(request: WorldRequest, world: World, splits: list[Split]) -> CurveChoices | None:
@@ -123,7 +140,7 @@ def read_choices(request: WorldRequest, world: World, splits: list[Split]) -> Cu
     if run is None:
         return None
     settings = {str(each): each for each in SETTINGS}
-    own = next(each for each in SETTINGS if each.train_sources == run.train_sources)
+    own = settings_of(run.train_sources)[0]
     part, measure = asked.get("part", ""), asked.get("measure", "")
     protocol = asked.get("protocol", "")
     return CurveChoices(

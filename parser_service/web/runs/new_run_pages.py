@@ -17,13 +17,13 @@ from django.views.decorators.cache import never_cache
 from annotations.language.corpus import KNOWN, Part
 from annotations.language.errors import Refusal
 from annotations.lists.paging import number_in
-from annotations.models import Duty, Example, Split, World
+from annotations.models import Duty, Split, World
 from annotations.models.background import Status
 from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
 from annotations.web.forms import posted
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.models.evaluations import ShownScore, shown_scores
-from parser_service.parsers.conditions import PARAPHRASED, TrainSources
+from parser_service.parsers.conditions import SOURCE_WORDS, SOURCES, written_sources
 from parser_service.parsers.pretrained_files import find_gaps
 from parser_service.parsers.registry import (
     PARSERS,
@@ -48,7 +48,6 @@ TITLES = {
     Needs.WEIGHTS: "Weights to bring",
     Needs.SERVER: "A server to ask",
 }
-SOURCES = {"gen": "commands", "para": "paraphrases"}
 
 
 @world_view(Duty.MANAGE, READ_AND_WRITE)
@@ -157,15 +156,23 @@ def choices_in(query: QueryDict, world: World) -> RunChoices:
             recommended_parser(world), note=f"There is no parser called {parser!r} any more."
         )
     initial: dict[str, Any] = values_of(run, parser) if run else {}
-    spoken = Example.objects.filter(split__world=world, part=Part.TRAIN, source=PARAPHRASED)
-    if run is None and spoken.exists():  # in any split, to train on
-        initial = {"train_sources": TrainSources.BOTH}
+    if run is None:
+        initial = {"train_sources": all_sources(world, number_in(query.get("split", "")))}
     names = [*GENERAL, *(PREFIX + each.name for each in config_fields(parser))]
     initial.update({name: query[name] for name in names if name in query})
     protocol, entry, note = initial.get("protocol"), PARSERS[parser], ""
     if protocol not in (None, "", *entry.protocols):
         note = f"{entry.title} has no {protocol} protocol; {entry.protocols[0]} is chosen instead."
     return RunChoices(parser, initial, note)
+
+
+def all_sources(world: World, split: int | None) -> str:
+    """Return all that a split can be trained on: the one with the key ``split``, else the newest."""
+    chosen = world.splits.filter(pk=split or 0).first() or world.splits.first()
+    if chosen is None:
+        return "gen"
+    sources = chosen.examples.of(Part.TRAIN).order_by().values_list("source", flat=True)
+    return written_sources(sources.distinct()) or "gen"
 
 
 def recommended_parser(world: World) -> str:
@@ -233,7 +240,11 @@ def parser_groups(world: World, split: Split | None) -> list[ParserGroup]:
             entry,
             tuple(gap.name for gap in find_gaps(make_config(name), anywhere=False)),
             seconds.get(name),
-            tuple(scores.get(name, {}).items()),
+            tuple(
+                (words, scores[name][source])
+                for source, words in SOURCE_WORDS.items()
+                if source in scores[name]
+            ),
         )
         for name, entry in PARSERS.items()
     ]
@@ -280,6 +291,5 @@ def _scores(world: World, split: Split | None) -> dict[str, dict[str, ShownScore
         of_runs[row.run.parser, row.run_id].append(row)
     for (parser, _), of_run in of_runs.items():
         for (_, source), score in shown_scores(of_run, split.criterion).items():
-            name = SOURCES[source]
-            best[parser][name] = max(score, best[parser].get(name, score), key=rank)
+            best[parser][source] = max(score, best[parser].get(source, score), key=rank)
     return best

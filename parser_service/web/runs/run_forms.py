@@ -6,10 +6,17 @@ from typing import Any
 
 from django import forms
 
+from annotations.language.corpus import Part
 from annotations.language.errors import Refusal
-from annotations.models import Split, World
+from annotations.models import Example, Split, World
 from annotations.web.forms import choice_field, row_field
-from parser_service.parsers.conditions import Protocol, TrainSources
+from parser_service.parsers.conditions import (
+    PAPERS_SOURCES,
+    SOURCES,
+    TRAIN_SOURCES,
+    Protocol,
+    sources_of,
+)
 from parser_service.parsers.hyperparameters.fields import ConfigField
 from parser_service.parsers.pretrained_files import missing_weights
 from parser_service.parsers.registry import config_fields, entry, make_config
@@ -20,11 +27,6 @@ from parser_service.runs.requests.run_requests import (
     seeds_from,
 )
 
-SOURCE_LABELS = {
-    TrainSources.GENERATED: "generated",
-    TrainSources.PARAPHRASED: "paraphrased",
-    TrainSources.BOTH: "generated and paraphrased",
-}
 PROTOCOL_LABELS = {
     Protocol.STRICT: "strict: training pairs only",
     Protocol.DOMAIN: "domain: also predicates and ontology",
@@ -41,7 +43,7 @@ class RunForm(forms.Form):
     once the form is valid."""
 
     split = forms.ModelChoiceField(Split.objects.none(), empty_label=None)
-    train_sources = forms.ChoiceField(label="Train on", choices=list(SOURCE_LABELS.items()))
+    train_sources = forms.ChoiceField(label="Train on", initial="gen")
     protocol = forms.ChoiceField(help_text="What training may know besides its pairs.")
     seed = forms.IntegerField(min_value=0, max_value=LARGEST_SEED, initial=0)
     seeds = forms.IntegerField(
@@ -68,7 +70,9 @@ class RunForm(forms.Form):
             (name, PROTOCOL_LABELS[Protocol(name)]) for name in entry(parser).protocols
         ]
         self.fields["protocol"].initial = entry(parser).protocols[0]
-        self.fields["train_sources"].initial = TrainSources.GENERATED
+        choice_field(self, "train_sources").choices = [
+            (each, ", ".join(sources_of(each))) for each in offered_sources(world)
+        ]
         for declared in config_fields(parser):
             self.fields[PREFIX + declared.name] = field_for(declared)
 
@@ -150,6 +154,19 @@ class RunForm(forms.Form):
         except Refusal as error:
             self.add_error("seeds", error.message)
         return cleaned
+
+
+def offered_sources(world: World) -> list[str]:
+    """Return what runs of ``world`` can be trained on: what the paper has, and whatever its splits can give."""
+    examples = Example.objects.filter(
+        split__world=world, part=Part.TRAIN, source__in=SOURCES.values()
+    )
+    there = set(examples.order_by().values_list("source", flat=True).distinct())
+    return [
+        each
+        for each in TRAIN_SOURCES
+        if each in PAPERS_SOURCES or there.issuperset(sources_of(each))
+    ]
 
 
 def say_default(declared: ConfigField) -> str:

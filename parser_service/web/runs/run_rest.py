@@ -22,7 +22,7 @@ from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import RowsRoute, RowsViewSet
 from parser_service.analyses.state import analysis_of
 from parser_service.models import Checkpoint, EpochMetric, RunEvent, TrainingRun
-from parser_service.parsers.conditions import Protocol, TrainSources
+from parser_service.parsers.conditions import TRAIN_SOURCES, Protocol
 from parser_service.parsers.registry import PARSERS, config_fields
 from parser_service.runs import lifecycle
 from parser_service.runs.analysis_requests import request_analysis
@@ -63,9 +63,7 @@ class NewRuns(Fields):
     parser = serializers.ChoiceField(choices=list(PARSERS))
     config = serializers.DictField(child=serializers.JSONField(), default=dict)
     protocol = serializers.ChoiceField(choices=[each.value for each in Protocol], required=False)
-    train_sources = serializers.ChoiceField(
-        choices=[each.value for each in TrainSources], default=TrainSources.GENERATED.value
-    )
+    train_sources = serializers.ChoiceField(choices=TRAIN_SOURCES, default="gen")
     train_share = serializers.FloatField(min_value=LEAST_SHARE, max_value=1, default=1)
     seed = serializers.IntegerField(min_value=0, max_value=LARGEST_SEED, default=0)
     seeds = serializers.IntegerField(min_value=1, max_value=MOST_SEEDS, default=1)

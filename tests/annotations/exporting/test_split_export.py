@@ -8,7 +8,10 @@ import pytest
 
 from annotations.exporting.split_export import FIELDS, export_lines, export_split
 from annotations.generation.generating import generate_pairs
+from annotations.importing.pair_files import read_pair_folder
+from annotations.language.corpus import Criterion
 from annotations.language.errors import Refusal
+from annotations.models.splits import Source
 from annotations.splits.freezing import freeze_split
 
 
@@ -59,3 +62,16 @@ def test_other_formats_are_one_file(split, tmp_path):
     target = tmp_path / "deep" / "first.jsonl"
     assert export_split(split, "jsonl", target) == {str(target): 3}
     assert len(target.read_text().splitlines()) == 3
+
+
+@pytest.mark.parametrize("source", Source.values)
+@pytest.mark.parametrize("criterion", [Criterion.COMMAND, Criterion.LOGICAL_FORM])
+def test_pair_files_of_every_source_are_read_as_its_own(tiny_world, tmp_path, source, criterion):
+    generate_pairs(tiny_world)
+    split = freeze_split(tiny_world, "whole", criterion, proportions=(1, 0, 0))
+    split.examples.update(source=source)
+    export_split(split, "txt", tmp_path)
+    read = read_pair_folder(tmp_path)
+    assert {key: len(pairs) for key, pairs in read.pairs.items()} == {
+        (criterion, source, "train"): 3
+    }

@@ -12,6 +12,7 @@ from annotations.models import Command, Example, Paraphrase
 from annotations.models.campaigns import ContributorKind
 from annotations.models.corpus import ParaphraseStatus
 from annotations.splits.freezing import as_items, freeze_split, unresolved_prompts
+from annotations.splits.renewing import changes_since, freeze_anew
 from annotations.splits.split_statistics import counts_of
 from tests.sample_world import make_paraphrase
 
@@ -161,22 +162,63 @@ def test_without_generated_commands_prompts_are_what_there_is(full):
     assert set(split.examples.values_list("part", flat=True)) == {"train", "validation", "test"}
 
 
-def test_what_a_language_model_wrote_is_trained_on_and_never_tested_on(full):
+@pytest.fixture
+def by_model(full):
+    """Give some paraphrases of ``full`` to a language model, the others to a person; return the world."""
     campaign = full.campaigns.create(name="spring")
     model = campaign.contributors.create(kind=ContributorKind.MODEL, pseudonym="model")
     person = campaign.contributors.create(pseudonym="person")
     for row in Paraphrase.objects.all():
         row.contributor = model if row.utterance.startswith("please") else person
         row.save(update_fields=["contributor"])
-    split = freeze_split(full, "apart", "source_command")
-    by_models = split.examples.filter(is_by_model=True)
-    assert by_models.exists()
-    assert set(by_models.values_list("part", flat=True)) == {"train"}
-    people = split.examples.filter(source="paraphrased", is_by_model=False)
-    assert set(people.values_list("part", flat=True)) == {"train", "validation", "test"}
-    assert people.count() == Paraphrase.objects.filter(contributor=person).count()
+    return full
+
+
+def parts_of(split, source):
+    return set(split.examples.filter(source=source).values_list("part", flat=True))
+
+
+def test_what_a_language_model_wrote_is_trained_on_and_never_tested_on(by_model):
+    split = freeze_split(by_model, "apart", "source_command")
+    assert parts_of(split, "model") == {"train"}
+    assert parts_of(split, "paraphrased") == {"train", "validation", "test"}
+    people = split.examples.filter(source="paraphrased")
+    assert people.count() == Paraphrase.objects.filter(contributor__kind="person").count()
     counts = {each.source: each for each in counts_of([split])[split.pk]}
-    assert counts["paraphrased"].by_models == by_models.count()
-    assert counts["generated"].by_models == 0
+    assert counts["model"].total == split.examples.filter(source="model").count() > 0
     positions = people.filter(part="test").values_list("position", flat=True)
     assert sorted(positions) == list(range(people.filter(part="test").count()))
+
+
+def test_a_split_tests_on_models_where_it_asks_for_them_also_when_it_is_frozen_anew(by_model):
+    split = freeze_split(by_model, "both", "source_command", tests_on_models=True)
+    assert parts_of(split, "model") == {"train", "validation", "test"}
+    written = Paraphrase.objects.filter(contributor__kind="model")
+    assert split.examples.filter(source="model").count() == written.count()
+    changed = written.first()
+    changed.utterance += " now"
+    changed.save()
+    again = freeze_anew(split)
+    assert again.tests_on_models
+    assert parts_of(again, "model") == {"train", "validation", "test"}
+
+
+def test_what_people_said_is_a_source_of_its_own(full):
+    texts = ("give me a hand with that", "over here please", "that one", "the other one")
+    forms = full.logical_forms.values_list("text", flat=True)
+    for text, form in zip(texts, forms, strict=False):
+        full.utterances.create(
+            text=text, anonymized_text=text, status="labelled", logical_form=form
+        )
+    split = freeze_split(full, "said", proportions=(0.5, 0.25, 0.25))
+    said = split.examples.filter(source="said")
+    assert set(said.values_list("utterance", flat=True)) == set(texts)
+    assert parts_of(split, "said") == {"train", "validation", "test"}
+
+
+def test_a_split_that_calls_what_was_said_paraphrased_does_not_change_by_the_name(full):
+    form = full.logical_forms.first().text
+    full.utterances.create(text="over here", status="labelled", logical_form=form)
+    split = freeze_split(full, "old")
+    split.examples.filter(source="said").update(source="paraphrased", position=10_000)
+    assert changes_since(split).is_none

@@ -10,7 +10,7 @@ from django.core.management import CommandError
 from parser_service.benchmarking import benchmark_cells as cells_module
 from parser_service.benchmarking.trials import trials
 from parser_service.management.options import read_column
-from parser_service.parsers.conditions import SETTINGS
+from parser_service.parsers.conditions import PAPERS_SETTINGS
 from tests.parser_service.commands.benchmark_run import run
 from tests.parser_service.llm_server import KEY, REPORTED, fails, installed_tiny_server, says
 
@@ -23,7 +23,7 @@ KEYS = {
 
 def test_a_cell_says_all_that_the_table_needs(folder, tmp_path):
     cells = run(folder, tmp_path / "cells.json")
-    assert {cell["setting"] for cell in cells} == set(map(str, SETTINGS))
+    assert {cell["setting"] for cell in cells} == set(map(str, PAPERS_SETTINGS))
     for cell in cells:
         assert cell.keys() >= KEYS
         assert 0 <= cell["accuracy_validation"] <= 1

@@ -66,7 +66,7 @@ def test_labelled_utterances_are_neighbours_of_later_ones(sample, annotator):
 
 def test_labelled_utterances_enter_new_splits(sample, said, annotator):
     label(said[0], Verdict.FORM, FIND, annotator, 1)
-    said_in = [each for each in plan_split(sample.world) if each.source == "paraphrased"]
+    said_in = [each for each in plan_split(sample.world) if each.source == "said"]
     assert [(each.utterance, each.logical_form) for each in said_in] == [(said[0].text, FIND)]
 
 

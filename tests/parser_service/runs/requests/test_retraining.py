@@ -77,3 +77,29 @@ def test_runs_without_success_are_not_offered(run, newer):
 def test_a_split_that_follows_none_has_nothing_to_retrain(run, split):
     assert retrainable(split) == []
     assert retrained(run) == (None, None)
+
+
+@pytest.mark.parametrize(
+    ("source", "learned", "learns"),
+    [
+        ("said", "gen+para", "gen+para+said"),
+        ("model", "gen+para", "gen+para+model"),
+        ("said", "gen", "gen"),  # which leaves out what people say
+    ],
+)
+def test_it_also_learns_from_sources_that_are_new(run, newer, source, learned, learns):
+    first = newer.examples.filter(part="train", source="paraphrased").order_by("pk").first()
+    newer.examples.filter(pk=first.pk).update(source=source)
+    TrainingRun.objects.filter(pk=run.pk).update(train_sources=learned)
+    run.refresh_from_db()
+    again, _ = retrain(run, newer)
+    assert again.train_sources == learns
+    assert [each.again for each in retrainable(newer)] == [again]
+    assert retrained(run) == (newer, again)
+
+
+def test_a_source_that_was_left_out_stays_left_out(run, newer):
+    for split in (run.split, newer):
+        first = split.examples.filter(part="train", source="paraphrased").order_by("pk").first()
+        split.examples.filter(pk=first.pk).update(source="said")
+    assert retrain(run, newer)[0].train_sources == "gen+para"

@@ -295,3 +295,19 @@ def test_a_column_leads_to_its_learning_curves(sample, anna):
     page = anna.get("/w/home/results/").content.decode()
     query = "split=home-split&amp;setting=gen-gen&amp;protocol=strict&amp;part=validation"
     assert f'href="/w/home/results/curves/?{query}"' in page
+
+
+def test_what_people_said_and_models_wrote_have_columns_once_they_are_scored(sample):
+    paper = [column.setting for column in tables(sample)[0].columns]
+    assert ("gen", "said") not in paper
+    score = sample.run.evaluations.first()
+    for source in ("said", "model"):
+        score.pk, score.test_source = None, source
+        score.save()
+    columns = tables(sample)[0].columns
+    at = {column.setting: place for place, column in enumerate(columns)}
+    assert set(at) == {*paper, ("gen", "said"), ("gen", "model")}
+    assert at["gen", "para"] < at["gen", "model"] < at["gen", "said"]
+    cells = tables(sample)[0].rows[0].cells
+    for source in ("said", "model"):
+        assert cells[at["gen", source]].url.endswith(f"source={source}")

@@ -57,9 +57,9 @@ def test_a_parser_says_how_long_it_took_and_how_well_it_did_here(sample, other_s
     Evaluation.objects.filter(run=other_sample.run).update(accuracy=1)
     option = options_of(sample.world, sample.split)["knn"]
     ((source, score),) = option.scores
-    assert (option.seconds, source, score.accuracy) == (90, "commands", 0.25)
+    assert (option.seconds, source, score.accuracy) == (90, "generated commands", 0.25)
     page = words_of(adam.get(NEW))
-    assert re.search(r"about 1 min 30 s · validation (<[^>]+>)?commands 25\.0", page)
+    assert re.search(r"about 1 min 30 s · validation (<[^>]+>)?generated commands 25\.0", page)
     assert options_of(sample.world, sample.split)["seq2seq"].seconds is None
 
 
