@@ -28,7 +28,9 @@ MOST_SECONDS = 30.0
 FREE_COMMANDS = 2
 
 
-def table(prompts: Sequence[tuple[str, str, str]], texts: Sequence[str], rows: int, size: int):
+def table(
+    prompts: Sequence[tuple[str, str, str]], texts: Sequence[str], rows: int, size: int
+) -> bytes:
     """Return the bytes of a table: ``rows`` assignments, each by somebody else, with ``size`` answers."""
     random = Random(0)
     numbers = range(1, size + 1)
@@ -83,18 +85,17 @@ class Steps:
 
 def measure(campaign: Any, data: bytes, by: Any) -> float:
     """Check and import ``data``; print and return the seconds of processor time of both."""
-    from django.core.files.uploadedfile import SimpleUploadedFile
-
     from annotations.campaigns.crowd_jobs import read_results
     from annotations.campaigns.crowd_results import plan_results, store_results
+    from annotations.jobs.files import KeptUpload
 
     began = time.process_time()
-    read, _ = read_results(SimpleUploadedFile("results.csv", data))
+    read, _ = read_results(KeptUpload(io.BytesIO(data), "results.csv"))
     reading = time.process_time() - began
     plan_results(campaign, read, "results.csv")
     checked = time.process_time() - began
     steps = Steps()
-    again, _ = read_results(SimpleUploadedFile("results.csv", data))
+    again, _ = read_results(KeptUpload(io.BytesIO(data), "results.csv"))
     plan = plan_results(campaign, again, "results.csv", steps)
     report = store_results(plan, again, by, steps)
     imported = time.process_time() - began - checked

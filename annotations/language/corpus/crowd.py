@@ -17,6 +17,8 @@ from annotations.language.text import normalise_line
 MOST_ASSIGNMENTS = 20_000  # rows of a table
 MOST_ANSWERS = 300_000  # of a table
 MOST_COLUMNS = 2_000
+# Answers of one assignment are compared with each other.
+_MOST_NUMBERED = {"answer.utterance": 100, "answer.custom": 20}
 LONGEST_WORKER = 100  # characters of somebody's id
 MOST_SECONDS = 24 * 3600  # who worked for longer was away
 # What the column with somebody's id is called here, and what links to a campaign call it.
@@ -143,6 +145,10 @@ class _Reader:
             self._names[name] = cell
             if match := _NUMBERED.fullmatch(name):
                 self._numbered.setdefault(match["name"], []).append((match["number"], cell))
+        for name, most in _MOST_NUMBERED.items():
+            if len(self._numbered.get(name, ())) > most:
+                sentence = f"the table has more than {most} columns {name.capitalize()}"
+                raise LanguageError(sentence, place, "split the tasks up")
         if not {"answer.utterance", "answer.custom"} & self._numbered.keys():
             hint = "results have WorkerId, Input.command1, Answer.utterance1 and so on"
             raise LanguageError("this is no table of results", place, hint)

@@ -133,6 +133,7 @@ def test_what_is_wrong_with_a_row_has_its_line_and_its_cell():
         "WorkerId,Answer.utterance1\nw,b\n",
         "WorkerId,workerid,Answer.custom1\nw,w,b\n",
         table() + '"H9',
+        ",".join(["WorkerId", *(f"Answer.custom{number}" for number in range(21))]),
         ",".join(["WorkerId", "Answer.custom1", *(f"x{number}" for number in range(3_000))]),
     ],
 )
