@@ -45,6 +45,7 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "campaign_model": "post campaign-model",
     "submissions_take_back": "post submission-take-back",
     "campaign_new": "post campaign-list",
+    "campaign_edit": "patch campaign-detail",
     "campaign_act": "post campaign-close, post campaign-reopen, post campaign-revoke-link, post campaign-renew-link",
     "contributor_forget": "post contributor-forget",
     # The site
