@@ -47,6 +47,7 @@ CHANGES: dict[tuple[str, str], Body] = {
     },
     ("api:answer-review", "PATCH"): lambda *each: {"note": different(*each)},
     ("api:error-category-detail", "PATCH"): lambda *each: {"name": different(*each)},
+    ("api:campaign-detail", "PATCH"): lambda *each: {"thanks": different(*each)},
     ("api:slice-detail", "PATCH"): lambda *each: {"name": different(*each)},
     **{
         (f"api:{name}", "DELETE"): nothing

@@ -174,6 +174,7 @@ API_POLICY = [
         Rule(f"api:campaign-{name}", *admins(YES), method="post")
         for name in ("close", "reopen", "revoke-link", "renew-link")
     ),
+    Rule("api:campaign-detail", *admins(NO_VERSION), method="patch"),
     Rule("api:contributor-forget", *admins(NOTHING), method="post"),
     *(
         Rule(f"api:{name}", *admins(NO_JSON), method="post")

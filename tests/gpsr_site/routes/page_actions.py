@@ -46,6 +46,7 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "submissions_take_back": "post submission-take-back",
     "campaign_results": "post campaign-results",
     "campaign_new": "post campaign-list",
+    "campaign_edit": "patch campaign-detail",
     "campaign_act": "post campaign-close, post campaign-reopen, post campaign-revoke-link, post campaign-renew-link",
     "contributor_forget": "post contributor-forget",
     # The site

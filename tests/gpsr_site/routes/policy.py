@@ -289,6 +289,8 @@ POLICY = [
     *(Rule(name, *ADMINS) for name in ("campaign_new", "campaign_results")),
     Rule("campaign_results", LOG_IN, NOWHERE, NO, NO, 422, method="post"),
     Rule("campaign_new", LOG_IN, NOWHERE, NO, NO, 422, method="post"),
+    Rule("campaign_edit", *ADMINS),
+    Rule("campaign_edit", LOG_IN, NOWHERE, NO, NO, 422, method="post"),
     Rule("campaign_act", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("contributor_forget", *ADMINS),
     Rule("contributor_forget", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
