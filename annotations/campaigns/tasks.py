@@ -15,7 +15,7 @@ from django.utils import timezone
 
 from annotations.language.errors import Refusal
 from annotations.models import Campaign, CampaignPrompt, Contributor, Submission
-from annotations.models.campaigns import ContributorKind, SubmissionKind
+from annotations.models.campaigns import Balance, ContributorKind, SubmissionKind
 
 HELD = timedelta(hours=1)  # a prompt that was given counts as taken for so long
 
@@ -89,9 +89,9 @@ def choose_prompts(campaign: Campaign, size: int, pseudonym: str = "") -> list[C
 
 
 class Dealer:
-    """Deals the prompts of a campaign, forms with fewest submissions first.
+    """Deals the prompts of a campaign, forms with fewest submissions first, or lines where these are balanced.
 
-    What it has dealt counts as taken for what it deals next. A form comes twice in one task only when every
+    What it has dealt counts as taken for what it deals next. A form, or line, comes twice in one task only when every
     other one has come; of its prompts the one comes first that was taken least.
     """
 
@@ -99,36 +99,37 @@ class Dealer:
         self._random = Random(f"{campaign.seed}:{pseudonym}:{timezone.now().timestamp()}")
         self._prompts: dict[str, list[int]] = defaultdict(list)
         rewrites = campaign.prompts.filter(check_words="")
-        for key, form in rewrites.values_list("pk", "logical_form"):
-            self._prompts[form].append(key)
+        balanced = "line" if campaign.balance == Balance.LINES else "logical_form"
+        for key, group in rewrites.values_list("pk", balanced):
+            self._prompts[group].append(key)
         self._taken = _taken(campaign)
         had = Submission.objects.filter(
             contributor__campaign=campaign, contributor__pseudonym=pseudonym
         )
         self._had = set(had.values_list("prompt_id", flat=True))
-        self._forms = [
-            (sum(self._taken[key] for key in prompts), self._random.random(), form)
-            for form, prompts in self._prompts.items()
+        self._groups = [
+            (sum(self._taken[key] for key in prompts), self._random.random(), group)
+            for group, prompts in self._prompts.items()
         ]
-        heapify(self._forms)
+        heapify(self._groups)
 
     def deal(self, size: int) -> list[int]:
         """Return the keys of ``size`` different prompts, or of all that there are, in random order."""
-        turns = [heappop(self._forms) for _ in range(min(size, len(self._forms)))]
-        for _, _, form in turns:
-            self._random.shuffle(self._prompts[form])
-            self._prompts[form].sort(key=lambda key: (key in self._had, self._taken[key]))
-        longest = max((len(self._prompts[form]) for _, _, form in turns), default=0)
+        turns = [heappop(self._groups) for _ in range(min(size, len(self._groups)))]
+        for _, _, group in turns:
+            self._random.shuffle(self._prompts[group])
+            self._prompts[group].sort(key=lambda key: (key in self._had, self._taken[key]))
+        longest = max((len(self._prompts[group]) for _, _, group in turns), default=0)
         rounds = (
-            (form, self._prompts[form][turn])
+            (group, self._prompts[group][turn])
             for turn in range(longest)
-            for _, _, form in turns
-            if turn < len(self._prompts[form])
+            for _, _, group in turns
+            if turn < len(self._prompts[group])
         )
         dealt = list(islice(rounds, size))
-        of_form = Counter(form for form, _ in dealt)
-        for taken, _, form in turns:
-            heappush(self._forms, (taken + of_form[form], self._random.random(), form))
+        of_group = Counter(group for group, _ in dealt)
+        for taken, _, group in turns:
+            heappush(self._groups, (taken + of_group[group], self._random.random(), group))
         chosen = [key for _, key in dealt]
         self._taken.update(chosen)
         self._random.shuffle(chosen)

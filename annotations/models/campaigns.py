@@ -31,6 +31,13 @@ class Wording(models.TextChoices):
     ENGLISH = "english"
 
 
+class Balance(models.TextChoices):
+    """What gets equally many prompts: each form, or each line of the templates, of which a form may have many."""
+
+    FORMS = "forms"
+    LINES = "lines"
+
+
 class ContributorKind(models.TextChoices):
     """Where the submissions come from: by link, from a language model, or in a file of results."""
 
@@ -57,6 +64,10 @@ class SubmissionStatus(models.TextChoices):
 
 def wording_choices() -> list[tuple[str, str]]:
     return Wording.choices
+
+
+def balance_choices() -> list[tuple[str, str]]:
+    return Balance.choices
 
 
 def contributor_kind_choices() -> list[tuple[str, str]]:
@@ -96,7 +107,8 @@ class CampaignQuerySet(models.QuerySet["Campaign"]):
 class Campaign(models.Model):
     """A task that is offered by a public link: rewrite commands in your own words.
 
-    ``introduction``, ``examples``, ``consent`` and ``thanks`` are Markdown. ``task_size`` prompts and
+    ``introduction``, ``examples``, ``consent`` and ``thanks`` are Markdown. ``balance`` says what gets equally many
+    prompts. ``task_size`` prompts and
     ``free_commands`` commands of their own make a task; a form has enough with ``target_per_form``
     paraphrases. ``taboo_words`` says how many of a form's most used words are shown as not to be used;
     ``check_every`` plants a check among so many prompts (0: none). It ends when it is closed, at ``ends_at``,
@@ -114,6 +126,9 @@ class Campaign(models.Model):
     allows_model_help = models.BooleanField(default=False)
     allows_retake = models.BooleanField(default=False)
     wording = models.CharField(max_length=8, choices=wording_choices, default=Wording.COMMAND)
+    balance = models.CharField(
+        max_length=5, choices=balance_choices, default=Balance.FORMS, db_default=Balance.FORMS
+    )
     task_size = models.PositiveSmallIntegerField(default=12)
     free_commands = models.PositiveSmallIntegerField(default=2)
     target_per_form = models.PositiveSmallIntegerField(default=10)
@@ -176,7 +191,8 @@ class Campaign(models.Model):
 class CampaignPrompt(models.Model):
     """A grounded command that contributors rewrite.
 
-    ``logical_form`` is canonical and anonymized, ``grounded_form`` the same with the entities of ``prompt``.
+    ``logical_form`` is canonical and anonymized, ``grounded_form`` the same with the entities of ``prompt``; ``line``
+    is the pattern of the template that gave it.
     ``shown`` is what contributors read. ``entities`` are what a rewrite has to keep: rows of
     ``{"text", "aliases", "is_described"}``. ``check_words`` are the words that a planted check asks for; it has
     no form.
@@ -195,6 +211,7 @@ class CampaignPrompt(models.Model):
     logical_form = models.TextField(blank=True)
     prompt = models.TextField()
     grounded_form = models.TextField(blank=True)
+    line = models.TextField(blank=True, default="", db_default="")
     shown = models.TextField()
     entities = models.JSONField(default=list, blank=True)
     check_words = models.CharField(max_length=100, blank=True)

@@ -17,6 +17,7 @@ from annotations.models import Campaign, World
 from annotations.models.campaigns import (
     LONGEST_CAMPAIGN_NAME,
     MOST_CHARACTERS_OF_TEXT,
+    Balance,
     Wording,
     contributor_kind_choices,
     wording_choices,
@@ -78,11 +79,17 @@ class CampaignForm(forms.Form):
         initial=Wording.COMMAND,
         help_text="The English of the form sounds odd, but puts fewer words into people's mouths.",
     )
+    balance = forms.ChoiceField(
+        label="Equally many of each",
+        choices=[(Balance.FORMS, "form"), (Balance.LINES, "line of the templates")],
+        initial=Balance.FORMS,
+        help_text="A form may have many lines, and each line many wordings.",
+    )
     target_per_form = number_field(
         "Paraphrases per form", 10, 1_000, "Forms that have as many are left out.", 1
     )
     prompts_per_form = number_field(
-        "Prompts per form", 3, MOST_PROMPTS_PER_FORM, "Commands and entities, where they differ.", 1
+        "Prompts of each", 3, MOST_PROMPTS_PER_FORM, "Commands and entities, where they differ.", 1
     )
     task_size = number_field("Rewrites", 12, MOST_REWRITES, "in one task", 1)
     free_commands = number_field("Free commands", 2, MOST_FREE_COMMANDS, "of their own, at the end")
@@ -135,9 +142,12 @@ class CampaignForm(forms.Form):
     consent = text_field("Consent", CONSENT)
     thanks = text_field("Thanks", THANKS)
 
-    OF_CHOICE = ("task_categories", "prompts_per_form", "target_per_form", "wording", "seed")
+    OF_CHOICE = (
+        *("task_categories", "prompts_per_form", "target_per_form"),
+        *("wording", "balance", "seed"),
+    )
     TASK = ("task_size", "free_commands", "target_per_form")
-    WHAT = ("prompts_per_form", "wording", "taboo_words", "check_every", "seed")
+    WHAT = ("balance", "prompts_per_form", "wording", "taboo_words", "check_every", "seed")
     END = (
         *("ends_at", "most_submissions", "most_per_hour", "price", "currency"),
         *("completion_code", "return_url"),

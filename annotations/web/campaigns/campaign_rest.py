@@ -26,7 +26,9 @@ from annotations.models import Campaign, Contributor, Duty, Scope
 from annotations.models.campaigns import (
     LONGEST_CAMPAIGN_NAME,
     MOST_CHARACTERS_OF_TEXT,
+    Balance,
     Wording,
+    balance_choices,
     wording_choices,
 )
 from annotations.people.allowances import may_take_long, takes_files
@@ -79,7 +81,7 @@ class CampaignSerializer(serializers.ModelSerializer[Campaign]):
     class Meta:
         model = Campaign
         fields = [
-            *("id", "name", "link", "is_over", "wording", "task_size", "free_commands"),
+            *("id", "name", "link", "is_over", "wording", "balance", "task_size", "free_commands"),
             *("target_per_form", "taboo_words", "check_every", "allows_model_help"),
             *("allows_retake", "price", "currency", "completion_code", "return_url", "ends_at"),
             *("most_submissions", "most_per_hour", "seed", "introduction", "examples"),
@@ -103,6 +105,11 @@ class NewCampaign(Fields):
     name = LineField(max_length=LONGEST_CAMPAIGN_NAME)
     task_categories = serializers.ListField(child=LineField(max_length=60), default=list)
     wording = serializers.ChoiceField(choices=wording_choices(), default=Wording.COMMAND)
+    balance = serializers.ChoiceField(
+        choices=balance_choices(),
+        default=Balance.FORMS,
+        help_text="what gets ``prompts_per_form`` prompts, and equally many contributors",
+    )
     target_per_form = serializers.IntegerField(min_value=1, max_value=1_000, default=10)
     prompts_per_form = serializers.IntegerField(
         min_value=1, max_value=MOST_PROMPTS_PER_FORM, default=3
