@@ -6,7 +6,7 @@ from django.urls import URLPattern, URLResolver, include, path
 from rest_framework.routers import SimpleRouter
 
 from annotations.web.background import job_rest
-from annotations.web.campaigns import campaign_rest, submission_rest
+from annotations.web.campaigns import campaign_rest, figure_rest, submission_rest
 from annotations.web.corpus import (
     command_rest,
     label_rest,
@@ -84,6 +84,13 @@ description = [
 ]
 
 corpus = [
+    path("paraphrase-figures/", figure_rest.FiguresOfWorld.as_view(), name="paraphrase-figures"),
+    path("paraphrase-figures/forms/", figure_rest.FormCounts.as_view(), name="paraphrase-forms"),
+    path(
+        "paraphrase-figures/contributors/",
+        figure_rest.ContributorCounts.as_view(),
+        name="paraphrase-contributors",
+    ),
     path("import/", import_rest.ImportGenerator.as_view(), name="import"),
     path("import/pairs/", import_rest.ImportPairs.as_view(), name="import-pairs"),
     path("generate/", import_rest.Generate.as_view(), name="generate"),

@@ -3,7 +3,7 @@
 from django.urls import path
 
 from annotations.web.background import job_pages
-from annotations.web.campaigns import campaign_pages, submission_pages
+from annotations.web.campaigns import campaign_pages, figure_pages, submission_pages
 from annotations.web.corpus import command_pages, paraphrase_pages, upload_pages, utterance_pages
 from annotations.web.description import (
     coverage_pages,
@@ -98,7 +98,9 @@ urlpatterns = [
     path("forms/<int:pk>/", command_pages.logical_form, name="logical_form"),
     path("campaigns/", campaign_pages.campaigns, name="campaigns"),
     path("campaigns/new/", campaign_pages.campaign_new, name="campaign_new"),
+    path("campaigns/results/", campaign_pages.campaign_results, name="campaign_results"),
     path("campaigns/<int:pk>/", campaign_pages.campaign_page, name="campaign_page"),
+    path("campaigns/<int:pk>/edit/", campaign_pages.campaign_edit, name="campaign_edit"),
     path("campaigns/<int:pk>/state/", campaign_pages.campaign_state, name="campaign_state"),
     path("campaigns/<int:pk>/act/", campaign_pages.campaign_act, name="campaign_act"),
     path(
@@ -108,6 +110,13 @@ urlpatterns = [
     ),
     path("paraphrases/", paraphrase_pages.paraphrases, name="paraphrases"),
     path("paraphrases/<int:pk>/", paraphrase_pages.paraphrase, name="paraphrase"),
+    path("paraphrases/figures/", figure_pages.paraphrase_figures, name="paraphrase_figures"),
+    path("paraphrases/figures/forms/", figure_pages.paraphrase_forms, name="paraphrase_forms"),
+    path(
+        "paraphrases/figures/contributors/",
+        figure_pages.paraphrase_contributors,
+        name="paraphrase_contributors",
+    ),
     path("paraphrases/<int:pk>/label/", paraphrase_pages.paraphrase_label, name="paraphrase_label"),
     path("paraphrases/<int:pk>/check/", paraphrase_pages.paraphrase_check, name="paraphrase_check"),
     path("utterances/", utterance_pages.utterances, name="utterances"),

@@ -84,7 +84,6 @@ if _database["ENGINE"] == "django.db.backends.sqlite3":
     if _database["NAME"] != ":memory:":
         make_database_private(Path(_database["NAME"]))
 else:
-    _database["CONN_MAX_AGE"] = 60
     _database["CONN_HEALTH_CHECKS"] = True
     if _database["ENGINE"] == "django.db.backends.postgresql":
         # A server that is away is known to be within seconds, also when its machine is gone.
@@ -97,6 +96,8 @@ else:
         }
         # Waits in Python, where a request that is over its time can be interrupted.
         os.environ.setdefault("PSYCOPG_WAIT_FUNC", "wait_poll")
+# Opening a connection costs as much as twenty queries: SQLite reads the whole schema anew.
+_database["CONN_MAX_AGE"] = 60
 DATABASES = {"default": _database}
 # Shared by all processes; holds what limits are counted by. More than fits cannot be counted within
 # the time after which a count expires.

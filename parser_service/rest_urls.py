@@ -8,7 +8,7 @@ from rest_framework.routers import SimpleRouter
 from parser_service.web.analyses import analysis_rest
 from parser_service.web.dialogues.dialogue_rest import DialogueViewSet
 from parser_service.web.labelling import answer_rest, audit_rest
-from parser_service.web.paraphrasing import model_rest
+from parser_service.web.paraphrasing import against_rest, model_rest
 from parser_service.web.promotions.promotion_rest import PromotionViewSet
 from parser_service.web.results import result_rest
 from parser_service.web.results.slice_rest import SliceViewSet
@@ -41,6 +41,7 @@ of_world = [
     ),
     path("suggestions/", answer_rest.SuggestForms.as_view(), name="suggestions"),
     path("campaigns/<int:pk>/model/", model_rest.ModelRewrites.as_view(), name="campaign-model"),
+    path("paraphrase-figures/runs/", against_rest.ParaphraseRuns.as_view(), name="paraphrase-runs"),
     path("audit/", audit_rest.LabelAudit.as_view(), name="audit"),
     path("runs/<int:pk>/findings/", analysis_rest.RunFindings.as_view(), name="run-findings"),
     path("runs/<int:pk>/probes/", analysis_rest.RunProbes.as_view(), name="run-probes"),

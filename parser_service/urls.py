@@ -10,7 +10,7 @@ from parser_service.web.analyses import (
 )
 from parser_service.web.dialogues import dialogue_pages
 from parser_service.web.labelling import audit_pages, label_pages, suggestion_pages
-from parser_service.web.paraphrasing import model_pages
+from parser_service.web.paraphrasing import against_pages, model_pages
 from parser_service.web.promotions import promotion_pages
 from parser_service.web.results import compare_pages, report_pages, result_pages, slice_pages
 from parser_service.web.reviews import error_category_pages, prediction_pages, review_pages
@@ -126,4 +126,10 @@ urlpatterns = [
         name="learning_curve_start",
     ),
     path("campaigns/<int:pk>/model/", model_pages.campaign_model, name="campaign_model"),
+    path("paraphrases/figures/runs/", against_pages.paraphrase_runs, name="paraphrase_runs"),
+    path(
+        "paraphrases/figures/runs/start/",
+        against_pages.paraphrase_runs_start,
+        name="paraphrase_runs_start",
+    ),
 ]

@@ -8,6 +8,7 @@ from http import HTTPStatus
 from django.db import transaction
 from django.utils import timezone
 
+from annotations.campaigns.limits import count_save
 from annotations.campaigns.tasks import CampaignOver
 from annotations.labelling.proposal_requests import request_readings
 from annotations.language.errors import Position, Refusal
@@ -57,7 +58,7 @@ def save_answer(
 
     Raises:
         Refusal: the text is too long or no text, or the task is finished.
-        CampaignOver: the campaign is over.
+        CampaignOver: the campaign ended, and the time is up in which those who have begun may finish.
     """
     wanted = normalise_line(text)
     require_writable(wanted, Position())
@@ -81,6 +82,7 @@ def save_answer(
             "contributor__campaign"
         )
         _require_changeable(held.get(pk=submission.pk))
+        count_save(stored.contributor)
         stored.read_by_run = None
         columns = ("text", "was_pasted", "seconds", "answered_at", "flags", "read_by_run")
         stored.save(update_fields=columns)
@@ -88,8 +90,8 @@ def save_answer(
 
 
 def _require_changeable(submission: Submission) -> None:
-    if submission.contributor.campaign.is_over:
-        raise CampaignOver
+    if submission.contributor.campaign.is_locked:
+        raise CampaignOver(has_begun=True)
     if submission.contributor.is_finished or submission.status != SubmissionStatus.PENDING:
         said = "This task is finished. What you wrote is kept."
         raise Refusal(said, "task_finished", HTTPStatus.CONFLICT)

@@ -12,7 +12,7 @@ from annotations.rows.history import history_of
 
 
 def close(campaign: Campaign) -> None:
-    """Take nothing any more. What was submitted stays."""
+    """Let nobody begin any more. Who has begun may finish for ``GRACE``, unless the link is revoked."""
     if campaign.closed_at is None:
         campaign.closed_at = timezone.now()
         campaign.save(update_fields=["closed_at"])
@@ -25,7 +25,7 @@ def reopen(campaign: Campaign) -> None:
 
 
 def revoke_link(campaign: Campaign) -> None:
-    """Let the link lead nowhere, also for those who have begun."""
+    """Let the link lead nowhere: nobody writes any more, also of those who have begun."""
     campaign.key = ""
     campaign.save(update_fields=["key"])
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from http import HTTPStatus
 from random import Random
+from typing import Any
 
 from django.db import IntegrityError, transaction
 from django.db.models import Count
@@ -21,7 +22,7 @@ from annotations.language.paraphrases import Named, entities_of
 from annotations.language.predicates import gloss
 from annotations.language.templates import Expansion, generate
 from annotations.models import Campaign, CampaignPrompt, User, World
-from annotations.models.campaigns import Wording
+from annotations.models.campaigns import Balance, Wording
 from annotations.rows.from_rows import ontology_of, predicates_of, task_categories
 from annotations.rows.synchronise import BATCH
 
@@ -35,7 +36,9 @@ class PromptChoice:
 
     Attributes:
         task_categories: names; all without any.
-        prompts_per_form: commands and groundings of one form; as many as differ, at most.
+        prompts_per_form: commands and groundings of one form, or of one line where these are balanced; as many as
+            differ, at most.
+        balance: what gets equally many prompts: each form or each line of the templates.
         target_per_form: forms with as many accepted paraphrases are left out.
     """
 
@@ -43,6 +46,7 @@ class PromptChoice:
     prompts_per_form: int = 3
     target_per_form: int = 10
     wording: str = Wording.COMMAND
+    balance: str = Balance.FORMS
     seed: int = 0
 
 
@@ -54,13 +58,14 @@ class DrawnPrompt:
     grounded: Grounded
     grounded_form: str
     shown: str
+    line: str
     entities: tuple[Named, ...]
 
 
 def draw_prompts(world: World, choice: PromptChoice) -> list[DrawnPrompt]:
-    """Draw prompts for each form that is below its target, in random order, as ``choice`` says.
+    """Draw prompts for each form that is below its target, or each line of such forms, in random order.
 
-    Commands of one form take turns. The same world, choice and seed give the same prompts. A command for
+    Commands of one form or line take turns. The same world, choice and seed give the same prompts. A command for
     which the ontology has no value is left out.
 
     Raises:
@@ -68,20 +73,31 @@ def draw_prompts(world: World, choice: PromptChoice) -> list[DrawnPrompt]:
         Refusal: nothing is left to ask for, or it would be more than ``MOST_PROMPTS``.
     """
     categories = task_categories(world)
-    by_form = _forms_below_target(world, generate(categories).expansions, choice)
-    if len(by_form) * choice.prompts_per_form > MOST_PROMPTS:
-        said = f"{len(by_form):,} forms make too many prompts. Choose fewer task categories."
+    wanted = _below_target(world, generate(categories).expansions, choice)
+    patterns = {
+        category.name: [template.pattern_text for template in category.templates]
+        for category in categories
+    }
+    groups: dict[str, list[Expansion]] = defaultdict(list)
+    for expansion in wanted:
+        line = patterns[expansion.task_category][expansion.template_index]
+        groups[line if choice.balance == Balance.LINES else expansion.form_text].append(expansion)
+    if len(groups) * choice.prompts_per_form > MOST_PROMPTS:
+        said = (
+            f"{len(groups):,} {choice.balance} make too many prompts. Choose fewer task categories."
+        )
         raise Refusal(said, "too_many_prompts")
     random, ontology, declared = Random(choice.seed), ontology_of(world), predicates_of(world)
     sources = {category.name: GroundedCommands(category) for category in categories}
     drawn = []
-    for form in random.sample(list(by_form), len(by_form)):
-        for expansion, grounded in _draw(by_form[form], sources, ontology, choice, random):
+    for key in random.sample(list(groups), len(groups)):
+        for expansion, grounded in _draw(groups[key], sources, ontology, choice, random):
             is_english = choice.wording == Wording.ENGLISH
             shown = gloss(grounded.form, declared) if is_english else grounded.text
             grounded_form = canonical_text(grounded.form)
             entities = entities_of(grounded, ontology)
-            drawn.append(DrawnPrompt(expansion, grounded, grounded_form, shown, entities))
+            line = patterns[expansion.task_category][expansion.template_index]
+            drawn.append(DrawnPrompt(expansion, grounded, grounded_form, shown, line, entities))
     if not drawn:
         said = (
             "No form is below its target here. Choose other task categories, or raise the target."
@@ -98,7 +114,7 @@ def launch(campaign: Campaign, choice: PromptChoice, by: User) -> Campaign:
     """
     drawn = draw_prompts(campaign.world, choice)
     commands = dict(campaign.world.commands.values_list("anonymized_text", "pk"))
-    campaign.wording, campaign.seed = choice.wording, choice.seed
+    campaign.wording, campaign.balance, campaign.seed = choice.wording, choice.balance, choice.seed
     campaign.target_per_form, campaign.created_by = choice.target_per_form, by
     prompts = [
         CampaignPrompt(
@@ -108,15 +124,9 @@ def launch(campaign: Campaign, choice: PromptChoice, by: User) -> Campaign:
             logical_form=each.expansion.form_text,
             prompt=each.grounded.text,
             grounded_form=each.grounded_form,
+            line=each.line,
             shown=each.shown,
-            entities=[
-                {
-                    "text": named.text,
-                    "aliases": list(named.aliases),
-                    "is_described": named.is_described,
-                }
-                for named in each.entities
-            ],
+            entities=[row_of(named) for named in each.entities],
         )
         for each in drawn
     ]
@@ -133,17 +143,21 @@ def launch(campaign: Campaign, choice: PromptChoice, by: User) -> Campaign:
     return campaign
 
 
-def _forms_below_target(
+def row_of(named: Named) -> dict[str, Any]:
+    """Return an entity as ``CampaignPrompt.entities`` has it."""
+    return {"text": named.text, "aliases": list(named.aliases), "is_described": named.is_described}
+
+
+def _below_target(
     world: World, expansions: Sequence[Expansion], choice: PromptChoice
-) -> dict[str, list[Expansion]]:
+) -> Iterator[Expansion]:
+    """Yield the commands of the chosen task categories whose forms have too few paraphrases."""
     accepted = world.paraphrases.accepted().values_list("logical_form").order_by()
     paraphrases = dict(accepted.annotate(Count("pk")))
-    by_form: dict[str, list[Expansion]] = defaultdict(list)
     for expansion in expansions:
         is_chosen = not choice.task_categories or expansion.task_category in choice.task_categories
         if is_chosen and paraphrases.get(expansion.form_text, 0) < choice.target_per_form:
-            by_form[expansion.form_text].append(expansion)
-    return by_form
+            yield expansion
 
 
 def _draw(
@@ -153,7 +167,7 @@ def _draw(
     choice: PromptChoice,
     random: Random,
 ) -> Iterator[tuple[Expansion, Grounded]]:
-    """Yield prompts of one form whose texts differ: every command once, then again with other entities."""
+    """Yield prompts of one form or line whose texts differ: every command once, then again with other entities."""
     turns = random.sample(expansions, len(expansions))
     texts: set[str] = set()
     for turn in range(choice.prompts_per_form * _TRIES):

@@ -11,7 +11,7 @@ from django.db.models import Count, Max, Min, Q
 from django.utils import timezone
 
 from annotations.models import Campaign, Submission
-from annotations.models.campaigns import SubmissionKind, SubmissionStatus
+from annotations.models.campaigns import ContributorKind, SubmissionKind, SubmissionStatus
 
 RECENT = timedelta(hours=1)
 
@@ -61,11 +61,13 @@ def progress_of(campaign: Campaign, now: datetime | None = None) -> CampaignProg
     for form, count in elsewhere.order_by().values_list("logical_form").annotate(Count("pk")):
         had[form] += count
     missing = sum(max(0, campaign.target_per_form - had[form]) for form in forms)
+    by_link = ~Q(contributor__kind=ContributorKind.FILE)
     totals = rewrites.aggregate(
         all=Count("pk"),
         accepted=Count("pk", filter=Q(status=SubmissionStatus.ACCEPTED)),
-        recent=Count("pk", filter=Q(answered_at__gt=now - RECENT)),
-        first=Min("answered_at"),
+        # What came in a file came at once: it has no pace.
+        recent=Count("pk", filter=Q(answered_at__gt=now - RECENT) & by_link),
+        first=Min("answered_at", filter=by_link),
         last=Max("answered_at"),
     )
     people = campaign.contributors.aggregate(

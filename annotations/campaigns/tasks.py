@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from datetime import timedelta
+from heapq import heapify, heappop, heappush
 from http import HTTPStatus
 from itertools import islice
 from random import Random
@@ -14,19 +15,22 @@ from django.utils import timezone
 
 from annotations.language.errors import Refusal
 from annotations.models import Campaign, CampaignPrompt, Contributor, Submission
-from annotations.models.campaigns import ContributorKind, SubmissionKind
+from annotations.models.campaigns import Balance, ContributorKind, SubmissionKind
 
 HELD = timedelta(hours=1)  # a prompt that was given counts as taken for so long
 
 
 class CampaignOver(Refusal):
-    """A campaign takes nothing any more."""
+    """A campaign takes nothing any more, from new people or from anybody."""
 
     code = "campaign_over"
     status = HTTPStatus.GONE
 
-    def __init__(self) -> None:
-        super().__init__("This campaign is over. Thank you for your interest.")
+    def __init__(self, has_begun: bool = False) -> None:
+        thanks = (
+            "What you wrote is kept. Thank you." if has_begun else "Thank you for your interest."
+        )
+        super().__init__(f"This campaign is over. {thanks}")
 
 
 def require_open(campaign: Campaign) -> None:
@@ -75,40 +79,61 @@ def begin(campaign: Campaign, pseudonym: str, kind: str = ContributorKind.PERSON
 
 
 def choose_prompts(campaign: Campaign, size: int, pseudonym: str = "") -> list[CampaignPrompt]:
-    """Return ``size`` different prompts, or all that there are, forms with fewest submissions first.
+    """Return ``size`` different prompts, or all that there are, in random order, as a ``Dealer`` deals them.
 
-    A form comes twice only when every other one has come. What ``pseudonym`` had before comes last.
+    What ``pseudonym`` had before comes last.
     """
-    random = Random(f"{campaign.seed}:{pseudonym}:{timezone.now().timestamp()}")
-    rewrites = campaign.prompts.filter(check_words="")
-    by_form: dict[str, list[int]] = defaultdict(list)
-    for key, form in rewrites.values_list("pk", "logical_form"):
-        by_form[form].append(key)
-    of_prompt = _taken(campaign)
-    of_form = Counter[str]()
-    for form, prompts in by_form.items():
-        of_form[form] = sum(of_prompt[key] for key in prompts)
-    had = set(
-        Submission.objects.filter(
-            contributor__campaign=campaign, contributor__pseudonym=pseudonym
-        ).values_list("prompt_id", flat=True)
-    )
-    for prompts in by_form.values():
-        random.shuffle(prompts)
-        prompts.sort(key=lambda key: (key in had, of_prompt[key]))
-    forms = random.sample(list(by_form), len(by_form))
-    forms.sort(key=lambda form: of_form[form])
-    longest = max(map(len, by_form.values()), default=0)
-    rounds = (
-        by_form[form][turn]
-        for turn in range(longest)
-        for form in forms
-        if turn < len(by_form[form])
-    )
-    chosen = list(islice(rounds, size))
-    random.shuffle(chosen)
+    chosen = Dealer(campaign, pseudonym).deal(size)
     rows = CampaignPrompt.objects.in_bulk(chosen)
     return [rows[key] for key in chosen]
+
+
+class Dealer:
+    """Deals the prompts of a campaign, forms with fewest submissions first, or lines where these are balanced.
+
+    What it has dealt counts as taken for what it deals next. A form, or line, comes twice in one task only when every
+    other one has come; of its prompts the one comes first that was taken least.
+    """
+
+    def __init__(self, campaign: Campaign, pseudonym: str = "") -> None:
+        self._random = Random(f"{campaign.seed}:{pseudonym}:{timezone.now().timestamp()}")
+        self._prompts: dict[str, list[int]] = defaultdict(list)
+        rewrites = campaign.prompts.filter(check_words="")
+        balanced = "line" if campaign.balance == Balance.LINES else "logical_form"
+        for key, group in rewrites.values_list("pk", balanced):
+            self._prompts[group].append(key)
+        self._taken = _taken(campaign)
+        had = Submission.objects.filter(
+            contributor__campaign=campaign, contributor__pseudonym=pseudonym
+        )
+        self._had = set(had.values_list("prompt_id", flat=True))
+        self._groups = [
+            (sum(self._taken[key] for key in prompts), self._random.random(), group)
+            for group, prompts in self._prompts.items()
+        ]
+        heapify(self._groups)
+
+    def deal(self, size: int) -> list[int]:
+        """Return the keys of ``size`` different prompts, or of all that there are, in random order."""
+        turns = [heappop(self._groups) for _ in range(min(size, len(self._groups)))]
+        for _, _, group in turns:
+            self._random.shuffle(self._prompts[group])
+            self._prompts[group].sort(key=lambda key: (key in self._had, self._taken[key]))
+        longest = max((len(self._prompts[group]) for _, _, group in turns), default=0)
+        rounds = (
+            (group, self._prompts[group][turn])
+            for turn in range(longest)
+            for _, _, group in turns
+            if turn < len(self._prompts[group])
+        )
+        dealt = list(islice(rounds, size))
+        of_group = Counter(group for group, _ in dealt)
+        for taken, _, group in turns:
+            heappush(self._groups, (taken + of_group[group], self._random.random(), group))
+        chosen = [key for _, key in dealt]
+        self._taken.update(chosen)
+        self._random.shuffle(chosen)
+        return chosen
 
 
 def _taken(campaign: Campaign) -> Counter[int]:

@@ -11,7 +11,7 @@ from posixpath import dirname, join, normpath
 from django.conf import settings
 
 from annotations.importing.predicates_file import PREDICATES_FILE
-from annotations.language.corpus import foreign_part, is_corpus_path, is_crowd_file
+from annotations.language.corpus import foreign_part, is_corpus_path
 from annotations.language.decoding import MAX_LINKS, link_target, read_tree, to_utf8
 from annotations.language.errors import LanguageError, Position, Problem, error_at, warning_at
 from annotations.language.grammar import TRIPLE_FILES, is_grammar_name, is_prose
@@ -78,7 +78,7 @@ def convert(gathered: GatheredFiles, encoding: str) -> GatheredFiles:
     for name, data in gathered.files.items():
         files[name] = data
         is_text = is_generator_path(name) or name.lower() in TRIPLE_FILES
-        if not (is_text or is_corpus_path(name) or foreign_part(name) or is_crowd_file(name)):
+        if not (is_text or is_corpus_path(name) or foreign_part(name)):
             continue
         try:
             files[name] = to_utf8(data, encoding, name)

@@ -66,7 +66,7 @@ def import_generator_of(job: Job, progress: JobProgress) -> dict[str, Any]:
         files = files_of(uploads, job.arguments.get("encoding", ""))
     report = import_generator(
         *(job.world_name, files, job.created_by, progress),
-        may_remove=bool(job.arguments.get("may_remove")),
+        may_remove=bool(job.arguments.get("is_confirmed")),
         brings_back=bool(job.arguments.get("brings_back")),
     )
     return report.as_json()

@@ -15,18 +15,16 @@ from annotations.language.corpus import (
     RecordFile,
     WrittenPair,
     foreign_part,
-    is_crowd_file,
-    read_crowd_results,
     read_foreign_pairs,
     read_pairs,
     read_triples,
 )
-from annotations.language.decoding import MAX_FILE_BYTES, read_folder
+from annotations.language.decoding import MAX_FILE_BYTES, MAX_FILES, read_folder
 from annotations.language.errors import LanguageError, Position, Problem, error_at, warning_at
 from annotations.language.grammar import TRIPLE_FILES
 
 _TEXTS = "*.[tT][xX][tT]"
-_TABLES = ("[!.]*.[cC][sS][vV]", "[!.]*.[tT][sS][vV]")
+_TABLES = (".csv", ".tsv")
 _TRIPLES = f"[pP][aA][rR][aA]{_TEXTS}"
 _OF_OTHERS = "paraphrased", "command"  # people ask, and no two parts share a question
 
@@ -57,7 +55,7 @@ def read_pair_folder(
     encoding: str = "",
     notation: str = Notation.OURS,
 ) -> PairFolder:
-    """Read ``gen para gen_logical para_logical``, the grounded triples and tables of results, those that are there.
+    """Read ``gen para gen_logical para_logical`` and the grounded triples, those that are there.
 
     The case of letters plays no part in names of files and folders. A file with more than ``most_bytes`` is
     a problem. Nothing is raised; a folder with none of them is a problem too.
@@ -70,6 +68,9 @@ def read_pair_folder(
     problems: list[Problem] = []
     is_foreign = notation == Notation.LAMBDA
     contents = dict(_contents(folder, is_foreign, most_bytes, problems))
+    for name in () if is_foreign else _tables(folder):
+        hint = "import results of a crowd market on the page Campaigns"
+        problems.append(warning_at(Position(name), "a table is no pair file; ignored", hint))
     gathered = convert(GatheredFiles(contents), encoding)
     problems += gathered.problems
     for path, data in gathered.files.items():
@@ -78,9 +79,7 @@ def read_pair_folder(
         read: Callable[[bytes, str], RecordFile[WrittenPair]]
         read = read_foreign_pairs if is_foreign else read_pairs
         if not (directory or is_foreign):
-            records = (
-                read_crowd_results(data, path) if is_crowd_file(name) else read_triples(data, path)
-            )
+            records = read_triples(data, path)
             triples += records.records
             problems += records.problems
         elif part:
@@ -104,6 +103,15 @@ def read_pair_folder(
     return PairFolder(pairs, tuple(triples), tuple(sorted(problems)))
 
 
+def is_table(name: str) -> bool:
+    return name.lower().endswith(_TABLES) and not name.startswith(".")
+
+
+def _tables(folder: Path) -> list[str]:
+    """Return the names of tables in ``folder``, which hold no pairs."""
+    return sorted(path.name for path in folder.glob("*") if is_table(path.name))[:MAX_FILES]
+
+
 def _contents(
     folder: Path, is_foreign: bool, most_bytes: int, problems: list[Problem]
 ) -> Iterator[tuple[str, bytes]]:
@@ -115,8 +123,6 @@ def _contents(
         for name, data in read_folder(folder, _TRIPLES, most_bytes).items():
             if name.lower() in TRIPLE_FILES:
                 yield name, data
-        for pattern in _TABLES:
-            yield from read_folder(folder, pattern, most_bytes).items()
         folders = sorted(path.name for path in folder.iterdir() if path.is_dir())
         for known in CORPUS_FOLDERS:
             for directory in folders:

@@ -13,13 +13,12 @@ from typing import Protocol
 from django.conf import settings
 
 from annotations.importing.gathered_files import GatheredFiles, convert, flatten, is_generator_path
-from annotations.importing.pair_files import Notation
+from annotations.importing.pair_files import Notation, is_table
 from annotations.importing.zip_archives import LONGEST_NAME, manifests_in, open_archive, read_member
 from annotations.language.corpus import (
     CORPUS_FOLDERS,
     foreign_part,
     is_corpus_path,
-    is_crowd_file,
 )
 from annotations.language.decoding import link_target
 from annotations.language.errors import LanguageError, Position
@@ -120,7 +119,7 @@ def unpacked_pairs(upload: UploadedFile, notation: str = Notation.OURS) -> Itera
 def _place_of_pairs(path: str) -> str:
     """Return where a file of a corpus belongs; empty for any other."""
     *_, directory, name = f"//{path}".split("/")
-    if name.lower() in TRIPLE_FILES or (is_crowd_file(name) and not name.startswith(".")):
+    if name.lower() in TRIPLE_FILES or is_table(name):
         return name
     is_corpus = directory.lower() in CORPUS_FOLDERS and name.lower().endswith(".txt")
     return f"{directory}/{name}" if is_corpus else ""

@@ -91,7 +91,7 @@ def keep_report(
 
 
 def answer_job(job: Job, by: User) -> Job:
-    """Queue the import that ``job`` asked about, now allowed to remove what it said.
+    """Queue the import that ``job`` asked about, now confirmed: it may do what the report says.
 
     Raises Refusal where the question was answered already.
     """
@@ -105,7 +105,7 @@ def answer_job(job: Job, by: User) -> Job:
             said = "The files are no longer here. Choose them again."
             raise Refusal(said, "files_gone", HTTPStatus.CONFLICT)
         answer = _new_job(asked.kind, asked.world_name, by, asked.arguments, ())
-        answer.arguments = {**asked.arguments, "may_remove": True}
+        answer.arguments = {**asked.arguments, "is_confirmed": True}
         answer.save()
         _take_folder(answer, folder_of(asked))
         background.wake(answer)
@@ -133,7 +133,9 @@ def cancel_job(job: Job) -> None:
 
 
 def _settle_question(job: Job) -> None:
-    job.report = {**(job.report or {}), "is_waiting": False, "is_dropped": True}
+    report = {**(job.report or {}), "is_waiting": False, "is_dropped": True}
+    # What people wrote is kept where they can be forgotten, and nowhere else.
+    job.report = {name: value for name, value in report.items() if name != "examples"}
     job.save(update_fields=["report"])
 
 

@@ -64,7 +64,7 @@ def exact_match(ratings: Ratings) -> Estimate:
     if not ratings.items:
         return _nothing()
     share = float(observed_agreement(ratings, _once(ratings))[0])
-    interval = _wilson(share, ratings.items)
+    interval = wilson_interval(share, ratings.items)
     noun = "item" if ratings.items == 1 else "items"
     meaning = f"Two people give the same form to {100 * share:.0f} % of {ratings.items:,} {noun}."
     return Estimate(share, interval, meaning + _caution(ratings))
@@ -148,8 +148,9 @@ def _bootstrap(
     return float(low), float(high)
 
 
-def _wilson(share: float, count: int) -> tuple[float, float]:
-    """Return Wilson's interval (Journal of the American Statistical Association 22, 1927)."""
+def wilson_interval(share: float, count: int) -> tuple[float, float]:
+    """Return Wilson's 95 % interval of a share of ``count`` trials, at least 1, as fractions of 1 (Journal of the
+    American Statistical Association 22, 1927)."""
     square = Z_95**2 / count
     middle = (share + square / 2) / (1 + square)
     half = Z_95 * np.sqrt(share * (1 - share) / count + square / (4 * count)) / (1 + square)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from operator import attrgetter
 from typing import Any
 
 from django.core.paginator import Paginator
@@ -49,14 +50,17 @@ class Sort:
 
 
 class FilteredList:
-    """What all lists have in common: filters that stand in the URL, and links to the same list with others.
+    """What all lists have in common: filters and an order that stand in the URL, and links to the same list with
+    others.
 
-    ``form`` holds the filters, bound to the URL; those called ``further`` stand behind a button.
+    ``form`` holds the filters, bound to the URL; those called ``further`` stand behind a button. ``sorts``
+    are the orders by the names that the URL may use; the first is the default.
     """
 
     query: QueryDict
     form: Any
     further: Sequence[str] = ()
+    sorts: Mapping[str, Sort]
 
     @property
     def first_fields(self) -> list[Any]:
@@ -111,12 +115,36 @@ class FilteredList:
                 given.setlist(name, some)
         return f"?{given.urlencode(safe='/')}"
 
+    @property
+    def order(self) -> str:
+        field = self.sorts[self.sort_name].field
+        if not self.is_descending:
+            return field
+        return field[1:] if field.startswith("-") else f"-{field}"
+
+    @property
+    def sort_name(self) -> str:
+        name = self.query.get("sort", "").lstrip("-")
+        return name if name in self.sorts else next(iter(self.sorts))
+
+    @property
+    def is_descending(self) -> bool:
+        return self.query.get("sort", "") == f"-{self.sort_name}"
+
+    @cached_property
+    def columns(self) -> dict[str, Column]:
+        """The head of the column of each sort: a click sorts by it, or reverses the order."""
+        columns: dict[str, Column] = {}
+        current = "descending" if self.order.startswith("-") else "ascending"
+        for name, sort in self.sorts.items():
+            is_current = name == self.sort_name
+            url = self.url(sort=f"-{name}" if is_current and not self.is_descending else name)
+            columns[name] = Column(sort.title, url, current if is_current else "", sort.is_number)
+        return columns
+
 
 class Listing(FilteredList):
-    """``rows`` under the filters, order and page that the URL of ``request`` asks for.
-
-    ``sorts`` are the orders by the names that the URL may use; the first is the default.
-    """
+    """``rows`` under the filters, order and page that the URL of ``request`` asks for."""
 
     def __init__(
         self,
@@ -158,33 +186,6 @@ class Listing(FilteredList):
         return self.page.rows
 
     @property
-    def order(self) -> str:
-        field = self.sorts[self.sort_name].field
-        if not self.is_descending:
-            return field
-        return field[1:] if field.startswith("-") else f"-{field}"
-
-    @property
-    def sort_name(self) -> str:
-        name = self.query.get("sort", "").lstrip("-")
-        return name if name in self.sorts else next(iter(self.sorts))
-
-    @property
-    def is_descending(self) -> bool:
-        return self.query.get("sort", "") == f"-{self.sort_name}"
-
-    @cached_property
-    def columns(self) -> dict[str, Column]:
-        """The head of the column of each sort: a click sorts by it, or reverses the order."""
-        columns: dict[str, Column] = {}
-        current = "descending" if self.order.startswith("-") else "ascending"
-        for name, sort in self.sorts.items():
-            is_current = name == self.sort_name
-            url = self.url(sort=f"-{name}" if is_current and not self.is_descending else name)
-            columns[name] = Column(sort.title, url, current if is_current else "", sort.is_number)
-        return columns
-
-    @property
     def summary(self) -> str:
         """How many rows are shown and how many there are, such as ``50 of 1,211``."""
         shown, total = len(self.rows), self.total
@@ -204,13 +205,25 @@ class NumberedPages(FilteredList):
 
     Args:
         form: the filters, bound to the query of ``request``.
+        sorts: the orders, by attributes of the rows; without any the rows stay as they are.
     """
 
     def __init__(
-        self, request: HttpRequest, form: Any, computed: Sequence[Any], size: int = PAGE_SIZE
+        self,
+        request: HttpRequest,
+        form: Any,
+        computed: Sequence[Any],
+        size: int = PAGE_SIZE,
+        sorts: Mapping[str, Sort] | None = None,
     ) -> None:
         self.query = request.GET
         self.form = form
+        self.sorts = sorts or {}
+        if sorts:
+            # Equal rows keep their order.
+            field = self.order
+            by_field = attrgetter(field.lstrip("-"))
+            computed = sorted(computed, key=by_field, reverse=field.startswith("-"))
         self.paginator = Paginator(computed, size)
         self.page = self.paginator.get_page(self.query.get("page"))
 

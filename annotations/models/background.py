@@ -138,6 +138,7 @@ class JobKind(models.TextChoices):
     ANALYSE = "analyse", "Error analysis of a run"
     ANSWER = "answer", "Answers of runs to a text"
     PARSE = "parse", "Parse of a batch"
+    IMPORT_RESULTS = "import_results", "Import of crowd results"
     PARAPHRASE = "paraphrase", "Paraphrases by a language model"
     DELETE_WORLD = "delete_world", "Deletion of a world"
 
@@ -212,6 +213,6 @@ class Job(BackgroundWork):
 
     @property
     def is_waiting_for_answer(self) -> bool:
-        """Whether it has stopped before an import that would remove something, and asks."""
+        """Whether it has stopped before an import that somebody has to confirm, and asks."""
         is_asking = bool(self.report and self.report.get("is_waiting"))
         return is_asking and self.status == Status.SUCCEEDED

@@ -7,6 +7,7 @@ somebody submits becomes a ``Paraphrase`` or an ``Utterance`` when a moderator a
 from __future__ import annotations
 
 import secrets
+from datetime import datetime, timedelta
 
 from django.db import models
 from django.db.models import Count, Q
@@ -19,6 +20,8 @@ MOST_CHARACTERS_OF_TEXT = 8_000  # of a text that contributors read
 LONGEST_CAMPAIGN_NAME = 60
 LONGEST_PSEUDONYM = 32
 MOST_PLACES = 400  # of a task
+# Who has begun may finish for so long after a campaign was closed or its time was up.
+GRACE = timedelta(days=1)
 
 
 class Wording(models.TextChoices):
@@ -26,6 +29,13 @@ class Wording(models.TextChoices):
 
     COMMAND = "command"
     ENGLISH = "english"
+
+
+class Balance(models.TextChoices):
+    """What gets equally many prompts: each form, or each line of the templates, of which a form may have many."""
+
+    FORMS = "forms"
+    LINES = "lines"
 
 
 class ContributorKind(models.TextChoices):
@@ -54,6 +64,10 @@ class SubmissionStatus(models.TextChoices):
 
 def wording_choices() -> list[tuple[str, str]]:
     return Wording.choices
+
+
+def balance_choices() -> list[tuple[str, str]]:
+    return Balance.choices
 
 
 def contributor_kind_choices() -> list[tuple[str, str]]:
@@ -93,12 +107,14 @@ class CampaignQuerySet(models.QuerySet["Campaign"]):
 class Campaign(models.Model):
     """A task that is offered by a public link: rewrite commands in your own words.
 
-    ``introduction``, ``examples``, ``consent`` and ``thanks`` are Markdown. ``task_size`` prompts and
+    ``introduction``, ``examples``, ``consent`` and ``thanks`` are Markdown. ``balance`` says what gets equally many
+    prompts. ``task_size`` prompts and
     ``free_commands`` commands of their own make a task; a form has enough with ``target_per_form``
     paraphrases. ``taboo_words`` says how many of a form's most used words are shown as not to be used;
     ``check_every`` plants a check among so many prompts (0: none). It ends when it is closed, at ``ends_at``,
-    or with ``most_submissions``. ``price`` is what a task costs, in ``currency``. ``key`` is the secret part of
-    the link; it is empty where the link was revoked.
+    or with ``most_submissions``. At most ``most_per_hour`` tasks are begun by the link. ``price`` is what a task costs,
+    in ``currency``. ``key`` is the secret part of the link; it is empty where the link was revoked. ``version``
+    counts from 1 how often its texts, its end and its payment were changed.
     """
 
     world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="campaigns")
@@ -110,6 +126,9 @@ class Campaign(models.Model):
     allows_model_help = models.BooleanField(default=False)
     allows_retake = models.BooleanField(default=False)
     wording = models.CharField(max_length=8, choices=wording_choices, default=Wording.COMMAND)
+    balance = models.CharField(
+        max_length=5, choices=balance_choices, default=Balance.FORMS, db_default=Balance.FORMS
+    )
     task_size = models.PositiveSmallIntegerField(default=12)
     free_commands = models.PositiveSmallIntegerField(default=2)
     target_per_form = models.PositiveSmallIntegerField(default=10)
@@ -121,6 +140,7 @@ class Campaign(models.Model):
     return_url = models.URLField(max_length=500, blank=True)
     ends_at = models.DateTimeField(null=True, blank=True)
     most_submissions = models.PositiveIntegerField(null=True, blank=True)
+    most_per_hour = models.PositiveIntegerField(default=1_000)
     key = models.CharField(max_length=40, blank=True, default=new_key, db_index=True)
     seed = models.PositiveIntegerField(default=0)
     created_by = models.ForeignKey(
@@ -128,6 +148,7 @@ class Campaign(models.Model):
     )
     created_at = models.DateTimeField(default=timezone.now)
     closed_at = models.DateTimeField(null=True, blank=True)
+    version = models.PositiveIntegerField(default=1)
 
     objects = CampaignQuerySet.as_manager()
 
@@ -145,16 +166,33 @@ class Campaign(models.Model):
         return self.name
 
     @property
+    def ended_at(self) -> datetime | None:
+        """When it was closed, or its time was up; None before. How much was submitted is not looked at."""
+        now = timezone.now()
+        ends = [each for each in (self.closed_at, self.ends_at) if each is not None and each <= now]
+        return min(ends, default=None)
+
+    @property
     def is_over(self) -> bool:
-        """Whether it was closed, or its time is up. How much was submitted is not looked at."""
-        is_late = self.ends_at is not None and self.ends_at <= timezone.now()
-        return self.closed_at is not None or is_late
+        """Whether nobody can begin any more."""
+        return self.ended_at is not None
+
+    @property
+    def grace_ends_at(self) -> datetime | None:
+        """Until when those who have begun may finish; None while it is open."""
+        return None if self.ended_at is None else self.ended_at + GRACE
+
+    @property
+    def is_locked(self) -> bool:
+        """Whether nobody can write any more, also of those who have begun."""
+        return self.grace_ends_at is not None and self.grace_ends_at <= timezone.now()
 
 
 class CampaignPrompt(models.Model):
     """A grounded command that contributors rewrite.
 
-    ``logical_form`` is canonical and anonymized, ``grounded_form`` the same with the entities of ``prompt``.
+    ``logical_form`` is canonical and anonymized, ``grounded_form`` the same with the entities of ``prompt``; ``line``
+    is the pattern of the template that gave it.
     ``shown`` is what contributors read. ``entities`` are what a rewrite has to keep: rows of
     ``{"text", "aliases", "is_described"}``. ``check_words`` are the words that a planted check asks for; it has
     no form.
@@ -173,6 +211,7 @@ class CampaignPrompt(models.Model):
     logical_form = models.TextField(blank=True)
     prompt = models.TextField()
     grounded_form = models.TextField(blank=True)
+    line = models.TextField(blank=True, default="", db_default="")
     shown = models.TextField()
     entities = models.JSONField(default=list, blank=True)
     check_words = models.CharField(max_length=100, blank=True)
@@ -203,7 +242,9 @@ class Contributor(models.Model):
 
     ``pseudonym`` is a keyed hash of the device or of a crowd market's id; ``attempt`` counts from 1 where a
     campaign allows to begin again. ``had_model_help`` is what they said at the end, None before. ``settings``
-    are those of a model: its name, the version of the instructions, temperature and seed.
+    are those of a model: its name, the version of the instructions, temperature and seed; of somebody in a file
+    of results, ``assignment`` is a keyed hash by which what they did is not imported twice. ``saves`` counts what was
+    saved in the minute that began at ``saves_since``.
     """
 
     campaign = models.ForeignKey(Campaign, on_delete=models.CASCADE, related_name="contributors")
@@ -217,6 +258,8 @@ class Contributor(models.Model):
     settings = models.JSONField(default=dict, blank=True)
     began_at = models.DateTimeField(default=timezone.now)
     finished_at = models.DateTimeField(null=True, blank=True)
+    saves = models.PositiveIntegerField(default=0)
+    saves_since = models.DateTimeField(null=True, blank=True)
 
     objects = ContributorQuerySet.as_manager()
 
@@ -227,6 +270,7 @@ class Contributor(models.Model):
                 fields=["campaign", "pseudonym", "attempt"], name="contributor_once"
             )
         ]
+        indexes = [models.Index(fields=["campaign", "began_at"])]
 
     def __str__(self) -> str:
         return self.pseudonym

@@ -29,6 +29,12 @@ def may_take_long(view: View) -> View:
     return view
 
 
+def only_reads(view: View) -> View:
+    """Declare that a POST to a view stores nothing, so that it waits for no writer."""
+    view.only_reads = True
+    return view
+
+
 @dataclass(frozen=True)
 class Allowance:
     """What the view at an address takes.
@@ -60,7 +66,8 @@ def allowance_at(path: str) -> Allowance:
     return Allowance(
         takes_files=any(getattr(each, "takes_files", False) for each in declaring),
         may_take_long=any(getattr(each, "may_take_long", False) for each in declaring),
-        only_reads=getattr(view, "scopes", {}).get(post) == Scope.READ,
+        only_reads=getattr(view, "only_reads", False)
+        or getattr(view, "scopes", {}).get(post) == Scope.READ,
         world=match.kwargs.get("world"),
         duty=getattr(view, "duties", {}).get(post),
     )

@@ -49,6 +49,3 @@ class Rate:
 # Attempts from one address; joining gives its place back.
 JOINING = Rate("join", limit=20, seconds=600)
 STARTED_RUNS = Rate("runs", limit=60, seconds=3600)
-# Tasks of campaigns begun from one address, where a class may sit behind it, and answers of one contributor.
-BEGUN_TASKS = Rate("campaign", limit=300, seconds=3600)
-SAVED_ANSWERS = Rate("answers", limit=60, seconds=60)

@@ -73,7 +73,7 @@ _USUAL_NAMES = (
 )
 FORM_NAMES = ("logical_form", "form", "parse", "lambda", "semantics")
 _BETWEEN_WORDS = re.compile(r"[.\s_-]")
-_CROWD_COLUMN = re.compile(r"(Answer\.(?:utterance|custom))(\d+)")
+_CROWD_HEAD = re.compile(r"[^\n]*\bAnswer\.(?:utterance|custom)\d", re.IGNORECASE)
 # The apostrophe with which exports keep spreadsheets from reading a formula.
 _FORMULA_GUARD = re.compile(r"\A'(?=[=+@-])")
 _RULER = re.compile(r":?-{2,}:?")  # a cell of the line below the head of a table in Markdown
@@ -240,6 +240,9 @@ def _refuse_other_files(text: str, source: str) -> None:
     if start.startswith(("<?xml", "<!")) or (tag and f"</{tag[1]}" in text[-2_000:].lower()):
         hint = "objects.xml, locations.xml, names.xml … belong on Import files"
         raise LanguageError("this is XML, not utterances", place, hint)
+    if _CROWD_HEAD.match(_without_mark_line(text)):
+        hint = "import them under Paraphrases → Campaigns, where rewrites keep their forms"
+        raise LanguageError("these are results of a crowd task", place, hint)
     lines = [line for line in text.split("\n")[:500] if line.strip()]
     rules = sum(1 for line in lines if re.match(r"\s*\$\w+\s*=", line))
     templates = sum(
@@ -389,7 +392,7 @@ def _read_table(text: str, source: str, format: UploadFormat, has_head: bool | N
         if not all(map(_RULER.fullmatch, given)):
             records.append(UploadRow(line, values))
     sheet = _sheet(format, records, names, problems)
-    return replace(_melt_crowd(sheet), has_head=has_head)
+    return replace(sheet, has_head=has_head)
 
 
 def _rows_of(
@@ -448,28 +451,6 @@ def _names(head: Sequence[str], width: int) -> list[str]:
         again = sum(1 for each in names if each == name or each.startswith(f"{name} ("))
         names.append(f"{name} ({again + 1})" if again else name)
     return names
-
-
-def _melt_crowd(sheet: Sheet) -> Sheet:
-    """Return a crowd table (docs/reference/formats.md) with a row for each answer, without rejected ones."""
-    matches = ((each, _CROWD_COLUMN.fullmatch(each)) for each in sheet.columns)
-    answers = {name: match[1] for name, match in matches if match}
-    if not answers or "AssignmentStatus" not in sheet.columns:
-        return sheet
-    records: list[UploadRow] = []
-    n_rejected = 0
-    for row in sheet.records:
-        if row.values.get("AssignmentStatus", "").strip().lower() == "rejected":
-            n_rejected += 1
-            continue
-        for name, kind in answers.items():
-            if row.values.get(name, "").strip():
-                records.append(UploadRow(row.line, {kind: row.values[name]}))
-    kinds = sorted(set(answers.values()), reverse=True)
-    rejected = f" {n_rejected:,} rejected assignments are left out." if n_rejected else ""
-    melted = _sheet(sheet.format, records, kinds, list(sheet.problems))
-    remark = f"These are results of a crowd task: each answer is one utterance.{rejected}"
-    return replace(melted, remarks=(*melted.remarks, remark))
 
 
 # --- JSON -----------------------------------------------------------------------------------------

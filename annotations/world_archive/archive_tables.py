@@ -39,9 +39,11 @@ from annotations.models import (
     WorkShare,
     World,
 )
+from annotations.models.campaigns import ContributorKind
 from annotations.worlds.parts import registered_parts
 
 FORMAT, VERSION = "gpsr-workbench-world", 1
+NONE_OF_THEM: Mapping[str, Any] = {"pk__in": ()}
 WORLD_FIELDS = ("description", "revision", "generated_revision")
 
 
@@ -60,6 +62,7 @@ class ArchiveTable:
         utterance: the lookup that leads to an utterance. Deleted ones, and what hangs on them, are not written.
         left_out: columns that are not written either.
         keeps_texts: whether an import leaves the texts as they are, without normalising them.
+        unreviewed: lookups for those of the rows that readers get who may not review; None: all of them.
     """
 
     name: str
@@ -72,6 +75,7 @@ class ArchiveTable:
     utterance: str = ""
     left_out: tuple[str, ...] = ()
     keeps_texts: bool = False
+    unreviewed: Mapping[str, Any] | None = None
 
     @property
     def path(self) -> str:
@@ -90,12 +94,15 @@ class ArchiveTable:
             and not getattr(column, "is_derived", False)
         )
 
-    def rows_of(self, world: World) -> models.QuerySet[Any]:
-        """Return the rows that the archive of ``world`` has."""
+    def rows_of(self, world: World, may_review: bool = True) -> models.QuerySet[Any]:
+        """Return the rows that the archive of ``world`` has for somebody who may review, or may not."""
         chosen: dict[str, Any] = {self.world_path: world}
         if self.utterance:
             chosen[f"{self.utterance}__deleted_at__isnull"] = True
-        return self.model._default_manager.filter(**chosen)
+        rows = self.model._default_manager.filter(**chosen)
+        if may_review or self.unreviewed is None:
+            return rows
+        return rows.filter(**self.unreviewed).distinct()
 
     @cached_property
     def world_path(self) -> str:
@@ -125,13 +132,22 @@ OUR_TABLES = (
         "world",
         people=("created_by",),
         left_out=("key", "completion_code"),
+        unreviewed={"contributors__kind": ContributorKind.MODEL},
     ),
     ArchiveTable(
         "campaign_prompts",
         CampaignPrompt,
         references={"campaign": "campaigns", "command": "commands"},
+        unreviewed=NONE_OF_THEM,
     ),
-    ArchiveTable("contributors", Contributor, references={"campaign": "campaigns"}),
+    # That a model wrote a paraphrase is on its page; which person wrote it is for those who review.
+    ArchiveTable(
+        "contributors",
+        Contributor,
+        references={"campaign": "campaigns"},
+        left_out=("saves", "saves_since"),
+        unreviewed={"kind": ContributorKind.MODEL},
+    ),
     ArchiveTable(
         "paraphrases",
         Paraphrase,
@@ -157,6 +173,7 @@ OUR_TABLES = (
         people=("decided_by",),
         left_out=("read_by_run",),
         utterance="utterance",
+        unreviewed=NONE_OF_THEM,
     ),
     ArchiveTable(
         "labels",

@@ -54,14 +54,15 @@ def archive_name(world: World) -> str:
 def world_archive(world: World, reader: User | None = None) -> Iterator[bytes]:
     """Yield the archive of ``world`` in pieces, none of them large.
 
-    It lacks the answers that ``reader`` may not see; for admins of the world, and without a reader, it is
-    complete.
+    It lacks what ``reader`` may not see: answers of others, and what contributors of campaigns wrote where the
+    reader does not review. For admins of the world, and without a reader, it is complete.
 
     Raises:
         ChangedMeanwhile: the world was generated or imported anew while it was read.
     """
     world = World.objects.get(pk=world.pk)  # as it is now, whatever the caller read
     blind = reader if reader is not None and not world.allows(reader, Duty.MANAGE) else None
+    may_review = reader is None or world.allows(reader, Duty.REVIEW)
     target = Pipe()
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as archive:
         counts: dict[str, int] = {}
@@ -69,7 +70,7 @@ def world_archive(world: World, reader: User | None = None) -> Iterator[bytes]:
         yield from _member(archive, target, "README.txt", [README])
         for table in tables():
             numbers[table.name] = {}
-            lines = _lines(table, world, numbers, blind)
+            lines = _lines(table, world, numbers, blind, may_review)
             yield from _member(archive, target, table.path, lines)
             counts[table.name] = len(numbers[table.name])
         for name, texts in _readable_files(world):
@@ -105,13 +106,14 @@ def _as_json(value: Any) -> str:
 
 
 def _lines(
-    table: ArchiveTable, world: World, numbers: Numbers, blind: User | None
+    table: ArchiveTable, world: World, numbers: Numbers, blind: User | None, may_review: bool
 ) -> Iterator[str]:
     """Yield the rows in the order of their keys. Fills ``numbers`` for the tables that refer to this one.
 
     ``blind`` must not see all answers: those that they may not see are left out, and so is what refers to one.
+    Whoever does not review gets no contributors but models, nor what refers to others.
     """
-    rows = table.rows_of(world).order_by("pk")
+    rows = table.rows_of(world, may_review).order_by("pk")
     if blind is not None and isinstance(rows, LabelQuerySet):
         rows = rows.visible_to(blind)
     known = numbers[table.name]
@@ -121,7 +123,9 @@ def _lines(
         for name, other in table.references.items():
             key = getattr(row, f"{name}_id")
             values[name] = numbers[other].get(key)
-            is_hidden = blind is not None and other == "labels"
+            is_hidden = (blind is not None and other == "labels") or (
+                not may_review and other == "contributors"
+            )
             if key is not None and values[name] is None and not is_hidden:
                 raise ChangedMeanwhile(f"{row._meta.verbose_name} {row.pk} refers to a new {name}")
         if table.subjects:

@@ -55,7 +55,7 @@ def train(protocol: str, setting: str, seed: int) -> tuple[Parser, dict[str, lis
     """Return the parser and what to ask it."""
     from annotations.models import World
     from parser_service.benchmarking.corpus import read_corpus, source_commands
-    from parser_service.parsers.conditions import Setting
+    from parser_service.parsers.conditions import Setting, sources_of
     from parser_service.parsers.registry import load_class, make_config
     from parser_service.runs.training.knowledge import anonymizer_of, knowledge_of
 
@@ -63,7 +63,7 @@ def train(protocol: str, setting: str, seed: int) -> tuple[Parser, dict[str, lis
     corpus = read_corpus(DATA / "walker2019", "logical_form")
     anonymize = anonymizer_of(world)
     sources = source_commands(DATA / "walker2019", anonymize)
-    names = Setting.read(setting).train_sources.sources
+    names = sources_of(Setting.read(setting).train_sources)
     kept, known = hold_out(
         corpus.pairs("train", names),
         lambda pair: sources.get(pair.utterance) or anonymize(pair.utterance),

@@ -55,13 +55,13 @@ def table_of(
 def _train(split: int, setting: str) -> Trained:
     from annotations.models import World
     from parser_service.benchmarking.missing_cells import load_corpus
-    from parser_service.parsers.conditions import Setting
+    from parser_service.parsers.conditions import Setting, sources_of
     from parser_service.parsers.registry import load_class, make_config
     from parser_service.runs.training.knowledge import knowledge_of
 
     world = World.objects.get(name=WORLD)
     corpus = load_corpus(DATA / "walker2019", CRITERION, split, world)
-    sources = Setting.read(setting).train_sources.sources
+    sources = sources_of(Setting.read(setting).train_sources)
     train = corpus.pairs("train", sources)
     knowledge = knowledge_of(world, PROTOCOL).limited_to(PROTOCOL)
     parser = load_class("ranker")(make_config("ranker"), 0, knowledge)

@@ -105,7 +105,9 @@ PLACES = (
         waiting=Waiting(count="paraphrases_waiting", noun="paraphrase", reason="to judge"),
         pages_below=(
             *("paraphrase", "submissions", "submission"),
-            *("campaigns", "campaign_new", "campaign_page", "campaign_model", "contributor_forget"),
+            *("paraphrase_figures", "paraphrase_forms", "paraphrase_contributors"),
+            *("campaigns", "campaign_new", "campaign_page", "campaign_edit", "campaign_results"),
+            *("campaign_model", "contributor_forget"),
         ),
     ),
     Place(

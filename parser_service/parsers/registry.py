@@ -34,7 +34,8 @@ class RegistryEntry:
     ``dotted`` is the path of its class (which may import torch), ``config`` of its hyperparameters
     (which may not); ``queue`` names the workers that may run it: ``quick`` where training takes seconds and
     needs no torch, otherwise ``cpu`` or ``gpu``. ``loss_unit`` is that of the losses it reports.
-    ``learns`` is False where training pairs change nothing.
+    ``learns`` is False where training pairs change nothing, ``writes_new_forms`` where it never answers with a
+    form that no training pair has.
     ``may_know_corpora`` marks figures of a model that may have read a public corpus, test part and all,
     before anybody trained it here. ``most_subwords`` is how many it reads of an utterance, 0 where it reads
     all or where that is up to its weights.
@@ -51,6 +52,7 @@ class RegistryEntry:
     queue: str = "cpu"
     loss_unit: str = "nats a token"
     learns: bool = True
+    writes_new_forms: bool = True
     may_know_corpora: bool = False
     most_subwords: int = 0
 
@@ -80,6 +82,7 @@ PARSERS: dict[str, RegistryEntry] = {
         in_short="Answers as for the most similar training utterance.",
         needs=Needs.NOTHING,
         queue="quick",
+        writes_new_forms=False,
     ),
     "linear": RegistryEntry(
         dotted="parser_service.parsers.linear.LinearClassifier",
@@ -92,6 +95,7 @@ PARSERS: dict[str, RegistryEntry] = {
         in_short="Learns which words speak for which form, in seconds; good on new wording of known forms.",
         needs=Needs.NOTHING,
         queue="quick",
+        writes_new_forms=False,
     ),
     "seq2seq": RegistryEntry(
         dotted="parser_service.neural.seq2seq.seq2seq_parser.Seq2Seq",

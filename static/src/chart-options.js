@@ -82,6 +82,25 @@ function lineOf(one, colour) {
   };
 }
 
+// Bars side by side. The name, with a square in their colour, stands above the chart, `right` pixels from its left edge
+// at most: on the bars it would cover those of another series.
+function barsOf(one, colour, right) {
+  return {
+    type: "bar",
+    name: one.name,
+    data: one.values.map((value, at) => (at === 0 ? { value, label: { show: true } } : value)),
+    barGap: "0%",
+    barCategoryGap: "20%",
+    itemStyle: { color: colour },
+    label: { formatter: "\u25a0 {a}", color: colour, fontSize: 12 },
+    labelLayout: { x: right, y: 12, align: "right", verticalAlign: "middle" },
+    emphasis: { disabled: true },
+  };
+}
+
+const BAR_NAME = 6.5; // pixels of a letter
+const widthOfName = (one) => BAR_NAME * one.name.length + 28;
+
 // A line across the chart at one value of x.
 function markOf(mark, palette) {
   if (mark == null) return undefined;
@@ -158,6 +177,7 @@ function numberAxis(axis, palette) {
 export function optionOf(data, element) {
   const palette = paletteOf(element, data.series);
   const isPoints = data.kind === "points";
+  const isBars = data.kind === "bars";
   const longest = Math.max(...data.series.map((one) => one.name.length)) * 6.5;
   const nameWidth = isPoints ? Math.min(longest, 0.35 * element.clientWidth) : longest;
   return {
@@ -165,7 +185,7 @@ export function optionOf(data, element) {
     aria: { enabled: true },
     grid: {
       left: 8,
-      right: nameWidth + 12,
+      right: isBars ? 8 : nameWidth + 12,
       top: 32,
       bottom: data.x.label ? 32 : 8,
       containLabel: true,
@@ -173,10 +193,14 @@ export function optionOf(data, element) {
     tooltip: tooltipOf(palette),
     xAxis: isPoints ? numberAxis(data.x, palette) : categoryAxis(data.x, palette),
     yAxis: valueAxis(data.y, palette),
-    series: data.series.flatMap((one, at) =>
-      isPoints
-        ? pointsOf(one, palette.series[at], nameWidth + 12)
-        : { ...lineOf(one, palette.series[at]), markLine: at === 0 ? markOf(data.mark, palette) : undefined },
-    ),
+    series: data.series.flatMap((one, at) => {
+      const colour = palette.series[at];
+      if (isPoints) return pointsOf(one, colour, nameWidth + 12);
+      if (isBars) {
+        const after = data.series.slice(at + 1).reduce((width, each) => width + widthOfName(each), 0);
+        return barsOf(one, colour, element.clientWidth - 8 - after);
+      }
+      return { ...lineOf(one, colour), markLine: at === 0 ? markOf(data.mark, palette) : undefined };
+    }),
   };
 }

@@ -1,8 +1,9 @@
 // Charts from data that the page or the server gives (see templates/_chart.html):
 // {x: {label, values}, y: {label, max, unit}, series: [{name, values}], mark, done}, or of the kind "points", with a number
 // on the x axis too: {kind, x: {label}, y, series: [{name, points: [[x, y, low, high], …]}], done}
+// The kind "bars" has the data of lines.
 // A mark is the place of a value of x; the figure's data-chart-mark, with the event chart:mark, moves it.
-import { CustomChart, LineChart } from "echarts/charts";
+import { BarChart, CustomChart, LineChart } from "echarts/charts";
 import { AriaComponent, GridComponent, MarkLineComponent, TooltipComponent } from "echarts/components";
 import { init, use } from "echarts/core";
 import { LabelLayout } from "echarts/features";
@@ -10,7 +11,7 @@ import { CanvasRenderer } from "echarts/renderers";
 import { optionOf } from "./chart-options.js";
 import { showTable } from "./chart-table.js";
 
-use([CustomChart, LineChart, AriaComponent, GridComponent, MarkLineComponent, TooltipComponent, LabelLayout, CanvasRenderer]);
+use([BarChart, CustomChart, LineChart, AriaComponent, GridComponent, MarkLineComponent, TooltipComponent, LabelLayout, CanvasRenderer]);
 
 const EVERY = 5000;
 const reduced = matchMedia("(prefers-reduced-motion: reduce)");

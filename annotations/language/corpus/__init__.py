@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
-from annotations.language.corpus.crowd import is_crowd_file, read_crowd_results
+from annotations.language.corpus.crowd import (
+    Assignment,
+    CrowdRewrite,
+    CrowdTable,
+    read_crowd_results,
+)
 from annotations.language.corpus.distances import distance
 from annotations.language.corpus.foreign_pairs import foreign_part, read_foreign_pairs
 from annotations.language.corpus.leakage import (
@@ -41,6 +46,7 @@ from annotations.language.corpus.written_pairs import (
     read_pairs,
     read_triples,
     write_pairs,
+    write_triples,
 )
 
 __all__ = [
@@ -52,7 +58,10 @@ __all__ = [
     "PARTS",
     "PART_FILES",
     "TRIPLES_FILE",
+    "Assignment",
     "Criterion",
+    "CrowdRewrite",
+    "CrowdTable",
     "FrozenExample",
     "GroundedTriple",
     "Leak",
@@ -71,7 +80,6 @@ __all__ = [
     "harmonic_mean",
     "hold_out_known",
     "is_corpus_path",
-    "is_crowd_file",
     "near_duplicates",
     "read_crowd_results",
     "read_foreign_pairs",
@@ -80,4 +88,5 @@ __all__ = [
     "shared",
     "split",
     "write_pairs",
+    "write_triples",
 ]

@@ -1,4 +1,4 @@
-"""Read the results of a paraphrasing task on a crowd-sourcing site as triples.
+"""Read the results of a paraphrasing task on a crowd market: who rewrote which command how.
 
 docs/reference/formats.md, Crowd tables, describes them.
 """
@@ -7,83 +7,275 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Iterator, Mapping
-from io import StringIO
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 
-from annotations.language.corpus.written_pairs import GroundedTriple, RecordFile
-from annotations.language.decoding import read_text
 from annotations.language.errors import LanguageError, Position, Problem, error_at, warning_at
-from annotations.language.forms import read_form
+from annotations.language.forms import canonical_text, read_form
+from annotations.language.text import normalise_line
 
-_ANSWER = re.compile(r"answer\.utterance(?P<number>\d{1,3})")
+MOST_ASSIGNMENTS = 20_000  # rows of a table
+MOST_ANSWERS = 300_000  # of a table
+MOST_COLUMNS = 2_000
+# Answers of one assignment are compared with each other.
+_MOST_NUMBERED = {"answer.utterance": 100, "answer.custom": 20}
+LONGEST_WORKER = 100  # characters of somebody's id
+MOST_SECONDS = 24 * 3600  # who worked for longer was away
+# What the column with somebody's id is called here, and what links to a campaign call it.
+_WORKERS = {"workerid": "workerId", "prolific_pid": "PROLIFIC_PID"}
+_NUMBERED = re.compile(
+    r"(?P<name>input\.command|input\.parse_ground|input\.parse|answer\.utterance|answer\.custom)"
+    r"(?P<number>\d{1,3})"
+)
+_LINE = re.compile(r"[^\n]*\n|[^\n]+")
 _DELIMITERS = ",;\t"
 _DECLARED = re.compile(r"\"?sep=([,;\t])\"?\n", re.IGNORECASE)  # Excel's first line
+# The apostrophe with which exports keep spreadsheets from reading a formula.
+_FORMULA_GUARD = re.compile(r"\A'(?=[=+@-])")
 
 
-def is_crowd_file(name: str) -> bool:
-    return name.lower().endswith((".csv", ".tsv"))
+@dataclass(frozen=True, slots=True)
+class CrowdRewrite:
+    """An answer to a prompt.
+
+    ``column`` counts the cells of the row from 1. ``form`` has class tokens, ``grounded_form`` entities; both are
+    canonical, and empty where the table has none.
+    """
+
+    column: int
+    command: str
+    form: str
+    grounded_form: str
+    text: str
 
 
-def read_crowd_results(data: bytes, source: str) -> RecordFile[GroundedTriple]:
-    """Read a table with ``Input.command1``, ``Input.parse_ground1``, ``Answer.utterance1`` and so on.
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """What one person did once.
+
+    ``market`` is the name under which links have the id ``worker``, which nobody stores. ``seconds`` are those of
+    all answers together, None where they are not known.
+    """
+
+    line: int
+    market: str
+    worker: str = field(repr=False)
+    seconds: float | None = None
+    rewrites: tuple[CrowdRewrite, ...] = ()
+    free_commands: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class CrowdTable:
+    """A table of results. ``rejected`` assignments and empty ones are only counted, and so are ``comments``.
+
+    The column of a problem counts the cells of its row from 1.
+    """
+
+    assignments: tuple[Assignment, ...] = ()
+    rejected: int = 0
+    empty: int = 0
+    comments: int = 0
+    problems: tuple[Problem, ...] = ()
+
+
+def read_crowd_results(text: str, source: str, longest: int) -> CrowdTable:
+    """Read a table with ``WorkerId``, ``Input.command1``, ``Answer.utterance1`` and so on.
 
     Its cells are separated by commas, semicolons or tabs, or as Excel's line ``sep=;`` says. Rows whose
-    ``AssignmentStatus`` is Rejected, blank rows and empty answers are left out. Errors are returned, not
-    raised; a table of another kind gives one warning.
+    ``AssignmentStatus`` is Rejected, blank rows and empty answers are left out. Errors are returned, not raised.
+
+    Args:
+        text: with ``\\n`` for every line end.
+        longest: characters of an answer; a longer one is left out with a warning.
     """
-    try:
-        text, problems = read_text(data, source)
-    except LanguageError as error:
-        return RecordFile((), (error.problem,))
-    records: list[GroundedTriple] = []
     declared = _DECLARED.match(text)
     if declared:
         text = text[declared.end() - 1 :]  # the line stays, empty, so that lines keep their numbers
     head, _, _ = text.lstrip().partition("\n")
     delimiter = declared[1] if declared else max(_DELIMITERS, key=head.count)
-    rows = csv.reader(StringIO(text, newline=""), delimiter=delimiter, strict=True)
+    lines = (match[0] for match in _LINE.finditer(text))
+    rows = csv.reader(lines, delimiter=delimiter, strict=True)
+    reader = _Reader(source, longest)
     try:
-        names = [cell.strip().lower() for cell in next(filter(None, rows), [])]
-        numbers = [match["number"] for match in map(_ANSWER.fullmatch, names) if match]
-        wanted = [
-            f"input.{kind}{number}" for number in numbers for kind in ("command", "parse_ground")
-        ]
-        if not numbers or not set(wanted) <= set(names):
-            hint = "a table of results has Answer.utterance1, Input.command1, Input.parse_ground1 and so on"
-            return RecordFile((), (warning_at(Position(source), "not a table of results", hint),))
+        reader.read_head(next(filter(None, rows), []), rows.line_num)
         begun = rows.line_num + 1
         for cells in rows:
-            place, begun = Position(source, begun), rows.line_num + 1
-            if not any(cell.strip() for cell in cells):
-                continue
-            if len(cells) != len(names):
-                message = f"this row has {len(cells)} cells; the head has {len(names)}"
-                problems.append(error_at(place, message, "put quotation marks around the cells"))
-                continue
-            row = dict(zip(names, (" ".join(cell.split()) for cell in cells), strict=True))
-            if row.get("assignmentstatus", "").lower() != "rejected":
-                records += _answers(row, numbers, place, problems)
+            line, begun = begun, rows.line_num + 1
+            if any(cell.strip() for cell in cells):
+                reader.read_row(cells, line)
+    except LanguageError as error:
+        reader.problems.append(error.problem)
     except csv.Error:
         place = Position(source, max(rows.line_num, 1))
         sentence = "the table breaks off inside a cell, or has one too long"
-        problems.append(error_at(place, sentence, "close its quotation mark"))
-    return RecordFile(tuple(records), tuple(sorted(problems)))
+        reader.problems.append(error_at(place, sentence, "close its quotation mark"))
+    return reader.table()
 
 
-def _answers(
-    row: Mapping[str, str], numbers: list[str], place: Position, problems: list[Problem]
-) -> Iterator[GroundedTriple]:
-    for number in numbers:
-        utterance, command = row[f"answer.utterance{number}"], row[f"input.command{number}"]
-        if not utterance:
-            continue
+class _Reader:
+    """Reads the rows of one table."""
+
+    def __init__(self, source: str, longest: int) -> None:
+        self.problems: list[Problem] = []
+        self._source, self._longest = source, longest
+        self._names: dict[str, int] = {}  # in lower case → cell
+        self._width = 0
+        self._worker = ""
+        self._numbered: dict[str, list[tuple[str, int]]] = {}  # name → number and cell
+        self._assignments: list[Assignment] = []
+        self._answers = self._rejected = self._empty = self._comments = 0
+        self._forms: dict[str, str | LanguageError] = {}  # as it is written → canonical
+        self._commands: dict[str, str] = {}
+
+    def read_head(self, cells: Sequence[str], line: int) -> None:
+        """Take the names of the columns. Raises LanguageError where this is no table of results."""
+        place = Position(self._source, max(line, 1))
+        names = [cell.strip().lower() for cell in cells]
+        if len(names) > MOST_COLUMNS:
+            sentence = f"the table has {len(names):,} columns; {MOST_COLUMNS:,} is the limit"
+            raise LanguageError(sentence, place)
+        for cell, name in enumerate(names):
+            if name in self._names:
+                raise LanguageError(
+                    f"two columns are called {cells[cell].strip()[:40]}",
+                    Position(self._source, place.line, cell + 1),
+                    "rename one of them",
+                )
+            self._names[name] = cell
+            if match := _NUMBERED.fullmatch(name):
+                self._numbered.setdefault(match["name"], []).append((match["number"], cell))
+        for name, most in _MOST_NUMBERED.items():
+            if len(self._numbered.get(name, ())) > most:
+                sentence = f"the table has more than {most} columns {name.capitalize()}"
+                raise LanguageError(sentence, place, "split the tasks up")
+        if not {"answer.utterance", "answer.custom"} & self._numbered.keys():
+            hint = "results have WorkerId, Input.command1, Answer.utterance1 and so on"
+            raise LanguageError("this is no table of results", place, hint)
+        self._worker = next((name for name in _WORKERS if name in self._names), "")
+        if not self._worker:
+            hint = "it says who answered, and becomes a pseudonym"
+            raise LanguageError("there is no column WorkerId", place, hint)
+        for number, cell in self._numbered.get("answer.utterance", ()):
+            if f"input.command{number}" not in self._names:
+                raise LanguageError(
+                    f"Answer.utterance{number} has no column Input.command{number}",
+                    Position(self._source, place.line, cell + 1),
+                    "add the prompts that it answers",
+                )
+        self._width = len(names)
+
+    def read_row(self, cells: Sequence[str], line: int) -> None:
+        """Take one assignment. Raises LanguageError where the table has too many."""
+        if len(cells) != self._width:
+            message = f"this row has {len(cells)} cells; the head has {self._width}"
+            hint = "put quotation marks around cells with a delimiter or a quotation mark in them"
+            self.problems.append(error_at(Position(self._source, line), message, hint))
+            return
+        if self._cell(cells, "assignmentstatus").lower() == "rejected":
+            self._rejected += 1
+            return
+        worker = self._cell(cells, self._worker)
+        if not worker or len(worker) > LONGEST_WORKER:
+            place = Position(self._source, line, self._names[self._worker] + 1)
+            what = "has more than 100 characters" if worker else "is empty"
+            hint = "write who answered, or delete the row"
+            self.problems.append(error_at(place, f"WorkerId {what}", hint))
+            return
+        rewrites = tuple(self._rewrites(cells, line))
+        free = tuple(self._free_commands(cells, line))
+        self._answers += len(rewrites) + len(free)
+        if len(self._assignments) == MOST_ASSIGNMENTS or self._answers > MOST_ANSWERS:
+            sentence = (
+                f"the table has more than {MOST_ASSIGNMENTS:,} rows or {MOST_ANSWERS:,} answers"
+            )
+            raise LanguageError(sentence, Position(self._source, line), "split it up")
+        self._comments += bool(self._cell(cells, "answer.comment"))
+        if not rewrites and not free:
+            self._empty += 1
+            return
+        market = _WORKERS[self._worker]
+        seconds = self._seconds(cells, line)
+        self._assignments.append(Assignment(line, market, worker, seconds, rewrites, free))
+
+    def table(self) -> CrowdTable:
+        return CrowdTable(
+            tuple(self._assignments),
+            self._rejected,
+            self._empty,
+            self._comments,
+            tuple(sorted(self.problems)),
+        )
+
+    def _cell(self, cells: Sequence[str], name: str) -> str:
+        at = self._names.get(name)
+        return "" if at is None else normalise_line(_FORMULA_GUARD.sub("", cells[at]))
+
+    def _rewrites(self, cells: Sequence[str], line: int) -> Iterator[CrowdRewrite]:
+        for number, at in self._numbered.get("answer.utterance", ()):
+            text = self._answer(cells, f"Answer.utterance{number}", at, line)
+            if not text:
+                continue
+            column = self._names[f"input.command{number}"]
+            command = self._commands.get(cells[column])
+            if command is None:
+                command = self._cell(cells, f"input.command{number}")
+                self._commands[cells[column]] = command
+            if not command:
+                place = Position(self._source, line, column + 1)
+                message = f"Input.command{number} is empty, and its answer is not"
+                self.problems.append(error_at(place, message, "write the command"))
+                continue
+            forms = [
+                self._form(cells, line, f"{each}{number}") for each in ("parse", "parse_ground")
+            ]
+            if None not in forms:
+                yield CrowdRewrite(at + 1, command, forms[0] or "", forms[1] or "", text)
+
+    def _free_commands(self, cells: Sequence[str], line: int) -> Iterator[str]:
+        for number, at in self._numbered.get("answer.custom", ()):
+            if text := self._answer(cells, f"Answer.custom{number}", at, line):
+                yield text
+
+    def _answer(self, cells: Sequence[str], name: str, at: int, line: int) -> str:
+        """Return what somebody wrote; empty, with a warning, where it is too long."""
+        text = normalise_line(_FORMULA_GUARD.sub("", cells[at]))
+        if len(text) <= self._longest:
+            return text
+        place = Position(self._source, line, at + 1)
+        message = f"{name} has {len(text):,} characters; left out"
+        self.problems.append(warning_at(place, message, f"{self._longest:,} is the limit"))
+        return ""
+
+    def _form(self, cells: Sequence[str], line: int, name: str) -> str | None:
+        """Return a form in its canonical text, empty without one; None, with an error, where it cannot be read."""
+        at = self._names.get(f"input.{name}")
+        written = "" if at is None else cells[at].strip()
+        if at is None or not written:
+            return ""
+        if written not in self._forms:
+            try:
+                self._forms[written] = canonical_text(read_form(normalise_line(written)))
+            except LanguageError as error:
+                self._forms[written] = error
+        form = self._forms[written]
+        if isinstance(form, str):
+            return form
+        place = Position(self._source, line, at + 1)
+        self.problems.append(error_at(place, f"Input.{name}: {form.message}", form.hint))
+        return None
+
+    def _seconds(self, cells: Sequence[str], line: int) -> float | None:
+        written = self._cell(cells, "worktimeinseconds")
+        if not written:
+            return None
         try:
-            form = read_form(row[f"input.parse_ground{number}"])
-        except LanguageError as error:
-            sentence = f"Input.parse_ground{number}: {error.message}"
-            problems.append(error_at(place, sentence, error.hint))
-            continue
-        if not command:
-            problems.append(error_at(place, f"Input.command{number} is empty", "write the command"))
-            continue
-        yield GroundedTriple(utterance, command, form, place)
+            seconds = float(written)
+        except ValueError:
+            seconds = -1.0
+        if 0 <= seconds <= MOST_SECONDS:
+            return seconds
+        place = Position(self._source, line, self._names["worktimeinseconds"] + 1)
+        message = "WorkTimeInSeconds is no number of seconds within a day; taken as not known"
+        self.problems.append(warning_at(place, message, "write a number such as 71"))
+        return None

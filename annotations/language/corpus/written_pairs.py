@@ -140,6 +140,12 @@ def write_pairs(pairs: Iterable[tuple[str, str]]) -> Iterator[str]:
         yield f"{utterance}\n{form}\n"
 
 
+def write_triples(triples: Iterable[tuple[str, str, str]]) -> Iterator[str]:
+    """Stream records of paraphrase, command and grounded form, each as three lines."""
+    for paraphrase, command, form in triples:
+        yield f"{paraphrase}\n{command}\n{form}\n"
+
+
 def by_length(pairs: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
     """Sort pairs as the published files do: by the number of characters of the command."""
     return sorted(pairs, key=lambda pair: len(pair[0]))

@@ -11,6 +11,7 @@ from annotations.language.grounding.deanonymizer import (
     fill_all,
     filled,
     ground_like,
+    ground_text,
     resolve_slots,
 )
 from annotations.language.grounding.grounding import Grounded, ground
@@ -43,6 +44,7 @@ __all__ = [
     "filled",
     "ground",
     "ground_like",
+    "ground_text",
     "noun_for",
     "open_slots_as_json",
     "question_for",

@@ -23,6 +23,7 @@ from annotations.language.grounding.roles import SlotPath, SlotRole, role_of
 from annotations.language.grounding.utterance_mentions import UtteranceMentions
 from annotations.language.ontology import Ontology
 
+_CLASS_TOKEN = re.compile(r"<\w+>")
 _NUMBER = re.compile(r"(?<!\d)\d+(?=>?$)")
 
 
@@ -246,6 +247,26 @@ def ground_like(form: Form, label: Form, grounded: Form) -> Form:
             for path, entity in zip(places, entities, strict=True):
                 form = filled(form, path, entity)
     return form
+
+
+def ground_text(text: str, label: Form, grounded: Form) -> str:
+    """Return ``text`` with the entities that ``grounded`` has where ``label`` has the same class tokens.
+
+    Several tokens of one kind take theirs in order; those beyond the last one take the last. Tokens that
+    ``label`` does not have stay as they are.
+    """
+    known: dict[str, list[str]] = defaultdict(list)
+    for slot in slots_of(label):
+        if entity := _text_at(grounded, slot):
+            known[slot.token].append(entity)
+
+    def fill(match: re.Match[str]) -> str:
+        entities = known.get(match[0])
+        if not entities:
+            return match[0]
+        return entities.pop(0) if len(entities) > 1 else entities[0]
+
+    return _CLASS_TOKEN.sub(fill, text)
 
 
 def _text_at(form: Form, slot: Slot) -> str:

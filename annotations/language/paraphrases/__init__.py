@@ -1,10 +1,10 @@
-"""Paraphrases of prompts: what to tell their writers, what to tell moderators, and what a language model writes."""
+"""Paraphrases of prompts: what to tell their writers and moderators, what a language model writes, their vocabulary."""
 
 from __future__ import annotations
 
 from annotations.language.paraphrases.known_words import KnownWords
 from annotations.language.paraphrases.model_replies import rewrites_in
-from annotations.language.paraphrases.prompt_entities import entities_of
+from annotations.language.paraphrases.prompt_entities import entities_in, entities_of
 from annotations.language.paraphrases.rewrite_checks import (
     Named,
     RewriteFault,
@@ -24,10 +24,12 @@ from annotations.language.paraphrases.submission_flags import (
     FlagCode,
     FreeCommand,
     Rewrite,
+    bare_words,
     check_flags,
     free_command_flags,
     rewrite_flags,
 )
+from annotations.language.paraphrases.vocabulary import expected_vocabulary, vocabulary_growth
 from annotations.language.paraphrases.word_folding import folded_words
 
 __all__ = [
@@ -41,10 +43,13 @@ __all__ = [
     "Rewrite",
     "RewriteFault",
     "RewriteWarning",
+    "bare_words",
     "check_flags",
     "check_instructions",
     "check_rewrite",
+    "entities_in",
     "entities_of",
+    "expected_vocabulary",
     "folded_words",
     "free_command_flags",
     "instructions_version",
@@ -52,4 +57,5 @@ __all__ = [
     "rewrite_flags",
     "rewrite_request",
     "rewrites_in",
+    "vocabulary_growth",
 ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from annotations.language.english import DESCRIBED_CLASSES
+from annotations.language.forms import Constant, Form, walk
 from annotations.language.grounding import Grounded
 from annotations.language.ontology import Entity, Ontology
 from annotations.language.paraphrases.rewrite_checks import Named, lost_entities
@@ -19,6 +20,23 @@ def entities_of(grounded: Grounded, ontology: Ontology) -> tuple[Named, ...]:
         for wildcard, entity in grounded.values
     )
     return tuple(dict.fromkeys(each for each in named if each is not None))
+
+
+def entities_in(prompt: str, form: Form, ontology: Ontology) -> tuple[Named, ...]:
+    """Return the constants of a grounded form that ``prompt`` names, each once: for prompts from elsewhere.
+
+    Those that the ontology has as well have its other names.
+    """
+    texts = (each.value for each in walk(form) if isinstance(each, Constant))
+    entities = {each.text: each for each in reversed(ontology.entities)}
+    named = []
+    for text in dict.fromkeys(each for each in texts if isinstance(each, str)):
+        entity = entities.get(text)
+        is_described = entity is not None and entity.entity_class in DESCRIBED_CLASSES
+        aliases = entity.aliases if entity else ()
+        if not lost_entities(prompt, [Named(text, aliases)]):
+            named.append(Named(text, aliases, is_described))
+    return tuple(named)
 
 
 def _as_named(

@@ -87,13 +87,15 @@ def rewrite_flags(rewrite: Rewrite, knows: Knows) -> tuple[Flag, ...]:
 
 
 def _rewrite_flags(rewrite: Rewrite, knows: Knows) -> Iterator[Flag]:
-    is_reordered = sorted(_bare(rewrite.text).split()) == sorted(_bare(rewrite.prompt).split())
+    is_reordered = sorted(bare_words(rewrite.text).split()) == sorted(
+        bare_words(rewrite.prompt).split()
+    )
     if is_reordered or _is_same(rewrite.text, rewrite.prompt):
         yield Flag(FlagCode.COPY, rewrite.prompt)
-    said = _bare(rewrite.text)
+    said = bare_words(rewrite.text)
     # Equal and not alike: who says two prompts with other entities in one way repeats nothing.
     earlier = (*rewrite.own, *rewrite.others)
-    repeated = next((each for each in earlier if _bare(each) == said), None)
+    repeated = next((each for each in earlier if bare_words(each) == said), None)
     if repeated is not None:
         yield Flag(FlagCode.REPEAT, repeated)
     if rewrite.seconds is not None and rewrite.seconds < _least_seconds(rewrite):
@@ -147,13 +149,16 @@ def _least_seconds(rewrite: Rewrite) -> float:
     return max(LEAST_SECONDS, edits / MOST_EDITS_A_SECOND)
 
 
-@lru_cache(maxsize=2**15)  # each new text is compared with all earlier ones of its contributor
-def _bare(text: str) -> str:
-    """Return the words of ``text`` without courtesy and articles."""
+@lru_cache(maxsize=2**15)  # each new text is compared with earlier ones
+def bare_words(text: str) -> str:
+    """Return the words of ``text`` without courtesy and articles: who writes the same twice repeats them."""
     words = folded_words(text)
     return " ".join(word for word in words if word not in COURTESY_WORDS) or " ".join(words)
 
 
 def _is_same(one: str, other: str) -> bool:
     """Return whether two texts are ``ALIKE`` but for courtesy, articles, case and punctuation."""
-    return Levenshtein.normalized_similarity(_bare(one), _bare(other), score_cutoff=ALIKE) >= ALIKE
+    return (
+        Levenshtein.normalized_similarity(bare_words(one), bare_words(other), score_cutoff=ALIKE)
+        >= ALIKE
+    )

@@ -78,7 +78,7 @@ def job_cancel(request: WorldRequest, job: Job) -> HttpResponse:
 
 @job_view(WRITE)
 def job_answer(request: WorldRequest, job: Job) -> HttpResponse:
-    """Import the kept files after all, and remove what they do not have."""
+    """Import the kept files after all, as the report says."""
     try:
         return redirect("job", pk=answer_job(job, request.user).pk)
     except Refusal as error:

@@ -27,8 +27,8 @@ from annotations.web.rest.streaming import JSON_LINES
 class JobSerializer(serializers.ModelSerializer[Job]):
     """A background job, such as an import. ``report`` is its result, null until it has ended.
 
-    A job that ``is_waiting_for_answer`` would remove something: POST to ``answer/`` to allow it, or to
-    ``cancel/`` to drop the job.
+    A job that ``is_waiting_for_answer`` would remove something, or has checked crowd results: POST to ``answer/``
+    to allow what the report says, or to ``cancel/`` to drop the job.
     """
 
     report = serializers.DictField(allow_null=True)
@@ -106,7 +106,7 @@ class JobViewSet(Cancelling, RowsViewSet):
     @extend_schema(request=None, responses={202: JobSerializer})
     @action(detail=True, methods=["post"])
     def answer(self, request: ApiRequest, **kwargs: object) -> Response:
-        """Imports the kept files after all, and removes what they do not have."""
+        """Imports the kept files after all, as the report says."""
         return self.show(answer_job(self.get_object(), request.user), HTTPStatus.ACCEPTED)
 
 

@@ -24,14 +24,19 @@ TEMPLATES = {
     JobKind.IMPORT_GENERATOR: "annotations/background/_import_result.html",
     JobKind.IMPORT_PAIRS: "annotations/background/_pairs_result.html",
     JobKind.IMPORT_WORLD: "annotations/background/_world_result.html",
+    JobKind.IMPORT_RESULTS: "annotations/background/_results_result.html",
     JobKind.GENERATE: "annotations/background/_generation_result.html",
     JobKind.PROPOSE: "annotations/background/_proposals_result.html",
     JobKind.AUDIT: "annotations/background/_audit_result.html",
     JobKind.ANALYSE: "annotations/background/_analysis_result.html",
     JobKind.ANSWER: "annotations/background/_answers_result.html",
+    JobKind.PARAPHRASE: "annotations/background/_paraphrase_result.html",
     JobKind.PARSE: "annotations/background/_parse_result.html",
     JobKind.DELETE_WORLD: "annotations/background/_deletion_result.html",
 }
+# What asks whether an import may go on.
+QUESTIONS = {JobKind.IMPORT_RESULTS: "annotations/campaigns/_results_question.html"}
+REMOVAL_QUESTION = "annotations/background/_removal_question.html"
 
 
 def shown_report(
@@ -50,6 +55,7 @@ def shown_report(
     return {
         "report": report,
         "report_template": TEMPLATES[JobKind(kind)],
+        "question_template": QUESTIONS.get(JobKind(kind), REMOVAL_QUESTION),
         "problems": problems[:MOST_PROBLEMS],
         "n_problems_left_out": max(0, len(problems) - MOST_PROBLEMS),
         "n_errors": n_errors,

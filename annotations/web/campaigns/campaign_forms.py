@@ -9,12 +9,15 @@ import django_filters
 from django import forms
 from django.utils import timezone
 
+from annotations.campaigns.changing import CHANGEABLE, has_consents
 from annotations.campaigns.launching import PromptChoice
+from annotations.language.decoding import ENCODINGS
 from annotations.lists.filtering import Choices, PageFilters, Search
 from annotations.models import Campaign, World
 from annotations.models.campaigns import (
     LONGEST_CAMPAIGN_NAME,
     MOST_CHARACTERS_OF_TEXT,
+    Balance,
     Wording,
     contributor_kind_choices,
     wording_choices,
@@ -25,6 +28,7 @@ from annotations.web.forms import choice_field
 MOST_PROMPTS_PER_FORM = 20
 MOST_REWRITES, MOST_FREE_COMMANDS = 100, 20
 MOST_SUBMISSIONS = 1_000_000
+MOST_TASKS_PER_HOUR = 100_000
 INTRODUCTION = (
     "You will see commands that somebody could give to a robot at home. Say each of them in your own words: "
     "use other words or another order, but ask for the same. Write as you would speak."
@@ -75,11 +79,17 @@ class CampaignForm(forms.Form):
         initial=Wording.COMMAND,
         help_text="The English of the form sounds odd, but puts fewer words into people's mouths.",
     )
+    balance = forms.ChoiceField(
+        label="Equally many of each",
+        choices=[(Balance.FORMS, "form"), (Balance.LINES, "line of the templates")],
+        initial=Balance.FORMS,
+        help_text="A form may have many lines, and each line many wordings.",
+    )
     target_per_form = number_field(
         "Paraphrases per form", 10, 1_000, "Forms that have as many are left out.", 1
     )
     prompts_per_form = number_field(
-        "Prompts per form", 3, MOST_PROMPTS_PER_FORM, "Commands and entities, where they differ.", 1
+        "Prompts of each", 3, MOST_PROMPTS_PER_FORM, "Commands and entities, where they differ.", 1
     )
     task_size = number_field("Rewrites", 12, MOST_REWRITES, "in one task", 1)
     free_commands = number_field("Free commands", 2, MOST_FREE_COMMANDS, "of their own, at the end")
@@ -101,6 +111,9 @@ class CampaignForm(forms.Form):
         min_value=1,
         max_value=MOST_SUBMISSIONS,
         help_text="Empty: as many as come.",
+    )
+    most_per_hour = number_field(
+        "Tasks an hour", 1_000, MOST_TASKS_PER_HOUR, "begun by the link, at most", 1
     )
     price = forms.DecimalField(
         label="Price of a task",
@@ -129,10 +142,16 @@ class CampaignForm(forms.Form):
     consent = text_field("Consent", CONSENT)
     thanks = text_field("Thanks", THANKS)
 
-    OF_CHOICE = ("task_categories", "prompts_per_form", "target_per_form", "wording", "seed")
+    OF_CHOICE = (
+        *("task_categories", "prompts_per_form", "target_per_form"),
+        *("wording", "balance", "seed"),
+    )
     TASK = ("task_size", "free_commands", "target_per_form")
-    WHAT = ("prompts_per_form", "wording", "taboo_words", "check_every", "seed")
-    END = ("ends_at", "most_submissions", "price", "currency", "completion_code", "return_url")
+    WHAT = ("balance", "prompts_per_form", "wording", "taboo_words", "check_every", "seed")
+    END = (
+        *("ends_at", "most_submissions", "most_per_hour", "price", "currency"),
+        *("completion_code", "return_url"),
+    )
     MAY = ("allows_model_help", "allows_retake")
     TEXTS = ("introduction", "examples", "consent", "thanks")
 
@@ -189,6 +208,88 @@ class CampaignForm(forms.Form):
     @property
     def texts(self) -> list[forms.BoundField]:
         return self.group(self.TEXTS)
+
+
+class CampaignChangeForm(CampaignForm):
+    """What may still be changed of a campaign that was launched."""
+
+    version = forms.IntegerField(widget=forms.HiddenInput)
+
+    def __init__(self, campaign: Campaign, *args: Any, **kwargs: Any):
+        self.campaign = campaign
+        super().__init__(campaign.world, *args, initial=values_of(campaign), **kwargs)
+        for name in self.fields.keys() - {*CHANGEABLE, "version"}:
+            del self.fields[name]
+        consent = self.fields["consent"]
+        if has_consents(campaign):
+            consent.widget.attrs["readonly"] = True
+            consent.help_text = "Somebody has agreed to it, so it stays as it is."
+        else:
+            consent.help_text = "It can be changed until somebody has agreed to it."
+
+    def clean_ends_at(self) -> datetime | None:
+        """Return as ``CampaignForm`` does; the day that it has may be over."""
+        if self.cleaned_data["ends_at"] == last_day_of(self.campaign):
+            return self.campaign.ends_at
+        return super().clean_ends_at()
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """Return the values of a valid form, without its version."""
+        return {name: self.cleaned_data[name] for name in CHANGEABLE}
+
+
+def values_of(campaign: Campaign) -> dict[str, Any]:
+    """Return what the fields of ``CampaignChangeForm`` show."""
+    values = {name: getattr(campaign, name) for name in CHANGEABLE}
+    return {**values, "ends_at": last_day_of(campaign), "version": campaign.version}
+
+
+def last_day_of(campaign: Campaign) -> date | None:
+    """Return the last whole day of a campaign; None where it has no end."""
+    if campaign.ends_at is None:
+        return None
+    return timezone.localdate(campaign.ends_at - timedelta(microseconds=1))
+
+
+class ResultsForm(forms.Form):
+    """Results of a crowd market, and the campaign that they are of; without one they get a campaign of their own."""
+
+    file = forms.FileField(
+        help_text="A table (CSV) with WorkerId, Input.command1, Answer.utterance1 and so on, or a zip archive "
+        "with one.",
+    )
+    campaign = forms.ChoiceField(
+        label="Prompts of",
+        required=False,
+        help_text="The campaign whose task file it was. A new one is made of the prompts in the file, and is closed.",
+    )
+    name = forms.CharField(
+        label="Name of the new campaign", required=False, max_length=LONGEST_CAMPAIGN_NAME
+    )
+    encoding = forms.ChoiceField(
+        required=False, choices=[("", "as recognised"), *ENCODINGS.items()]
+    )
+
+    def __init__(self, world: World, *args: Any, **kwargs: Any):
+        super().__init__(*args, **kwargs)
+        rows = [(str(key), name) for key, name in world.campaigns.values_list("pk", "name")]
+        choice_field(self, "campaign").choices = [("", "a new campaign"), *rows]
+        self._world = world
+
+    def clean(self) -> None:
+        super().clean()
+        if "campaign" in self.cleaned_data and "name" in self.cleaned_data:
+            if self.cleaned_data["campaign"] and self.cleaned_data["name"]:
+                self.add_error("name", "Leave it empty: you have chosen a campaign.")
+            elif not (self.cleaned_data["campaign"] or self.cleaned_data["name"]):
+                self.add_error("name", "Name the new campaign, or choose one that is here.")
+
+    @property
+    def chosen(self) -> Campaign | None:
+        """Return the campaign that a valid form names; None for a new one."""
+        key = self.cleaned_data["campaign"]
+        return self._world.campaigns.get(pk=key) if key else None
 
 
 def campaign_choices(request: WorldRequest) -> Choices:

@@ -11,20 +11,27 @@ from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.views.decorators.cache import never_cache
 
+from annotations.campaigns.campaign_files import MOST_TASKS
+from annotations.campaigns.changing import CampaignChanged, change_campaign
 from annotations.campaigns.closing import close, forget, renew_link, reopen, revoke_link
+from annotations.campaigns.crowd_jobs import start_results_import
 from annotations.campaigns.launching import DrawnPrompt, draw_prompts, launch
 from annotations.campaigns.progress import progress_of
 from annotations.language.english import say_count
 from annotations.language.errors import LanguageError, Refusal
 from annotations.lists.listing import Listing, Sort, render_list
+from annotations.lists.paging import number_in
 from annotations.models import Campaign, CampaignPrompt, Contributor, Duty, World
 from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
-from annotations.people.allowances import may_take_long
+from annotations.people.allowances import may_take_long, takes_files
 from annotations.people.audit_log import note
 from annotations.web.campaigns.campaign_forms import (
+    CampaignChangeForm,
     CampaignFilters,
     CampaignForm,
     ContributorFilters,
+    ResultsForm,
+    values_of,
 )
 from annotations.web.campaigns.campaign_links import link_of
 from annotations.web.forms import posted, sentence_of
@@ -34,9 +41,9 @@ SORTS = {"newest": Sort("Launched", "-created_at"), "name": Sort("Campaign", "na
 CONTRIBUTOR_SORTS = {"began": Sort("Began", "-began_at")}
 # What a button does, and what is said afterwards.
 STEPS: dict[str, tuple[Callable[[Campaign], None], str]] = {
-    "close": (close, "Closed. Nobody can write any more; what came in stays."),
+    "close": (close, "Closed. Nobody can begin any more; who has begun may finish within a day."),
     "open": (reopen, "Open again."),
-    "revoke": (revoke_link, "The link leads nowhere now."),
+    "revoke": (revoke_link, "The link leads nowhere now, also for those who have begun."),
     "renew": (renew_link, "This campaign has a new link. The old one leads nowhere."),
 }
 
@@ -51,8 +58,14 @@ def campaigns(request: WorldRequest, world: World) -> HttpResponse:
 @may_take_long
 @world_view(Duty.MANAGE, READ_AND_WRITE)
 def campaign_new(request: WorldRequest, world: World) -> HttpResponse:
-    """Show the form that launches a campaign; its other button only previews the prompts."""
-    initial = {"name": f"Campaign {world.campaigns.count() + 1}"}
+    """Show the form that launches a campaign; its other button only previews the prompts.
+
+    The address may choose ``task_categories`` and ``target_per_form`` beforehand.
+    """
+    initial: dict[str, Any] = {"name": f"Campaign {world.campaigns.count() + 1}"}
+    initial["task_categories"] = request.GET.getlist("task_categories")
+    if target := number_in(request.GET.get("target_per_form", "")):
+        initial["target_per_form"] = target
     form = CampaignForm(world, posted(request), initial=initial)
     context: dict[str, Any] = {"form": form}
     if form.is_bound and form.is_valid():
@@ -70,6 +83,27 @@ def campaign_new(request: WorldRequest, world: World) -> HttpResponse:
             form.add_error(field, refusal.message)
     status = 422 if form.errors else 200
     return render(request, "annotations/campaigns/campaign_new.html", context, status=status)
+
+
+@takes_files
+@world_view(Duty.MANAGE, READ_AND_WRITE)
+def campaign_results(request: WorldRequest, world: World) -> HttpResponse:
+    """Take the results of a crowd market; a job checks them, and asks before it imports them."""
+    initial = {"campaign": request.GET.get("campaign", "")}
+    form = ResultsForm(world, posted(request), request.FILES or None, initial=initial)
+    if form.is_bound and form.is_valid():
+        sent = form.cleaned_data
+        values = form.chosen, sent["name"], sent["encoding"]
+        try:
+            job = start_results_import(world, sent["file"], request.user, *values)
+        except Refusal as refusal:
+            form.add_error("name", refusal.message)
+        else:
+            note(request, sent["name"] or str(form.chosen))
+            return redirect("job", pk=job.pk)
+    status = 422 if form.errors else 200
+    context = {"form": form}
+    return render(request, "annotations/campaigns/campaign_results.html", context, status=status)
 
 
 def preview_of(drawn: list[DrawnPrompt]) -> dict[str, Any]:
@@ -90,8 +124,45 @@ def campaign_page(request: WorldRequest, world: World, pk: int) -> HttpResponse:
         "progress": progress_of(row),
         "prompts": one_of_each(row)[:MOST_SHOWN],
         "listing": listing,
+        "most_tasks": MOST_TASKS,
     }
     return render_list(request, "annotations/campaigns/campaign_page.html", context)
+
+
+@world_view(Duty.MANAGE, READ_AND_WRITE)
+def campaign_edit(request: WorldRequest, world: World, pk: int) -> HttpResponse:
+    """Show the form with the texts, the end and the payment of a campaign; a POST saves them as its next version."""
+    row = get_object_or_404(world.campaigns.select_related("world"), pk=pk)
+    form = CampaignChangeForm(row, posted(request))
+    context: dict[str, Any] = {"campaign": row, "form": form}
+    status = 422 if form.errors else 200
+    if form.is_bound and form.is_valid():
+        try:
+            changed = change_campaign(row, form.values, form.cleaned_data["version"])
+        except CampaignChanged as clash:
+            # What they wrote stays in the form, which is now about the present version.
+            context |= {"clash": clash.message, "others": others_of(form, clash.current)}
+            form.data = {**request.POST.dict(), "version": clash.current.version}
+            status = clash.status
+        except Refusal as refusal:
+            form.add_error("consent", refusal.message)
+            status = refusal.status
+        else:
+            note(request, f"{row.name}: {', '.join(changed)}")
+            said = f"Saved as version {row.version + 1}." if changed else "Nothing has changed."
+            messages.success(request, said)
+            return redirect("campaign_page", world=world.name, pk=pk)
+    return render(request, "annotations/campaigns/campaign_edit.html", context, status=status)
+
+
+def others_of(form: CampaignChangeForm, current: Campaign) -> list[tuple[str, object]]:
+    """Return the label and the stored value of each field that the form would change in ``current``."""
+    stored = {**values_of(current), "ends_at": current.ends_at}
+    return [
+        (str(form[name].label), stored[name])
+        for name, value in form.values.items()
+        if stored[name] != value
+    ]
 
 
 def one_of_each(campaign: Campaign) -> QuerySet[CampaignPrompt]:

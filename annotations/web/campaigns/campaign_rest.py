@@ -7,23 +7,33 @@ from http import HTTPStatus
 from typing import Any
 
 from django.db.models import QuerySet
+from django.http import StreamingHttpResponse
+from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.decorators import action
 from rest_framework.response import Response
 
+from annotations.campaigns.campaign_files import MOST_TASKS, accepted_triples, task_file
+from annotations.campaigns.changing import change_campaign
 from annotations.campaigns.closing import close, forget, renew_link, reopen, revoke_link
+from annotations.campaigns.crowd_jobs import start_results_import
 from annotations.campaigns.launching import launch
 from annotations.campaigns.progress import progress_of
+from annotations.exporting.split_export import SplitFormat
+from annotations.language.decoding import ENCODINGS
 from annotations.models import Campaign, Contributor, Duty, Scope
 from annotations.models.campaigns import (
     LONGEST_CAMPAIGN_NAME,
     MOST_CHARACTERS_OF_TEXT,
+    Balance,
     Wording,
+    balance_choices,
     wording_choices,
 )
-from annotations.people.allowances import may_take_long
+from annotations.people.allowances import may_take_long, takes_files
 from annotations.people.audit_log import note
+from annotations.web.background.job_rest import JobSerializer, address_of_job
 from annotations.web.campaigns.campaign_forms import (
     CONSENT,
     EXAMPLES,
@@ -32,17 +42,24 @@ from annotations.web.campaigns.campaign_forms import (
     MOST_PROMPTS_PER_FORM,
     MOST_REWRITES,
     MOST_SUBMISSIONS,
+    MOST_TASKS_PER_HOUR,
     THANKS,
+    CampaignChangeForm,
     CampaignFilters,
     CampaignForm,
     ContributorQuery,
+    ResultsForm,
+    values_of,
 )
 from annotations.web.campaigns.campaign_links import link_of
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.idempotency import once
+from annotations.web.rest.negotiation import AnyType
+from annotations.web.rest.parsing import FilesParser
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import RowsViewSet
+from annotations.web.rest.streaming import attachment
 
 READ_BY_ADMINS = dict.fromkeys(("list", "retrieve"), Duty.MANAGE)
 READ_SCOPES = dict.fromkeys(("list", "retrieve"), Scope.READ)
@@ -53,6 +70,9 @@ class CampaignSerializer(serializers.ModelSerializer[Campaign]):
 
     link = serializers.SerializerMethodField()
     is_over = serializers.BooleanField()
+    grace_ends_at = serializers.DateTimeField(
+        allow_null=True, help_text="until when those who have begun may finish"
+    )
     people = serializers.IntegerField()
     finished = serializers.IntegerField()
     answers = serializers.IntegerField()
@@ -61,11 +81,12 @@ class CampaignSerializer(serializers.ModelSerializer[Campaign]):
     class Meta:
         model = Campaign
         fields = [
-            *("id", "name", "link", "is_over", "wording", "task_size", "free_commands"),
+            *("id", "name", "link", "is_over", "wording", "balance", "task_size", "free_commands"),
             *("target_per_form", "taboo_words", "check_every", "allows_model_help"),
             *("allows_retake", "price", "currency", "completion_code", "return_url", "ends_at"),
-            *("most_submissions", "seed", "introduction", "examples", "consent", "thanks"),
-            *("people", "finished", "answers", "created_by", "created_at", "closed_at"),
+            *("most_submissions", "most_per_hour", "seed", "introduction", "examples"),
+            *("consent", "thanks", "people", "finished", "answers", "created_by"),
+            *("created_at", "closed_at", "grace_ends_at", "version"),
         ]
 
     def get_link(self, row: Campaign) -> str:
@@ -73,7 +94,7 @@ class CampaignSerializer(serializers.ModelSerializer[Campaign]):
 
 
 class MarkdownField(serializers.CharField):
-    def __init__(self, default: str, **options: Any):
+    def __init__(self, default: Any = serializers.empty, **options: Any):
         options |= {"max_length": MOST_CHARACTERS_OF_TEXT, "default": default}
         super().__init__(allow_blank=True, trim_whitespace=False, **options)
 
@@ -84,6 +105,11 @@ class NewCampaign(Fields):
     name = LineField(max_length=LONGEST_CAMPAIGN_NAME)
     task_categories = serializers.ListField(child=LineField(max_length=60), default=list)
     wording = serializers.ChoiceField(choices=wording_choices(), default=Wording.COMMAND)
+    balance = serializers.ChoiceField(
+        choices=balance_choices(),
+        default=Balance.FORMS,
+        help_text="what gets ``prompts_per_form`` prompts, and equally many contributors",
+    )
     target_per_form = serializers.IntegerField(min_value=1, max_value=1_000, default=10)
     prompts_per_form = serializers.IntegerField(
         min_value=1, max_value=MOST_PROMPTS_PER_FORM, default=3
@@ -102,11 +128,55 @@ class NewCampaign(Fields):
     most_submissions = serializers.IntegerField(
         min_value=1, max_value=MOST_SUBMISSIONS, allow_null=True, default=None
     )
+    most_per_hour = serializers.IntegerField(
+        min_value=1, max_value=MOST_TASKS_PER_HOUR, default=1_000, help_text="tasks begun"
+    )
     seed = serializers.IntegerField(min_value=0, max_value=2**31 - 1, default=0)
     introduction = MarkdownField(INTRODUCTION)
     examples = MarkdownField(EXAMPLES)
     consent = MarkdownField(CONSENT)
     thanks = MarkdownField(THANKS)
+
+
+class CampaignChange(Fields):
+    """What may be changed after the launch. The consent stays once somebody has agreed to it."""
+
+    price = serializers.DecimalField(7, 2, min_value=0, allow_null=True)
+    currency = LineField(max_length=8, allow_blank=True)
+    completion_code = LineField(max_length=40, allow_blank=True)
+    return_url = serializers.URLField(max_length=500, allow_blank=True)
+    ends_at = serializers.DateField(allow_null=True, help_text="the last day")
+    most_submissions = serializers.IntegerField(
+        min_value=1, max_value=MOST_SUBMISSIONS, allow_null=True
+    )
+    most_per_hour = serializers.IntegerField(min_value=1, max_value=MOST_TASKS_PER_HOUR)
+    introduction = MarkdownField()
+    examples = MarkdownField()
+    consent = MarkdownField()
+    thanks = MarkdownField()
+
+
+class TaskQuery(serializers.Serializer[Any]):
+    """How many tasks a file has."""
+
+    tasks = serializers.IntegerField(min_value=1, max_value=MOST_TASKS, default=100)
+
+
+class ImportedResults(serializers.Serializer[Any]):
+    """Results of a crowd market: of ``campaign``, or of a new one called ``name``, made of the prompts in the file."""
+
+    file = serializers.FileField(help_text="A table, or a zip archive with one.")
+    campaign = serializers.IntegerField(required=False)
+    name = serializers.CharField(max_length=LONGEST_CAMPAIGN_NAME, required=False)
+    encoding = serializers.ChoiceField(
+        choices=list(ENCODINGS), required=False, help_text="Recognised where it is not told."
+    )
+
+
+class CheckedResultsSerializer(serializers.Serializer[Any]):
+    """The job that checks the results. Where it waits for an answer, POST to its ``answer/`` or ``cancel/``."""
+
+    job = JobSerializer()
 
 
 class ProgressOfCampaignSerializer(serializers.Serializer[Any]):
@@ -133,8 +203,11 @@ class CampaignViewSet(RowsViewSet):
     serializer_class = CampaignSerializer
     filterset_class = CampaignFilters
     STEPS = ("close", "reopen", "revoke_link", "renew_link")
-    duties = {**READ_BY_ADMINS, **dict.fromkeys(("create", "progress", *STEPS), Duty.MANAGE)}
-    scopes = {**READ_SCOPES, "progress": Scope.READ}
+    FILES = ("tasks", "triples")
+    CHANGES = ("create", "partial_update", "results", "progress", *FILES, *STEPS)
+    duties = {**READ_BY_ADMINS, **dict.fromkeys(CHANGES, Duty.MANAGE)}
+    conditional = ("partial_update",)
+    scopes = {**READ_SCOPES, **dict.fromkeys(("progress", *FILES), Scope.READ)}
     sorts = {"newest": "-created_at", "name": "name", "id": "pk"}
 
     def rows(self) -> QuerySet[Campaign]:
@@ -154,16 +227,68 @@ class CampaignViewSet(RowsViewSet):
         response["Location"] = request.build_absolute_uri(f"{request.path}{row.pk}/")
         return response
 
+    @extend_schema(request=CampaignChange, responses={200: CampaignSerializer})
+    def partial_update(self, request: ApiRequest, **kwargs: object) -> Response:
+        """Changes texts, end and payment; prompts and the size of a task stay."""
+        with self.matching() as row:
+            sent = self.read(CampaignChange, partial=True)
+            form = CampaignChangeForm(row, {**values_of(row), **sent})
+            if not form.is_valid():
+                raise refusal_of_form(form)
+            changed = change_campaign(row, form.values, row.version)
+        note(request, f"{row.name}: {', '.join(changed)}")
+        return self.show(self.get_object())
+
     @extend_schema(responses={200: ProgressOfCampaignSerializer})
     @action(detail=True)
     def progress(self, request: ApiRequest, **kwargs: object) -> Response:
         """Counts what has come in: forms reached, pace, time left, cost."""
         return Response(ProgressOfCampaignSerializer(progress_of(self.get_object())).data)
 
+    @extend_schema(parameters=[TaskQuery], responses={(200, "text/csv"): OpenApiTypes.STR})
+    @may_take_long
+    @action(detail=True, pagination_class=None, content_negotiation_class=AnyType)
+    def tasks(self, request: ApiRequest, **kwargs: object) -> StreamingHttpResponse:
+        """Streams a file of tasks for a crowd market, a row each: forms with fewest submissions first."""
+        query = TaskQuery(data=request.query_params)
+        query.is_valid(raise_exception=True)
+        row = self.get_object()
+        pieces = task_file(row, query.validated_data["tasks"])
+        return attachment(pieces, SplitFormat.CSV, f"{self.world.name}-campaign-{row.pk}-tasks.csv")
+
+    @extend_schema(responses={(200, "text/plain"): OpenApiTypes.STR})
+    @may_take_long
+    @action(detail=True, pagination_class=None, content_negotiation_class=AnyType)
+    def triples(self, request: ApiRequest, **kwargs: object) -> StreamingHttpResponse:
+        """Streams the accepted rewrites as triples: paraphrase, prompt, grounded form."""
+        row = self.get_object()
+        pieces = accepted_triples(row)
+        name = f"{self.world.name}-campaign-{row.pk}-paraphrasings.txt"
+        return attachment(pieces, SplitFormat.TXT, name)
+
+    @extend_schema(
+        request={"multipart/form-data": ImportedResults}, responses={202: CheckedResultsSerializer}
+    )
+    @takes_files
+    @action(detail=False, methods=["post"], parser_classes=[FilesParser])
+    @once
+    def results(self, request: ApiRequest, **kwargs: object) -> Response:
+        """Checks the results of a crowd market, by a job that then waits for an answer. Nothing is imported before."""
+        form = ResultsForm(self.world, request.data, request.FILES)
+        if not form.is_valid():
+            raise refusal_of_form(form)
+        sent, campaign = form.cleaned_data, form.chosen
+        values = campaign, sent["name"], sent["encoding"]
+        job = start_results_import(self.world, sent["file"], request.user, *values)
+        note(request, sent["name"] or str(campaign))
+        location = {"Location": address_of_job(request, job)}
+        done = CheckedResultsSerializer({"job": job}).data
+        return Response(done, status=HTTPStatus.ACCEPTED, headers=location)
+
     @extend_schema(request=None, responses={200: CampaignSerializer})
     @action(detail=True, methods=["post"])
     def close(self, request: ApiRequest, **kwargs: object) -> Response:
-        """Closes a campaign: it takes nothing any more, and what came in stays."""
+        """Closes a campaign: nobody can begin any more, and who has begun may finish until ``grace_ends_at``."""
         return self._do(close)
 
     @extend_schema(request=None, responses={200: CampaignSerializer})

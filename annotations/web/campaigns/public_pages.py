@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import wraps
+from hashlib import sha256
 from http import HTTPStatus
 
 from django import forms
@@ -18,22 +19,21 @@ from django.views.decorators.cache import never_cache
 from django.views.decorators.http import require_http_methods
 
 from annotations.campaigns.answering import finish, save_answer, warnings_for
+from annotations.campaigns.limits import TooOften, count_task, require_patience
 from annotations.campaigns.pseudonyms import DEVICE, market_id_in, new_device, pseudonym_of
 from annotations.campaigns.taboo import taboo_words_for
-from annotations.campaigns.tasks import begin, contributor_of, require_open
+from annotations.campaigns.tasks import CampaignOver, begin, contributor_of, require_open
 from annotations.language.errors import Refusal
 from annotations.language.paraphrases import RewriteFault, RewriteWarning
 from annotations.models import Campaign, Contributor, Submission
 from annotations.models.campaigns import MOST_PLACES
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.people.access import READ_AND_WRITE, WRITE
-from annotations.people.rate_limits import BEGUN_TASKS, SAVED_ANSWERS
+from annotations.people.allowances import only_reads
 
 KNOWN_FOR = 30 * 24 * 3600  # seconds for which a browser is known
 LONGEST_LOOK = 24 * 3600  # seconds; who looks at a prompt for longer was away
 SHOWN = "annotations.campaigns.shown"  # salts what is signed
-TOO_OFTEN = "This is more than one person writes. Wait a minute, and go on."
-TOO_MANY = "Too many people begin from this address. Try again in an hour."
 ELSEWHERE = "This task was begun in another browser. Go on there: what you wrote is kept."
 # What a writer is told; {} is the evidence.
 WARNINGS = {
@@ -138,21 +138,28 @@ def visit_to(campaign: Campaign, request: HttpRequest) -> Visit:
 def campaign_begin(visit: Visit) -> HttpResponse:
     """Say what the campaign is about, and begin a task for whoever agrees."""
     contributor, campaign = visit.contributor, visit.campaign
-    has_to_begin = contributor is None or (contributor.is_finished and campaign.allows_retake)
+    may_retake = campaign.allows_retake and not campaign.is_over
+    has_to_begin = contributor is None or (contributor.is_finished and may_retake)
+    if has_to_begin:
+        require_open(campaign)
+    elif contributor and not contributor.is_finished and campaign.is_locked:
+        raise CampaignOver(has_begun=True)
+    digest = sha256(campaign.consent.encode()).hexdigest()[:16]
     if visit.request.method != "POST":
-        if has_to_begin:
-            require_open(campaign)
         if market_id_in(visit.request.GET):
             return visit.to()  # the id leaves the address, and with it every log of it
-        return visit.page("begin", has_to_begin=has_to_begin)
+        return visit.page("begin", has_to_begin=has_to_begin, consent_digest=digest)
     if has_to_begin:
+        missing = ""
         if not visit.request.POST.get("agrees"):
             missing = "Tick the box to begin: without your consent nothing is stored."
-            return visit.page("begin", 422, has_to_begin=True, missing=missing)
-        if BEGUN_TASKS.take(str(visit.request.META["REMOTE_ADDR"])) is None:
-            refusal = Refusal(TOO_MANY, "too_often", HTTPStatus.TOO_MANY_REQUESTS)
-            refusal.wait = BEGUN_TASKS.seconds
-            raise refusal
+        elif visit.request.POST.get("consent", digest) != digest:
+            missing = "This text was changed while you read it. Read it again, then tick the box."
+        if missing:
+            return visit.page(
+                "begin", 422, has_to_begin=True, missing=missing, consent_digest=digest
+            )
+        count_task(campaign, str(visit.request.META["REMOTE_ADDR"]))
         contributor = begin(campaign, visit.pseudonym)
     assert contributor is not None
     return visit.to(next_place(contributor))
@@ -166,6 +173,8 @@ def campaign_place(visit: Visit, position: int) -> HttpResponse:
         return visit.to()
     if place.contributor.is_finished:
         return visit.to("done")
+    if visit.campaign.is_locked:
+        raise CampaignOver(has_begun=True)
     request = visit.request
     if request.method != "POST":
         return show_place(visit, place)
@@ -173,10 +182,12 @@ def campaign_place(visit: Visit, position: int) -> HttpResponse:
     if not form.is_valid():
         return show_place(visit, place, form, status=422)
     text = form.cleaned_data["text"]
-    if SAVED_ANSWERS.take(f"{place.contributor_id}") is None:
-        form.add_error("text", TOO_OFTEN)
-        response = show_place(visit, place, form, HTTPStatus.TOO_MANY_REQUESTS)
-        response["Retry-After"] = str(SAVED_ANSWERS.seconds)
+    try:
+        require_patience(place.contributor)
+    except TooOften as refusal:
+        form.add_error("text", refusal.message)
+        response = show_place(visit, place, form, refusal.status)
+        response["Retry-After"] = str(refusal.wait)
         return response
     seconds = seconds_since(form.cleaned_data["shown"], place)
     save_answer(place, text, seconds, was_pasted=form.cleaned_data["pasted"])
@@ -186,6 +197,7 @@ def campaign_place(visit: Visit, position: int) -> HttpResponse:
     return visit.to(position + 1 if position < place.contributor.submissions.count() else "done")
 
 
+@only_reads
 @public_view(WRITE)
 def campaign_check(visit: Visit, position: int) -> HttpResponse:
     """Answer, as JSON, what to tell the writer of a text; nothing is stored."""

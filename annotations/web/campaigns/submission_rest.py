@@ -5,11 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 from django.db.models import QuerySet
+from django.http import StreamingHttpResponse
+from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.decorators import action
 from rest_framework.response import Response
 
+from annotations.campaigns.campaign_files import submission_table
 from annotations.campaigns.moderation import (
     MOST_AT_ONCE,
     accept,
@@ -19,16 +22,20 @@ from annotations.campaigns.moderation import (
     reject,
     take_back,
 )
+from annotations.exporting.split_export import SplitFormat
 from annotations.language.limits import MAX_FORM
 from annotations.lists.paging import LARGEST_INTEGER
 from annotations.models import Duty, Scope, Submission
 from annotations.models.campaigns import SubmissionKind
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.models.queueing import LONGEST_REASON
+from annotations.people.allowances import may_take_long
 from annotations.web.campaigns.submission_filters import SubmissionFilters
 from annotations.web.rest.fields import Fields
+from annotations.web.rest.negotiation import AnyType
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import RowsViewSet
+from annotations.web.rest.streaming import attachment
 
 DECISIONS = {"accept": accept, "reject": reject}
 
@@ -106,15 +113,28 @@ class SubmissionViewSet(RowsViewSet):
     serializer_class = SubmissionSerializer
     filterset_class = SubmissionFilters
     duties = dict.fromkeys(
-        ("list", "retrieve", "decide", "take_back", "mend", "with_form", "with_doubt"), Duty.REVIEW
+        ("list", "retrieve", "export", "decide", "take_back", "mend", "with_form", "with_doubt"),
+        Duty.REVIEW,
     )
-    scopes = dict.fromkeys(("list", "retrieve"), Scope.READ)
+    scopes = dict.fromkeys(("list", "retrieve", "export"), Scope.READ)
     sorts = {"id": "pk", "newest": "-pk"}
 
     def rows(self) -> QuerySet[Submission]:
         rows = Submission.objects.filter(contributor__campaign__world=self.world).answered()
         related = ("contributor__campaign", "prompt")
         return rows.exclude(kind=SubmissionKind.CHECK).select_related(*related)
+
+    @extend_schema(
+        operation_id="submissions_export",
+        filters=True,
+        responses={(200, "text/csv"): OpenApiTypes.STR},
+    )
+    @may_take_long
+    @action(detail=False, pagination_class=None, content_negotiation_class=AnyType)
+    def export(self, request: ApiRequest, **kwargs: object) -> StreamingHttpResponse:
+        """Streams the submissions that the filters leave as CSV, with pseudonyms alone."""
+        pieces = submission_table(self.filter_queryset(self.get_queryset()))
+        return attachment(pieces, SplitFormat.CSV, f"{self.world.name}-submissions.csv")
 
     @extend_schema(request=NewDecisions, responses={200: DecidedSerializer})
     @action(detail=False, methods=["post"])

@@ -13,7 +13,6 @@ from rest_framework import serializers, status
 from rest_framework.decorators import action
 from rest_framework.response import Response
 
-from annotations.exporting.split_export import SplitFormat
 from annotations.labelling.collecting import MOST_AT_ONCE, collect
 from annotations.labelling.entity_spans import mend_span
 from annotations.language.errors import LanguageError, Refusal
@@ -30,10 +29,11 @@ from annotations.web.corpus.corpus_filters import UtteranceFilters
 from annotations.web.corpus.label_rest import LabelSerializer, NewLabel, NewSpan
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
-from annotations.web.rest.negotiation import CONTENT_TYPES, AnyType
+from annotations.web.rest.negotiation import AnyType
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_text
 from annotations.web.rest.routes import RowsViewSet
+from annotations.web.rest.streaming import attachment
 
 
 class UtteranceSerializer(serializers.ModelSerializer[Utterance]):
@@ -170,10 +170,7 @@ class UtteranceViewSet(RowsViewSet):
         query.is_valid(raise_exception=True)
         as_ = query.validated_data["as"]
         pieces = export_labels(self.world, self.filter_queryset(self.get_queryset()), as_)
-        response = StreamingHttpResponse(pieces, content_type=CONTENT_TYPES[SplitFormat(as_)])
-        name = f"{self.world.name}-utterances.{as_}"
-        response["Content-Disposition"] = f'attachment; filename="{name}"'
-        return response
+        return attachment(pieces, as_, f"{self.world.name}-utterances.{as_}")
 
     def destroy(self, request: ApiRequest, **kwargs: object) -> Response:
         """Deletes an utterance, which keeps its answers: ``history/utterance/ID/`` restores it with them."""

@@ -12,7 +12,7 @@ from django.utils.http import parse_etags
 
 from annotations.editing.edits import Overtaken
 from annotations.language.errors import Refusal
-from annotations.models import Editable
+from annotations.models import Campaign, Editable
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import PreconditionRequired
 
@@ -21,7 +21,7 @@ ANY = "*"
 
 def etag_of(row: Any, shown: Mapping[str, Any]) -> str:
     """Return the tag of a row: its version number if it has one, else a hash of what is shown of it."""
-    if isinstance(row, Editable):
+    if isinstance(row, Editable | Campaign):
         return f'"{row.version}"'
     text = json.dumps(shown, sort_keys=True, cls=DjangoJSONEncoder)
     return f'"{hashlib.sha256(text.encode()).hexdigest()[:20]}"'

@@ -2,6 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
+from django.http import StreamingHttpResponse
+
+from annotations.exporting.split_export import SplitFormat
+from annotations.web.rest.negotiation import CONTENT_TYPES
+
 JSON_LINES = "application/jsonl"
 
 
@@ -11,3 +18,10 @@ class BrokenOff(Exception):
     Raised while the pieces are sent. The web server then closes the connection without the end of the
     answer, so that no client takes it for whole.
     """
+
+
+def attachment(pieces: Iterable[bytes], format: str, name: str) -> StreamingHttpResponse:
+    """Send a file in pieces, to be kept under ``name``. ``format`` is one of ``CONTENT_TYPES``."""
+    response = StreamingHttpResponse(pieces, content_type=CONTENT_TYPES[SplitFormat(format)])
+    response["Content-Disposition"] = f'attachment; filename="{name}"'
+    return response

@@ -68,7 +68,7 @@ class PairsForm(forms.Form):
     archive = forms.FileField(
         allow_empty_file=True,
         help_text="A zip archive with any of the folders gen, para, gen_logical and para_logical "
-        "(train.txt, val.txt, test.txt in each), paraphrasings.txt and tables of results (.csv).",
+        "(train.txt, val.txt, test.txt in each) and paraphrasings.txt.",
     )
     notation = forms.ChoiceField(
         required=False,

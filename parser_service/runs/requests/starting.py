@@ -31,9 +31,9 @@ def start_runs(world: World, by: User, *, seeds: Sequence[int], **asked: Any) ->
 
     Raises TooMany, and Refusal as ``run_requests.request`` does.
     """
-    _require_left(by, len(seeds))
+    require_left(by, len(seeds))
     answers = request_seeds(world, seeds=seeds, by=by, **asked)
-    _count(by, len(answers))
+    count_started(by, len(answers))
     return answers
 
 
@@ -48,9 +48,9 @@ def start_again(run: TrainingRun, by: User) -> Answer:
             f"{run.split} has not been frozen anew, so there is nothing to retrain on.",
             "split_not_frozen_anew",
         )
-    _require_left(by, 1)
+    require_left(by, 1)
     answer = retrain(run, newest, by)
-    _count(by, 1)
+    count_started(by, 1)
     return answer
 
 
@@ -67,11 +67,12 @@ def start_learning_curve(run: TrainingRun, by: User, n_seeds: int = 1) -> list[T
                 f"This learning curve needs {len(new)} more runs, and you may start {left} within this "
                 "hour. Try again later."
             )
-    _count(by, len(new))
+    count_started(by, len(new))
     return new
 
 
-def _require_left(by: User, asked: int) -> None:
+def require_left(by: User, asked: int) -> None:
+    """Raise TooMany where somebody may not start as many runs within this hour."""
     left = STARTED_RUNS.left(str(by.pk))
     if asked <= left:
         return
@@ -82,10 +83,11 @@ def _require_left(by: User, asked: int) -> None:
         )
     raise TooMany(
         f"{asked} runs are more than the {left} that you may still start within this hour. "
-        "Ask for fewer seeds."
+        "Ask for fewer, or try again later."
     )
 
 
-def _count(by: User, started: int) -> None:
+def count_started(by: User, started: int) -> None:
+    """Count runs against what somebody may start within this hour."""
     for _ in range(started):
         STARTED_RUNS.take(str(by.pk))

@@ -6,6 +6,7 @@ import pytest
 
 from annotations.campaigns.answering import named_in
 from annotations.campaigns.launching import PromptChoice, draw_prompts
+from annotations.campaigns.tasks import begin
 from annotations.language.errors import Refusal
 from annotations.language.paraphrases import lost_entities
 from annotations.models import Paraphrase
@@ -98,3 +99,18 @@ def test_a_name_is_taken_once(launched):
 def test_checks_are_planted_where_they_are_asked_for(launched):
     assert not launched(name="without").prompts.exclude(check_words="").exists()
     assert launched(name="with", check_every=2).prompts.exclude(check_words="").count() > 1
+
+
+def test_lines_are_balanced_where_they_are_chosen(launched, household):
+    campaign = launched({"balance": "lines"}, task_size=30, free_commands=0)
+    by_line = Counter(campaign.prompts.values_list("line", flat=True))
+    patterns = set(household.grammar.templates.values_list("pattern", flat=True))
+    assert set(by_line) <= patterns
+    assert len(by_line) > campaign.prompts.values("logical_form").distinct().count()
+    assert set(by_line.values()) <= {1, 2}
+    for number in range(len(by_line) // 10):
+        begin(campaign, f"contributor {number}")
+    given = Counter(
+        campaign.prompts.filter(submissions__isnull=False).values_list("line", flat=True)
+    )
+    assert max(given.values()) - min(given[line] for line in by_line) <= 1

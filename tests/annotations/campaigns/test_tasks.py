@@ -16,6 +16,7 @@ from annotations.campaigns.tasks import CampaignOver, begin, choose_prompts
 from annotations.language.errors import Refusal
 from annotations.language.paraphrases import RewriteFault
 from annotations.models import Campaign, Contributor, Submission
+from annotations.models.campaigns import GRACE
 from tests.at_once import at_once
 from tests.launched_campaigns import small_campaign
 
@@ -88,15 +89,31 @@ def test_who_begins_twice_at_once_has_one_task(launched):
     assert Contributor.objects.count() == 1
 
 
-def test_a_campaign_that_is_over_takes_nothing(launched):
+@pytest.mark.parametrize("column", ["closed_at", "ends_at"])
+def test_who_has_begun_finishes_within_a_day_of_the_end(launched, column):
     campaign = launched()
-    contributor = begin(campaign, "one")
-    campaign.closed_at = timezone.now()
+    place = begin(campaign, "one").submissions.first()
+    for ago in (timedelta(seconds=1), GRACE - timedelta(minutes=1)):
+        setattr(campaign, column, timezone.now() - ago)
+        campaign.save()
+        with pytest.raises(CampaignOver):
+            begin(campaign, "two")
+        assert save_answer(place, f"do it {ago}").text
+    setattr(campaign, column, timezone.now() - GRACE)
     campaign.save()
     with pytest.raises(CampaignOver):
-        begin(campaign, "two")
-    with pytest.raises(CampaignOver):
-        save_answer(contributor.submissions.first(), "do it")
+        save_answer(place, "do it now")
+    assert begin(campaign, "one") == place.contributor
+
+
+def test_the_first_of_two_ends_counts(launched):
+    campaign = launched()
+    assert campaign.ended_at is campaign.grace_ends_at is None
+    now = timezone.now()
+    campaign.closed_at, campaign.ends_at = now - timedelta(hours=1), now - timedelta(hours=2)
+    assert campaign.ended_at == campaign.ends_at
+    campaign.ends_at = now + timedelta(hours=1)
+    assert campaign.ended_at == campaign.closed_at and not campaign.is_locked
 
 
 def test_a_campaign_ends_with_its_number_or_its_time(launched):

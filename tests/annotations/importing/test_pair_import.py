@@ -220,14 +220,11 @@ def test_folders_and_files_are_known_in_any_case_of_letters(generated, folder):
     assert import_pairs("home", "walker", folder).counts == expected
 
 
-def test_results_of_a_paraphrasing_task_are_paraphrases(generated, tmp_path):
-    head = "AssignmentStatus;Input.command1;Input.parse_ground1;Answer.utterance1"
-    row = 'Approved;go to the bath;"( go "" bath "" )";would you drive to the bath?'
-    (tmp_path / "Results.CSV").write_bytes(f"\ufeff{head}\r\n{row}\r\n\r\n".encode())
-    report = import_pairs("home", "crowd", tmp_path)
-    assert not report.is_refused and report.paraphrases == 1
-    said = Paraphrase.objects.get(utterance="would you drive to the bath?")
-    assert said.prompt == "go to the bath" and said.command.anonymized_text == "go to the <room>"
+def test_a_table_beside_the_pairs_is_left_out_with_a_warning(generated, folder):
+    (folder / "Results.CSV").write_text("WorkerId,Input.command1,Answer.utterance1\nw,go,walk\n")
+    report = import_pairs("home", "crowd", folder)
+    assert not report.is_refused
+    assert [each.position.source for each in report.problems] == ["Results.CSV"]
 
 
 def test_a_folder_of_which_nothing_can_be_taken_is_refused(generated, tmp_path):

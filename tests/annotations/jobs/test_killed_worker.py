@@ -43,7 +43,7 @@ def large_import(world) -> Job:
         JobKind.IMPORT_GENERATOR,
         world.name,
         None,
-        {"may_remove": True},
+        {"is_confirmed": True},
         [SimpleUploadedFile("large.txt", text)],
     )
 

@@ -92,14 +92,12 @@ def test_what_an_export_made_safe_for_spreadsheets_is_itself_again():
     assert texts_of(read_upload("text,status\n'=1+1,x\n'tis,y\n")) == ["=1+1", "'tis"]
 
 
-def test_results_of_a_crowd_are_a_row_for_each_answer_without_the_rejected():
-    text = (
-        "HITId;WorkerId;AssignmentStatus;Input.command1;Answer.utterance1;Answer.utterance2\n"
-        'H1;W1;Approved;go;"Head there; please";NA\nH1;W2;Rejected;go;asdf;\n'
-    )
-    sheet = read_upload(text)
-    assert texts_of(sheet) == ["Head there; please", "NA"]
-    assert sheet.remarks
+def test_results_of_a_crowd_belong_to_campaigns():
+    text = "HITId;WorkerId;Input.command1;Answer.utterance1\nH1;W1;go;Head there\n"
+    with pytest.raises(LanguageError) as refused:
+        read_upload(text)
+    assert "Campaigns" in refused.value.hint
+    assert texts_of(read_upload(text, format="csv").with_column("Answer.utterance1"))
 
 
 @pytest.mark.parametrize(

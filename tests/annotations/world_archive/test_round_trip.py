@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import io
 import json
+from typing import Any
 
 import pytest
 from django.apps import apps
 from django.db import models
 
 from annotations.campaigns import answering
+from annotations.campaigns.model_rewrites import ModelSettings, model_contributor, store_rewrites
 from annotations.campaigns.tasks import begin
 from annotations.commenting import SUBJECTS, add_comment
 from annotations.editing.edits import change, delete
@@ -37,6 +40,7 @@ from annotations.queueing.enqueuing import set_share
 from annotations.queueing.finishing import finish
 from annotations.queueing.giving import next_item
 from annotations.world_archive.archive_tables import tables
+from annotations.world_archive.world_export import world_archive
 from annotations.world_archive.world_import import import_world
 from annotations.worlds.starter_world import STARTER_WORLD, load_starter_world
 from parser_service.robots.action_naming import names_of, store_names, version_of
@@ -283,3 +287,46 @@ def test_an_archive_of_an_earlier_release_has_paraphrases_without_contributors(w
     members["world.json"] = json.dumps(manifest).encode()
     import_world("again", pack_members(members))
     assert World.objects.get(name="again").paraphrases.count() == 1
+
+
+def test_who_does_not_review_gets_what_was_accepted_and_who_of_it_is_a_model(
+    world, admin, reviewer, annotator
+):
+    campaign = small_campaign(world, price="1.50", name="with a model")
+    small_campaign(world, name="another one")
+    person = begin(campaign, "f00d")
+    answering.save_answer(person.submissions.get(position=1), "pending words of a person")
+    settings = ModelSettings("some model", "{command}")
+    model = model_contributor(campaign, settings)
+    store_rewrites(model, campaign.prompts.first(), "raw words", ["rejected words"])
+    for contributor in (person, model):
+        make_paraphrase(
+            world,
+            grounded_form="( go )",
+            logical_form="( go )",
+            contributor=contributor,
+            utterance=f"accepted words of a {contributor.kind}",
+        )
+    archives = {
+        each: members_of(io.BytesIO(b"".join(world_archive(world, each))))
+        for each in (None, admin, reviewer, annotator)
+    }
+
+    def lines(reader, name: str) -> list[dict[str, Any]]:
+        return [json.loads(line) for line in archives[reader][f"rows/{name}.jsonl"].splitlines()]
+
+    for reader in (None, admin, reviewer):
+        assert len(lines(reader, "campaigns")) == 2
+        assert [row["kind"] for row in lines(reader, "contributors")] == ["person", "model"]
+        assert len(lines(reader, "submissions")) == 4
+        assert [row["contributor"] for row in lines(reader, "paraphrases")] == [0, 1]
+    assert [row["kind"] for row in lines(annotator, "contributors")] == ["model"]
+    assert [row["contributor"] for row in lines(annotator, "paraphrases")] == [None, 0]
+    assert not lines(annotator, "submissions") and not lines(annotator, "campaign_prompts")
+    assert [row["name"] for row in lines(annotator, "campaigns")] == ["with a model"]
+    everything = b"".join(archives[annotator].values())
+    for words in (b"f00d", b"pending words", b"rejected words", b"raw words"):
+        assert words not in everything
+    import_world("again", pack_members(archives[annotator]))
+    again = World.objects.get(name="again")
+    assert sorted(row.is_by_model for row in again.paraphrases.all()) == [False, True]

@@ -181,7 +181,7 @@ PAGES = {
     "campaign_new": {
         **{"name": "spring", "wording": "command", "target_per_form": "10", "seed": "0"},
         **{"prompts_per_form": "1", "task_size": "2", "free_commands": "0", "check_every": "0"},
-        **{"taboo_words": "0", "launch": "yes"},
+        **{"taboo_words": "0", "most_per_hour": "9", "launch": "yes"},
     },
     "people": NAMES["api:member-list"],
 }

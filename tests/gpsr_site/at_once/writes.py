@@ -47,6 +47,7 @@ CHANGES: dict[tuple[str, str], Body] = {
     },
     ("api:answer-review", "PATCH"): lambda *each: {"note": different(*each)},
     ("api:error-category-detail", "PATCH"): lambda *each: {"name": different(*each)},
+    ("api:campaign-detail", "PATCH"): lambda *each: {"thanks": different(*each)},
     ("api:slice-detail", "PATCH"): lambda *each: {"name": different(*each)},
     **{
         (f"api:{name}", "DELETE"): nothing
@@ -102,6 +103,7 @@ NAMELESS = {
     *(
         "run-list",
         "run-learning-curve",
+        "paraphrase-runs",
         "run-retrain",
         "run-analysis",
         "run-cancel",
@@ -133,6 +135,7 @@ NAMELESS = {
     *("campaign-model", "submission-decide", "submission-mend", "submission-take-back"),
     *("submission-with-form", "submission-with-doubt"),
     *("campaign-close", "campaign-reopen", "campaign-revoke-link", "campaign-renew-link"),
+    "campaign-results",
     *(
         "contributor-forget",
         "notice-read",

@@ -69,9 +69,16 @@ KEYS: dict[str, RouteKeys] = {
     "join": join_keys,
     **dict.fromkeys(
         (
-            *("campaign_page", "campaign_state", "campaign_act", "api:campaign-detail"),
+            *(
+                "campaign_page",
+                "campaign_edit",
+                "campaign_state",
+                "campaign_act",
+                "api:campaign-detail",
+            ),
             *("api:campaign-progress", "api:campaign-close", "api:campaign-reopen"),
             *("api:campaign-revoke-link", "api:campaign-renew-link"),
+            *("api:campaign-tasks", "api:campaign-triples"),
         ),
         pk_of(campaign_row),
     ),

@@ -33,6 +33,10 @@ READABLE = (
     *(
         "paraphrase-list",
         "paraphrase-detail",
+        "paraphrase-figures",
+        "paraphrase-forms",
+        "paraphrase-contributors",
+        "paraphrase-runs",
         "utterance-list",
         "utterance-detail",
         "split-list",
@@ -162,6 +166,7 @@ API_POLICY = [
         Rule(f"api:{name}", *admins(YES))
         for name in (
             *("campaign-list", "campaign-detail", "campaign-progress", "contributor-list"),
+            *("campaign-tasks", "campaign-triples"),
             "contributor-detail",
         )
     ),
@@ -169,6 +174,7 @@ API_POLICY = [
         Rule(f"api:campaign-{name}", *admins(YES), method="post")
         for name in ("close", "reopen", "revoke-link", "renew-link")
     ),
+    Rule("api:campaign-detail", *admins(NO_VERSION), method="patch"),
     Rule("api:contributor-forget", *admins(NOTHING), method="post"),
     *(
         Rule(f"api:{name}", *admins(NO_JSON), method="post")
@@ -193,7 +199,10 @@ API_POLICY = [
     Rule("api:utterance-detail", *annotators(NO_VERSION), method="delete"),
     Rule("api:history", *annotators(NO_JSON), method="post"),
     Rule("api:rename", *annotators(NO_VERSION), method="post"),
-    *(Rule(f"api:{name}", *admins(400), method="post") for name in ("import", "import-pairs")),
+    *(
+        Rule(f"api:{name}", *admins(400), method="post")
+        for name in ("import", "import-pairs", "campaign-results")
+    ),
     Rule("api:job-cancel", *admins(YES), method="post"),
     Rule("api:job-answer", *admins(CLASH), method="post"),  # it asks nothing
     Rule("api:utterance-candidates", *annotators(YES)),
@@ -217,7 +226,7 @@ API_POLICY = [
     # Everybody with a role decides about labels in doubt, reviewers let them be looked for
     Rule("api:campaign-model", *admins(NO_JSON), method="post"),
     # What contributors wrote, by pseudonym
-    *(Rule(f"api:submission-{name}", *reviewers(YES)) for name in ("list", "detail")),
+    *(Rule(f"api:submission-{name}", *reviewers(YES)) for name in ("list", "detail", "export")),
     *(
         Rule(f"api:submission-{name}", *reviewers(NO_JSON), method="post")
         for name in ("decide", "mend", "with-form", "with-doubt")
@@ -257,6 +266,7 @@ API_POLICY = [
         for method in ("patch", "delete")
     ),
     Rule("api:run-learning-curve", *admins(NO_JSON), method="post"),
+    Rule("api:paraphrase-runs", *admins(NO_JSON), method="post"),
     Rule("api:run-analysis", *reviewers(202), method="post"),
     Rule("api:run-cancel", *admins(CLASH), method="post"),  # it has ended
     Rule("api:run-retrain", *admins(400), method="post"),  # there is no newer split

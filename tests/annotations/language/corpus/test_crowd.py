@@ -1,4 +1,4 @@
-"""Results of a paraphrasing task: tables as spreadsheets and sites write them."""
+"""Results of a paraphrasing task: tables as spreadsheets and markets write them."""
 
 from __future__ import annotations
 
@@ -7,110 +7,158 @@ import io
 
 import pytest
 
-from annotations.language.corpus import read_crowd_results
+from annotations.language.corpus import crowd, read_crowd_results
 
 HEAD = [
-    *(
-        "HITId",
-        "WorkerId",
-        "AssignmentStatus",
-        "Input.command1",
-        "Input.parse1",
-        "Input.parse_ground1",
-    ),
-    *(
-        "Input.command2",
-        "Input.parse_ground2",
-        "Answer.utterance1",
-        "Answer.utterance2",
-        "Answer.comment",
-    ),
+    *("HITId", "WorkerId", "AssignmentStatus", "WorkTimeInSeconds"),
+    *("Input.command1", "Input.parse1", "Input.parse_ground1"),
+    *("Input.command2", "Input.parse_ground2"),
+    *("Answer.utterance1", "Answer.utterance2", "Answer.custom1", "Answer.comment"),
 ]
 GO, TEA = '( go " attic " )', '( bring " tea, hot " )'
+UP = '( go " <room> " )'
+PROMPTS = ["go up", '( go "  <room> " )', GO, "get tea", TEA]
 ROWS = [
-    [
-        "H1",
-        "W1",
-        "Approved",
-        "go up",
-        "x",
-        GO,
-        "get tea",
-        TEA,
-        "Would you go up, please?",
-        "NA",
-        "",
-    ],
-    ["H1", "W2", "Rejected", "go up", "x", GO, "get tea", TEA, "asdf", "asdf", ""],
-    ["H2", "W3", "Submitted", "go up", "x", GO, "get tea", TEA, "", "tea;\nnow", 'with "quotes"'],
+    ["H1", "W1", "Approved", "70", *PROMPTS, "Would you go up, please?", "NA", "", ""],
+    ["H1", "W2", "Rejected", "3", *PROMPTS, "asdf", "asdf", "", ""],
+    ["H2", "W3", "Submitted", "", *PROMPTS, "", "tea;\nnow", "dance", 'with "quotes"'],
+    ["H3", "W4", "Approved", "9", *PROMPTS, "", "", "", ""],
 ]
 EXPECTED = [
-    ("Would you go up, please?", "go up", GO),
-    ("NA", "get tea", TEA),
-    ("tea; now", "get tea", TEA),
-]
+    ("W1", 70.0, [("go up", UP, GO, "Would you go up, please?"), ("get tea", "", TEA, "NA")], ()),
+    ("W3", None, [("get tea", "", TEA, "tea; now")], ("dance",)),
+]  # fmt: skip
 
 
-def table(rows=ROWS, delimiter=",", end="\n", head=HEAD):
+def table(rows=ROWS, delimiter=",", end="\n", head=HEAD) -> str:
     written = io.StringIO()
     csv.writer(written, delimiter=delimiter, lineterminator=end).writerows([head, *rows])
     return written.getvalue()
 
 
-def answers(data):
-    file = read_crowd_results(data, "results.csv")
-    assert file.problems == ()
-    return [(each.paraphrase, each.command, each.canonical_form) for each in file.records]
+def read(text, longest=500):
+    return read_crowd_results(text, "results.csv", longest)
+
+
+def answers(text):
+    return [
+        (
+            each.worker,
+            each.seconds,
+            [(row.command, row.form, row.grounded_form, row.text) for row in each.rewrites],
+            each.free_commands,
+        )
+        for each in read(text).assignments
+    ]
+
+
+def places(text, **options):
+    return [
+        (each.position.line, each.position.column, each.is_error)
+        for each in read(text, **options).problems
+    ]
 
 
 @pytest.mark.parametrize("delimiter", [",", ";", "\t"])
-@pytest.mark.parametrize("end", ["\n", "\r\n", "\n\n", "\n \n"])
-@pytest.mark.parametrize("codec", ["utf-8", "utf-8-sig"])
-def test_separators_line_ends_marks_and_blank_lines_play_no_part(delimiter, end, codec):
+@pytest.mark.parametrize("end", ["\n", "\n\n", "\n \n"])
+def test_separators_and_blank_lines_play_no_part(delimiter, end):
     text = table(delimiter=delimiter, end=end)
-    assert answers(text.encode(codec)) == EXPECTED
-    assert answers((text + "\n\n").encode(codec)) == EXPECTED
-    assert answers(text.rstrip().encode(codec)) == EXPECTED
+    assert answers(text) == answers(text + "\n\n") == answers(text.rstrip()) == EXPECTED
 
 
 def test_the_case_of_the_heads_plays_no_part():
-    assert answers(table(head=[name.upper() for name in HEAD]).encode()) == EXPECTED
+    assert answers(table(head=[name.upper() for name in HEAD])) == EXPECTED
 
 
-def test_a_form_that_cannot_be_read_and_a_row_of_another_length_have_their_lines():
-    bad = [*ROWS[0][:5], "( go", *ROWS[0][6:]]
-    text = table([ROWS[0], bad, ["H1", "W1"], ROWS[2]])
-    file = read_crowd_results(text.encode(), "results.csv")
-    assert [(each.position.line, each.is_error) for each in file.problems] == [(3, True), (4, True)]
-    assert len(file.records) == 4
+def test_what_is_left_out_is_counted():
+    results = read(table())
+    assert (results.rejected, results.empty, results.comments) == (1, 1, 1)
+    assert [each.line for each in results.assignments] == [2, 4]
 
 
-def test_a_table_of_another_kind_is_a_warning_and_a_broken_one_an_error():
-    (problem,) = read_crowd_results(b"text,label\nhello,greet\n", "other.csv").problems
-    assert not problem.is_error
-    (problem,) = read_crowd_results((table() + '"H9').encode(), "results.csv").problems
-    assert problem.is_error and problem.position.line > 4
+def test_nobody_sees_the_id_of_a_worker_by_accident():
+    assert "W1" not in repr(read(table()))
 
 
-def test_what_does_not_show_is_left_out_with_a_warning_for_its_line():
+def test_a_link_and_a_table_call_a_worker_by_one_name():
+    by_mturk, by_prolific = (
+        read(table(head=[name if name != "WorkerId" else each for name in HEAD]))
+        for each in ("workerid", "PROLIFIC_PID")
+    )
+    assert by_mturk.assignments[0].market == "workerId"
+    assert by_prolific.assignments[0].market == "PROLIFIC_PID"
+
+
+def test_the_apostrophe_of_an_export_is_none_of_the_text():
     rows = [
-        ["H1", "W1", "Approved", "go\u200b up", "x", GO, "", "", "cafe\u0301,\xa0please", "", ""]
+        ["H1", "W1", "", "", "'-- go up", "", GO, "get tea", TEA, "'=go on", "'tis tea", "", ""]
     ]
-    file = read_crowd_results(table(rows).encode(), "results.csv")
-    (answer,) = file.records
-    assert (answer.command, answer.paraphrase) == ("go up", "caf\u00e9, please")
-    (problem,) = file.problems
-    assert problem.position.line == 2 and not problem.is_error
+    (assignment,) = read(table(rows)).assignments
+    assert [(each.command, each.text) for each in assignment.rewrites] == [
+        ("-- go up", "=go on"),
+        ("get tea", "'tis tea"),
+    ]
+
+
+def test_what_is_wrong_with_a_row_has_its_line_and_its_cell():
+    good = ROWS[0]
+    rows = [
+        good,
+        [*good[:6], "( go", *good[7:]],  # a form that cannot be read
+        ["H1", "W1"],  # too short
+        [good[0], " ", *good[2:]],  # of nobody
+        [*good[:4], "", *good[5:]],  # an answer to nothing
+        [*good[:3], "soon", *good[4:]],
+        [*good[:9], "x" * 21, *good[10:]],
+    ]
+    text = table(rows)
+    assert places(text, longest=30) == [
+        (3, 7, True),
+        (4, 1, True),
+        (5, 2, True),
+        (6, 5, True),
+        (7, 4, False),
+    ]
+    assert (8, 10, False) in places(text, longest=20)
+    assert read(text).assignments[-2].seconds is None
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "sep=;\n",
+        "text,label\nhello,greet\n",
+        "Answer.utterance1,Input.command1\na,b\n",
+        "WorkerId,Answer.utterance1\nw,b\n",
+        "WorkerId,workerid,Answer.custom1\nw,w,b\n",
+        table() + '"H9',
+        ",".join(["WorkerId", *(f"Answer.custom{number}" for number in range(21))]),
+        ",".join(["WorkerId", "Answer.custom1", *(f"x{number}" for number in range(3_000))]),
+    ],
+)
+def test_a_table_of_another_kind_or_a_broken_one_is_an_error(text):
+    (problem,) = read(text).problems
+    assert problem.is_error
+
+
+def test_a_table_is_bounded(monkeypatch):
+    monkeypatch.setattr(crowd, "MOST_ASSIGNMENTS", 1)
+    assert places(table()) == [(4, 1, True)]
+
+
+def test_what_does_not_show_is_left_out():
+    rows = [
+        ["H1", "W1", "", "", "go\u200b up", "", GO, "", "", "cafe\u0301,\xa0please", "", "", ""]
+    ]
+    (assignment,) = read(table(rows)).assignments
+    assert [(each.command, each.text) for each in assignment.rewrites] == [
+        ("go up", "caf\u00e9, please")
+    ]
 
 
 def test_the_line_with_which_excel_names_the_separator_is_none_of_the_table():
-    head = "Input.command1;Input.parse_ground1;Answer.utterance1"
-    text = f"sep=;\n{head}\ngo on;( a );walk, on\ngo on;( a;walk\n"
-    read = read_crowd_results(text.encode(), "results.csv")
-    assert [each.paraphrase for each in read.records] == ["walk, on"]
-    assert [each.position.line for each in read.problems] == [4]
-
-
-def test_a_table_of_nothing_but_its_delimiter_is_no_table_of_results():
-    (problem,) = read_crowd_results(b"sep=;\n", "answers.csv").problems
-    assert not problem.is_error
+    head = "WorkerId;Input.command1;Input.parse_ground1;Answer.utterance1"
+    text = f"sep=;\n{head}\nw;go on;( a );walk, on\nw;go on;( a;walk\n"
+    assert read(text).assignments[0].rewrites[0].text == "walk, on"
+    assert places(text) == [(4, 3, True)]

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import pytest
 from django.core.files.uploadedfile import SimpleUploadedFile
+from django.template.loader import get_template
 
-from annotations.models import Entity, Job, SemanticTemplate
+from annotations.models import Entity, Job, JobKind, SemanticTemplate
+from annotations.web.background.report_presentation import QUESTIONS, REMOVAL_QUESTION, TEMPLATES
 from tests.annotations.conftest import TINY, as_bytes
 
 HOME = "worlds/home/"
@@ -86,3 +88,9 @@ def test_a_row_is_renamed_and_its_history_restored(call, tiny_world, admin):
     call("post", f"history/entity/{row.pk}/", {"entry": gone["entry"]})
     assert call("get", f"entities/{row.pk}/").json()["text"] == "tea"
     assert call("get", f"history/moon/{row.pk}/").status_code == 404
+
+
+def test_the_report_of_every_kind_of_job_has_a_page():
+    assert TEMPLATES.keys() == set(JobKind)
+    for template in {*TEMPLATES.values(), *QUESTIONS.values(), REMOVAL_QUESTION}:
+        get_template(template)

@@ -10,7 +10,8 @@ from django.utils import timezone
 from annotations.campaigns.answering import save_answer
 from annotations.campaigns.tasks import begin
 from annotations.models import AuditEntry, Campaign, Contributor
-from annotations.web.campaigns.campaign_forms import CampaignForm
+from annotations.models.campaigns import GRACE
+from annotations.web.campaigns.campaign_forms import CampaignChangeForm, CampaignForm
 from tests.launched_campaigns import small_campaign
 
 
@@ -130,3 +131,67 @@ def test_a_contributor_is_forgotten_after_a_question(adam, world):
     assert Contributor.objects.exists()
     assert adam.post(path).url == f"/w/home/campaigns/{campaign.pk}/"
     assert not Contributor.objects.exists()
+
+
+def changed(client, campaign, **values):
+    """Post the form that changes a campaign as it is shown, with other ``values``."""
+    form = CampaignChangeForm(Campaign.objects.get(pk=campaign.pk))
+    given = {name: form[name].value() for name in form.fields} | values
+    given = {name: each for name, each in given.items() if each is not None}
+    return client.post(f"/w/home/campaigns/{campaign.pk}/edit/", given)
+
+
+def test_texts_end_and_payment_are_changed(adam, world):
+    campaign = small_campaign(world, consent="I agree.", price="1.00")
+    shown = page(adam, f"{campaign.pk}/edit/")
+    assert "I agree." in shown and "readonly" not in shown and "Task categories" not in shown
+    day = (timezone.now() + timedelta(days=3)).date()
+    answer = changed(
+        adam, campaign, thanks="a\r\nb", ends_at=day.isoformat(), price="2.50", most_per_hour=20
+    )
+    assert answer.url == f"/w/home/campaigns/{campaign.pk}/"
+    stored = Campaign.objects.get()
+    assert (stored.thanks, str(stored.price), stored.most_per_hour) == ("a\nb", "2.50", 20)
+    assert stored.ends_at.date() == day + timedelta(days=1)
+    assert (stored.consent, stored.version) == ("I agree.", 2)
+    entry = AuditEntry.objects.get()
+    assert entry.what == "change a campaign"
+    assert entry.subject == "first: thanks, ends_at, most_per_hour, price"
+
+
+def test_an_end_that_is_over_may_stay(adam, world):
+    over = timezone.now() - timedelta(days=3)
+    campaign = small_campaign(world, ends_at=over)
+    assert changed(adam, campaign, thanks="Thanks.").status_code == 302
+    assert Campaign.objects.get().ends_at == over
+    assert changed(adam, campaign, ends_at="2020-01-01").status_code == 422
+
+
+def test_a_consent_that_was_given_is_shown_and_stays(adam, world):
+    campaign = small_campaign(world, consent="I\nagree.")
+    begin(campaign, "f00d")
+    assert "readonly" in page(adam, f"{campaign.pk}/edit/")
+    assert changed(adam, campaign, consent="I\r\nagree.", thanks="Thanks.").status_code == 302
+    answer = changed(adam, campaign, consent="Another.")
+    assert answer.status_code == 409 and "consent" in answer.context["form"].errors
+    assert Campaign.objects.get().consent == "I\nagree."
+
+
+def test_who_was_slower_compares_and_saves_again(adam, world):
+    campaign = small_campaign(world, thanks="as it was")
+    assert changed(adam, campaign, thanks="theirs").status_code == 302
+    answer = changed(adam, campaign, thanks="mine", version=1)
+    shown = answer.content.decode()
+    assert answer.status_code == 412 and "theirs" in shown and "mine" in shown
+    assert answer.context["form"]["version"].value() == 2
+    assert Campaign.objects.get().thanks == "theirs"
+    assert changed(adam, campaign, thanks="mine", version=2).status_code == 302
+
+
+def test_the_page_says_until_when_those_who_have_begun_may_finish(adam, world):
+    campaign = small_campaign(world)
+    assert "may finish until" not in page(adam, f"{campaign.pk}/")
+    adam.post(f"/w/home/campaigns/{campaign.pk}/act/", {"step": "close"})
+    assert "may finish until" in page(adam, f"{campaign.pk}/")
+    Campaign.objects.update(closed_at=timezone.now() - GRACE)
+    assert "may finish until" not in page(adam, f"{campaign.pk}/")

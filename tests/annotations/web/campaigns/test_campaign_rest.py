@@ -91,3 +91,37 @@ def test_others_than_admins_see_nothing_of_it(call_as, annotator, reviewer, answ
     for person in (annotator, reviewer):
         for name in ("campaigns", "contributors"):
             assert call_as(person, "get", f"worlds/home/{name}/").status_code == 403
+
+
+def test_texts_end_and_payment_are_changed_at_a_version(call_as, admin, world):
+    campaign = small_campaign(world, thanks="Thanks.", price="1.00")
+    path = f"worlds/home/campaigns/{campaign.pk}/"
+    tag = call_as(admin, "get", path)["ETag"]
+    body = {"thanks": "Thank you.", "price": None, "ends_at": "2099-12-31"}
+    answer = call_as(admin, "patch", path, body, if_match=tag)
+    assert answer.status_code == 200, answer.content
+    shown = answer.json()
+    assert (shown["thanks"], shown["price"], shown["version"]) == ("Thank you.", None, 2)
+    assert shown["ends_at"] == "2100-01-01T00:00:00Z" and answer["ETag"] != tag
+    # What contributors write in the meantime changes no version; what others change does.
+    place = begin(campaign, "f00d").submissions.first()
+    save_answer(place, "do it", 9)
+    assert call_as(admin, "get", path)["ETag"] == answer["ETag"]
+    late = call_as(admin, "patch", path, {"thanks": "Late."}, if_match=tag)
+    assert late.status_code == 412 and late.json()["current"]["thanks"] == "Thank you."
+    refused = call_as(admin, "patch", path, {"consent": "x"}, if_match=answer["ETag"])
+    assert refused.status_code == 409
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        *({"task_size": 3}, {"ends_at": "2020-01-01"}, {"return_url": "javascript:alert(1)"}),
+        *({"most_per_hour": 0}, {"price": "-1"}, {"thanks": None}, {"consent": "x" * 8_001}),
+    ],
+)
+def test_what_cannot_be_changed_is_said(call_as, admin, world, body):
+    campaign = small_campaign(world)
+    path = f"worlds/home/campaigns/{campaign.pk}/"
+    assert call_as(admin, "patch", path, body, if_match="*").status_code == 400
+    assert Campaign.objects.get().version == 1

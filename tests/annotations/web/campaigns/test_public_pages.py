@@ -10,7 +10,10 @@ from django.db import connection
 from django.test import Client
 from django.utils import timezone
 
+from annotations.campaigns import limits
+from annotations.campaigns.closing import revoke_link
 from annotations.models import AuditEntry, Contributor, Submission
+from annotations.models.campaigns import GRACE
 from annotations.people.rate_limits import Rate
 from annotations.web.campaigns import public_pages
 
@@ -197,11 +200,45 @@ def test_a_campaign_that_is_over_is_not_begun(values, client, campaign, address)
     assert not Contributor.objects.exists()
 
 
-def test_what_is_written_after_the_end_is_refused(campaign, address):
+def test_who_has_begun_finishes_after_the_end_and_is_told_until_when(campaign, address):
+    client, finished = begun(campaign), begun(campaign)
+    Contributor.objects.filter(pk=Contributor.objects.last().pk).update(finished_at=timezone.now())
+    type(campaign).objects.update(closed_at=timezone.now(), allows_retake=True)
+    for path in (address, f"{address}1/"):
+        assert "You may finish until" in text_of(client.get(path))
+    assert client.post(f"{address}1/", {"text": "do it"}).status_code == 302
+    # Who has finished still sees that, and begins no other task.
+    assert "You have finished" in text_of(finished.get(address))
+    assert finished.post(address, {"agrees": "on"}).status_code == 302
+    assert Contributor.objects.count() == 2
+
+
+def test_what_is_written_after_the_grace_is_refused(campaign, address):
     client = begun(campaign)
-    type(campaign).objects.update(closed_at=timezone.now())
+    type(campaign).objects.update(closed_at=timezone.now() - GRACE)
+    for path in (address, f"{address}1/"):
+        answer = client.get(path)
+        assert answer.status_code == 410 and "What you wrote is kept" in text_of(answer)
     assert client.post(f"{address}1/", {"text": "do it"}).status_code == 410
     assert not Submission.objects.answered().exists()
+
+
+def test_a_revoked_link_stops_everybody_at_once(campaign, address):
+    client = begun(campaign)
+    revoke_link(campaign)
+    assert client.get(f"{address}1/").status_code == 404
+    assert client.post(f"{address}1/", {"text": "do it"}).status_code == 404
+    assert not Submission.objects.answered().exists()
+
+
+def test_who_read_another_consent_reads_it_again(campaign, address, client):
+    sent = {**fields(client, address), "agrees": "on"}
+    type(campaign).objects.update(consent="Another text.")
+    refused = client.post(address, sent)
+    assert refused.status_code == 422 and "Another text." in text_of(refused)
+    assert not Contributor.objects.exists()
+    sent = {**fields(client, address), "agrees": "on"}
+    assert client.post(address, sent).status_code == 302
 
 
 def test_who_has_begun_finishes_though_the_campaign_is_full(campaign, address):
@@ -213,24 +250,43 @@ def test_who_has_begun_finishes_though_the_campaign_is_full(campaign, address):
 
 
 def test_answers_come_too_often(campaign, address, monkeypatch):
-    monkeypatch.setattr(public_pages, "SAVED_ANSWERS", Rate("answers", limit=2, seconds=60))
+    monkeypatch.setattr(limits, "MOST_SAVES", 2)
     client = begun(campaign)
     statuses = [client.post(f"{address}1/", {"text": f"do {n}"}).status_code for n in range(4)]
     assert statuses == [302, 302, 429, 429]
     refused = client.post(f"{address}1/", {"text": "what I typed"})
     assert "what I typed" in text_of(refused)
-    assert refused["Retry-After"] == "60"
+    assert 50 <= int(refused["Retry-After"]) <= 60
     assert Submission.objects.answered().get().text == "do 1"
+    Contributor.objects.update(saves_since=timezone.now() - timedelta(minutes=1))
+    assert client.post(f"{address}1/", {"text": "do 5"}).status_code == 302
+    assert Contributor.objects.get().saves == 1
 
 
 def test_one_address_begins_no_thousands_of_tasks(campaign, monkeypatch):
-    monkeypatch.setattr(public_pages, "BEGUN_TASKS", Rate("campaign", limit=3, seconds=60))
+    monkeypatch.setattr(limits, "BEGUN_TASKS", Rate("campaign", limit=3, seconds=60))
     path = f"/p/{campaign.key}/"
     answers = [Client().post(path, {"agrees": "on"}) for _ in range(20)]
     assert [answer.status_code for answer in answers] == [302] * 3 + [429] * 17
     assert Contributor.objects.count() == 3
     elsewhere = Client(REMOTE_ADDR="192.0.2.1")
     assert elsewhere.post(path, {"agrees": "on"}).status_code == 302
+
+
+def test_a_link_begins_no_thousands_of_tasks_wherever_they_come_from(launched):
+    campaign = launched(most_per_hour=3)
+    path = f"/p/{campaign.key}/"
+    answers = [
+        Client(REMOTE_ADDR=f"192.0.2.{number}").post(path, {"agrees": "on"}) for number in range(6)
+    ]
+    assert [answer.status_code for answer in answers] == [302] * 3 + [429] * 3
+    assert 3590 <= int(answers[-1]["Retry-After"]) <= 3600
+    # Those who have begun go on, and the next ones come when the first of the three is an hour old.
+    Contributor.objects.filter(pk=Contributor.objects.first().pk).update(
+        began_at=timezone.now() - timedelta(hours=1)
+    )
+    assert Client().post(path, {"agrees": "on"}).status_code == 302
+    assert Client().post(path, {"agrees": "on"}).status_code == 429
 
 
 @pytest.mark.parametrize(("size", "status"), [(501, 422), (10_000_000, 413)])

@@ -156,7 +156,7 @@ def test_an_import_that_forgets_a_file_shows_what_would_go_and_asks(
     answer = adam.post(f"/jobs/{job.pk}/answer/")
     confirmed = Job.objects.latest("pk")
     assert answer["Location"] == f"/jobs/{confirmed.pk}/"
-    assert confirmed.arguments["may_remove"] and confirmed.status == "queued"
+    assert confirmed.arguments["is_confirmed"] and confirmed.status == "queued"
 
 
 def test_an_import_that_asks_can_be_cancelled(world, adam, tiny, settings, tmp_path):

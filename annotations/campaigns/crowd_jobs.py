@@ -1,0 +1,107 @@
+"""Jobs that take the results of a crowd market in: one checks a file and asks, the next one imports it."""
+
+from __future__ import annotations
+
+from http import HTTPStatus
+from typing import Any
+
+from annotations.campaigns.crowd_results import new_campaign, plan_results, store_results
+from annotations.importing.uploaded_files import UploadedFile, is_archive
+from annotations.importing.zip_archives import open_archive, read_member
+from annotations.jobs.files import kept_uploads
+from annotations.jobs.requesting import request_job
+from annotations.jobs.watching import JobProgress
+from annotations.language.corpus import CrowdTable, read_crowd_results
+from annotations.language.errors import LanguageError, Position, Refusal
+from annotations.models import Campaign, Job, JobKind, User, World
+from annotations.models.corpus import MOST_CHARACTERS
+from annotations.utterances.upload_reading import decode_upload
+
+MOST_BYTES = 60_000_000  # of a table, out of its archive
+_TABLES = (".csv", ".tsv")
+
+
+def start_results_import(
+    world: World,
+    upload: UploadedFile,
+    by: User,
+    campaign: Campaign | None = None,
+    name: str = "",
+    encoding: str = "",
+) -> Job:
+    """Queue the check of a table of results; nothing is imported before somebody confirms its report.
+
+    Args:
+        upload: a table, or a zip archive with one in it.
+        campaign: whose prompts were answered; without one a new campaign is made, called ``name``.
+        encoding: of the file; without one it is recognised.
+
+    Raises:
+        Refusal: the world has a campaign called ``name``.
+    """
+    if campaign is None and world.campaigns.filter(name=name).exists():
+        said = f"This world has a campaign called {name} already. Choose another name."
+        raise Refusal(said, "name_taken", HTTPStatus.CONFLICT)
+    arguments = {
+        "campaign": campaign.pk if campaign else None,
+        "name": "" if campaign else name,
+        "encoding": encoding,
+    }
+    return request_job(JobKind.IMPORT_RESULTS, world.name, by, arguments, [upload])
+
+
+def import_results_of(job: Job, progress: JobProgress) -> dict[str, Any]:
+    """Check a table, and ask; import it where somebody has confirmed."""
+    if job.world is None:
+        raise LanguageError(f"there is no world “{job.world_name}” any more")
+    progress.report(0, "reading the table")
+    with kept_uploads(job) as (upload,):
+        source = upload.name
+        table, encoding = read_results(upload, job.arguments["encoding"])
+    campaign = _campaign_of(job, job.world, table)
+    plan = plan_results(campaign, table, source, progress)
+    if plan.is_refused or not plan.contributors:
+        return {**plan.report(table), "encoding": encoding}
+    if not job.arguments.get("is_confirmed"):
+        shown = {"examples": plan.examples(), "is_waiting": True}
+        return {**plan.report(table), "encoding": encoding, **shown}
+    return store_results(plan, table, job.created_by, progress)
+
+
+def read_results(upload: UploadedFile, encoding: str = "") -> tuple[CrowdTable, str]:
+    """Return the table of an upload, with its problems, and the encoding that it was read in.
+
+    Raises:
+        LanguageError: it is too large, no text, or an archive without one table.
+    """
+    text, encoding = decode_upload(_content_of(upload), upload.name, encoding)
+    return read_crowd_results(text, upload.name, MOST_CHARACTERS), encoding
+
+
+def _content_of(upload: UploadedFile) -> bytes:
+    if not is_archive(upload):
+        if upload.size > MOST_BYTES:
+            sentence = f"the file is larger than {MOST_BYTES:,} bytes"
+            raise LanguageError(sentence, Position(upload.name), "split it up")
+        return upload.read()
+    with open_archive(upload, upload.name, 1, MOST_BYTES, _is_table) as archive:
+        members = [each for each in archive.infolist() if _is_table(each.filename)]
+        if len(members) != 1:
+            sentence = "there is no table in this archive"
+            raise LanguageError(sentence, Position(upload.name), "pack one .csv file")
+        return read_member(archive, members[0], MOST_BYTES)
+
+
+def _is_table(path: str) -> bool:
+    name = path.rsplit("/", 1)[-1]
+    return name.lower().endswith(_TABLES) and not name.startswith(".")
+
+
+def _campaign_of(job: Job, world: World, table: CrowdTable) -> Campaign:
+    key = job.arguments["campaign"]
+    if key is None:
+        return new_campaign(world, job.arguments["name"], table, job.created_by)
+    campaign = world.campaigns.filter(pk=key).first()
+    if campaign is None:
+        raise LanguageError("the campaign is no longer here", hint="choose another one")
+    return campaign
