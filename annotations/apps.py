@@ -15,6 +15,9 @@ class AnnotationsConfig(AppConfig):
         register_verb(
             JobKind.IMPORT_GENERATOR, "annotations.importing.import_jobs.import_generator_of"
         )
+        register_verb(
+            JobKind.IMPORT_COMPETITION, "annotations.importing.import_jobs.import_competition_of"
+        )
         register_verb(JobKind.IMPORT_PAIRS, "annotations.importing.import_jobs.import_pairs_of")
         register_verb(JobKind.IMPORT_WORLD, "annotations.world_archive.import_job.import_world_of")
         register_verb(JobKind.IMPORT_RESULTS, "annotations.campaigns.crowd_jobs.import_results_of")

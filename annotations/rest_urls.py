@@ -92,6 +92,7 @@ corpus = [
         name="paraphrase-contributors",
     ),
     path("import/", import_rest.ImportGenerator.as_view(), name="import"),
+    path("import/competition/", import_rest.ImportCompetition.as_view(), name="import-competition"),
     path("import/pairs/", import_rest.ImportPairs.as_view(), name="import-pairs"),
     path("generate/", import_rest.Generate.as_view(), name="generate"),
     path("download/", import_rest.Archive.as_view(), name="download"),

@@ -11,6 +11,7 @@ from annotations.web.description import (
     guidelines_pages,
     predicate_pages,
     production_pages,
+    room_pages,
     template_pages,
     template_repair_pages,
 )
@@ -36,6 +37,7 @@ urlpatterns = [
     ),
     path("delete/", world_pages.world_delete, name="world_delete"),
     path("import/", import_pages.import_files, name="import"),
+    path("import/competition/", import_pages.import_competition_files, name="import_competition"),
     path("import/pairs/", import_pages.import_pair_files, name="import_pairs"),
     path("history/<slug:kind>/<int:pk>/", history_pages.history, name="history"),
     path("history/<slug:kind>/<int:pk>/delete/", deletion_pages.delete_row, name="delete_row"),
@@ -53,6 +55,7 @@ urlpatterns = [
     path("ontology/", entity_pages.ontology, name="ontology"),
     path("ontology/new/", entity_pages.entity_new, name="entity_new"),
     path("ontology/paste/", entity_pages.entities_new, name="entities_new"),
+    path("ontology/rooms/", room_pages.location_rooms, name="location_rooms"),
     path("ontology/<int:pk>/", entity_pages.entity, name="entity"),
     path("predicates/new/", predicate_pages.predicate_new, name="predicate_new"),
     path("predicates/preview/", predicate_pages.predicate_preview, name="predicate_preview"),

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from annotations.importing.competition_import import CompetitionReport, import_competition
 from annotations.importing.generator_import import import_generator
 from annotations.importing.import_reports import ImportReport, PairsReport
 from annotations.importing.pair_import import import_pairs
 from annotations.importing.uploaded_files import (
     UploadedFile,
+    competition_files_of,
     files_of,
     unpacked_pairs,
     unpacked_size,
@@ -70,6 +72,25 @@ def import_generator_of(job: Job, progress: JobProgress) -> dict[str, Any]:
         brings_back=bool(job.arguments.get("brings_back")),
     )
     return report.as_json()
+
+
+def start_competition_import(
+    world: World, uploads: Sequence[Any], by: User, brings_back: bool = False
+) -> CompetitionReport:
+    """Import now: the files of a competition are few and short.
+
+    Raises:
+        LanguageError: the uploads cannot be read.
+    """
+    files = competition_files_of(uploads)
+    return import_competition(world.name, files, by, brings_back=brings_back)
+
+
+def import_competition_of(job: Job, progress: JobProgress) -> dict[str, Any]:
+    with kept_uploads(job) as uploads:
+        files = competition_files_of(uploads)
+    choices = {"brings_back": bool(job.arguments.get("brings_back"))}
+    return import_competition(job.world_name, files, job.created_by, progress, **choices).as_json()
 
 
 def start_pairs_import(

@@ -23,6 +23,7 @@ from annotations.language.corpus import (
 from annotations.language.decoding import link_target
 from annotations.language.errors import LanguageError, Position
 from annotations.language.grammar import TRIPLE_FILES
+from annotations.language.ontology.competition_folder import place_in_folder
 
 GENERATOR_FOLDER = "generator/"
 _TWICE = "two of the files have this name"
@@ -58,6 +59,28 @@ def files_of(uploads: Iterable[UploadedFile], encoding: str = "") -> GatheredFil
         if size > settings.UPLOAD_MAX_BYTES:
             raise LanguageError(f"the files hold more than {settings.UPLOAD_MAX_BYTES:,} bytes")
     return convert(flatten(files), encoding)
+
+
+def competition_files_of(uploads: Iterable[UploadedFile]) -> dict[str, bytes]:
+    """Return the files of a competition's folder in all uploads, zip archives unpacked: path → bytes.
+
+    Raises:
+        LanguageError: as ``files_of``.
+    """
+    files: dict[str, bytes] = {}
+    for upload in uploads:
+        if not is_archive(upload):
+            upload.seek(0)
+            files[upload.name] = upload.read()
+            continue
+        with _open(
+            upload, lambda path: bool(_visible_path(path) and place_in_folder(path))
+        ) as archive:
+            for member in archive.infolist():
+                path = member.filename
+                if not member.is_dir() and _visible_path(path) and place_in_folder(path):
+                    files[path] = read_member(archive, member, settings.UPLOAD_MAX_BYTES)
+    return files
 
 
 def unpacked_size(uploads: Iterable[UploadedFile]) -> int:

@@ -130,6 +130,7 @@ def rows_of(model: type[Work]) -> WorkQuerySet[Work]:
 
 class JobKind(models.TextChoices):
     IMPORT_GENERATOR = "import_generator", "Import of generator files"
+    IMPORT_COMPETITION = "import_competition", "Import of a competition folder"
     IMPORT_PAIRS = "import_pairs", "Import of published pairs"
     IMPORT_WORLD = "import_world", "Import of a world"
     GENERATE = "generate", "Generation of commands"

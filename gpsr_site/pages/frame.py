@@ -60,7 +60,7 @@ PLACES = (
         label="Overview",
         page="world",
         pages_below=(
-            *("import", "import_pairs", "jobs", "job"),
+            *("import", "import_competition", "import_pairs", "jobs", "job"),
             *("people", "audit_log", "world_delete"),
         ),
     ),
@@ -70,7 +70,7 @@ PLACES = (
         count="entities",
         waiting=Waiting(count="ontology_problems", noun="remark", reason="to read"),
         pages_below=(
-            *("entity", "entity_new", "entities_new", "offered_entities"),
+            *("entity", "entity_new", "entities_new", "location_rooms", "offered_entities"),
             *("predicates", "predicate", "predicate_new", "robot"),
         ),
     ),

@@ -51,10 +51,16 @@ class Table:
 
 
 def place_in_folder(path: str) -> str:
-    """Return which of ``COMPETITION_FILES`` stands at ``path``, whatever folders it lies in; empty for none."""
-    parts = path.lower().replace("\\", "/").split("/")
-    known = "/".join(parts[-2:])
-    return known if known in COMPETITION_FILES else ""
+    """Return which of ``COMPETITION_FILES`` stands at ``path``, whatever folders it lies in; empty for none.
+
+    A name without a folder is enough: their names differ.
+    """
+    *folders, name = path.lower().replace("\\", "/").split("/")
+    for place in COMPETITION_FILES:
+        folder, _, known = place.partition("/")
+        if name == known and (not folders or folders[-1] == folder):
+            return place
+    return ""
 
 
 def read_competition(files: Mapping[str, bytes]) -> tuple[Ontology, tuple[Problem, ...]]:

@@ -71,10 +71,13 @@ def _read(
 
 def _read_nested(text: str, source: str, root: str, outer: str, inner: str) -> Found:
     """Yield the rows of the ``outer`` elements below ``root``, and those of the ``inner`` ones within, which
-    have the name of the outer one as an attribute."""
-    for holder in _children(read_xml(text, source, root), outer):
+    have the name of the outer one as an attribute; ``inner`` ones beside them have none."""
+    for holder in _children(read_xml(text, source, root), outer, inner):
         if isinstance(holder, Problem):
             yield holder
+            continue
+        if holder.tag == inner:
+            yield from _read_named(holder, inner)
             continue
         yield from _read_named(holder, outer)
         belongs = {outer: holder.attributes.get("name", "")}
@@ -158,14 +161,15 @@ _READERS: dict[str, Callable[[str, str], Found]] = {
 ONTOLOGY_FILES = tuple(_READERS)
 
 
-def _children(parent: Element, tag: str) -> Iterator[Element | Problem]:
-    """Yield the children with this tag, and a warning for each other child."""
+def _children(parent: Element, *tags: str) -> Iterator[Element | Problem]:
+    """Yield the children with these tags, and a warning for each other child."""
     for child in parent.children:
-        if child.tag == tag:
+        if child.tag in tags:
             yield child
         else:
             message = f"<{child.tag}> is not known inside <{parent.tag}> and is ignored"
-            yield warning_at(child.position, message, f"only <{tag}> is read here")
+            known = " and ".join(f"<{tag}>" for tag in tags)
+            yield warning_at(child.position, message, f"only {known} is read here")
 
 
 def _read_named(
@@ -332,23 +336,29 @@ def write_ontology(ontology: Ontology) -> dict[str, str]:
 
 
 def _write_nested(ontology: Ontology, root: str, outer: str, inner: str) -> str:
-    """Write two levels of rows; each inner row goes into the last outer row of its name before it."""
-    parts: list[tuple[Entity, list[Entity]]] = []
+    """Write two levels of rows; each inner row goes into the last outer row of its name before it, and beside them
+    where it names none."""
+    parts: list[tuple[Entity | None, list[Entity]]] = []
     for entity in ontology.entities:
         is_only_singular = set(entity.attributes) == {"singular"} and not entity.aliases
         is_of_categories_txt = entity.entity_class == "category" and is_only_singular
         if entity.entity_class == outer and not is_of_categories_txt:
             parts.append((entity, []))
         elif entity.entity_class == inner:
-            name = entity.attribute(outer) or ""
-            part = next((each for each in reversed(parts) if each[0].text == name), None)
+            name = entity.attribute(outer)
+            part = next(
+                (each for each in reversed(parts) if (each[0] and each[0].text) == name), None
+            )
             if part is None:
-                part = (Entity(outer, name), [])
+                part = (Entity(outer, name) if name else None, [])
                 parts.append(part)
             part[1].append(entity)
     rows: list[str] = []
-    for entity, inside in parts:
-        rows.append(f"    <{outer}{_write_attributes(entity, without=('singular',))}>")
+    for holder, inside in parts:
+        if holder is None:
+            rows += (f"    <{inner}{_write_attributes(each)}/>" for each in inside)
+            continue
+        rows.append(f"    <{outer}{_write_attributes(holder, without=('singular',))}>")
         rows += (
             f"        <{inner}{_write_attributes(each, without=(outer,))}/>" for each in inside
         )

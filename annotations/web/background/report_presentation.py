@@ -22,6 +22,7 @@ SINGULAR = {
 }
 TEMPLATES = {
     JobKind.IMPORT_GENERATOR: "annotations/background/_import_result.html",
+    JobKind.IMPORT_COMPETITION: "annotations/background/_competition_result.html",
     JobKind.IMPORT_PAIRS: "annotations/background/_pairs_result.html",
     JobKind.IMPORT_WORLD: "annotations/background/_world_result.html",
     JobKind.IMPORT_RESULTS: "annotations/background/_results_result.html",

@@ -86,6 +86,17 @@ class PairsForm(forms.Form):
     brings_back = BringsBackField()
 
 
+class CompetitionForm(forms.Form):
+    """The files of a competition's folder, as they are or in one zip archive."""
+
+    files = FilesField(  # type: ignore[assignment]  # of the same name as those that were sent
+        label="Files",
+        help_text="names.md, room_names.md, location_names.md and objects.md, or one zip archive with the folder. "
+        "Other files in it are ignored.",
+    )
+    brings_back = BringsBackField()
+
+
 class WorldArchiveForm(forms.Form):
     """The archive of a world, and what the new world is called."""
 

@@ -9,7 +9,11 @@ from django.http import HttpResponse
 from django.shortcuts import redirect, render
 
 from annotations.generation.generating import start_generation
-from annotations.importing.import_jobs import start_generator_import, start_pairs_import
+from annotations.importing.import_jobs import (
+    start_competition_import,
+    start_generator_import,
+    start_pairs_import,
+)
 from annotations.jobs.requesting import keep_report
 from annotations.language.errors import LanguageError
 from annotations.models import Duty, Job, JobKind, World
@@ -17,7 +21,7 @@ from annotations.people.access import READ_AND_WRITE, WRITE, PageRequest, WorldR
 from annotations.people.allowances import may_take_long, takes_files
 from annotations.web.background.report_presentation import shown_report
 from annotations.web.forms import posted
-from annotations.web.worlds.import_forms import ImportForm, PairsForm, uploads_of
+from annotations.web.worlds.import_forms import CompetitionForm, ImportForm, PairsForm, uploads_of
 
 
 @takes_files
@@ -41,6 +45,25 @@ def import_files(request: WorldRequest, world: World) -> HttpResponse:
                 return _done(request, world, JobKind.IMPORT_GENERATOR, started.as_json())
             report = shown_report(JobKind.IMPORT_GENERATOR, started.as_json(), world)
     return _page(request, "annotations/worlds/import.html", form, report)
+
+
+@takes_files
+@world_view(Duty.MANAGE, READ_AND_WRITE)
+def import_competition_files(request: WorldRequest, world: World) -> HttpResponse:
+    """Import the folder of a competition, all of it or nothing."""
+    form = CompetitionForm(posted(request), request.FILES or None)
+    report = None
+    if form.is_bound and form.is_valid():
+        files, brings_back = form.cleaned_data["files"], form.cleaned_data["brings_back"]
+        try:
+            done = start_competition_import(world, files, request.user, brings_back)
+        except LanguageError as error:
+            form.add_error("files", str(error))
+        else:
+            if not done.is_refused:
+                return _done(request, world, JobKind.IMPORT_COMPETITION, done.as_json())
+            report = shown_report(JobKind.IMPORT_COMPETITION, done.as_json(), world)
+    return _page(request, "annotations/worlds/import_competition.html", form, report)
 
 
 @takes_files

@@ -15,7 +15,11 @@ from rest_framework.response import Response
 
 from annotations.exporting.generator_export import GeneratorPart
 from annotations.generation.generating import start_generation
-from annotations.importing.import_jobs import start_generator_import, start_pairs_import
+from annotations.importing.import_jobs import (
+    start_competition_import,
+    start_generator_import,
+    start_pairs_import,
+)
 from annotations.importing.pair_files import Notation
 from annotations.language.decoding import ENCODINGS
 from annotations.language.english import say_count
@@ -30,7 +34,13 @@ from annotations.web.rest.permissions import ApiRequest, ForSiteAdmins
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import Route, WorldRoute
 from annotations.web.worlds.downloads import archive_of, file_of
-from annotations.web.worlds.import_forms import ImportForm, PairsForm, WorldArchiveForm, uploads_of
+from annotations.web.worlds.import_forms import (
+    CompetitionForm,
+    ImportForm,
+    PairsForm,
+    WorldArchiveForm,
+    uploads_of,
+)
 from annotations.world_archive.import_job import start_world_import
 
 AnyForm = TypeVar("AnyForm", bound=forms.Form)
@@ -70,6 +80,13 @@ class ImportedPairs(serializers.Serializer[Any]):
         choices=[Notation.LAMBDA], required=False, help_text="Of another corpus."
     )
     encoding = EncodingChoice()
+    brings_back = serializers.BooleanField(default=False)
+
+
+class ImportedCompetition(serializers.Serializer[Any]):
+    """The files of a competition's folder, as they are or in one zip archive."""
+
+    files = serializers.ListField(child=serializers.FileField(allow_empty_file=True), min_length=1)
     brings_back = serializers.BooleanField(default=False)
 
 
@@ -150,6 +167,23 @@ class ImportGenerator(Doing, WorldRoute):
         return self.answer(
             lambda: start_generator_import(self.world, files, request.user, *choices)
         )
+
+
+@takes_files
+class ImportCompetition(Doing, WorldRoute):
+    """Imports names, rooms, locations and objects from the folder of a competition, all of it or nothing."""
+
+    parser_classes = [FilesParser]
+    duties = {"POST": Duty.MANAGE}
+
+    @extend_schema(
+        request={"multipart/form-data": ImportedCompetition}, responses={200: DoneSerializer}
+    )
+    @once
+    def post(self, request: ApiRequest, **kwargs: object) -> Response:
+        sent = self.valid(CompetitionForm(self.sent, request.FILES)).cleaned_data
+        values = sent["files"], request.user, sent["brings_back"]
+        return self.answer(lambda: start_competition_import(self.world, *values))
 
 
 @takes_files

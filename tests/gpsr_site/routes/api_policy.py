@@ -201,7 +201,7 @@ API_POLICY = [
     Rule("api:rename", *annotators(NO_VERSION), method="post"),
     *(
         Rule(f"api:{name}", *admins(400), method="post")
-        for name in ("import", "import-pairs", "campaign-results")
+        for name in ("import", "import-competition", "import-pairs", "campaign-results")
     ),
     Rule("api:job-cancel", *admins(YES), method="post"),
     Rule("api:job-answer", *admins(CLASH), method="post"),  # it asks nothing

@@ -62,6 +62,7 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "invitation_withdraw": "delete invitation-detail",
     # Files, jobs, commands
     "import": "post import",
+    "import_competition": "post import-competition",
     "import_pairs": "post import-pairs",
     "generate": "post generate",
     "job_cancel": "post job-cancel, post site-job-cancel",
@@ -69,6 +70,7 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     # What annotators write, and what is said of it before it is stored
     "entity_new": "post entity-list",
     "entities_new": "post entity-list",
+    "location_rooms": "patch entity-detail",
     "entity": "patch entity-detail",
     "predicate_new": "post predicate-list",
     "predicate": "patch predicate-detail",

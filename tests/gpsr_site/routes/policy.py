@@ -188,6 +188,8 @@ POLICY = [
     Rule("entity_new", *ANNOTATORS, method="post"),
     Rule("entities_new", *ANNOTATORS),
     Rule("entities_new", *ANNOTATORS, method="post"),
+    Rule("location_rooms", *ANNOTATORS),
+    Rule("location_rooms", LOG_IN, NOWHERE, NO, GONE_ON, GONE_ON, method="post"),
     Rule("rename", *ANNOTATORS),
     Rule("rename", *ANNOTATORS, method="post"),
     Rule("comments", *MEMBERS),
@@ -277,10 +279,10 @@ POLICY = [
     Rule("guidelines_preview", *ADMINS, method="post"),
     Rule("queue_settings", *ADMINS),
     Rule("queue_settings", *ADMINS, method="post"),
-    *(Rule(name, *ADMINS) for name in ("import", "import_pairs")),
+    *(Rule(name, *ADMINS) for name in ("import", "import_competition", "import_pairs")),
     *(
         Rule(name, LOG_IN, NOWHERE, NO, NO, 422, method="post")
-        for name in ("import", "import_pairs")
+        for name in ("import", "import_competition", "import_pairs")
     ),
     Rule("job_cancel", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("job_answer", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),

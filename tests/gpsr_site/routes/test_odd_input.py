@@ -52,8 +52,9 @@ if connection.vendor != "sqlite":
     WORST_VALUES = ["a\0b", SURROGATE, str(2**63)]
 FILE_FIELDS = {
     **{"import": b"files", "import_pairs": b"archive", "world_import": b"archive"},
-    **{"utterances_new": b"file", "api:upload-list": b"file"},
+    **{"import_competition": b"files", "utterances_new": b"file", "api:upload-list": b"file"},
     **{"api:import": b"files", "api:import-pairs": b"archive", "api:import-world": b"archive"},
+    "api:import-competition": b"files",
 }
 CURSORS = [
     *("[null,1]", "[1e400,1]", "[1,1e400]", '["\\u0000",1]', '["\\ud800",1]', "[[1],1]", "[{},1]"),
