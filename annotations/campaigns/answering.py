@@ -9,7 +9,7 @@ from django.db import transaction
 from django.utils import timezone
 
 from annotations.campaigns.limits import count_save
-from annotations.campaigns.tasks import CampaignOver
+from annotations.campaigns.tasks import CampaignOver, close_if_full
 from annotations.labelling.proposal_requests import request_readings
 from annotations.language.errors import Position, Refusal
 from annotations.language.limits import require_writable
@@ -86,6 +86,7 @@ def save_answer(
         stored.read_by_run = None
         columns = ("text", "was_pasted", "seconds", "answered_at", "flags", "read_by_run")
         stored.save(update_fields=columns)
+    close_if_full(stored.contributor.campaign)
     return stored
 
 
@@ -102,7 +103,10 @@ def finish(contributor: Contributor, had_model_help: bool) -> Contributor:
 
     Raises:
         Refusal: a place is empty; ``problems`` has its number.
+        CampaignOver: the campaign ended, and the time is up in which those who have begun may finish.
     """
+    if not contributor.is_finished and contributor.campaign.is_locked:
+        raise CampaignOver(has_begun=True)
     empty = contributor.submissions.filter(text="").order_by("position").first()
     if empty is not None:
         said = f"Number {empty.position} is still empty."

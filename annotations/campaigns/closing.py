@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from http import HTTPStatus
+
 from django.db import transaction
 from django.db.models import Q
 from django.utils import timezone
 
-from annotations.models import Campaign, Contributor, Origin, Paraphrase, Utterance
-from annotations.models.campaigns import new_key
+from annotations.campaigns.moderation import hand_on, heir_of
+from annotations.campaigns.tasks import is_full
+from annotations.language.errors import Refusal
+from annotations.models import Campaign, Contributor, Origin, Paraphrase, Submission, Utterance
+from annotations.models.campaigns import SubmissionKind, new_key
 from annotations.rows.history import history_of
 
 
@@ -19,7 +24,17 @@ def close(campaign: Campaign) -> None:
 
 
 def reopen(campaign: Campaign) -> None:
-    """Undo ``close``. A campaign whose time is up stays over."""
+    """Undo ``close``.
+
+    Raises:
+        Refusal: its last day is over, or it has as many submissions as it wants.
+    """
+    if campaign.ends_at is not None and campaign.ends_at <= timezone.now():
+        said = "Its last day is over. Change the texts and the end, and choose a later day, then open it."
+        raise Refusal(said, "time_is_up", HTTPStatus.CONFLICT)
+    if is_full(campaign):
+        said = "It has as many submissions as it wants. Change the texts and the end, and allow more, then open it."
+        raise Refusal(said, "campaign_full", HTTPStatus.CONFLICT)
     campaign.closed_at = None
     campaign.save(update_fields=["closed_at"])
 
@@ -43,8 +58,16 @@ def forget(contributor: Contributor) -> int:
     """
     with transaction.atomic():
         texts = list(contributor.submissions.answered().values_list("text", flat=True))
+        for row in contributor.submissions.filter(utterance__isnull=False):
+            hand_on(row, heir_of(row))  # somebody else said the same
         # A decision that was taken back has left its utterance deleted.
-        was_theirs = Q(deleted_at__isnull=False, text__in=texts, origin=Origin.CONTRIBUTOR)
+        said_by_others = Submission.objects.filter(
+            contributor__campaign__world=contributor.campaign.world_id, kind=SubmissionKind.FREE
+        ).exclude(contributor=contributor)
+        theirs_alone = set(texts) - set(
+            said_by_others.filter(text__in=texts).values_list("text", flat=True)
+        )
+        was_theirs = Q(deleted_at__isnull=False, text__in=theirs_alone, origin=Origin.CONTRIBUTOR)
         said = Utterance.with_deleted.filter(
             was_theirs | Q(submission__contributor=contributor), world=contributor.campaign.world
         )

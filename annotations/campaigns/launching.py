@@ -73,7 +73,11 @@ def draw_prompts(world: World, choice: PromptChoice) -> list[DrawnPrompt]:
         Refusal: nothing is left to ask for, or it would be more than ``MOST_PROMPTS``.
     """
     categories = task_categories(world)
-    wanted = _below_target(world, generate(categories).expansions, choice)
+    expansions = generate(categories).expansions
+    if not expansions:
+        said = "This world makes no commands yet. Write templates first: they give commands their forms."
+        raise Refusal(said, "nothing_to_paraphrase")
+    wanted = _below_target(world, expansions, choice)
     patterns = {
         category.name: [template.pattern_text for template in category.templates]
         for category in categories

@@ -36,8 +36,8 @@ class TooOften(Refusal):
         self.wait = wait
 
 
-def count_task(campaign: Campaign, address: str) -> None:
-    """Count a task that is about to begin. Raises TooOften where the link or the address has had its share."""
+def require_share(campaign: Campaign) -> None:
+    """Raise TooOften where the link has had its share of tasks within an hour. Call it where the campaign is locked."""
     people = campaign.contributors.filter(kind=ContributorKind.PERSON)
     # The one with which the link has had its share; in an hour it counts no more.
     beginnings = people.order_by("-began_at").values_list("began_at", flat=True)
@@ -46,6 +46,10 @@ def count_task(campaign: Campaign, address: str) -> None:
     if left > timedelta():
         said = "Many people begin just now. Try again later: the link stays the same."
         raise TooOften(said, math.ceil(left.total_seconds()))
+
+
+def count_task(address: str) -> None:
+    """Count a task that is about to begin. Raises TooOften where the address has had its share."""
     if BEGUN_TASKS.take(address) is None:
         said = "Too many people begin from this address. Try again in an hour."
         raise TooOften(said, BEGUN_TASKS.seconds)

@@ -11,7 +11,7 @@ from django.utils import timezone
 from annotations.campaigns.answering import named_in
 from annotations.editing.edits import add_many, delete
 from annotations.label_audit.audit_findings import doubt
-from annotations.labelling.collecting import collect
+from annotations.labelling.collecting import collect, find_known
 from annotations.labelling.form_check import canonical_label
 from annotations.language.corpus import distance
 from annotations.language.errors import Position, Refusal
@@ -95,13 +95,16 @@ def take_back(submission: Submission, by: User) -> Submission:
             delete(row.paraphrase, by, row.paraphrase.version)
             row.paraphrase = None
         if row.utterance is not None:
-            if row.utterance.status != UtteranceStatus.UNLABELLED:
+            heir = heir_of(row)
+            if heir is None and row.utterance.status != UtteranceStatus.UNLABELLED:
                 raise Refusal(
                     "The utterance was labelled since. Delete it on its page instead.",
                     "labelled_since",
                     HTTPStatus.CONFLICT,
                 )
-            delete_utterances([row.utterance.pk], by)
+            hand_on(row, heir)
+            if heir is None:
+                delete_utterances([row.utterance.pk], by)
             row.utterance = None
         row.status, row.decided_by, row.decided_at = SubmissionStatus.PENDING, None, None
         row.save(update_fields=["status", "decided_by", "decided_at", "paraphrase", "utterance"])
@@ -202,15 +205,38 @@ def paraphrase_from(submission: Submission) -> Paraphrase:
 
 
 def _collect_free_commands(rows: Sequence[Submission], by: User) -> None:
+    """Make utterances of free commands. One that is here already is not theirs: somebody else brought it."""
     if not rows:
         return
     world = rows[0].contributor.campaign.world
-    collect(world, [row.text for row in rows], Origin.CONTRIBUTOR, by)
-    texts = Utterance.objects.filter(world=world, text__in=[row.text for row in rows])
-    # Another submission may have brought the same text; an utterance is of one.
-    free = {each.text: each for each in texts.filter(submission__isnull=True)}
+    texts = [row.text for row in rows]
+    known = find_known(world, texts)
+    collect(world, texts, Origin.CONTRIBUTOR, by)
+    made = Utterance.objects.filter(world=world, text__in=set(texts) - known)
+    free = {each.text: each for each in made.filter(submission__isnull=True)}
     for row in rows:
         row.utterance = free.pop(row.text, None)
+
+
+def heir_of(submission: Submission) -> Submission | None:
+    """Return another accepted free command with the same text, whose utterance that of ``submission`` can become."""
+    others = Submission.objects.filter(
+        contributor__campaign__world=submission.contributor.campaign.world_id,
+        kind=SubmissionKind.FREE,
+        status=SubmissionStatus.ACCEPTED,
+        text=submission.text,
+        utterance__isnull=True,
+    ).exclude(contributor=submission.contributor_id)
+    return others.order_by("pk").first()
+
+
+def hand_on(submission: Submission, heir: Submission | None) -> None:
+    """Give the utterance of ``submission`` to ``heir``, if there is one."""
+    if heir is None:
+        return
+    utterance = submission.utterance
+    Submission.objects.filter(pk=submission.pk).update(utterance=None)
+    Submission.objects.filter(pk=heir.pk).update(utterance=utterance)
 
 
 def _hold(submissions: Sequence[Submission]) -> list[Submission]:

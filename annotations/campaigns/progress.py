@@ -61,17 +61,18 @@ def progress_of(campaign: Campaign, now: datetime | None = None) -> CampaignProg
     for form, count in elsewhere.order_by().values_list("logical_form").annotate(Count("pk")):
         had[form] += count
     missing = sum(max(0, campaign.target_per_form - had[form]) for form in forms)
-    by_link = ~Q(contributor__kind=ContributorKind.FILE)
+    by_link = Q(contributor__kind=ContributorKind.PERSON)
     totals = rewrites.aggregate(
         all=Count("pk"),
         accepted=Count("pk", filter=Q(status=SubmissionStatus.ACCEPTED)),
-        # What came in a file came at once: it has no pace.
+        # What came in a file or from a model came at once: it has no pace.
         recent=Count("pk", filter=Q(answered_at__gt=now - RECENT) & by_link),
         first=Min("answered_at", filter=by_link),
         last=Max("answered_at"),
     )
-    people = campaign.contributors.aggregate(
-        all=Count("pk"), finished=Count("pk", filter=Q(finished_at__isnull=False))
+    people = campaign.contributors.filter(kind=ContributorKind.PERSON).aggregate(
+        all=Count("pseudonym", distinct=True),
+        finished=Count("pk", filter=Q(finished_at__isnull=False)),
     )
     hours = RECENT if totals["first"] is None else min(RECENT, now - totals["first"])
     per_hour = totals["recent"] / max(hours / timedelta(hours=1), 1 / 60)

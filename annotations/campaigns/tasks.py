@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
+from collections.abc import Callable
 from datetime import timedelta
 from heapq import heapify, heappop, heappush
 from http import HTTPStatus
@@ -10,9 +11,10 @@ from itertools import islice
 from random import Random
 
 from django.db import IntegrityError, transaction
-from django.db.models import Count, Q
+from django.db.models import Count, Max, Q
 from django.utils import timezone
 
+from annotations.campaigns.limits import require_share
 from annotations.language.errors import Refusal
 from annotations.models import Campaign, CampaignPrompt, Contributor, Submission
 from annotations.models.campaigns import Balance, ContributorKind, SubmissionKind
@@ -35,15 +37,28 @@ class CampaignOver(Refusal):
 
 def require_open(campaign: Campaign) -> None:
     """Raise CampaignOver where the campaign was closed, its time is up, or it has all that it wanted."""
-    most = campaign.most_submissions
-    answered = Submission.objects.filter(contributor__campaign=campaign).answered()
-    if campaign.is_over or (most is not None and answered.count() >= most):
+    if campaign.is_over or is_full(campaign):
         raise CampaignOver
 
 
+def is_full(campaign: Campaign) -> bool:
+    """Return whether a campaign has as many submissions as it wants."""
+    most = campaign.most_submissions
+    answered = Submission.objects.filter(contributor__campaign=campaign).answered()
+    return most is not None and answered.count() >= most
+
+
+def close_if_full(campaign: Campaign) -> None:
+    """Close a campaign with the last submission that it wants. Who has begun may finish."""
+    if campaign.most_submissions is not None and campaign.closed_at is None and is_full(campaign):
+        now = timezone.now()
+        Campaign.objects.filter(pk=campaign.pk, closed_at__isnull=True).update(closed_at=now)
+
+
 def contributor_of(campaign: Campaign, pseudonym: str) -> Contributor | None:
-    """Return the latest task of a contributor; None where they have not begun one."""
-    return campaign.contributors.filter(pseudonym=pseudonym).order_by("-attempt").first()
+    """Return the latest task that somebody has begun by link; None where there is none."""
+    by_link = campaign.contributors.filter(pseudonym=pseudonym, kind=ContributorKind.PERSON)
+    return by_link.order_by("-attempt").first()
 
 
 def begin(campaign: Campaign, pseudonym: str, kind: str = ContributorKind.PERSON) -> Contributor:
@@ -54,17 +69,23 @@ def begin(campaign: Campaign, pseudonym: str, kind: str = ContributorKind.PERSON
 
     Raises:
         CampaignOver: there is nothing to begin.
+        TooOften: the link has had its share of this hour.
     """
     latest = contributor_of(campaign, pseudonym)
     if latest is not None and not (latest.is_finished and campaign.allows_retake):
         return latest
     require_open(campaign)
-    attempt = 1 if latest is None else latest.attempt + 1
+    # Files of results have attempts of the same people.
+    attempts = campaign.contributors.filter(pseudonym=pseudonym).aggregate(last=Max("attempt"))
+    attempt = (attempts["last"] or 0) + 1
     # Chosen before anything is written: others write meanwhile.
     prompts = choose_prompts(campaign, campaign.task_size, pseudonym)
     checks = list(campaign.prompts.exclude(check_words=""))
     try:
         with transaction.atomic():
+            if kind == ContributorKind.PERSON:
+                # One after the other: of many who begin at once, no more do than the link allows.
+                require_share(Campaign.objects.select_for_update().get(pk=campaign.pk))
             contributor = Contributor.objects.create(
                 campaign=campaign,
                 pseudonym=pseudonym,
@@ -74,16 +95,26 @@ def begin(campaign: Campaign, pseudonym: str, kind: str = ContributorKind.PERSON
             )
             Submission.objects.bulk_create(_places(contributor, prompts, checks))
     except IntegrityError:
-        return campaign.contributors.get(pseudonym=pseudonym, attempt=attempt)
+        begun = contributor_of(campaign, pseudonym)
+        if begun is None:
+            raise
+        return begun
     return contributor
 
 
 def choose_prompts(campaign: Campaign, size: int, pseudonym: str = "") -> list[CampaignPrompt]:
     """Return ``size`` different prompts, or all that there are, in random order, as a ``Dealer`` deals them.
 
-    What ``pseudonym`` had before comes last.
+    What ``pseudonym`` had before comes only where there is nothing else.
     """
-    chosen = Dealer(campaign, pseudonym).deal(size)
+    had = Submission.objects.filter(
+        contributor__campaign=campaign, contributor__pseudonym=pseudonym, prompt__isnull=False
+    )
+    before = frozenset(had.values_list("prompt_id", flat=True))
+    chosen = Dealer(campaign, pseudonym, lambda key: key not in before).deal(size)
+    if before and len(chosen) < size:
+        again = Dealer(campaign, pseudonym, lambda key: key in before)
+        chosen += again.deal(size - len(chosen))
     rows = CampaignPrompt.objects.in_bulk(chosen)
     return [rows[key] for key in chosen]
 
@@ -95,18 +126,20 @@ class Dealer:
     other one has come; of its prompts the one comes first that was taken least.
     """
 
-    def __init__(self, campaign: Campaign, pseudonym: str = "") -> None:
+    def __init__(
+        self,
+        campaign: Campaign,
+        pseudonym: str = "",
+        may_deal: Callable[[int], bool] = lambda key: True,
+    ) -> None:
         self._random = Random(f"{campaign.seed}:{pseudonym}:{timezone.now().timestamp()}")
         self._prompts: dict[str, list[int]] = defaultdict(list)
         rewrites = campaign.prompts.filter(check_words="")
         balanced = "line" if campaign.balance == Balance.LINES else "logical_form"
         for key, group in rewrites.values_list("pk", balanced):
-            self._prompts[group].append(key)
+            if may_deal(key):
+                self._prompts[group].append(key)
         self._taken = _taken(campaign)
-        had = Submission.objects.filter(
-            contributor__campaign=campaign, contributor__pseudonym=pseudonym
-        )
-        self._had = set(had.values_list("prompt_id", flat=True))
         self._groups = [
             (sum(self._taken[key] for key in prompts), self._random.random(), group)
             for group, prompts in self._prompts.items()
@@ -118,7 +151,7 @@ class Dealer:
         turns = [heappop(self._groups) for _ in range(min(size, len(self._groups)))]
         for _, _, group in turns:
             self._random.shuffle(self._prompts[group])
-            self._prompts[group].sort(key=lambda key: (key in self._had, self._taken[key]))
+            self._prompts[group].sort(key=self._taken.__getitem__)
         longest = max((len(self._prompts[group]) for _, _, group in turns), default=0)
         rounds = (
             (group, self._prompts[group][turn])

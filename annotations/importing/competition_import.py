@@ -15,8 +15,7 @@ from annotations.importing.import_reports import Refusable
 from annotations.importing.target_world import lock_world, require_world_name
 from annotations.language.decoding import read_tree
 from annotations.language.errors import LanguageError, Position, Problem, error_at
-from annotations.language.ontology import Entity, Ontology
-from annotations.language.ontology.competition_folder import place_in_folder, read_competition
+from annotations.language.ontology import Entity, Ontology, place_in_folder, read_competition
 from annotations.models import User, World
 from annotations.rows.decisions import respect
 from annotations.rows.history import keys_changed_by_people

@@ -16,10 +16,11 @@ from annotations.importing.import_reports import PairsReport
 from annotations.importing.pair_files import Notation, PairFolder, read_pair_folder
 from annotations.importing.prompt_sources import PromptSource, SourceFinder
 from annotations.importing.target_world import lock_world, require_world_name
-from annotations.language.corpus import GroundedTriple, WrittenPair, distance
+from annotations.language.corpus import GroundedTriple, Part, WrittenPair, distance
 from annotations.language.decoding import MAX_FILE_BYTES
 from annotations.language.errors import LanguageError
 from annotations.models import Example, Paraphrase, User, World
+from annotations.models.splits import Source
 from annotations.rows.decisions import respect
 from annotations.rows.stored_problems import first_problems
 from annotations.rows.synchronise import RowPlan
@@ -136,7 +137,12 @@ def _prepare_splits(
                     if (form := canonical.get(pair.written_form)) is None:
                         form = canonical[pair.written_form] = pair.canonical_form
                     examples.append(_example(pair, form, position, part, source, behind, finder))
-        yield PreparedSplit(f"{name}-{criterion}", criterion, examples)
+        tests_on_models = any(
+            each.source == Source.MODEL and each.part != Part.TRAIN for each in examples
+        )
+        yield PreparedSplit(
+            f"{name}-{criterion}", criterion, examples, tests_on_models=tests_on_models
+        )
 
 
 # Utterance → the records that it stands in.

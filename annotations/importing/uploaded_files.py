@@ -23,7 +23,7 @@ from annotations.language.corpus import (
 from annotations.language.decoding import link_target
 from annotations.language.errors import LanguageError, Position
 from annotations.language.grammar import TRIPLE_FILES
-from annotations.language.ontology.competition_folder import place_in_folder
+from annotations.language.ontology import place_in_folder
 
 GENERATOR_FOLDER = "generator/"
 _TWICE = "two of the files have this name"

@@ -4,16 +4,9 @@ command without a form."""
 from __future__ import annotations
 
 from collections.abc import Callable
-from datetime import timedelta
-
-from django.utils import timezone
 
 from annotations.jobs import request_job, request_job_once
 from annotations.models import Job, JobKind, Submission, User, World
-
-BETWEEN_READINGS = timedelta(
-    minutes=2
-)  # of campaigns, where many contributors finish within an hour
 
 # Each says whether a world has a parser that could answer.
 _PARSERS: list[Callable[[World], bool]] = []
@@ -35,13 +28,10 @@ def request_proposals(world: World, by: User | None = None) -> Job | None:
 
 
 def request_readings(world: World) -> Job | None:
-    """Queue the job once somebody has submitted or decided something, unless it was asked for lately or no parser
-    could answer; None then."""
-    if not any(has_parser(world) for has_parser in _PARSERS):
-        return None
-    since = timezone.now() - BETWEEN_READINGS
-    lately = world.jobs.filter(kind=JobKind.PROPOSE, queued_at__gte=since)
-    return None if lately.exists() else request_proposals(world)
+    """Queue the job once somebody has submitted or decided something, unless one waits or no parser could answer; None
+    then."""
+    has_one = any(has_parser(world) for has_parser in _PARSERS)
+    return request_proposals(world) if has_one else None
 
 
 def last_request(world: World, command: str, run: int) -> Job | None:

@@ -96,9 +96,10 @@ class CampaignQuerySet(models.QuerySet["Campaign"]):
     def counted(self) -> CampaignQuerySet:
         """Return each with ``people`` who have begun, ``finished`` ones, and their ``answers``."""
         is_answered = ~Q(contributors__submissions__text="")
-        has_finished = Q(contributors__finished_at__isnull=False)
+        is_person = Q(contributors__kind=ContributorKind.PERSON)
+        has_finished = is_person & Q(contributors__finished_at__isnull=False)
         return self.annotate(
-            people=Count("contributors", distinct=True),
+            people=Count("contributors__pseudonym", distinct=True, filter=is_person),
             finished=Count("contributors", distinct=True, filter=has_finished),
             answers=Count("contributors__submissions", distinct=True, filter=is_answered),
         )

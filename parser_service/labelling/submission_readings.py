@@ -29,7 +29,7 @@ def score_of_sure_answers(run: TrainingRun) -> float | None:
     """Return the score from which on ``SURE`` of the answers of ``run`` were right, on what people said of the
     validation part; None where too few were."""
     answers = run.predictions.best().filter(example__part=Part.VALIDATION)
-    by_people = answers.exclude(example__source=Source.GENERATED)
+    by_people = answers.exclude(example__source__in=(Source.GENERATED, Source.MODEL))
     right, count, bound = 0, 0, None
     rows = by_people.order_by("-score").values_list("score", "is_equivalent")
     for score, alike in groupby(rows.iterator(), key=itemgetter(0)):

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from http import HTTPStatus
+from random import Random
 
 from django.db import transaction
 from django.db.models import Count
@@ -16,12 +16,12 @@ from annotations.language.errors import Refusal
 from annotations.models import Example, Split, User, World
 from annotations.models.campaigns import ContributorKind
 from annotations.models.splits import Source
-from annotations.splits.freezing import PreparedSplit, plan_split
+from annotations.splits.freezing import PreparedSplit, assign_parts, plan_split
 from parser_service.models import TrainingRun
 from parser_service.models.evaluations import ShownScore, shown_scores
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.registry import entry
-from parser_service.runs.requests.run_requests import LEAST_SHARE, request
+from parser_service.runs.requests.run_requests import request
 from parser_service.runs.requests.starting import Answer, count_started, require_left
 
 PEOPLE, MODELS = "para", "model"  # what the two runs are trained on
@@ -29,7 +29,6 @@ SOURCES = {PEOPLE: Source.PARAPHRASED, MODELS: Source.MODEL}
 TESTED_ON = "para"
 MOST_RUNS = 200  # the newest that pairs are looked for in
 MOST_PAIRS = 20
-_DIGITS = 4  # of a share
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +61,8 @@ def score_of(run: TrainingRun) -> ShownScore | None:
 def start_people_against_models(world: World, parser: str, by: User) -> list[Answer]:
     """Freeze a split of today, unless there is one, and request a run on people's paraphrases and one on models'.
 
-    The split is by logical form, or by source command for a parser that never writes a form it has not seen.
+    The split is by logical form, or by source command for a parser that never writes a form it has not seen. Its
+    training part has the same forms of both, each as often (``matched``).
 
     Returns:
         What ``request`` returns, for people and for models.
@@ -75,19 +75,19 @@ def start_people_against_models(world: World, parser: str, by: User) -> list[Ans
     chosen = entry(parser)
     require_left(by, 2)
     criterion = Criterion.LOGICAL_FORM if chosen.writes_new_forms else Criterion.SOURCE_COMMAND
-    examples = plan_split(world, criterion)
+    examples = matched(plan_split(world, criterion))
     counts = Counter((each.source, each.part) for each in examples)
     of_train = {name: counts[source, Part.TRAIN] for name, source in SOURCES.items()}
     if not of_train[MODELS] or not of_train[PEOPLE] or not counts[Source.PARAPHRASED, Part.TEST]:
         raise Refusal(
-            "Training needs accepted paraphrases of people and of a language model, and testing others of people: "
+            "Training needs accepted paraphrases of people and of a language model for the same forms, and testing "
+            "others of people: "
             f"there are {of_train[PEOPLE]}, {of_train[MODELS]} and {counts[Source.PARAPHRASED, Part.TEST]}. "
             "Collect more in a campaign.",
             "too_few_paraphrases",
             HTTPStatus.CONFLICT,
         )
     split = _split_of(world, criterion, examples, by)
-    shares = equal_shares(of_train)
     with transaction.atomic():
         answers = [
             request(
@@ -95,7 +95,6 @@ def start_people_against_models(world: World, parser: str, by: User) -> list[Ans
                 protocol=Protocol.STRICT,
                 train_sources=name,
                 by=by,
-                train_share=shares[name],
             )
             for name in (PEOPLE, MODELS)
         ]
@@ -118,41 +117,55 @@ def _split_of(world: World, criterion: str, examples: list[Example], by: User) -
         return prepared.store(world, by)[0]
 
 
-def equal_shares(pairs: Mapping[str, int]) -> dict[str, float]:
-    """Return which share of each number of pairs gives as many as the smallest of them."""
-    fewest = min(pairs.values())
-    scale = 10**_DIGITS
-    return {
-        name: max(LEAST_SHARE, math.ceil(scale * fewest / count) / scale)
-        for name, count in pairs.items()
-    }
+def matched(examples: Sequence[Example]) -> list[Example]:
+    """Return planned examples with as many training paraphrases of people as of models for each form.
+
+    The others of the training part are left out, drawn by a fixed seed.
+    """
+    of_form: dict[tuple[str, str], list[Example]] = defaultdict(list)
+    for each in examples:
+        if each.part == Part.TRAIN and each.source in SOURCES.values():
+            of_form[each.logical_form, each.source].append(each)
+    left_out: set[int] = set()
+    for form in sorted({form for form, _ in of_form}):
+        fewest = min(len(of_form[form, source]) for source in SOURCES.values())
+        for source in SOURCES.values():
+            alike = sorted(of_form[form, source], key=lambda each: each.utterance)
+            Random(f"{form}:{source}").shuffle(alike)
+            left_out.update(id(each) for each in alike[fewest:])
+    staying = [each for each in examples if id(each) not in left_out]
+    return assign_parts(staying, [Part(each.part) for each in staying])
 
 
 def run_pairs(world: World) -> list[RunPair]:
-    """Return the runs of ``world`` that learned from as many paraphrases of people and of models, the newest first."""
-    runs = world.runs.scored_or_active().filter(train_sources__in=SOURCES)
+    """Return the runs of ``world`` that learned from as many paraphrases of people and of models for each form, the
+    newest first."""
+    runs = world.runs.scored_or_active().on_all_pairs().filter(train_sources__in=SOURCES)
     newest = list(
         runs.select_related("split").prefetch_related("evaluations").order_by("-id")[:MOST_RUNS]
     )
-    shares = _shares_of({run.split_id for run in newest})
+    comparable = _matched_splits({run.split_id for run in newest})
     grouped: dict[tuple[object, ...], dict[str, TrainingRun]] = defaultdict(dict)
     for run in newest:
-        if run.train_share == shares.get(run.split_id, {}).get(run.train_sources):
+        if run.split_id in comparable:
             alike = (run.split_id, run.parser, run.parser_version, run.protocol, run.seed)
             grouped[*alike, run.changed_hyperparameters()].setdefault(run.train_sources, run)
     both = (each for each in grouped.values() if len(each) == len(SOURCES))
     return [RunPair(each[PEOPLE], each[MODELS]) for each in both][:MOST_PAIRS]
 
 
-def _shares_of(splits: Iterable[int]) -> dict[int, dict[str, float]]:
-    """Return key of a split → the shares with which its runs learn from as many pairs; both sources are there."""
+def _matched_splits(splits: Iterable[int]) -> set[int]:
+    """Return the keys of the splits that train on as many paraphrases of people as of models for each form."""
     rows = Example.objects.filter(split__in=splits, part=Part.TRAIN, source__in=SOURCES.values())
-    grouped = rows.order_by().values_list("split", "source").annotate(Count("pk"))
-    counts: dict[int, dict[str, int]] = defaultdict(dict)
-    names = {source.value: name for name, source in SOURCES.items()}
-    for key, source, count in grouped:
-        counts[key][names[source]] = count
-    return {key: equal_shares(each) for key, each in counts.items() if len(each) == len(SOURCES)}
+    grouped = rows.order_by().values_list("split", "logical_form", "source").annotate(Count("pk"))
+    counts: dict[int, dict[str, Counter[str]]] = defaultdict(lambda: defaultdict(Counter))
+    for key, form, source, count in grouped:
+        counts[key][form][source] = count
+    return {
+        key
+        for key, forms in counts.items()
+        if all(len({each[source] for source in SOURCES.values()}) == 1 for each in forms.values())
+    }
 
 
 def has_both(world: World) -> bool:

@@ -148,7 +148,8 @@ def campaign_edit(request: WorldRequest, world: World, pk: int) -> HttpResponse:
             form.add_error("consent", refusal.message)
             status = refusal.status
         else:
-            note(request, f"{row.name}: {', '.join(changed)}")
+            if changed:
+                note(request, f"{row.name}: {', '.join(changed)}")
             said = f"Saved as version {row.version + 1}." if changed else "Nothing has changed."
             messages.success(request, said)
             return redirect("campaign_page", world=world.name, pk=pk)
@@ -187,9 +188,13 @@ def campaign_act(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     step = request.POST.get("step", "")
     if step in STEPS:
         act, said = STEPS[step]
-        act(row)
-        note(request, f"{row.name}: {step}")
-        messages.success(request, said)
+        try:
+            act(row)
+        except Refusal as refusal:
+            messages.error(request, refusal.message)
+        else:
+            note(request, f"{row.name}: {step}")
+            messages.success(request, said)
     else:
         messages.error(request, "There is no such step.")
     return redirect("campaign_page", world=world.name, pk=pk)

@@ -236,7 +236,8 @@ class CampaignViewSet(RowsViewSet):
             if not form.is_valid():
                 raise refusal_of_form(form)
             changed = change_campaign(row, form.values, row.version)
-        note(request, f"{row.name}: {', '.join(changed)}")
+        if changed:
+            note(request, f"{row.name}: {', '.join(changed)}")
         return self.show(self.get_object())
 
     @extend_schema(responses={200: ProgressOfCampaignSerializer})

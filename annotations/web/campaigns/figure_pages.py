@@ -83,7 +83,7 @@ def paraphrase_forms(request: WorldRequest, world: World) -> HttpResponse:
     return render_list(request, "annotations/campaigns/figure_forms.html", context)
 
 
-@world_view(Duty.VIEW)
+@world_view(Duty.REVIEW)
 def paraphrase_contributors(request: WorldRequest, world: World) -> HttpResponse:
     """List who has contributed, by pseudonyms, with pace, acceptance and flags."""
     filters = FigureFilters(request, world, request.GET)

@@ -22,7 +22,7 @@ from annotations.campaigns.paraphrase_figures import (
     form_counts,
     target_of,
 )
-from annotations.models import Campaign, Contributor, Paraphrase
+from annotations.models import Campaign, Contributor, Duty, Paraphrase, Scope
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import Figures
@@ -197,6 +197,8 @@ class ContributorCounts(OfCampaign):
     """Lists who has contributed, by pseudonyms, with pace, acceptance and flags."""
 
     model = Contributor
+    duties = {"GET": Duty.REVIEW}
+    scopes = {"GET": Scope.READ}
 
     @extend_schema(
         operation_id="paraphrase_contributors",

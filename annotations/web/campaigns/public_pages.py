@@ -159,7 +159,7 @@ def campaign_begin(visit: Visit) -> HttpResponse:
             return visit.page(
                 "begin", 422, has_to_begin=True, missing=missing, consent_digest=digest
             )
-        count_task(campaign, str(visit.request.META["REMOTE_ADDR"]))
+        count_task(str(visit.request.META["REMOTE_ADDR"]))
         contributor = begin(campaign, visit.pseudonym)
     assert contributor is not None
     return visit.to(next_place(contributor))
@@ -214,6 +214,8 @@ def campaign_done(visit: Visit) -> HttpResponse:
     contributor = visit.contributor
     if contributor is None:
         return visit.to()
+    if not contributor.is_finished and visit.campaign.is_locked:
+        raise CampaignOver(has_begun=True)
     empty = contributor.submissions.filter(text="").order_by("position").first()
     if empty is not None:
         return visit.to(empty.position)

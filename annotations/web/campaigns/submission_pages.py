@@ -50,7 +50,7 @@ class DecisionForm(forms.Form):
     """A decision about one submission, with what it needs."""
 
     decision = forms.ChoiceField(
-        choices=[(each, each) for each in ("accept", "reject", "mend", "form", "doubt")]
+        choices=[(each, each) for each in ("accept", "reject", "mend", "form", "doubt", "undo")]
     )
     text = forms.CharField(required=False, max_length=MOST_CHARACTERS)
     form = forms.CharField(required=False, max_length=4_000)
@@ -97,6 +97,10 @@ def submission_decide(request: WorldRequest, world: World, pk: int) -> HttpRespo
             case "mend":
                 mend(row, sent["text"])
                 messages.success(request, "The text is mended. What was written is kept beside it.")
+                return redirect("submission", world=world.name, pk=row.pk)
+            case "undo":
+                take_back(row, request.user)
+                messages.success(request, "The decision is undone. It waits again.")
                 return redirect("submission", world=world.name, pk=row.pk)
             case "form":
                 accept_with_form(row, sent["form"], request.user)

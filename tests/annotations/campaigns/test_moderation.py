@@ -16,6 +16,7 @@ from annotations.campaigns.moderation import (
 from annotations.campaigns.progress import progress_of
 from annotations.campaigns.tasks import begin
 from annotations.editing.edits import change
+from annotations.labelling.collecting import collect
 from annotations.language.corpus import distance
 from annotations.language.errors import LanguageError, Refusal
 from annotations.models import Origin, Paraphrase, Submission, Utterance
@@ -147,3 +148,43 @@ def test_who_is_forgotten_leaves_no_decision_that_was_taken_back(submissions, ad
     assert not Utterance.with_deleted.exists()
     assert not history_of(Utterance).exists()
     assert not history_of(Paraphrase).exists()
+
+
+@pytest.fixture
+def same(launched, admin) -> tuple[Submission, Submission]:
+    """The same free command, accepted of two contributors; the first one's has the utterance."""
+    campaign = launched(task_size=1, free_commands=1)
+    rows = []
+    for name in ("one", "two"):
+        place = begin(campaign, name).submissions.get(kind="free")
+        rows.append(save_answer(place, "water the plants on the balcony", 9))
+    accept(rows, admin)
+    return reread(rows[0]), reread(rows[1])
+
+
+def test_an_utterance_that_was_here_before_is_not_theirs(launched, household, admin):
+    text = "please close every door on the third floor"
+    collect(household, [text], by=admin)
+    contributor = begin(launched(task_size=1, free_commands=1), "somebody")
+    row = save_answer(contributor.submissions.get(kind="free"), text, 9)
+    accept([row], admin)
+    assert reread(row).utterance is None
+    take_back(reread(row), admin)
+    accept([reread(row)], admin)
+    forget(contributor)
+    assert Utterance.objects.get(text=text).origin == Origin.PASTED
+
+
+@pytest.mark.parametrize("goes", [take_back, None])
+def test_what_two_people_say_stays_while_one_of_them_does(same, admin, goes):
+    first, second = same
+    utterance = first.utterance
+    assert utterance and second.utterance is None
+    for row, other in ((first, second), (second, None)):
+        if goes is None:
+            forget(row.contributor)
+        else:
+            take_back(reread(row), admin)
+        if other is not None:
+            assert reread(other).utterance == utterance
+    assert not Utterance.objects.exists()

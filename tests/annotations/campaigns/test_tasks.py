@@ -10,13 +10,15 @@ import pytest
 from django.utils import timezone
 
 from annotations.campaigns.answering import finish, save_answer, warnings_for
+from annotations.campaigns.closing import close, reopen
+from annotations.campaigns.limits import TooOften
 from annotations.campaigns.progress import progress_of
 from annotations.campaigns.pseudonyms import market_id_in, pseudonym_of
 from annotations.campaigns.tasks import CampaignOver, begin, choose_prompts
 from annotations.language.errors import Refusal
 from annotations.language.paraphrases import RewriteFault
 from annotations.models import Campaign, Contributor, Submission
-from annotations.models.campaigns import GRACE
+from annotations.models.campaigns import GRACE, ContributorKind
 from tests.at_once import at_once
 from tests.launched_campaigns import small_campaign
 
@@ -309,3 +311,77 @@ def test_of_two_who_save_one_place_at_once_one_is_stored_whole(launched):
     place.refresh_from_db()
     assert set(texts[place.text]) <= set(codes(place))
     assert {"gibberish", "copy"} - set(codes(place))
+
+
+def test_a_file_with_the_same_person_leaves_their_task_alone(launched):
+    campaign = launched(task_size=2, free_commands=0)
+    mine = begin(campaign, "somebody")
+    imported = {"kind": ContributorKind.FILE, "pseudonym": "somebody", "attempt": 2}
+    campaign.contributors.create(finished_at=timezone.now(), **imported)
+    assert begin(campaign, "somebody") == mine
+    campaign.contributors.create(pseudonym="other", kind=ContributorKind.FILE)
+    began = begin(campaign, "other")
+    assert (began.kind, began.attempt) == (ContributorKind.PERSON, 2)
+
+
+def test_nobody_gets_a_prompt_twice_while_there_are_others(launched):
+    campaign = launched({"prompts_per_form": 1}, task_size=3, free_commands=0, allows_retake=True)
+    rewrites = campaign.prompts.filter(check_words="")
+    kept = rewrites.values_list("pk", flat=True)[:20]
+    rewrites.exclude(pk__in=list(kept)).delete()
+    for name in ("a", "b", "c"):
+        begin(campaign, name)
+    had = []
+    for _ in range(6):
+        mine = begin(campaign, "somebody")
+        had += mine.submissions.values_list("prompt_id", flat=True)
+        mine.finished_at = timezone.now()
+        mine.save()
+    assert len(had) == len(set(had)) == 18
+    last = begin(campaign, "somebody").submissions.values_list("prompt_id", flat=True)
+    assert set(kept) - set(had) <= set(last)
+
+
+def test_a_campaign_closes_itself_with_the_last_submission(launched):
+    campaign = launched(task_size=2, free_commands=0, most_submissions=2)
+    one, two = begin(campaign, "one"), begin(campaign, "two")
+    first, second = one.submissions.all()
+    save_answer(first, "something", 9)
+    assert not Campaign.objects.get(pk=campaign.pk).is_over
+    save_answer(second, "something else", 9)
+    stored = Campaign.objects.get(pk=campaign.pk)
+    assert stored.is_over and not stored.is_locked
+    save_answer(two.submissions.first(), "and who has begun goes on", 9)
+    with pytest.raises(Refusal) as refused:
+        reopen(stored)
+    assert refused.value.code == "campaign_full"
+
+
+def test_a_campaign_whose_day_is_over_is_not_opened_again(launched):
+    campaign = launched(ends_at=timezone.now() - timedelta(days=1))
+    close(campaign)
+    with pytest.raises(Refusal) as refused:
+        reopen(campaign)
+    assert refused.value.code == "time_is_up"
+
+
+def test_of_many_who_begin_at_once_no_more_do_than_the_link_allows(transactional_db, launched):
+    campaign = launched(task_size=1, free_commands=0, most_per_hour=2)
+
+    def try_to_begin(name: str) -> bool:
+        try:
+            begin(campaign, name)
+        except TooOften:
+            return False
+        return True
+
+    begun = at_once(*(partial(try_to_begin, f"person {number}") for number in range(8)))
+    assert sum(begun) == campaign.contributors.count() == 2
+
+
+def test_nobody_finishes_after_the_day_of_grace(launched):
+    contributor = begin(launched(task_size=1, free_commands=0), "somebody")
+    save_answer(contributor.submissions.get(), "something", 9)
+    Campaign.objects.update(closed_at=timezone.now() - timedelta(days=3))
+    with pytest.raises(CampaignOver):
+        finish(Contributor.objects.get(), had_model_help=False)

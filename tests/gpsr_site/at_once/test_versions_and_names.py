@@ -180,6 +180,7 @@ PAGES = {
     },
     "campaign_new": {
         **{"name": "spring", "wording": "command", "target_per_form": "10", "seed": "0"},
+        **{"balance": "forms"},
         **{"prompts_per_form": "1", "task_size": "2", "free_commands": "0", "check_every": "0"},
         **{"taboo_words": "0", "most_per_hour": "9", "launch": "yes"},
     },

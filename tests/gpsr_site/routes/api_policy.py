@@ -35,7 +35,6 @@ READABLE = (
         "paraphrase-detail",
         "paraphrase-figures",
         "paraphrase-forms",
-        "paraphrase-contributors",
         "paraphrase-runs",
         "utterance-list",
         "utterance-detail",
@@ -226,6 +225,7 @@ API_POLICY = [
     # Everybody with a role decides about labels in doubt, reviewers let them be looked for
     Rule("api:campaign-model", *admins(NO_JSON), method="post"),
     # What contributors wrote, by pseudonym
+    Rule("api:paraphrase-contributors", *reviewers(YES)),
     *(Rule(f"api:submission-{name}", *reviewers(YES)) for name in ("list", "detail", "export")),
     *(
         Rule(f"api:submission-{name}", *reviewers(NO_JSON), method="post")

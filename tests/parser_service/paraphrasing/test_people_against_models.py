@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from collections import Counter
+
 import pytest
 
 from annotations.language.errors import Refusal
@@ -8,12 +10,11 @@ from annotations.models.campaigns import ContributorKind
 from annotations.people.rate_limits import STARTED_RUNS
 from parser_service.models import TrainingRun
 from parser_service.paraphrasing.people_against_models import (
-    equal_shares,
     run_pairs,
     start_people_against_models,
 )
 from parser_service.runs import lifecycle
-from parser_service.runs.training.split_pairs import pairs_of, training_pairs
+from parser_service.runs.training.split_pairs import training_pairs
 from parser_service.runs.training.train_run import train
 from tests.launched_campaigns import small_campaign
 from tests.parser_service.made_up import made_up_pairs
@@ -39,12 +40,6 @@ def paraphrases(world) -> None:
             )
 
 
-def test_shares_give_as_many_pairs():
-    assert equal_shares({"para": 300, "model": 100}) == {"para": 0.3334, "model": 1}
-    assert equal_shares({"para": 7, "model": 7}) == {"para": 1, "model": 1}
-    assert equal_shares({"para": 1_000_000, "model": 1})["para"] == 0.01
-
-
 def test_two_runs_differ_in_who_wrote_what_they_learn_from(paraphrases, world, admin):
     answers = start_people_against_models(world, "seq2seq", admin)
     (people, is_new), (models, _) = answers
@@ -52,11 +47,13 @@ def test_two_runs_differ_in_who_wrote_what_they_learn_from(paraphrases, world, a
     assert (people.train_sources, models.train_sources) == ("para", "model")
     assert people.split == models.split
     assert people.split.criterion == "logical_form"
-    # As many of each, up to the pairs of a form, which stay together.
-    counts = [
-        len(training_pairs(run.split, run.train_sources, run.train_share)) for run, _ in answers
-    ]
-    assert max(counts) - min(counts) < len(pairs_of(people.split, "train", "para")) / 3
+    # The same forms, each as often.
+    of_people, of_models = (
+        Counter(pair.form for pair in training_pairs(run.split, run.train_sources))
+        for run, _ in answers
+    )
+    assert of_people == of_models
+    assert of_people.total() > 10
     assert not people.split.examples.filter(part="test", source="model").exists()
     tested = people.split.examples.filter(part="test", source="paraphrased")
     forms = set(tested.values_list("logical_form", flat=True))
@@ -124,7 +121,10 @@ def test_trained_runs_show_their_accuracies(transactional_db, paraphrases, world
 def test_other_runs_are_not_compared(paraphrases, world, admin):
     (people, _), (models, _) = start_people_against_models(world, "knn", admin)
     assert [pair.models for pair in run_pairs(world)] == [models]
+    TrainingRun.objects.filter(pk=people.pk).update(train_share=0.5)
+    assert run_pairs(world) == []
     TrainingRun.objects.filter(pk=people.pk).update(train_share=1)
+    people.split.examples.filter(part="train", source="model").first().delete()
     assert run_pairs(world) == []
 
 
