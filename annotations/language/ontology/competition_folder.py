@@ -21,13 +21,7 @@ LOCATIONS, OBJECTS = "maps/location_names.md", "objects/objects.md"
 COMPETITION_FILES = (NAMES, ROOMS, LOCATIONS, OBJECTS)
 
 MOST_LINES = 20_000  # of a file
-_RULER = re.compile(r"[|:\-\s]*-[|:\-\s]*")
-_HEADING = re.compile(r"#+\s*(?P<text>.*?)[\s#]*")
-_CLASS = re.compile(
-    r"class\s+(?P<plural>[^()]*[^()\s])\s*(?:\((?P<singular>[^()]*)\))?", re.IGNORECASE
-)
-_PLACEMENT = re.compile(r"\s*\(\s*p\s*\)\s*", re.IGNORECASE)
-_REMARK = re.compile(r"\s*\((?P<remark>[^()]*)\)$")
+_PLACEMENT = re.compile(r"\( ?p ?\)", re.IGNORECASE)
 _PROSE = ("- ", "* ", "+ ", "![", "[", ">")  # begins of lists, pictures, links and quotations
 _NOTHING = ("", "-", "–", "—")
 _NO_NAME = re.compile(r"[^\w .,'’&/+\-]")
@@ -122,14 +116,13 @@ def _find_tables(lines: list[str], name: str, problems: list[Problem]) -> Iterat
         stripped = line.strip()
         below = lines[number].strip() if number < len(lines) else ""
         is_row = "|" in stripped and not stripped.startswith(_PROSE)
-        if is_inside and _RULER.fullmatch(stripped):
+        if is_inside and _is_ruler(stripped):
             continue
         if stripped.startswith("#"):
             if table is not None:
                 yield table
-            match = _HEADING.fullmatch(stripped)
-            heading, table = Cell(match["text"] if match else "", place), None
-        elif is_row and not is_inside and _RULER.fullmatch(below):
+            heading, table = Cell(" ".join(stripped.strip("#").split()), place), None
+        elif is_row and not is_inside and _is_ruler(below):
             if table is not None:
                 yield table
             table = Table(heading, _cells(line, name, number))
@@ -141,6 +134,11 @@ def _find_tables(lines: list[str], name: str, problems: list[Problem]) -> Iterat
         is_inside = is_row
     if table is not None:
         yield table
+
+
+def _is_ruler(line: str) -> bool:
+    """Return whether a line, without blanks around it, stands between the head of a table and its rows."""
+    return "-" in line and not line.strip("|:- \t")
 
 
 def _cells(line: str, name: str, number: int) -> list[Cell]:
@@ -218,8 +216,8 @@ def _read_locations(
                 place = row[-1].position
                 problems.append(error_at(place, "this row has no name", "write number, name"))
                 continue
-            written, place = row[at].text, row[at].position
-            parts = _PLACEMENT.split(written, maxsplit=1)
+            place = row[at].position
+            parts = [part.strip() for part in _PLACEMENT.split(row[at].text, maxsplit=1)]
             if not _require_name(Cell(parts[0], place), "location", seen, problems):
                 continue
             is_placement = len(parts) > 1
@@ -252,8 +250,8 @@ def _read_objects(
     homes: dict[str, str] = {}  # folded object → its first class
     for table in tables:
         heading = table.heading
-        match = _CLASS.fullmatch(heading.text)
-        if match is None:
+        plural, singular = _names_of_class(heading.text)
+        if not plural:
             problems.append(
                 error_at(
                     heading.position,
@@ -262,8 +260,6 @@ def _read_objects(
                 )
             )
             continue
-        plural = " ".join(match["plural"].replace("_", " ").split())
-        singular = " ".join((match["singular"] or "").replace("_", " ").split()) or plural
         if plural.casefold() in classes:
             problems.append(
                 error_at(
@@ -275,16 +271,16 @@ def _read_objects(
         classes[plural.casefold()] = plural, singular, objects
         seen: set[str] = set()
         for row in table.rows:
-            text = row[0].text.replace("_", " ").strip()
-            remark = _REMARK.search(text)
-            named = Cell(text[: remark.start()] if remark else text, row[0].position)
+            text, _, remark = row[0].text.replace("_", " ").partition("(")
+            named = Cell(" ".join(text.split()), row[0].position)
             if not _require_name(named, "object", seen, problems):
                 continue
             first = homes.setdefault(named.text.casefold(), plural)
             if first != plural:
                 sentence = f"{named.text} is among the {first} too"
                 problems.append(warning_at(named.position, sentence, "both are kept"))
-            attributes = {"category": plural, **({"remark": remark["remark"]} if remark else {})}
+            said = remark.partition(")")[0].strip()
+            attributes = {"category": plural, **({"remark": said} if said else {})}
             objects.append(Entity("object", named.text, (), attributes, named.position))
     places = _places_of(classes, belongs, problems)
     for key, (plural, singular, objects) in classes.items():
@@ -294,6 +290,18 @@ def _read_objects(
             position = objects[0].position if objects else Position(OBJECTS)
             yield Entity("category", plural, (), {**kept, **attributes}, position)
         yield from objects
+
+
+def _names_of_class(heading: str) -> tuple[str, str]:
+    """Return plural and singular of ``Class drinks (drink)``, the plural twice without a singular; nothing for another
+    heading."""
+    word, _, names = heading.replace("_", " ").partition(" ")
+    if word.casefold() != "class":
+        return "", ""
+    plural, _, rest = names.partition("(")
+    singular = " ".join(rest.partition(")")[0].split())
+    plural = " ".join(plural.split())
+    return plural, singular or plural
 
 
 def _places_of(
