@@ -47,12 +47,12 @@ def read_submissions(
 
     Each is read once by a run. What the run has learned from is not asked. Returns what the report of the job says.
     """
-    bound = score_of_sure_answers(run)
-    if bound is None:
-        return {}
     waiting = Submission.objects.filter(contributor__campaign__world=world).awaiting_moderation()
     unread = waiting.filter(prompt__isnull=False).exclude(read_by_run=run.pk)
     rows = list(unread.select_related("prompt").order_by("pk")[:MOST_READ])
+    bound = score_of_sure_answers(run) if rows else None
+    if bound is None:
+        return {}
     learned = set(run.split.examples.of(Part.TRAIN).values_list("utterance", flat=True))
     flagged = 0
     for number, some in enumerate(batches(rows, TOGETHER)):
