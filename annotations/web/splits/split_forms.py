@@ -28,7 +28,7 @@ class SplitForm(forms.Form):
     tests_on_models = forms.BooleanField(
         label="Test on what language models wrote too",
         required=False,
-        help_text="Else only what people said is tested on; what models wrote is trained on.",
+        help_text="Without it, what models wrote is only trained on.",
     )
     train = forms.FloatField(label="Train, %", initial=70, min_value=0, max_value=100)
     validation = forms.FloatField(label="Validation, %", initial=10, min_value=0, max_value=100)
