@@ -76,13 +76,12 @@ def import_generator_of(job: Job, progress: JobProgress) -> dict[str, Any]:
 
 def start_competition_import(
     world: World, uploads: Sequence[Any], by: User, brings_back: bool = False
-) -> CompetitionReport:
-    """Import now: the files of a competition are few and short.
-
-    Raises:
-        LanguageError: the uploads cannot be read.
-    """
+) -> Job | CompetitionReport:
+    """Raises LanguageError where the uploads cannot be read."""
     files = competition_files_of(uploads)
+    if sum(map(len, files.values())) > MOST_BYTES:
+        choices = {"brings_back": brings_back}
+        return request_job(JobKind.IMPORT_COMPETITION, world.name, by, choices, uploads)
     return import_competition(world.name, files, by, brings_back=brings_back)
 
 

@@ -56,13 +56,15 @@ def import_competition_files(request: WorldRequest, world: World) -> HttpRespons
     if form.is_bound and form.is_valid():
         files, brings_back = form.cleaned_data["files"], form.cleaned_data["brings_back"]
         try:
-            done = start_competition_import(world, files, request.user, brings_back)
+            started = start_competition_import(world, files, request.user, brings_back)
         except LanguageError as error:
             form.add_error("files", str(error))
         else:
-            if not done.is_refused:
-                return _done(request, world, JobKind.IMPORT_COMPETITION, done.as_json())
-            report = shown_report(JobKind.IMPORT_COMPETITION, done.as_json(), world)
+            if isinstance(started, Job):
+                return redirect("job", pk=started.pk)
+            if not started.is_refused:
+                return _done(request, world, JobKind.IMPORT_COMPETITION, started.as_json())
+            report = shown_report(JobKind.IMPORT_COMPETITION, started.as_json(), world)
     return _page(request, "annotations/worlds/import_competition.html", form, report)
 
 

@@ -177,7 +177,8 @@ class ImportCompetition(Doing, WorldRoute):
     duties = {"POST": Duty.MANAGE}
 
     @extend_schema(
-        request={"multipart/form-data": ImportedCompetition}, responses={200: DoneSerializer}
+        request={"multipart/form-data": ImportedCompetition},
+        responses={200: DoneSerializer, 202: DoneSerializer},
     )
     @once
     def post(self, request: ApiRequest, **kwargs: object) -> Response:

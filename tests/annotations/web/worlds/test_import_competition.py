@@ -8,6 +8,8 @@ import zipfile
 import pytest
 from django.core.files.uploadedfile import SimpleUploadedFile
 
+from annotations.background import claim
+from annotations.jobs.carrying_out import carry_out
 from annotations.language.ontology.competition_folder import NAMES
 from annotations.models import Entity, Job, JobKind
 from tests.annotations.language.ontology.test_competition_folder import FOLDER
@@ -51,6 +53,19 @@ def test_files_and_an_archive_are_imported(world, adam, make):
     }
     assert texts("name") == ["Ada", "Antônia"]
     assert ROOMS_PAGE in answer.content.decode()
+
+
+def test_a_large_folder_is_imported_by_a_worker(world, adam, settings, tmp_path):
+    settings.VAR_DIR = tmp_path
+    names = "".join(f"| {'x' * 400} {number} |\n" for number in range(1_200))
+    answer = adam.post(PAGE, {"files": files(**{NAMES: FOLDER[NAMES] + names})})
+    job = Job.objects.get()
+    assert answer["Location"] == f"/jobs/{job.pk}/"
+    assert (job.kind, job.status) == (JobKind.IMPORT_COMPETITION, "queued")
+    carry_out(claim("a worker", "quick", Job, job))
+    job.refresh_from_db()
+    assert job.report["entities"]["name"] == 1_202
+    assert len(texts("name")) == 1_202
 
 
 def test_a_fault_is_shown_at_its_place_and_nothing_is_stored(world, adam):
