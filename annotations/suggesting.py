@@ -33,6 +33,7 @@ from annotations.models import TaskCategory as StoredCategory
 from annotations.models import World
 from annotations.models.description import TemplateStatus
 from annotations.rows.from_rows import (
+    composition_of,
     grammar_of,
     predicates_of,
     ready_templates,
@@ -102,7 +103,9 @@ def suggest_nearest(world: World, row: StoredTemplate) -> list[SuggestedPattern]
         return []
     try:
         chosen = _find_category(task_categories(world), category)
-        made = TemplateExpander(chosen.grammar).pairs(template_of(row), Budget(CHECK_STEPS))
+        made = TemplateExpander(chosen.grammar, chosen.lines).pairs(
+            template_of(row), Budget(CHECK_STEPS)
+        )
         command, _ = next(made, ("", ""))
         derived = passages(chosen.grammar, Budget(CHECK_STEPS), MOST_COMPARED)
         nearest = nearest_patterns(command, derived, chosen.grammar, chosen.templates)
@@ -156,7 +159,8 @@ def command_for(category: StoredCategory, pattern: str, wanted: str = "") -> str
     """
     try:
         template = make_template(pattern, "UNKNOWN")
-        pairs = TemplateExpander(grammar_of(category)).pairs(template, Budget(CHECK_STEPS))
+        expander = TemplateExpander(grammar_of(category), composition_of(category))
+        pairs = expander.pairs(template, Budget(CHECK_STEPS))
         looked_at = dict(islice(pairs, MOST_LOOKED_AT))
     except LanguageError:
         return ""
@@ -204,7 +208,7 @@ class _Lifting:
         self.symbols = make_template(pattern, "UNKNOWN").pattern
         self.predicates: Mapping[str, Predicate] = predicates_of(world)
         self.checker: TemplateChecker = checker_of(
-            grammar_of(category), self.predicates, category.name
+            grammar_of(category), self.predicates, category.name, composition_of(category)
         )
 
     def well_typed(

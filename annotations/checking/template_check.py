@@ -21,7 +21,7 @@ from annotations.language.templates import (
 )
 from annotations.models import SemanticTemplate as StoredTemplate
 from annotations.models import TaskCategory, World
-from annotations.rows.from_rows import grammar_of, ontology_of, predicates_of
+from annotations.rows.from_rows import composition_of, grammar_of, ontology_of, predicates_of
 from annotations.rows.stored_problems import StoredRemark, as_stored, from_stored
 
 MOST_COMMANDS = 2_000  # looked at to count and sample what a template makes
@@ -78,7 +78,12 @@ def check_template(
     try:
         declared = predicates_of(world)
         grammar = grammar_of(category) if category else Grammar(())
-        checker = checker_of(grammar, declared, category.name if category else "")
+        checker = checker_of(
+            grammar,
+            declared,
+            category.name if category else "",
+            composition_of(category) if category else (),
+        )
     except LanguageError as error:
         return CheckedTemplate((error.problem,))
     template, unread = read_sides(pattern, form)

@@ -67,7 +67,7 @@ class GroundedCommands:
 
     def __init__(self, category: TaskCategory) -> None:
         self._category = category
-        self._expander = TemplateExpander(category.grammar)
+        self._expander = TemplateExpander(category.grammar, category.lines)
         self._by_text: dict[int, dict[str, list[Derivation]]] = {}
 
     def draw(self, expansion: Expansion, ontology: Ontology, random: Random) -> Grounded:

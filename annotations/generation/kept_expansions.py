@@ -25,7 +25,8 @@ STEPS_AT_ONCE = 10_000_000
 
 # Pairs of one grammar, about 200 bytes each: 12 grammars take at most 100 MB.
 MOST_PAIRS = 40_000
-_EXPANSIONS: BoundedCache[int, GrammarExpansions] = BoundedCache(12)
+Lines = tuple[SemanticTemplate, ...]
+_EXPANSIONS: BoundedCache[Hashable, GrammarExpansions] = BoundedCache(12)
 # A world before and after a change: 100 bytes a command.
 _GENERATED: BoundedCache[Hashable, Generated] = BoundedCache(
     4 * MOST_AT_ONCE, lambda generated: len(generated.expansions)
@@ -33,24 +34,30 @@ _GENERATED: BoundedCache[Hashable, Generated] = BoundedCache(
 
 
 class _Checks:
-    """The checker of a grammar, and what it said. It holds the grammar, whose identity is the key."""
+    """The checker of a grammar, and what it said. It holds the grammar, whose identity is part of the key."""
 
-    def __init__(self, grammar: Grammar) -> None:
-        expansions = expansions_of(grammar)
+    def __init__(self, grammar: Grammar, lines: Lines) -> None:
+        expansions = expansions_of(grammar, lines)
         self.checker = TemplateChecker(grammar, expansions.expander, expansions)
         self.problems: BoundedCache[Hashable, tuple[Problem, ...]] = BoundedCache(5_000)
 
 
-_CHECKS: BoundedCache[int, _Checks] = BoundedCache(12)
+_CHECKS: BoundedCache[Hashable, _Checks] = BoundedCache(12)
 
 
-def expansions_of(grammar: Grammar) -> GrammarExpansions:
-    """Return what this process keeps of ``grammar``.
+def expansions_of(grammar: Grammar, lines: Lines = ()) -> GrammarExpansions:
+    """Return what this process keeps of ``grammar`` with the ``lines`` of its nonterminals.
 
     The same value is asked for again while ``annotations.rows.from_rows`` keeps it, so that its identity
     stands for its content.
     """
-    return _EXPANSIONS.get(id(grammar), lambda: GrammarExpansions(grammar, MOST_PAIRS))
+    return _EXPANSIONS.get(
+        _key(grammar, lines), lambda: GrammarExpansions(grammar, lines, MOST_PAIRS)
+    )
+
+
+def _key(grammar: Grammar, lines: Lines) -> Hashable:
+    return id(grammar), tuple(map(_texts, lines))
 
 
 def generate_at_once(categories: Sequence[TaskCategory]) -> Generated:
@@ -78,10 +85,14 @@ def _generate(categories: Sequence[TaskCategory]) -> Generated:
 
 
 def checker_of(
-    grammar: Grammar, predicates: Mapping[str, Predicate], task_category: str
+    grammar: Grammar,
+    predicates: Mapping[str, Predicate],
+    task_category: str,
+    lines: Lines = (),
 ) -> TemplateChecker:
-    """Return a checker of ``grammar``, whose rules are compiled once. Raises as ``template_checker``."""
-    return replace(_checks_of(grammar).checker, predicates=predicates, task_category=task_category)
+    """Return a checker of ``grammar`` with ``lines``, whose rules are compiled once. Raises as ``template_checker``."""
+    checker = _checks_of(grammar, lines).checker
+    return replace(checker, predicates=predicates, task_category=task_category)
 
 
 def problems_of(
@@ -94,8 +105,9 @@ def problems_of(
     """
     predicates = tuple((checker.predicates or {}).values())
     key = (predicates, checker.task_category, _texts(template))
-    return _checks_of(checker.grammar).problems.get(key, lambda: checker.problems(template, budget))
+    kept = _checks_of(checker.grammar, checker.expander.rules.lines).problems
+    return kept.get(key, lambda: checker.problems(template, budget))
 
 
-def _checks_of(grammar: Grammar) -> _Checks:
-    return _CHECKS.get(id(grammar), lambda: _Checks(grammar))
+def _checks_of(grammar: Grammar, lines: Lines) -> _Checks:
+    return _CHECKS.get(_key(grammar, lines), lambda: _Checks(grammar, lines))

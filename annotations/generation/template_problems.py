@@ -11,7 +11,12 @@ from annotations.language.errors import LanguageError
 from annotations.language.grammar import CHECK_STEPS, Budget
 from annotations.language.templates import Generated, TemplateChecker, read_sides, shared_problems
 from annotations.models.description import TemplateStatus
-from annotations.rows.from_rows import AnnotatedCategory, grammar_of, predicates_of
+from annotations.rows.from_rows import (
+    AnnotatedCategory,
+    composition_of,
+    grammar_of,
+    predicates_of,
+)
 from annotations.rows.stored_problems import StoredRemark, as_stored
 
 BATCH = 500
@@ -30,7 +35,7 @@ def store_template_problems(
     for category in categories:
         value = category.value
         try:
-            checker = checker_of(value.grammar, declared, value.name)
+            checker = checker_of(value.grammar, declared, value.name, value.lines)
         except LanguageError:
             continue
         for row in category.template_rows:
@@ -59,7 +64,9 @@ def check_unready_templates(world: models.World) -> None:
     changed, steps, declared = [], 0, predicates_of(world)
     for category in models.TaskCategory.objects.filter(grammar__world=world) if rows else ():
         try:
-            checker = checker_of(grammar_of(category), declared, category.name)
+            checker = checker_of(
+                grammar_of(category), declared, category.name, composition_of(category)
+            )
         except LanguageError:
             continue
         here = [row for row in rows if row.source in category.template_sources]

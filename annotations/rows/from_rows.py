@@ -97,6 +97,27 @@ def grammar_of(category: models.TaskCategory) -> Grammar:
     return _grammar(category, _by_source(rows))
 
 
+def composition_of(category: models.TaskCategory) -> tuple[SemanticTemplate, ...]:
+    """Return the templates of a task category that are lines for a nonterminal, in its order.
+
+    Raises:
+        LanguageError: one of them cannot be read.
+    """
+    rows = ready_templates_of(category).filter(pattern__startswith="$", pattern__contains="->")
+    sources = category.template_sources
+    ordered = sorted(rows, key=lambda row: sources.index(row.source))
+    return tuple(each for each in map(template_of, ordered) if each.nonterminal)
+
+
+def ready_templates_of(category: models.TaskCategory) -> QuerySet[models.SemanticTemplate]:
+    """Return the templates that make the commands of a task category."""
+    return models.SemanticTemplate.objects.filter(
+        grammar=category.grammar_id,
+        source__in=category.template_sources,
+        status=TemplateStatus.READY,
+    )
+
+
 def template_of(row: models.SemanticTemplate) -> SemanticTemplate:
     """Raises LanguageError where the stored pattern or form cannot be read."""
     place = Position(row.source, max(row.line, 1))

@@ -19,7 +19,7 @@ from annotations.language.english import (
     read_stand_in,
     stand_in,
 )
-from annotations.language.forms import Form
+from annotations.language.forms import Form, Reference, walk
 from annotations.language.grounding import Deanonymized, FormSlots, SlotPath, filled, say_with_blank
 from annotations.language.plans import Lookup, Named, Value, Words
 from annotations.language.predicates import can_stand_in, is_loose, texts_of_patterns
@@ -122,6 +122,9 @@ class Outlines:
     @remembered(REMEMBERED)
     def answer(self, form: str, paths: Paths, classes: tuple[str, ...]) -> Outline | None:
         """Return the outline of an answer. ``classes`` are those of what was ``asked`` for."""
+        # What stands for something said before depends on what is put in there.
+        if any(isinstance(each, Reference) for each in walk(_read(form))):
+            return None
         asked = self.asked(form, paths) or ()
         answer, _ = self._make(form, paths, dict(zip(asked, classes, strict=True)))
         own = {name: _await(name) for name in ("score", "open_slots", "remarks")}

@@ -112,8 +112,10 @@ def _evidence(world: int, revision: int) -> Evidence:
 def _derivations(world: World) -> Iterator[tuple[Symbols, Form]]:
     """Yield some commands of each template with their forms. A template that cannot be expanded has none."""
     for category in task_categories(world):
-        expander = TemplateExpander(category.grammar)
+        expander = TemplateExpander(category.grammar, category.lines)
         for template in category.templates:
+            if template.nonterminal:
+                continue
             try:
                 some = islice(
                     expander.derivations(template, budget=Budget(STEPS)), MOST_OF_A_TEMPLATE

@@ -11,16 +11,26 @@ from annotations.language.forms.canonical import (
 from annotations.language.forms.conjunct_order import ConjunctOrder, conjunctions, head_of, order_of
 from annotations.language.forms.difference import Change, Difference, diff, diff_unordered
 from annotations.language.forms.foreign_forms import read_foreign_form
-from annotations.language.forms.logic import TermSpan, read_form, read_spans
+from annotations.language.forms.logic import TermSpan, read_form, read_spans, read_template_form
 from annotations.language.forms.notations import to_corpus, to_reading, to_template
+from annotations.language.forms.references import (
+    PERSON,
+    PERSON_PREDICATES,
+    THING,
+    antecedent_kinds,
+    described_kind,
+    loose_references,
+)
 from annotations.language.forms.terms import (
     CLASS_TOKEN,
     CONJUNCTION,
+    SEQUENCE,
     UNKNOWN,
     Application,
     Constant,
     Form,
     Lambda,
+    Reference,
     Unknown,
     Variable,
     children,
@@ -36,6 +46,10 @@ from annotations.language.forms.tree_distance import FormDistances
 __all__ = [
     "CLASS_TOKEN",
     "CONJUNCTION",
+    "PERSON",
+    "PERSON_PREDICATES",
+    "SEQUENCE",
+    "THING",
     "UNKNOWN",
     "Application",
     "Change",
@@ -45,14 +59,17 @@ __all__ = [
     "Form",
     "FormDistances",
     "Lambda",
+    "Reference",
     "TermSpan",
     "Unknown",
     "Variable",
+    "antecedent_kinds",
     "canonical_text",
     "canonicalize",
     "children",
     "conjunctions",
     "depth",
+    "described_kind",
     "diff",
     "diff_unordered",
     "equivalent",
@@ -60,11 +77,13 @@ __all__ = [
     "free_variables",
     "head_of",
     "head_predicate",
+    "loose_references",
     "order_of",
     "predicates",
     "read_foreign_form",
     "read_form",
     "read_spans",
+    "read_template_form",
     "size",
     "to_corpus",
     "to_reading",

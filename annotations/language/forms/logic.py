@@ -27,6 +27,7 @@ from annotations.language.forms.terms import (
     Constant,
     Form,
     Lambda,
+    Reference,
     Unknown,
     Variable,
     children,
@@ -70,11 +71,27 @@ def read_form(text: str, position: Position | None = None) -> Form:
         LanguageError: with the position, for text that is not a form, for a variable that no λ binds,
             and for a text, a name, a number or a nesting beyond ``limits``.
     """
+    return _read_at(text, position, (Lambda, Application, Unknown))
+
+
+def read_template_form(text: str, position: Position | None = None) -> Form:
+    """Read the right side of a template as ``read_form`` does; it may also be one nonterminal, ``$action``."""
+    return _read_at(text, position, (Lambda, Application, Unknown, Nonterminal))
+
+
+def _read_at(text: str, position: Position | None, wanted: tuple[type, ...]) -> Form:
     try:
-        return _read(text)
+        form = _read(text)
+        if not isinstance(form, wanted):
+            raise LanguageError(
+                "this is an argument, not a logical form",
+                Offsets(text).position(len(text) - len(text.lstrip())),
+                'write a predicate around it, as in (go "kitchen"), or UNKNOWN',
+            )
     except LanguageError as error:
         place = error.position.inside(position) if position else error.position
         raise LanguageError(error.message, place, error.hint) from None
+    return form
 
 
 @lru_cache(maxsize=1 << 16)
@@ -87,12 +104,6 @@ def _read(text: str) -> Form:
     except UnexpectedInput as error:
         raise explain(error, text) from None
     _refuse_unbound(form, text, start)
-    if not isinstance(form, Lambda | Application | Unknown):
-        raise LanguageError(
-            "this is an argument, not a logical form",
-            Offsets(text).position(len(text) - len(text.lstrip())),
-            'write a predicate around it, as in (go "kitchen"), or UNKNOWN',
-        )
     return form
 
 
@@ -132,6 +143,9 @@ class _Builder(Transformer[Token, Form]):
 
     def unknown(self, _: Token) -> Unknown:
         return UNKNOWN
+
+    def reference(self, word: Token) -> Reference:
+        return Reference(str(word))
 
     def slot(self, braces: Token) -> Wildcard:
         return read_wildcard(str(braces), _start(braces))

@@ -11,6 +11,7 @@ from annotations.language.forms.terms import (
     Constant,
     Form,
     Lambda,
+    Reference,
     Unknown,
     Variable,
     children,
@@ -90,6 +91,8 @@ def _leaf(form: Form) -> str:
         return f"${form.index}"
     if isinstance(form, Constant):
         return str(form.value)
+    if isinstance(form, Reference):
+        return form.word
     if isinstance(form, Wildcard):
         return print_wildcard(form)
     return "UNKNOWN" if isinstance(form, Unknown) else str(form)

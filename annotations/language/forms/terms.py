@@ -13,8 +13,9 @@ from typing import TypeAlias
 
 from annotations.language.symbols import ENTITY_CLASSES, Nonterminal, Wildcard
 
-# A word of the notation: its arguments hold together, as the bodies of one λ do.
+# Words of the notation: arguments that hold together, as the bodies of one λ do, and actions in order.
 CONJUNCTION = "and"
+SEQUENCE = "sequence"
 CLASS_TOKEN = re.compile(r"<([^\W\d]\w*)>")
 _BARE_TOKEN = re.compile(rf"({'|'.join(ENTITY_CLASSES)})[0-9]+")
 
@@ -55,6 +56,13 @@ class Unknown:
 
 
 @dataclass(frozen=True, slots=True)
+class Reference:
+    """``it`` or ``them``: the last thing or the last person that was described before."""
+
+    word: str
+
+
+@dataclass(frozen=True, slots=True)
 class Application:
     """``(predicate argument …)``; in a template a nonterminal may stand as the predicate."""
 
@@ -71,7 +79,9 @@ class Lambda:
     bodies: tuple[Form, ...]
 
 
-Form: TypeAlias = "Lambda | Application | Variable | Constant | Wildcard | Nonterminal | Unknown"
+Form: TypeAlias = (
+    "Lambda | Application | Variable | Constant | Reference | Wildcard | Nonterminal | Unknown"
+)
 
 UNKNOWN = Unknown()
 

@@ -16,6 +16,7 @@ from annotations.language.grammar.folder import (
 )
 from annotations.language.grammar.grammar import ROOT, Grammar
 from annotations.language.grammar.graph import MAX_WORDS
+from annotations.language.grammar.lattice import Arc, Lattice
 from annotations.language.grammar.productions import (
     GrammarFile,
     Production,
@@ -23,7 +24,15 @@ from annotations.language.grammar.productions import (
     read_production,
     read_productions,
 )
-from annotations.language.grammar.recognizer import Alternative, Chart, Item, Recognizer, RuleBook
+from annotations.language.grammar.recognizer import (
+    Alternative,
+    Chart,
+    ChartRule,
+    Item,
+    Recognizer,
+    RuleBook,
+    Run,
+)
 
 __all__ = [
     "CHECK_STEPS",
@@ -32,16 +41,20 @@ __all__ = [
     "TEMPLATE_SUFFIX",
     "TRIPLE_FILES",
     "Alternative",
+    "Arc",
     "Budget",
     "Chart",
+    "ChartRule",
     "Expander",
     "Grammar",
     "GrammarFile",
     "GrammarFolder",
     "Item",
+    "Lattice",
     "Production",
     "Recognizer",
     "RuleBook",
+    "Run",
     "TooManyCombinations",
     "anonymized",
     "apply_alias",

@@ -13,15 +13,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from itertools import chain, product
 from math import log10, prod
-from typing import Generic, TypeAlias, TypeVar
+from typing import Any, Generic, TypeAlias, TypeVar
 
 from annotations.language.grammar.budget import Budget
 from annotations.language.symbols import Choice, Nonterminal, Symbols, Text, Wildcard
 
 Item = TypeVar("Item")
-# Tracked nonterminal → the items it became, sorted by name.
-Bindings: TypeAlias = "tuple[tuple[str, tuple[Item, ...]], ...]"
-Derived: TypeAlias = "tuple[tuple[Item, ...], Bindings[Item]]"
+# Tracked nonterminal → the items it became, or what ``Compose`` gives for it; sorted by name.
+Bindings: TypeAlias = "tuple[tuple[str, Any], ...]"
+Derived: TypeAlias = "tuple[tuple[Item, ...], Bindings]"
+# Yields what a tracked nonterminal becomes, and the value to report in place of its items.
+Compose: TypeAlias = "Callable[[str, Budget], Iterator[tuple[tuple[Item, ...], Any]]]"
 # A run of leaves already turned into items, or a symbol with alternatives.
 Part: TypeAlias = "tuple[Item, ...] | Nonterminal | Choice"
 
@@ -36,6 +38,7 @@ class Expander(Generic[Item]):
         alternatives: nonterminal → its alternatives; none for an undefined one.
         leaf: what a word or a wildcard becomes: zero, one or more items.
         tracked: nonterminals whose expansion each result reports as a binding.
+        composed: those of them that ``compose`` expands in place of their alternatives.
     """
 
     def __init__(
@@ -43,10 +46,14 @@ class Expander(Generic[Item]):
         alternatives: Callable[[str], tuple[Symbols, ...]],
         leaf: Callable[[Text | Wildcard], tuple[Item, ...]],
         tracked: frozenset[str] = frozenset(),
+        composed: frozenset[str] = frozenset(),
+        compose: Compose[Item] | None = None,
     ) -> None:
         self._alternatives = alternatives
         self._leaf = leaf
         self._tracked = tracked
+        self._composed = composed
+        self._compose = compose
         self._rules: dict[Nonterminal | Choice, tuple[tuple[Part[Item], ...], ...]] = {}
         self._sizes: dict[Nonterminal | Choice, int] = {}
         self._kept: dict[Nonterminal | Choice, tuple[Derived[Item], ...]] = {}
@@ -88,7 +95,10 @@ class Expander(Generic[Item]):
                 if isinstance(symbol, Choice)
                 else self._alternatives(symbol.name)
             )
-            self._rules[symbol] = tuple(dict.fromkeys(self.parts(each) for each in alternatives))
+            rules = tuple(self.parts(each) for each in alternatives)
+            # Lines with one pattern have forms of their own.
+            is_composed = isinstance(symbol, Nonterminal) and symbol.name in self._composed
+            self._rules[symbol] = rules if is_composed else tuple(dict.fromkeys(rules))
         return self._rules[symbol]
 
     def _size_of_parts(self, parts: tuple[Part[Item], ...]) -> int:
@@ -137,6 +147,11 @@ class Expander(Generic[Item]):
 
     def _derive(self, symbol: Nonterminal | Choice, budget: Budget) -> Iterator[Derived[Item]]:
         is_tracked = isinstance(symbol, Nonterminal) and symbol.name in self._tracked
+        if self._compose and isinstance(symbol, Nonterminal) and symbol.name in self._composed:
+            for items, value in self._compose(symbol.name, budget):
+                budget.spend()
+                yield items, ((symbol.name, value),)
+            return
         for parts in self.rules(symbol):
             for items, bindings in self._combine(parts, budget):
                 budget.spend()
@@ -170,12 +185,12 @@ def _join(pieces: tuple[Derived[Item], ...], budget: Budget) -> Derived[Item] | 
     """Join several results side by side, or return None if they disagree about a nonterminal."""
     items = tuple(chain.from_iterable(piece[0] for piece in pieces))
     budget.spend(len(pieces) + len(items))
-    bound: dict[str, tuple[Item, ...]] = {}
+    bound: dict[str, Any] = {}
     for name, value in chain.from_iterable(piece[1] for piece in pieces):
         if bound.setdefault(name, value) != value:
             return None
     return items, tuple(sorted(bound.items(), key=_name))
 
 
-def _name(binding: tuple[str, tuple[Item, ...]]) -> str:
+def _name(binding: tuple[str, Any]) -> str:
     return binding[0]

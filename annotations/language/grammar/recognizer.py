@@ -8,16 +8,27 @@ enough for grammars without recursion).
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
 from annotations.language.grammar.budget import Budget
-from annotations.language.grammar.expander import Expander
+from annotations.language.grammar.expander import Expander, Part
 from annotations.language.grammar.grammar import ROOT, Grammar
-from annotations.language.symbols import Choice, Nonterminal, Symbols
+from annotations.language.grammar.lattice import Lattice
+from annotations.language.symbols import Choice, Nonterminal, Symbols, Text, Wildcard
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """Words next to each other. ``leaves`` are what they are in the grammar, where the chart is asked for it."""
+
+    words: tuple[str, ...]
+    leaves: tuple[Text | Wildcard, ...] = ()
+
 
 # A run of words, or the number of a rule.
-Item: TypeAlias = "tuple[str, ...] | int"
+Item: TypeAlias = "Run | int"
 Alternative: TypeAlias = "tuple[Item, ...]"
 
 # A rule that can begin with more words than this is not looked up by its first word: the tables would be too large.
@@ -30,7 +41,8 @@ class ChartRule:
 
     ``by_word`` maps a word to the alternatives that can begin with it. ``always`` are tried at
     every word: they can be empty, or can begin with more than ``MOST_FIRST_WORDS`` words. ``first``
-    are the words that the rule can begin with (None: too many), ``names`` the nonterminals inside.
+    are the words that the rule can begin with (None: too many), ``names`` the nonterminals inside, and
+    ``wildcards`` the names of the wildcards inside, where runs have leaves.
     """
 
     name: str
@@ -39,16 +51,29 @@ class ChartRule:
     first: frozenset[str] | None
     can_be_empty: bool
     names: frozenset[str]
+    wildcards: frozenset[str]
+    alternatives: tuple[Alternative, ...]
 
     def candidates(self, word: str) -> tuple[Alternative, ...]:
         return self.by_word.get(word, ()) + self.always
 
 
 class RuleBook:
-    """The rules of a grammar, numbered when they are first needed."""
+    """The rules of a grammar, numbered when they are first needed.
 
-    def __init__(self, expander: Expander[str]) -> None:
+    Args:
+        expander: into words, or into leaves, which the runs of the chart then know.
+        lines: nonterminal → patterns that stand in place of its alternatives, each of them a rule of its own.
+    """
+
+    def __init__(
+        self,
+        expander: Expander[str] | Expander[Text | Wildcard],
+        lines: Mapping[str, Sequence[Symbols]] | None = None,
+    ) -> None:
         self._expander = expander
+        self._lines = lines or {}
+        self.line_rules: dict[str, tuple[int, ...]] = {}
         self._numbers: dict[Nonterminal | Choice, int] = {}
         self.rules: list[ChartRule] = []
 
@@ -56,7 +81,11 @@ class RuleBook:
         """Return the number of a symbol's rule. A new rule is made together with all rules below it."""
         if symbol not in self._numbers:
             name = symbol.name if isinstance(symbol, Nonterminal) else ""
-            alternatives = [self._items(parts) for parts in self._expander.rules(symbol)]
+            if name in self._lines:
+                self.line_rules[name] = tuple(map(self.add_pattern, self._lines[name]))
+                alternatives: list[Alternative] = [(rule,) for rule in self.line_rules[name]]
+            else:
+                alternatives = [self._items(parts) for parts in self._expander.rules(symbol)]
             self._numbers[symbol] = self._add(name, alternatives)
         return self._numbers[symbol]
 
@@ -64,14 +93,16 @@ class RuleBook:
         """Add a rule for a sequence that is not in any production, and return its number."""
         return self._add("", [self._items(self._expander.parts(pattern))])
 
-    def _items(self, parts: tuple[tuple[str, ...] | Nonterminal | Choice, ...]) -> Alternative:
-        return tuple(part if isinstance(part, tuple) else self.number(part) for part in parts)
+    def _items(self, parts: tuple[Part[str] | Part[Text | Wildcard], ...]) -> Alternative:
+        items = (_run(part) if isinstance(part, tuple) else self.number(part) for part in parts)
+        return tuple(item for item in items if isinstance(item, int) or item.words)
 
     def _add(self, name: str, alternatives: list[Alternative]) -> int:
         by_word: dict[str, list[Alternative]] = {}
         always: list[Alternative] = []
         first: set[str] = set()
         names = {name} - {""}
+        wildcards: set[str] = set()
         firsts = [self._first(alternative) for alternative in alternatives]
         for alternative, (words, can_be_empty) in zip(alternatives, firsts, strict=True):
             first |= words or set()
@@ -80,13 +111,23 @@ class RuleBook:
             else:
                 for word in words:
                     by_word.setdefault(word, []).append(alternative)
-            names.update(*(self.rules[item].names for item in alternative if isinstance(item, int)))
+            for item in alternative:
+                if isinstance(item, int):
+                    names |= self.rules[item].names
+                    wildcards |= self.rules[item].wildcards
+                else:
+                    wildcards.update(
+                        leaf.name for leaf in item.leaves if isinstance(leaf, Wildcard)
+                    )
         table = {word: tuple(beginning) for word, beginning in by_word.items()}
         has_many = len(first) > MOST_FIRST_WORDS or any(words is None for words, _ in firsts)
         is_nullable = any(can_be_empty for _, can_be_empty in firsts)
         known = None if has_many else frozenset(first)
         self.rules.append(
-            ChartRule(name, table, tuple(always), known, is_nullable, frozenset(names))
+            ChartRule(
+                *(name, table, tuple(always), known, is_nullable, frozenset(names)),
+                *(frozenset(wildcards), tuple(alternatives)),
+            )
         )
         return len(self.rules) - 1
 
@@ -94,8 +135,8 @@ class RuleBook:
         """Return the words it can begin with (None: too many) and whether it can be empty."""
         words: set[str] | None = set()
         for item in alternative:
-            if isinstance(item, tuple):
-                return None if words is None else words | {item[0]}, False
+            if isinstance(item, Run):
+                return None if words is None else words | {item.words[0]}, False
             rule = self.rules[item]
             words = None if words is None or rule.first is None else words | rule.first
             if not rule.can_be_empty:
@@ -103,22 +144,29 @@ class RuleBook:
         return words, True
 
 
-class Chart:
-    """What the rules of a rule book match in one command; filled on demand."""
+def _run(part: tuple[str, ...] | tuple[Text | Wildcard, ...]) -> Run:
+    leaves = tuple(leaf for leaf in part if isinstance(leaf, str) or _word(leaf))
+    words = tuple(leaf if isinstance(leaf, str) else _word(leaf) for leaf in leaves)
+    return Run(words, tuple(leaf for leaf in leaves if not isinstance(leaf, str)))
 
-    def __init__(
-        self, book: RuleBook, words: tuple[str, ...], budget: Budget | None = None
-    ) -> None:
+
+def _word(leaf: Text | Wildcard) -> str:
+    return leaf.value if isinstance(leaf, Text) else leaf.token
+
+
+class Chart:
+    """What the rules of a rule book match in one lattice; filled on demand."""
+
+    def __init__(self, book: RuleBook, lattice: Lattice, budget: Budget | None = None) -> None:
         self.rules = book.rules
-        self.words = words
+        self.lattice = lattice
         self.budget = budget or Budget()
         self._ends: dict[tuple[int, int], frozenset[int]] = {}
 
     def ends(self, item: Item, start: int) -> frozenset[int]:
-        """Return the places (word counts) where an item that begins at ``start`` can end."""
-        if isinstance(item, tuple):
-            stop = start + len(item)
-            return frozenset((stop,)) if self.words[start:stop] == item else frozenset()
+        """Return the places where an item that begins at ``start`` can end."""
+        if isinstance(item, Run):
+            return self.lattice.ends(item.words, start)
         key = (item, start)
         if key not in self._ends:
             self._ends[key] = frozenset().union(
@@ -126,9 +174,14 @@ class Chart:
             )
         return self._ends[key]
 
-    def candidates(self, rule: int, start: int) -> tuple[Alternative, ...]:
-        word = self.words[start] if start < len(self.words) else ""
-        return self.rules[rule].candidates(word)
+    def candidates(self, rule: int, start: int) -> Sequence[Alternative]:
+        """Return the alternatives of a rule that can begin at ``start``, each once."""
+        book = self.rules[rule]
+        words = list(self.lattice.words_from(start))
+        if len(words) == 1:
+            return book.candidates(words[0])
+        beginning = (each for word in words for each in book.by_word.get(word, ()))
+        return tuple(dict.fromkeys((*beginning, *book.always)))
 
     def _ends_of(self, alternative: Alternative, start: int) -> frozenset[int]:
         reached = frozenset((start,))
@@ -161,4 +214,7 @@ class Recognizer:
             TooManyCombinations: the budget is spent.
         """
         words = tuple(command.split())
-        return bool(words) and len(words) in Chart(self._book, words, budget).ends(self._root, 0)
+        if not words:
+            return False
+        chart = Chart(self._book, Lattice.of_words(words), budget)
+        return len(words) in chart.ends(self._root, 0)

@@ -18,6 +18,7 @@ from annotations.language.plans.plan import (
     Number,
     OpenValue,
     Plan,
+    Referred,
     StepResult,
     Value,
     Words,
@@ -75,7 +76,7 @@ def _port(value: Value) -> str:
         return str(value.value)
     if isinstance(value, Named | Words):
         return _plain(value.text)
-    assert isinstance(value, Described | OpenValue)
+    assert isinstance(value, Described | OpenValue | Referred)
     return "json:" + json.dumps(value.as_json(), ensure_ascii=False, separators=(",", ":"))
 
 

@@ -21,6 +21,7 @@ class Trouble(StrEnum):
     NOT_UNDERSTOOD = "not_understood"
     NO_ACTION = "no_action"
     MISSING_ARGUMENT = "missing_argument"
+    NO_ANTECEDENT = "no_antecedent"
     OPEN_SLOT = "open_slot"
     AMBIGUOUS = "ambiguous"
     UNKNOWN_ENTITY = "unknown_entity"
@@ -176,6 +177,17 @@ class Described:
 
 
 @dataclass(frozen=True, slots=True)
+class Referred:
+    """What ``it`` or ``them`` stands for; ``word`` is what the command says."""
+
+    word: str
+    value: Named | Described
+
+    def as_json(self) -> dict[str, Any]:
+        return {**self.value.as_json(), "said": self.word}
+
+
+@dataclass(frozen=True, slots=True)
 class StepResult:
     """What an earlier step of the plan gives; ``step`` counts from 1."""
 
@@ -195,7 +207,7 @@ class OpenValue:
         return {"kind": "open", "entity_class": self.entity_class}
 
 
-Value: TypeAlias = "Named | Words | Number | Described | StepResult | OpenValue"
+Value: TypeAlias = "Named | Words | Number | Described | Referred | StepResult | OpenValue"
 
 
 @cache

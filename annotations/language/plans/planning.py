@@ -9,13 +9,19 @@ from itertools import count
 from annotations.language.english import ARGUMENT_NAMES, ARGUMENT_QUESTIONS, NEEDED_ARGUMENTS
 from annotations.language.forms import (
     CONJUNCTION,
+    PERSON,
+    PERSON_PREDICATES,
+    THING,
     Application,
     Constant,
     Form,
     Lambda,
+    Reference,
     Unknown,
     Variable,
+    antecedent_kinds,
     children,
+    described_kind,
     walk,
 )
 from annotations.language.grounding import Slot
@@ -36,6 +42,7 @@ from annotations.language.plans.plan import (
     OpenValue,
     Plan,
     PlanProblem,
+    Referred,
     Step,
     StepResult,
     Trouble,
@@ -54,7 +61,6 @@ from annotations.language.predicates import (
 MOST_STEPS = 50
 NOT_UNDERSTOOD = "I did not understand that. What shall I do?"
 _PLACES = frozenset((ArgumentKind.LOCATION, ArgumentKind.ROOM))
-_OF_A_PERSON = frozenset(("person", "name", "male", "female", "gesture", "pose", "gender"))
 
 
 def make_plan(
@@ -114,6 +120,7 @@ class _Planner:
     problems: list[PlanProblem] = field(default_factory=list)
     describer: Describer = field(init=False)
     waiting: list[tuple[Trouble, str, str]] = field(default_factory=list)
+    last: dict[str, Value] = field(default_factory=dict)  # person or thing → the one described last
 
     def __post_init__(self) -> None:
         self.describer = Describer(self.predicates, self.text_value)
@@ -166,6 +173,7 @@ class _Planner:
         arguments: dict[str, Value] = {}
         for place, argument in enumerate(self._gather(form, scope)):
             value = self._value(argument, action, place, scope)
+            self._remember(argument, value)
             entity_class = value.entity_class if isinstance(value, Named) else ""
             name = argument_name(action, place, argument, entity_class)
             numbered = (f"{name}_{number}" for number in count(2))
@@ -229,6 +237,8 @@ class _Planner:
             return Number(int(form.value)) if is_number else self.text_value(form, action, place)
         if isinstance(form, Lambda):
             return self.describer.of_lambda(form)
+        if isinstance(form, Reference):
+            return self._referred(form.word)
         if isinstance(form, Variable):
             described = scope.described.get(form.index)
             if described is None:
@@ -242,6 +252,30 @@ class _Planner:
             self.steps[number - 1] = replace(self.steps[number - 1], gives_result=True)
             return StepResult(number)
         return OpenValue("")
+
+    def _remember(self, form: Form, value: Value) -> None:
+        """Keep what a later ``it`` or ``them`` can stand for."""
+        kind = described_kind(form)
+        if isinstance(value, Named):
+            kind = {"name": PERSON, "object": THING, "category": THING}.get(value.entity_class, "")
+        elif isinstance(value, Described):
+            predicates = {each.predicate for each in value.conditions}
+            kind = PERSON if kind == PERSON or predicates & PERSON_PREDICATES else THING
+        if kind and not isinstance(value, Referred):
+            self.last[kind] = value
+
+    def _referred(self, word: str) -> Value:
+        """Return what a reference stands for; the operator is asked where nothing was described before."""
+        value = next(
+            (self.last[kind] for kind in antecedent_kinds(word) if kind in self.last), None
+        )
+        if isinstance(value, Named | Described):
+            return Referred(word, value)
+        if value is not None:
+            return value
+        message = f"nothing before “{word}” says what it stands for"
+        self.waiting.append((Trouble.NO_ANTECEDENT, message, "name it, or answer the question"))
+        return self.ask(f"What do you mean by “{word}”?", antecedent_kinds(word)[0])
 
     def _asked(self, value: Value, name: str, action: str) -> Value:
         """Return the answer of the operator in place of an open value."""
@@ -286,7 +320,7 @@ def argument_name(action: str, place: int, argument: Form, entity_class: str = "
         said = "unknown"
     elif isinstance(argument, Lambda):
         predicates = {node.predicate for node in walk(argument) if isinstance(node, Application)}
-        said = "person" if predicates & _OF_A_PERSON else "thing"
+        said = "person" if predicates & PERSON_PREDICATES else "thing"
     else:
         said = "name" if kind is ArgumentKind.NAME or entity_class == "name" else "text"
     return name.get(said) or name.get("") or f"argument_{place + 1}"

@@ -13,6 +13,7 @@ from annotations.language.forms import (
     Constant,
     Form,
     Lambda,
+    Reference,
     Unknown,
     Variable,
     to_reading,
@@ -191,6 +192,8 @@ def _phrase(form: Form, scope: _Scope, is_plural: bool = False) -> str:
         return _describe(form.index, scope) if scope.about(form.index) else "them"
     if isinstance(form, Unknown):
         return "something"
+    if isinstance(form, Reference):
+        return form.word
     return _bare(form) if argument_kind(form) is ArgumentKind.NUMBER else f"the {_bare(form)}"
 
 

@@ -17,6 +17,7 @@ from annotations.language.grammar import (
     Budget,
     Chart,
     Grammar,
+    Lattice,
     RuleBook,
     TooManyCombinations,
     anonymized,
@@ -55,7 +56,7 @@ class Deriver:
         self.grammar = grammar
         self.words = tuple(command.split())
         self._book = RuleBook(grammar.expander)
-        self._chart = Chart(self._book, self.words, budget)
+        self._chart = Chart(self._book, Lattice.of_words(self.words), budget)
         self._budget = budget
 
     def derivations(self, root: str = ROOT) -> Iterator[DerivationNode]:

@@ -18,7 +18,7 @@ from annotations.language.symbols.symbols import (
 )
 
 # Brackets, bars and dollar signs have a meaning; the rest would begin a comment or end the head.
-_MEANING = re.compile(r"[\\$(){}|,=#;%]|/(?=[/*])")
+_MEANING = re.compile(r"[\\$(){}|,=#;%]|/(?=[/*])|-(?=>)")
 
 
 def print_sequence(sequence: Symbols) -> str:

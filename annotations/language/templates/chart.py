@@ -1,167 +1,438 @@
 """Find the templates that derive a command, with their forms: the paper's grammar oracle.
 
-Patterns of templates are rules of the same chart as the grammar (``recognizer``), so a grammar of
-10¹² commands parses a sentence without being enumerated.
+Patterns of templates and of lines are rules of the same chart as the grammar (``recognizer``), so a grammar of
+10¹² commands parses a sentence without being enumerated. What the chart matches is a packed forest: each rule
+between two places keeps its best readings, and only as many as an ambiguity needs to show (Goodman, "Semiring
+parsing", CL 1999; Huang and Chiang, "Better k-best parsing", IWPT 2005). So the work grows polynomially with
+the grammar and the command. A reading says which arc of the lattice fills which slot.
 """
 
 from __future__ import annotations
 
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TypeAlias
 
 from annotations.language.errors import LanguageError
-from annotations.language.forms import canonical_text
+from annotations.language.forms import Constant, Form, canonical_text, walk
 from annotations.language.grammar import (
-    CHECK_STEPS,
     Alternative,
     Budget,
     Chart,
+    Expander,
+    Lattice,
     RuleBook,
-    TooManyCombinations,
+    Run,
+    intact,
+)
+from annotations.language.symbols import Text, Wildcard
+from annotations.language.templates.composition import (
+    Leaves,
+    SynchronousGrammar,
+    lines_of,
+    names_in_order,
 )
 from annotations.language.templates.expansion import TaskCategory
-from annotations.language.templates.filling import fill_anonymized
+from annotations.language.templates.filling import (
+    Choices,
+    Composed,
+    fill_anonymized,
+    fill_intact,
+    map_slots,
+)
 from annotations.language.templates.templates import SemanticTemplate
 
-# What work costs in steps of a budget: filling a form and printing it; uniting two sets of bindings.
-STEPS_PER_FORM, STEPS_PER_UNION = 300, 10
-
-# Sorted (nonterminal, words) pairs.
-Words = tuple[str, ...]
-Bindings = tuple[tuple[str, Words], ...]
+MOST_READINGS = 2  # of one rule between two places: two show an ambiguity
+# What work costs in steps of a budget: filling a form and printing it; joining two readings.
+STEPS_PER_FORM, STEPS_PER_JOIN = 300, 10
 
 
 @dataclass(frozen=True, slots=True)
 class ChartDerivation:
-    """One way to derive a command: the template of a task category and the form it gives."""
+    """One way to derive a command: the template of a task category and the form it gives.
+
+    ``arcs`` are the numbers of the arcs that fill the slots of the form, in order (``grounding.slots_of``); None
+    for a slot that no arc with a number fills. ``cost`` is that of the path through the lattice.
+    """
 
     form_text: str
     task_category: str
     template_index: int
+    arcs: tuple[int | None, ...] = field(default=(), compare=False)
+    cost: int = field(default=0, compare=False)
 
 
 class TemplateChart:
-    """Parses anonymized commands with the templates of task categories.
+    """Parses anonymized commands, and lattices, with the templates of task categories.
 
     Raises:
-        LanguageError: the grammar has a cycle.
+        LanguageError: a grammar, or the lines of a task category, have a cycle.
     """
 
     def __init__(self, categories: Sequence[TaskCategory]) -> None:
         self._sets = [_TemplateSet(category) for category in categories]
 
-    def parse(self, command: str) -> list[ChartDerivation]:
-        """Return all derivations of a command, given as words between spaces; the one to keep is first.
+    @cached_property
+    def vocabulary(self) -> frozenset[str]:
+        """The words and class tokens of all commands."""
+        return frozenset().union(*(each.vocabulary for each in self._sets))
 
-        Categories come in their order and, inside one, later templates first, which is how
-        ``generate`` resolves conflicts. Empty if no template derives the command. A template whose
-        slots can be read in too many ways is skipped.
+    def parse(self, command: str | Lattice, budget: Budget | None = None) -> list[ChartDerivation]:
+        """Return derivations of a command, given as words between spaces or as a lattice; the best one is first.
+
+        Those of the cheapest path come first. Among equals, categories come in their order and, inside one,
+        later templates and later lines first, which is how ``generate`` resolves conflicts. A template has at
+        most ``MOST_READINGS`` derivations. Empty if no template derives the command.
+
+        Raises:
+            TooManyCombinations: the budget is spent.
         """
-        words = tuple(command.split())
-        derivations = (derivation for each in self._sets for derivation in each.parse(words))
-        return list(dict.fromkeys(derivations))
+        lattice = command if isinstance(command, Lattice) else Lattice.of_words(command.split())
+        if not lattice.end:
+            return []
+        found = [each for chart in self._sets for each in chart.parse(lattice, budget or Budget())]
+        return list(dict.fromkeys(sorted(found, key=lambda each: each.cost)))
 
 
 class _TemplateSet:
     def __init__(self, category: TaskCategory) -> None:
         self.category = category
-        self.book = RuleBook(category.grammar.expander)
-        self.rules = [self.book.add_pattern(each.pattern) for each in category.templates]
-        self._forms: dict[tuple[int, Bindings], str] = {}
+        self.rules = SynchronousGrammar(category.grammar, lines_of(category.templates))
+        self.rules.words.require_finite()
+        expander = Expander(self.rules.alternatives, intact)
+        patterns = {
+            name: tuple(line.pattern for line in lines)
+            for name, lines in self.rules.lines_of.items()
+        }
+        self.book = RuleBook(expander, patterns)
+        self.roots = [
+            (index, _Rule(self, template, self.book.add_pattern(template.pattern)))
+            for index, template in enumerate(category.templates)
+            if not template.nonterminal
+        ]
+        self.lines = {
+            rule: _Rule(self, line, rule, place)
+            for name, rules in self.book.line_rules.items()
+            for place, (rule, line) in enumerate(zip(rules, self.rules.lines_of[name], strict=True))
+        }
 
-    def parse(self, words: Words) -> Iterator[ChartDerivation]:
-        if not words:
-            return
-        chart = Chart(self.book, words)
-        for index in range(len(self.rules) - 1, -1, -1):
-            if len(words) not in chart.ends(self.rules[index], 0):
-                continue
-            try:
-                forms = self._forms_of(index, chart)
-            except TooManyCombinations:
-                continue
-            for form in sorted(forms - {""}, reverse=True):
-                yield ChartDerivation(form, self.category.name, index)
+    @property
+    def vocabulary(self) -> frozenset[str]:
+        return frozenset(
+            word
+            for rule in self.book.rules
+            for alternative in rule.alternatives
+            for item in alternative
+            if isinstance(item, Run)
+            for word in item.words
+        )
 
-    def _forms_of(self, index: int, chart: Chart) -> set[str]:
-        template, budget = self.category.templates[index], Budget(CHECK_STEPS)
-        forms = set()
-        possible: Iterable[Bindings] = ((),)
-        if template.tracked:
-            unifier = _Unifier(chart, template.tracked, budget)
-            possible = unifier.of_rule(self.rules[index], 0, len(chart.words))
-        for bindings in possible:
-            budget.spend(STEPS_PER_FORM)
-            key = (index, bindings)
-            if key not in self._forms:
-                self._forms[key] = _fill_text(template, bindings)
-            forms.add(self._forms[key])
-        return forms
-
-
-def _fill_text(template: SemanticTemplate, bindings: Bindings) -> str:
-    if len(bindings) < len(template.tracked):
-        return ""
-    try:
-        return canonical_text(fill_anonymized(template.form, dict(bindings)))
-    except LanguageError:
-        return ""
+    def parse(self, lattice: Lattice, budget: Budget) -> Iterator[ChartDerivation]:
+        forest = _Forest(self, lattice, budget)
+        for index, root in reversed(self.roots):
+            if lattice.end in forest.chart.ends(root.number, 0):
+                for form in forest.forms(root, 0, lattice.end):
+                    text = canonical_text(form.anonymized)
+                    yield ChartDerivation(
+                        text, self.category.name, index, _arcs_of(form), form.cost
+                    )
 
 
-class _Unifier:
-    """Collects bindings over a filled chart; occurrences of one nonterminal must agree."""
+class _Rule:
+    """The rule of a template or a line, and what its form takes from its words.
 
-    def __init__(self, chart: Chart, tracked: frozenset[str], budget: Budget) -> None:
-        self.chart = chart
-        self.tracked = tracked
+    ``number`` is that in the rule book, ``line`` the place of a line among those of its nonterminal.
+    """
+
+    def __init__(
+        self, owner: _TemplateSet, template: SemanticTemplate, number: int, line: int | None = None
+    ) -> None:
+        self.template = template
+        self.number = number
+        self.line = line
+        self.names = names_in_order(template)
+        self.tracked = template.tracked
+        self.composed = frozenset(owner.rules.composed(template))
+        self.wildcards = frozenset(
+            each.name
+            for each in template.slots()
+            if isinstance(each, Wildcard) and each.entity_class
+        )
+        self.repeated = self.tracked & _repeated(owner.book, number)
+
+
+@dataclass(frozen=True, slots=True)
+class _Filled:
+    """The form of a template or a line for some words: with class tokens, and with numbered arcs as slots."""
+
+    anonymized: Form
+    aligned: Form
+    choices: Choices
+    cost: int
+
+
+# What a nonterminal became: a form, or the leaves that stand for its words. The number of a wildcard is its arc's.
+Value: TypeAlias = "_Filled | Leaves"
+
+
+@dataclass(frozen=True, slots=True)
+class _Reading:
+    """One way to read what is between two places.
+
+    ``bound`` are the values of the nonterminals that the form mentions, by name; ``slots`` the wildcards that
+    stand for arcs, in order, with the numbers of these; ``leaves`` are kept inside a nonterminal whose words are
+    wanted.
+    """
+
+    cost: int = 0
+    bound: tuple[tuple[str, Value], ...] = ()
+    slots: tuple[tuple[Wildcard, int], ...] = ()
+    leaves: Leaves = ()
+
+    @property
+    def said(self) -> object:
+        """All but the cost: of two readings that say the same, the cheaper one counts."""
+        return self.bound, self.slots, self.leaves
+
+    def then(self, other: _Reading) -> _Reading | None:
+        """Return both, one after the other; None where they disagree about the words of a nonterminal."""
+        bound = dict(self.bound)
+        for name, value in other.bound:
+            if _words(bound.setdefault(name, value)) != _words(value):
+                return None
+        return _Reading(
+            self.cost + other.cost,
+            tuple(sorted(bound.items(), key=_name)),
+            self.slots + other.slots,
+            self.leaves + other.leaves,
+        )
+
+
+class _Forest:
+    """The readings of rules between places, for each template and each line that asks for them."""
+
+    def __init__(self, owner: _TemplateSet, lattice: Lattice, budget: Budget) -> None:
+        self.owner = owner
+        self.lattice = lattice
+        self.chart = Chart(owner.book, lattice, budget)
         self.budget = budget
-        self._known: dict[tuple[int, int, int], dict[Bindings, None]] = {}
+        self._readings: dict[tuple[int, bool, int, int, int], list[_Reading]] = {}
+        self._forms: dict[tuple[int, int, int], tuple[_Filled, ...]] = {}
 
-    def of_rule(self, rule: int, start: int, end: int) -> dict[Bindings, None]:
-        """Return the distinct bindings of a rule that spans the words from ``start`` to ``end``."""
-        key = (rule, start, end)
-        if key in self._known:
-            return self._known[key]
-        described = self.chart.rules[rule]
-        results: dict[Bindings, None] = {}
-        if self.tracked.isdisjoint(described.names):
-            results[()] = None
+    def forms(self, rule: _Rule, start: int, end: int) -> tuple[_Filled, ...]:
+        """Return the best forms of a template or a line between two places, the best one first."""
+        key = (rule.number, start, end)
+        if key not in self._forms:
+            filled: dict[Form, _Filled] = {}
+            for reading in _ranked(rule, self._of_alternatives(rule, *key, keeps=False)):
+                if len(reading.bound) == len(rule.tracked):
+                    self.budget.spend(STEPS_PER_FORM)
+                    form = _fill(rule, reading)
+                    if form is not None:
+                        filled.setdefault(form.aligned, form)
+            self._forms[key] = tuple(filled.values())[:MOST_READINGS]
+        return self._forms[key]
+
+    def _of_rule(
+        self, asker: _Rule, number: int, start: int, end: int, keeps: bool
+    ) -> list[_Reading]:
+        """Return the best readings of a rule between two places for the form of ``asker``.
+
+        Args:
+            keeps: whether the readings keep their leaves.
+        """
+        rule = self.chart.rules[number]
+        is_asked = not asker.tracked.isdisjoint(rule.names)
+        is_filled = not asker.wildcards.isdisjoint(rule.wildcards)
+        # All that ask for nothing inside share their readings.
+        shared = asker.number if is_asked or is_filled else -1
+        key = (shared, keeps, number, start, end)
+        if key in self._readings:
+            return self._readings[key]
+        if rule.name in asker.composed:
+            lines = [self.owner.lines[line] for line in self.owner.book.line_rules[rule.name]]
+            readings = [
+                _Reading(form.cost, ((rule.name, form),))
+                for line in lines
+                if end in self.chart.ends(line.number, start)
+                for form in self.forms(line, start, end)
+            ]
+        elif rule.name in asker.tracked:
+            readings = []
+            for inner in self._of_alternatives(asker, number, start, end, keeps=True):
+                bound = (*inner.bound, (rule.name, inner.leaves))
+                leaves = inner.leaves if keeps else ()
+                readings.append(
+                    _Reading(inner.cost, tuple(sorted(bound, key=_name)), inner.slots, leaves)
+                )
         else:
-            for alternative in self.chart.candidates(rule, start):
-                results.update(self._of_alternative(alternative, start, end))
-            if described.name in self.tracked:
-                own = ((described.name, self.chart.words[start:end]),)
-                joined = (_unite(bindings, own) for bindings in results)
-                results = {bindings: None for bindings in joined if bindings is not None}
-        self._known[key] = results
-        return results
+            readings = self._of_alternatives(asker, number, start, end, keeps)
+        self._readings[key] = _best(asker, readings)
+        return self._readings[key]
 
-    def _of_alternative(
-        self, alternative: Alternative, start: int, end: int
-    ) -> dict[Bindings, None]:
-        reached: dict[int, dict[Bindings, None]] = {start: {(): None}}
+    def _of_alternatives(
+        self, asker: _Rule, number: int, start: int, end: int, keeps: bool
+    ) -> list[_Reading]:
+        readings: list[_Reading] = []
+        for alternative in self.chart.candidates(number, start):
+            readings += self._through(asker, alternative, start, end, keeps)
+        return readings
+
+    def _through(
+        self, asker: _Rule, alternative: Alternative, start: int, end: int, keeps: bool
+    ) -> list[_Reading]:
+        """Return the readings of the items of an alternative, one after the other."""
+        reached: dict[int, list[_Reading]] = {start: [_Reading()]}
         for item in alternative:
-            following: dict[int, dict[Bindings, None]] = {}
-            for place, bindings in reached.items():
-                for stop in self.chart.ends(item, place):
-                    if stop <= end:
-                        inner: dict[Bindings, None] = {(): None}
-                        if not isinstance(item, tuple):
-                            inner = self.of_rule(item, place, stop)
-                        self.budget.spend(STEPS_PER_UNION * len(bindings) * len(inner))
-                        joined = (_unite(one, other) for one in bindings for other in inner)
-                        united = {each: None for each in joined if each is not None}
-                        following.setdefault(stop, {}).update(united)
-            reached = following
-        return reached.get(end, {})
+            steps: Iterable[int | Text | Wildcard] = (
+                item.leaves if isinstance(item, Run) else (item,)
+            )
+            for step in steps:
+                following: defaultdict[int, list[_Reading]] = defaultdict(list)
+                for place, before in reached.items():
+                    for stop, readings in self._after(asker, step, place, keeps, end):
+                        self.budget.spend(STEPS_PER_JOIN * len(before) * len(readings))
+                        joined = (one.then(other) for one in before for other in readings)
+                        following[stop] += (each for each in joined if each is not None)
+                reached = {place: _best(asker, each) for place, each in following.items()}
+        return reached.get(end, [])
+
+    def _after(
+        self, asker: _Rule, step: int | Text | Wildcard, place: int, keeps: bool, end: int
+    ) -> Iterator[tuple[int, list[_Reading]]]:
+        """Yield where a rule or a leaf that begins at ``place`` can end, up to ``end``, and how it is read."""
+        if isinstance(step, int):
+            for stop in self.chart.ends(step, place):
+                if stop <= end:
+                    yield stop, self._of_rule(asker, step, place, stop, keeps)
+            return
+        word = step.value if isinstance(step, Text) else step.token
+        for arc in self.lattice.arcs(place, word):
+            if arc.end <= end:
+                leaf: Text | Wildcard = step
+                slots: tuple[tuple[Wildcard, int], ...] = ()
+                if isinstance(step, Wildcard) and arc.number >= 0:
+                    leaf = replace(step, id=arc.number)
+                    if step.name in asker.wildcards:
+                        slots = ((step, arc.number),)
+                yield arc.end, [_Reading(arc.cost, (), slots, (leaf,) if keeps else ())]
 
 
-def _unite(one: Bindings, other: Bindings) -> Bindings | None:
-    """Merge two sets of bindings, or return None if they disagree about a nonterminal."""
-    if not one or not other:
-        return one or other
-    merged = dict(one)
-    for name, words in other:
-        if merged.setdefault(name, words) != words:
-            return None
-    return tuple(sorted(merged.items()))
+def _best(asker: _Rule, readings: Sequence[_Reading]) -> list[_Reading]:
+    """Return the best readings that say different things, the best one first.
+
+    Those that bind other nonterminals, or a nonterminal that comes again with other words, are no rivals: one of
+    them may be of no use further up.
+    """
+    if len(readings) <= 1:
+        return list(readings)
+    groups: defaultdict[object, dict[object, _Reading]] = defaultdict(dict)
+    for reading in _ranked(asker, readings):
+        names = tuple(name for name, _ in reading.bound)
+        again = tuple(_words(value) for name, value in reading.bound if name in asker.repeated)
+        rivals = groups[names, again]
+        if len(rivals) < MOST_READINGS:
+            rivals.setdefault(reading.said, reading)
+    return [reading for rivals in groups.values() for reading in rivals.values()]
+
+
+def _ranked(asker: _Rule, readings: Iterable[_Reading]) -> list[_Reading]:
+    """Return the readings with the cheapest first and, among equals, those with the greatest choices."""
+
+    def rank(reading: _Reading) -> tuple[object, ...]:
+        values = dict(reading.bound)
+        choices = tuple((name, _words(values[name])) for name in asker.names if name in values)
+        return -reading.cost, choices
+
+    return sorted(readings, key=rank, reverse=True)
+
+
+def _words(value: Value) -> Choices:
+    """Return what tells two values of a nonterminal apart: the choices of a form, or the words."""
+    if isinstance(value, _Filled):
+        return value.choices
+    return tuple(leaf.value if isinstance(leaf, Text) else leaf.token for leaf in value)
+
+
+def _fill(rule: _Rule, reading: _Reading) -> _Filled | None:
+    """Return the form of a template for a reading; None where the words for a predicate are no name."""
+    values = dict(reading.bound)
+    form = rule.template.form
+    slots = _SlotArcs(reading.slots)
+    try:
+        anonymized = fill_anonymized(
+            form,
+            {
+                name: Composed(value.anonymized, ())
+                if isinstance(value, _Filled)
+                else _words(value)
+                for name, value in values.items()
+            },
+        )
+        aligned = fill_intact(
+            map_slots(form, slots.of),
+            {
+                name: Composed(value.aligned, ()) if isinstance(value, _Filled) else value
+                for name, value in values.items()
+            },
+        )
+    except LanguageError:
+        return None
+    inner = tuple(_words(values[name]) for name in rule.names)
+    choices: Choices = inner if rule.line is None else (rule.line, *inner)
+    return _Filled(anonymized, aligned, choices, reading.cost)
+
+
+class _SlotArcs:
+    """Finds the arc of a form's wildcard: that of its number, or that of the next one in the command."""
+
+    def __init__(self, slots: tuple[tuple[Wildcard, int], ...]) -> None:
+        self._numbered = {wildcard.identity: arc for wildcard, arc in reversed(slots)}
+        self._others: defaultdict[str, list[int]] = defaultdict(list)
+        for wildcard, arc in slots:
+            if wildcard.id is None:
+                self._others[wildcard.name].append(arc)
+        self._turns: Counter[str] = Counter()
+
+    def of(self, wildcard: Wildcard) -> Wildcard:
+        """Return the wildcard with the number of its arc, or without a number where there is none."""
+        if wildcard.id is not None:
+            return replace(wildcard, id=self._numbered.get(wildcard.identity))
+        arcs = self._others[wildcard.name]
+        turn = self._turns[wildcard.name]
+        self._turns[wildcard.name] += 1
+        return replace(wildcard, id=arcs[min(turn, len(arcs) - 1)] if arcs else None)
+
+
+def _arcs_of(form: _Filled) -> tuple[int | None, ...]:
+    """Return the arc of each class token of the form, in order."""
+    pairs = zip(walk(form.anonymized), walk(form.aligned), strict=True)
+    return tuple(
+        aligned.id if isinstance(aligned, Wildcard) else None
+        for token, aligned in pairs
+        if isinstance(token, Constant) and token.token_class
+    )
+
+
+def _repeated(book: RuleBook, rule: int) -> frozenset[str]:
+    """Return the nonterminals that can stand more than once in what a rule becomes."""
+    repeated: set[str] = set()
+    seen: set[int] = set()
+    waiting = [rule]
+    while waiting:
+        number = waiting.pop()
+        if number in seen:
+            continue
+        seen.add(number)
+        for alternative in book.rules[number].alternatives:
+            rules = [item for item in alternative if isinstance(item, int)]
+            counts = Counter(name for item in rules for name in book.rules[item].names)
+            repeated.update(name for name, count in counts.items() if count > 1)
+            waiting += rules
+    return frozenset(repeated)
+
+
+def _name(binding: tuple[str, Value]) -> str:
+    return binding[0]

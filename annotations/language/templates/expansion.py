@@ -8,6 +8,7 @@ from typing import TypeAlias
 
 from annotations.language.errors import LanguageError, Problem
 from annotations.language.grammar import Budget, Grammar, TooManyCombinations, readable
+from annotations.language.templates.composition import lines_of
 from annotations.language.templates.grammar_expansions import (
     DEFAULT_LIMIT,
     GrammarExpansions,
@@ -18,16 +19,25 @@ from annotations.language.templates.templates import SemanticTemplate
 # A command of the 2019 grammar takes 40; discarded combinations count too.
 STEPS_PER_COMMAND = 200
 
-ExpansionsOf: TypeAlias = Callable[[Grammar], GrammarExpansions]
+# A grammar and the lines of its nonterminals → what templates expand to.
+ExpansionsOf: TypeAlias = Callable[[Grammar, tuple[SemanticTemplate, ...]], GrammarExpansions]
 
 
 @dataclass(frozen=True)
 class TaskCategory:
-    """A grammar and its templates, in order; a later template wins."""
+    """A grammar and its templates, in order; a later template wins.
+
+    Some of the templates are lines, which say what a nonterminal becomes in the others.
+    """
 
     name: str
     grammar: Grammar
     templates: tuple[SemanticTemplate, ...]
+
+    @property
+    def lines(self) -> tuple[SemanticTemplate, ...]:
+        """The templates that are lines for a nonterminal."""
+        return lines_of(self.templates)
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,7 +166,10 @@ def generate(
 def _choose(
     categories: Sequence[TaskCategory], limit: int | None, expansions: ExpansionsOf
 ) -> list[_Chosen]:
-    return [_Chosen(expansions(category.grammar), category, limit) for category in categories]
+    return [
+        _Chosen(expansions(category.grammar, category.lines), category, limit)
+        for category in categories
+    ]
 
 
 class _Chosen:
@@ -171,6 +184,8 @@ class _Chosen:
         self.left_out: list[LeftOut] = []
         self.indexes: list[int] = []
         for index, template in enumerate(category.templates):
+            if template.nonterminal:
+                continue
             try:
                 size = expansions.size(template)
             except LanguageError as error:
@@ -225,7 +240,6 @@ def _expand(chosen: _Chosen, budget: Budget) -> _Expanded:
             chosen.leave_out(index, error.problem)
             continue
         for command, alternatives in pairs.items():
-            # An ambiguous template has no later form; the order of the texts decides.
             kept = candidates.setdefault(command, {})
             for form in alternatives:
                 kept.pop(form, None)

@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from typing import TypeAlias
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeAlias
 
 from annotations.language.errors import LanguageError
-from annotations.language.forms import UNKNOWN, Application, Constant, Form, Lambda
+from annotations.language.forms import (
+    SEQUENCE,
+    UNKNOWN,
+    Application,
+    Constant,
+    Form,
+    Lambda,
+)
 from annotations.language.limits import MAX_PREDICATE
 from annotations.language.symbols import Nonterminal, Text, Wildcard, print_symbol
 
@@ -15,22 +23,49 @@ from annotations.language.symbols import Nonterminal, Text, Wildcard, print_symb
 Filler: TypeAlias = "tuple[str | Text | Wildcard, ...]"
 _PREDICATE = re.compile(r"[^\W\d][\w-]*")
 
+# The number of a line and what its own nonterminals became, in the order of its form. Of two forms for the same
+# words the one with the greater choices is kept, so that later lines win.
+Choices: TypeAlias = "tuple[Any, ...]"
 
-def fill_anonymized(form: Form, bindings: Mapping[str, tuple[str, ...]]) -> Form:
-    """Return the form with the words of each nonterminal and the class token of each wildcard.
+
+@dataclass(frozen=True, slots=True)
+class Composed:
+    """What a nonterminal with lines became: the form of the line that was taken, with its slots filled."""
+
+    form: Form
+    choices: Choices
+
+
+def fill_anonymized(form: Form, bindings: Mapping[str, tuple[str, ...] | Composed]) -> Form:
+    """Return the form with what each nonterminal became, and the class token of each wildcard.
+
+    A nonterminal became words, or the form of a line. A sequence in a sequence becomes one.
 
     Raises:
         LanguageError: the words for a predicate are not a name.
     """
-    return _fill(form, {name: _argument(words) for name, words in bindings.items()}, True)
+    return _fill(form, {name: _argument(each) for name, each in bindings.items()}, True)
 
 
-def fill_intact(form: Form, bindings: Mapping[str, tuple[Text | Wildcard, ...]]) -> Form:
-    """Return the form with the words or the wildcard of each nonterminal; wildcards stay as bare slots.
+def fill_intact(form: Form, bindings: Mapping[str, tuple[Text | Wildcard, ...] | Composed]) -> Form:
+    """Return the form with what each nonterminal became; wildcards stay as bare slots.
 
     A nonterminal that became words and wildcards is a constant with the wildcards in braces.
     """
-    return _fill(form, {name: _argument(leaves) for name, leaves in bindings.items()}, False)
+    return _fill(form, {name: _argument(each) for name, each in bindings.items()}, False)
+
+
+def map_slots(form: Form, change: Callable[[Wildcard], Form]) -> Form:
+    """Return the form with ``change`` of each of its wildcards, in order."""
+    match form:
+        case Lambda(variable, type_, bodies):
+            return Lambda(variable, type_, tuple(map_slots(body, change) for body in bodies))
+        case Application(predicate, arguments):
+            return Application(predicate, tuple(map_slots(each, change) for each in arguments))
+        case Wildcard():
+            return change(form)
+        case _:
+            return form
 
 
 def bare(wildcard: Wildcard) -> Wildcard:
@@ -46,7 +81,9 @@ def _fill(form: Form, values: Mapping[str, Form], anonymize: bool) -> Form:
             name = (
                 _predicate(predicate, values) if isinstance(predicate, Nonterminal) else predicate
             )
-            filled = (_fill(argument, values, anonymize) for argument in arguments)
+            filled = [_fill(argument, values, anonymize) for argument in arguments]
+            if name == SEQUENCE:
+                filled = [part for argument in filled for part in _parts(argument)]
             return Application(name, tuple(filled))
         case Nonterminal(name):
             return values[name]
@@ -56,8 +93,16 @@ def _fill(form: Form, values: Mapping[str, Form], anonymize: bool) -> Form:
             return form
 
 
-def _argument(leaves: Filler) -> Form:
+def _parts(form: Form) -> tuple[Form, ...]:
+    if isinstance(form, Application) and form.predicate == SEQUENCE:
+        return form.arguments
+    return (form,)
+
+
+def _argument(leaves: Filler | Composed) -> Form:
     """Return words as one constant (a number if they are digits); no words are UNKNOWN."""
+    if isinstance(leaves, Composed):
+        return leaves.form
     spoken = [leaf for leaf in leaves if not (isinstance(leaf, Wildcard) and leaf.kind == "void")]
     if len(spoken) == 1 and isinstance(spoken[0], Wildcard):
         return bare(spoken[0])

@@ -11,19 +11,23 @@ from annotations.language.errors import LanguageError, Problem, warning_at
 from annotations.language.forms import Form
 from annotations.language.grammar import Budget, Grammar, Recognizer, readable
 from annotations.language.templates.bounded_cache import BoundedCache
+from annotations.language.templates.filling import Choices
 from annotations.language.templates.synchronous import TemplateExpander
 from annotations.language.templates.templates import SemanticTemplate
 
-# Command → its forms in the order of their texts; more than one where a template is ambiguous.
+# Command → its forms, the one to keep last; more than one where a template is ambiguous.
 Pairs: TypeAlias = Mapping[str, tuple[str, ...]]
 
 
 @dataclass(frozen=True, slots=True)
 class TemplatePairs:
-    """The pairs of a template. ``forms`` are distinct; ``n_pairs`` counts repetitions, ``steps`` the work."""
+    """The pairs of a template. ``n_pairs`` counts repetitions, ``steps`` the work.
+
+    ``own_forms`` are distinct, with one term in place of the form of a line (``FilledForm.own``).
+    """
 
     pairs: Pairs
-    forms: tuple[Form, ...]
+    own_forms: tuple[Form, ...]
     n_pairs: int
     steps: int
 
@@ -47,15 +51,18 @@ class GrammarExpansions:
     Several threads may share one: kept values never change, and two that are made at once are equal.
 
     Args:
+        lines: what nonterminals may become, with their forms.
         most_kept: how many pairs to keep; those of the least recently used templates go first.
 
     Raises:
         LanguageError: the grammar has a cycle.
     """
 
-    def __init__(self, grammar: Grammar, most_kept: int = 0) -> None:
+    def __init__(
+        self, grammar: Grammar, lines: tuple[SemanticTemplate, ...] = (), most_kept: int = 0
+    ) -> None:
         self.grammar = grammar
-        self.expander = TemplateExpander(grammar)
+        self.expander = TemplateExpander(grammar, lines)
         self._most_kept = most_kept
         self._kept: BoundedCache[tuple[str, str], TemplatePairs] = BoundedCache(most_kept, len)
         self._sizes: BoundedCache[tuple[str, str], int] = BoundedCache(most_kept)
@@ -130,14 +137,17 @@ def _collect(
     expander: TemplateExpander, template: SemanticTemplate, budget: Budget
 ) -> TemplatePairs:
     before, count = budget.spent, 0
-    commands: dict[str, set[str]] = {}
-    forms: dict[str, Form] = {}
+    commands: dict[str, dict[str, Choices]] = {}
+    forms: dict[Form, None] = {}
     for words, filled in expander.filled_pairs(template, budget):
-        commands.setdefault(" ".join(words), set()).add(filled.text)
-        forms.setdefault(filled.text, filled.form)
+        found = commands.setdefault(" ".join(words), {})
+        found[filled.text] = max(filled.choices, found.get(filled.text, filled.choices))
+        forms[filled.own] = None
         count += 1
-    pairs = {command: tuple(sorted(texts)) for command, texts in commands.items()}
-    return TemplatePairs(pairs, tuple(forms.values()), count, budget.spent - before)
+    pairs = {
+        command: tuple(sorted(found, key=found.__getitem__)) for command, found in commands.items()
+    }
+    return TemplatePairs(pairs, tuple(forms), count, budget.spent - before)
 
 
 def too_many_commands(template: SemanticTemplate, size: int, limit: int | None) -> Problem | None:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TypeAlias
 
 from annotations.language.errors import LanguageError
-from annotations.language.forms import Form, canonical_text
+from annotations.language.forms import Application, Form, Lambda, canonical_text
 from annotations.language.grammar import (
     MAX_WORDS,
     Budget,
@@ -21,9 +21,23 @@ from annotations.language.grammar import (
 from annotations.language.limits import MAX_INDEXED_BYTES
 from annotations.language.symbols import Text, Wildcard
 from annotations.language.templates.bounded_cache import BoundedCache
-from annotations.language.templates.filling import fill_anonymized, fill_intact
+from annotations.language.templates.composition import (
+    SynchronousGrammar,
+    apart,
+    names_in_order,
+    number_slots,
+    scope_below,
+)
+from annotations.language.templates.filling import (
+    Choices,
+    Composed,
+    fill_anonymized,
+    fill_intact,
+)
 from annotations.language.templates.templates import SemanticTemplate
 
+# The predicate of a term that stands in for an action of a line.
+STAND_IN = "action of a line"
 # Sets of nonterminals that forms mention, whose expansions are kept.
 MOST_TRACKED = 200
 
@@ -50,25 +64,36 @@ class Derivation:
 
 @dataclass(frozen=True, slots=True)
 class FilledForm:
-    """The form of a command with class tokens for its slots, and its canonical text."""
+    """The form of a command with class tokens for its slots, and its canonical text.
+
+    ``choices`` say what its nonterminals became: of several forms of a command the greatest is kept. In ``own``
+    one term stands in for each form of a line, so that its terms are those of the template.
+    """
 
     form: Form
     text: str
+    choices: Choices
+    own: Form
 
 
 class TemplateExpander:
     """Expands templates over one grammar; what nonterminals become is computed once and kept.
 
+    Args:
+        grammar: the productions.
+        lines: what nonterminals may become, with their forms (see ``composition``).
+
     Raises:
-        LanguageError: the grammar has a cycle.
+        LanguageError: the grammar, or the lines, have a cycle.
     """
 
-    def __init__(self, grammar: Grammar) -> None:
-        grammar.require_finite()
+    def __init__(self, grammar: Grammar, lines: tuple[SemanticTemplate, ...] = ()) -> None:
         self.grammar = grammar
+        self.rules = SynchronousGrammar(grammar, lines)
+        self.rules.words.require_finite()
         self._anonymized: BoundedCache[frozenset[str], Expander[str]] = BoundedCache(MOST_TRACKED)
-        self._intact: BoundedCache[frozenset[str], Expander[Text | Wildcard]] = BoundedCache(
-            MOST_TRACKED
+        self._intact: BoundedCache[tuple[frozenset[str], int], Expander[Text | Wildcard]] = (
+            BoundedCache(MOST_TRACKED)
         )
 
     def size(self, template: SemanticTemplate) -> int:
@@ -101,6 +126,8 @@ class TemplateExpander:
     ) -> Iterator[tuple[tuple[str, ...], FilledForm]]:
         """Stream pairs like ``pairs``, as separate words and with the form as a value too."""
         tracked, budget = template.tracked, budget or Budget()
+        names = names_in_order(template)
+        composed = self.rules.composed(template)
         self._require_short(template)
         forms: dict[object, FilledForm] = {}
         with _place_errors(template):
@@ -108,12 +135,11 @@ class TemplateExpander:
                 if not words or len(bindings) < len(tracked):
                     continue
                 if bindings not in forms:
-                    try:
-                        form = fill_anonymized(template.form, dict(bindings))
-                    except LanguageError as error:
-                        place = template.form_position
-                        raise LanguageError(error.message, place, error.hint) from None
-                    forms[bindings] = FilledForm(form, canonical_text(form))
+                    values = dict(bindings)
+                    form = _filled(template, values)
+                    choices = tuple(_choice(values[name]) for name in names)
+                    own = _filled(template, _stand_ins(values)) if composed else form
+                    forms[bindings] = FilledForm(form, canonical_text(form), choices, own)
                     budget.spend(len(forms[bindings].text))
                     _require_indexable(forms[bindings].text, "form", template)
                 _require_indexable(" ".join(words), "command", template)
@@ -130,24 +156,71 @@ class TemplateExpander:
         Raises:
             TooManyCombinations: while streaming, when the budget is spent.
         """
-        tracked, budget = template.tracked, budget or Budget()
+        budget = budget or Budget()
         self._require_short(template)
-        expander = self._intact.get(
-            tracked, lambda: Expander(self.grammar.alternatives, intact, tracked)
-        )
         seen: set[Derivation] = set()
         with _place_errors(template):
-            for leaves, bindings in expander.stream(template.pattern, budget):
-                if len(bindings) < len(tracked):
-                    continue
-                budget.spend(len(template.form_text) + 4 * len(leaves))
-                derivation = Derivation(leaves, fill_intact(template.form, dict(bindings)), index)
+            for leaves, form in self._with_forms(template, 0, budget):
+                derivation = Derivation(leaves, form, index)
                 if derivation not in seen:
                     seen.add(derivation)
                     yield derivation
 
+    def _with_forms(
+        self, template: SemanticTemplate, scope: int, budget: Budget
+    ) -> Iterator[tuple[Leaves, Form]]:
+        """Stream what a template or a line becomes, with its form; ``scope`` keeps the wildcards of lines apart."""
+        tracked = template.tracked
+        for leaves, bindings in self._keeping(template, scope).stream(template.pattern, budget):
+            if len(bindings) == len(tracked):
+                budget.spend(len(template.form_text) + 4 * len(leaves))
+                yield leaves, fill_intact(template.form, dict(bindings))
+
+    def _anonymizing(self, tracked: frozenset[str]) -> Expander[str]:
+        composed = tracked & self.rules.lines_of.keys()
+        return self._anonymized.get(
+            tracked,
+            lambda: Expander(
+                self.rules.alternatives, anonymized, tracked, composed, self._compose_anonymized
+            ),
+        )
+
+    def _compose_anonymized(
+        self, name: str, budget: Budget
+    ) -> Iterator[tuple[tuple[str, ...], Composed]]:
+        for number, line in enumerate(self.rules.lines_of[name]):
+            names = names_in_order(line)
+            forms: dict[object, Composed] = {}
+            for words, bindings in self._anonymizing(line.tracked).stream(line.pattern, budget):
+                if len(bindings) < len(names):
+                    continue
+                if bindings not in forms:
+                    values = dict(bindings)
+                    choices = (number, *(_choice(values[each]) for each in names))
+                    forms[bindings] = Composed(_filled(line, values), choices)
+                yield words, forms[bindings]
+
+    def _keeping(self, template: SemanticTemplate, scope: int) -> Expander[Text | Wildcard]:
+        """Return the expander that keeps wildcards, for a template or a line with ``scope``."""
+        composed = self.rules.composed(template)
+        tracked = template.tracked
+
+        def compose(name: str, budget: Budget) -> Iterator[tuple[Leaves, Composed]]:
+            inner = scope_below(scope, composed.index(name))
+            for number, line in enumerate(self.rules.lines_of[name]):
+                for leaves, form in self._with_forms(apart(line, inner), inner, budget):
+                    leaves, form = number_slots(leaves, form, inner)
+                    yield leaves, Composed(form, (number,))
+
+        return self._intact.get(
+            (tracked, scope),
+            lambda: Expander(
+                self.rules.alternatives, intact, tracked, frozenset(composed), compose
+            ),
+        )
+
     def _require_short(self, template: SemanticTemplate) -> None:
-        words = self.grammar.longest(template.pattern)
+        words = self.rules.words.longest(template.pattern)
         if words > MAX_WORDS:
             raise LanguageError(
                 f"the pattern makes commands of up to {words:,} words",
@@ -155,10 +228,33 @@ class TemplateExpander:
                 f"{MAX_WORDS} is the limit; shorten the pattern",
             )
 
-    def _anonymizing(self, tracked: frozenset[str]) -> Expander[str]:
-        return self._anonymized.get(
-            tracked, lambda: Expander(self.grammar.alternatives, anonymized, tracked)
-        )
+
+def _filled(template: SemanticTemplate, values: Mapping[str, tuple[str, ...] | Composed]) -> Form:
+    """Return the form with class tokens. Raises LanguageError, at the form, where a predicate is no name."""
+    try:
+        return fill_anonymized(template.form, values)
+    except LanguageError as error:
+        raise LanguageError(error.message, template.form_position, error.hint) from None
+
+
+def _stand_ins(
+    values: Mapping[str, tuple[str, ...] | Composed],
+) -> dict[str, tuple[str, ...] | Composed]:
+    """Return the values with a term without parts, of the same kind, for each form of a line."""
+    return {
+        name: Composed(_stand_in(value.form), ()) if isinstance(value, Composed) else value
+        for name, value in values.items()
+    }
+
+
+def _stand_in(form: Form) -> Form:
+    if isinstance(form, Lambda):
+        return Lambda(form.variable, form.type, ())
+    return Application(STAND_IN) if isinstance(form, Application) else form
+
+
+def _choice(value: tuple[str, ...] | Composed) -> Choices:
+    return value.choices if isinstance(value, Composed) else value
 
 
 @contextmanager

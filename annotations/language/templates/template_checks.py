@@ -24,7 +24,13 @@ from annotations.language.grammar import (
     Recognizer,
     TooManyCombinations,
 )
-from annotations.language.predicates import Misuse, Predicate, find_misuses
+from annotations.language.predicates import (
+    Misuse,
+    Predicate,
+    PredicateKind,
+    Signature,
+    find_misuses,
+)
 from annotations.language.symbols import (
     Nonterminal,
     Symbols,
@@ -41,7 +47,12 @@ from annotations.language.templates.grammar_expansions import (
     GrammarExpansions,
     too_many_commands,
 )
-from annotations.language.templates.synchronous import TemplateExpander
+from annotations.language.templates.line_checks import (
+    composition_problems,
+    find_loose_references,
+    line_problems,
+)
+from annotations.language.templates.synchronous import STAND_IN, TemplateExpander
 from annotations.language.templates.templates import SemanticTemplate
 
 # A template is checked as it is typed, so only this many of its pairs are looked at.
@@ -81,9 +92,10 @@ class TemplateChecker:
             too_many = too_many_commands(template, self.expander.size(template), DEFAULT_LIMIT)
             if too_many is not None:
                 problems.append(too_many)
-            commands, forms = self._expand(template, budget)
+            commands, texts, forms = self._expand(template, budget)
             problems.extend(self._membership(template, commands, budget))
             problems.extend(self.predicate_problems(template, forms))
+            problems.extend(find_loose_references(template, texts))
         except TooManyCombinations as error:
             return (*problems, replace(error.problem, position=template.position))
         except LanguageError as error:
@@ -92,20 +104,27 @@ class TemplateChecker:
 
     def _expand(
         self, template: SemanticTemplate, budget: Budget
-    ) -> tuple[list[str], Collection[Form]]:
-        """Return the first commands of the template and its distinct forms, looked up where they are kept."""
+    ) -> tuple[list[str], Collection[str], Collection[Form]]:
+        """Return the first commands of the template, their distinct forms and those of the template's own terms.
+
+        They are looked up where they are kept.
+        """
         known = self.recognizer
         if isinstance(known, GrammarExpansions) and known.has(template):
             made = known.made(template, budget)
             if made.n_pairs < CHECKED_PAIRS and made.steps <= CHECK_STEPS:
-                return list(made.pairs), made.forms
+                texts = dict.fromkeys(text for each in made.pairs.values() for text in each)
+                return list(made.pairs), texts, made.own_forms
         pairs = list(islice(self.expander.filled_pairs(template, budget), CHECKED_PAIRS))
-        forms = {filled.text: filled.form for _, filled in pairs}
-        return [" ".join(words) for words, _ in pairs], forms.values()
+        texts = dict.fromkeys(filled.text for _, filled in pairs)
+        own = dict.fromkeys(filled.own for _, filled in pairs)
+        return [" ".join(words) for words, _ in pairs], texts, own
 
     def slot_problems(self, template: SemanticTemplate) -> Iterator[Problem]:
         """Yield what is wrong with the slots of both sides, without expanding anything."""
-        spoken = self.grammar.spoken(template.pattern)
+        rules = self.expander.rules
+        spoken = rules.words.spoken(template.pattern)
+        yield from composition_problems(template, rules)
         keys = {slot_key(symbol) for symbol in spoken} - {None}
         for key, slot in {slot_key(slot): slot for slot in template.slots()}.items():
             if key in keys:
@@ -119,7 +138,7 @@ class TemplateChecker:
             )
         said = {slot_key(slot) for slot in template.slots()}
         left_out: dict[object, Wildcard] = {}
-        for symbol in self.grammar.spoken(template.pattern, opaque=template.tracked):
+        for symbol in rules.words.spoken(template.pattern, opaque=template.tracked):
             if not isinstance(symbol, Wildcard) or slot_key(symbol) in said:
                 continue
             if symbol.entity_class:
@@ -130,8 +149,8 @@ class TemplateChecker:
                 f"the command says {_print(wildcard)}, but the form leaves it out",
                 "ignore this if intended",
             )
-        for symbol in self.grammar.spoken(template.pattern):
-            if isinstance(symbol, Nonterminal) and symbol.name not in self.grammar.rules:
+        for symbol in spoken:
+            if isinstance(symbol, Nonterminal) and symbol.name not in rules.words.rules:
                 yield warning_at(
                     _place_in_pattern(template, symbol),
                     f"nothing defines {symbol}",
@@ -141,10 +160,14 @@ class TemplateChecker:
     def _membership(
         self, template: SemanticTemplate, commands: list[str], budget: Budget
     ) -> Iterator[Problem]:
+        name = template.nonterminal
+        if name and name not in self.grammar.rules:
+            return
+        recognizer = Recognizer(self.grammar, name) if name else self.recognizer
         judged: list[tuple[str, bool]] = []  # each command and whether it is in the grammar
         with suppress(TooManyCombinations):  # the others are not judged
             for command in dict.fromkeys(commands):
-                judged.append((command, self.recognizer.accepts(command, budget)))
+                judged.append((command, recognizer.accepts(command, budget)))
         outside = [command for command, is_inside in judged if not is_inside]
         if not commands:
             yield warning_at(
@@ -154,9 +177,12 @@ class TemplateChecker:
             name = (
                 f"task category {self.task_category}" if self.task_category else "the task category"
             )
+            inside = (
+                f"what ${template.nonterminal} becomes" if template.nonterminal else "the grammar"
+            )
             warning = warning_at(
                 template.position,
-                f'the pattern matches nothing in the grammar; it makes "{outside[0]}"',
+                f'the pattern matches nothing in {inside}; it makes "{outside[0]}"',
                 f"see the productions of {name}",
             )
             yield replace(warning, task_category=self.task_category)
@@ -177,8 +203,12 @@ class TemplateChecker:
         if self.predicates is None:
             return
         misuses: dict[Misuse, None] = {}
+        known = {
+            **self.predicates,
+            STAND_IN: Predicate(STAND_IN, PredicateKind.ACTION, (Signature(()),)),
+        }
         for form in forms:
-            misuses.update(dict.fromkeys(find_misuses(form, self.predicates)))
+            misuses.update(dict.fromkeys(find_misuses(form, known)))
             if len(misuses) >= MOST_PREDICATE_PROBLEMS:
                 break
         for misuse in misuses:
@@ -192,13 +222,14 @@ def template_checker(
     grammar: Grammar,
     predicates: Mapping[str, Predicate] | None = None,
     task_category: str = "",
+    lines: tuple[SemanticTemplate, ...] = (),
 ) -> TemplateChecker:
     """Return a checker for many templates of one grammar; ``task_category`` is its name in hints.
 
     Raises:
-        LanguageError: the grammar has a cycle.
+        LanguageError: the grammar, or the lines, have a cycle.
     """
-    expander, recognizer = TemplateExpander(grammar), Recognizer(grammar)
+    expander, recognizer = TemplateExpander(grammar, lines), Recognizer(grammar)
     return TemplateChecker(grammar, expander, recognizer, predicates, task_category)
 
 
@@ -238,7 +269,7 @@ def set_problems(
     spent = 0
     checked: set[tuple[object, SemanticTemplate]] = set()
     for category in categories:
-        checker = template_checker(category.grammar, predicates, category.name)
+        checker = template_checker(category.grammar, predicates, category.name, category.lines)
         for template in category.templates:
             if (template.position, template) in checked:
                 continue
@@ -260,7 +291,8 @@ def set_problems(
 
 
 def shared_problems(category: TaskCategory, generated: Generated) -> Iterator[tuple[int, Problem]]:
-    """Yield (template index, problem) of what a template has with others: duplicates and conflicts."""
+    """Yield (template index, problem) of what a template has with others: duplicates, conflicts, unused lines."""
+    yield from line_problems(category)
     first: dict[tuple[Symbols, str], SemanticTemplate] = {}
     for index, template in enumerate(category.templates):
         key = (template.pattern, template.form_text)

@@ -1,4 +1,7 @@
-"""Read and print semantic templates ``pattern = form`` (docs/reference/formats.md, Templates)."""
+"""Read and print semantic templates (docs/reference/formats.md, Templates).
+
+``pattern = form`` annotates commands; ``$name -> pattern = form`` annotates what ``$name`` may become.
+"""
 
 from __future__ import annotations
 
@@ -6,10 +9,23 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import lru_cache
+from typing import NamedTuple
 
 from annotations.language.errors import LanguageError, Position, Problem, error_at, warning_at
-from annotations.language.forms import UNKNOWN, Application, Form, read_form, to_template, walk
-from annotations.language.limits import MAX_PATTERN, require_length
+from annotations.language.forms import (
+    UNKNOWN,
+    Application,
+    Form,
+    read_template_form,
+    to_template,
+    walk,
+)
+from annotations.language.limits import (
+    MAX_NONTERMINAL,
+    MAX_PATTERN,
+    require_length,
+    require_name,
+)
 from annotations.language.symbols import (
     Nonterminal,
     SymbolReader,
@@ -20,14 +36,18 @@ from annotations.language.symbols import (
 
 # An escaped character, a brace, an equals sign, or the comment that ends the line.
 _MARK = re.compile(r"\\.|[{}=]|#.*")
+_HEAD = re.compile(r"\s*\$(?P<name>[^\W\d]\w*)\s*->")
 _EXAMPLE = "a template is pattern = form, as in: fetch the {object} = (bring {object})"
+_LINE_EXAMPLE = "a line for a nonterminal is $name -> pattern = form"
 
 
 @dataclass(frozen=True, slots=True)
 class SemanticTemplate:
     """A partial expansion of a grammar and the form that all its commands share.
 
-    ``form_position`` is where the form begins; positions play no part in equality.
+    ``nonterminal`` is what a line ``$name -> pattern = form`` is for, empty for a template of commands.
+    ``pattern_text`` is the whole left side, with the nonterminal before the arrow. ``form_position`` is where
+    the form begins; positions play no part in equality.
     """
 
     pattern: Symbols
@@ -36,6 +56,7 @@ class SemanticTemplate:
     form_text: str
     position: Position = field(default_factory=Position, compare=False)
     form_position: Position = field(default_factory=Position, compare=False)
+    nonterminal: str = ""
 
     @property
     def tracked(self) -> frozenset[str]:
@@ -112,24 +133,22 @@ def read_sides(pattern: str, form: str) -> tuple[SemanticTemplate | None, tuple[
         The template, or None and what keeps each of its sides from being read.
     """
     problems: list[Problem] = []
-    symbols: Symbols = ()
-    value: Form = UNKNOWN
+    left, right = _Left("", (), "", Position()), _Right(UNKNOWN, "", Position())
     try:
-        symbols, pattern_text, pattern_place = _pattern(pattern, Position("pattern"))
+        left = _read_left(pattern, Position("pattern"))
     except LanguageError as error:
         problems.append(error.problem)
     try:
-        value, form_text, form_place = _form(form, Position("form"))
+        right = _read_right(form, Position("form"))
     except LanguageError as error:
         problems.append(error.problem)
-    if problems:
-        return None, tuple(problems)
-    return SemanticTemplate(symbols, value, pattern_text, form_text, pattern_place, form_place), ()
+    return (None, tuple(problems)) if problems else (_join(left, right), ())
 
 
 def print_template(template: SemanticTemplate) -> str:
     """Return the line that reads back as an equal pattern and form."""
-    return f"{print_sequence(template.pattern)} = {to_template(template.form)}"
+    head = f"${template.nonterminal} -> " if template.nonterminal else ""
+    return f"{head}{print_sequence(template.pattern)} = {to_template(template.form)}"
 
 
 def _read_line(line: str, place: Position) -> SemanticTemplate | None:
@@ -160,21 +179,54 @@ def _marks(line: str) -> tuple[list[int], int]:
 def _template(
     pattern: str, pattern_place: Position, form: str, form_place: Position
 ) -> SemanticTemplate:
-    symbols, pattern, pattern_place = _pattern(pattern, pattern_place)
-    value, form, form_place = _form(form, form_place)
-    return SemanticTemplate(symbols, value, pattern, form, pattern_place, form_place)
+    return _join(_read_left(pattern, pattern_place), _read_right(form, form_place))
 
 
-def _pattern(text: str, place: Position) -> tuple[Symbols, str, Position]:
-    """Return what the pattern says, its text without the spaces around it, and where that begins."""
+class _Left(NamedTuple):
+    """What stands before the equals sign, its text without the spaces around it, and where that begins."""
+
+    nonterminal: str
+    pattern: Symbols
+    text: str
+    position: Position
+
+
+class _Right(NamedTuple):
+    form: Form
+    text: str
+    position: Position
+
+
+def _join(left: _Left, right: _Right) -> SemanticTemplate:
+    return SemanticTemplate(
+        *(left.pattern, right.form, left.text, right.text, left.position, right.position),
+        nonterminal=left.nonterminal,
+    )
+
+
+def _read_left(text: str, place: Position) -> _Left:
     if not text.strip():
         raise LanguageError("the template has no pattern", place, _EXAMPLE)
     place, text = _behind_spaces(text, place), text.strip()
     require_length(text, "pattern", MAX_PATTERN, place)
+    start = pattern_start(text)
+    name = ""
+    if start:
+        name = text[1:].split("->", 1)[0].strip()
+        require_name(name, "nonterminal", MAX_NONTERMINAL, place)
+        if not text[start:].strip():
+            raise LanguageError("nothing follows the arrow", place.shifted(start), _LINE_EXAMPLE)
     try:
-        return _symbols(text), text, place
+        return _Left(name, _symbols(text[start:]), text, place)
     except LanguageError as error:
-        raise LanguageError(error.message, error.position.inside(place), error.hint) from None
+        inside = error.position.inside(place.shifted(start))
+        raise LanguageError(error.message, inside, error.hint) from None
+
+
+def pattern_start(text: str) -> int:
+    """Return where the pattern begins in a left side: behind the arrow of ``$name ->``, else at 0."""
+    head = _HEAD.match(text)
+    return head.end() if head else 0
 
 
 @lru_cache(maxsize=1 << 12)
@@ -182,10 +234,9 @@ def _symbols(text: str) -> Symbols:
     return SymbolReader(text, Position()).whole_line()
 
 
-def _form(text: str, place: Position) -> tuple[Form, str, Position]:
-    """Return the form, its text without the spaces around it, and where that begins."""
+def _read_right(text: str, place: Position) -> _Right:
     place, text = _behind_spaces(text, place), text.strip()
-    return read_form(text, place), text, place
+    return _Right(read_template_form(text, place), text, place)
 
 
 def _behind_spaces(text: str, place: Position) -> Position:

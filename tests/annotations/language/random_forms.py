@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from hypothesis import strategies as st
 
-from annotations.language.forms import UNKNOWN, Application, Constant, Form, Lambda, Variable
+from annotations.language.forms import (
+    UNKNOWN,
+    Application,
+    Constant,
+    Form,
+    Lambda,
+    Reference,
+    Variable,
+)
 from annotations.language.symbols import Nonterminal, Wildcard
 
 PREDICATES = st.sampled_from(["bring", "and", "is_a", "left_of", "x", "lambdas", "UNKNOWNS", "y-z"])
@@ -21,7 +29,11 @@ SLOTS = st.sampled_from(
     ]
 )
 LEAVES = st.one_of(
-    st.builds(Constant, TEXTS), st.builds(Constant, st.integers()), SLOTS, st.just(UNKNOWN)
+    st.builds(Constant, TEXTS),
+    st.builds(Constant, st.integers()),
+    SLOTS,
+    st.just(UNKNOWN),
+    st.sampled_from([Reference("it"), Reference("them")]),
 )
 
 

@@ -203,8 +203,8 @@ def with_digits():
 def test_what_was_expanded_before_is_looked_up_and_gives_the_same():
     kept = {}
 
-    def expansions(grammar):
-        return kept.setdefault(id(grammar), GrammarExpansions(grammar, most_kept=1_000))
+    def expansions(grammar, lines):
+        return kept.setdefault(id(grammar), GrammarExpansions(grammar, lines, most_kept=1_000))
 
     one = category("1", "go = (go)", "(go | run) = (run)", "$fetch the $thing = (bring $thing)")
     other = category("1", "(go | run) = (run)", "go = (stop)")

@@ -1,0 +1,152 @@
+"""Lines ``$name -> pattern = form``: what a nonterminal may become, with the form that it gets.
+
+Templates and lines are the rules of a synchronous grammar with λ-terms on the right (Wong and Mooney, "Learning
+synchronous grammars for semantic parsing with lambda calculus", ACL 2007; Chiang, "A hierarchical
+phrase-based model for statistical machine translation", ACL 2005). The productions say which commands
+exist; in a template a nonterminal that has lines becomes what its lines become, and where the form mentions
+it, it takes the form of the line.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TypeAlias
+
+from annotations.language.forms import Form
+from annotations.language.grammar import Grammar, Production
+from annotations.language.symbols import (
+    Choice,
+    Combination,
+    Comparison,
+    Condition,
+    Negation,
+    Symbol,
+    Symbols,
+    Text,
+    Wildcard,
+)
+from annotations.language.templates.filling import map_slots
+from annotations.language.templates.templates import SemanticTemplate
+
+Leaves: TypeAlias = "tuple[Text | Wildcard, ...]"
+
+# Wildcards of different lines of one command get different numbers: those of a line have so many to themselves.
+_NUMBERS_OF_A_LINE = 100
+_MOST_COMPOSED = 10  # nonterminals with lines that one form mentions
+
+
+@dataclass(frozen=True)
+class SynchronousGrammar:
+    """The productions of a task category together with the lines of its templates, in order."""
+
+    grammar: Grammar
+    lines: tuple[SemanticTemplate, ...] = ()
+
+    @cached_property
+    def lines_of(self) -> Mapping[str, tuple[SemanticTemplate, ...]]:
+        """Nonterminal → its lines, in order."""
+        lines: defaultdict[str, list[SemanticTemplate]] = defaultdict(list)
+        for line in self.lines:
+            lines[line.nonterminal].append(line)
+        return {name: tuple(each) for name, each in lines.items()}
+
+    @cached_property
+    def words(self) -> Grammar:
+        """What templates become: the productions, but those of a nonterminal with lines are its lines."""
+        if not self.lines:
+            return self.grammar
+        plain = (each for each in self.grammar.productions if each.nonterminal not in self.lines_of)
+        lines = (Production(each.nonterminal, each.pattern, each.position) for each in self.lines)
+        return Grammar((*plain, *lines))
+
+    def alternatives(self, name: str) -> tuple[Symbols, ...]:
+        """Return the patterns of the lines of ``$name``, one each, or its alternatives in the productions."""
+        if name in self.lines_of:
+            return tuple(line.pattern for line in self.lines_of[name])
+        return self.grammar.alternatives(name)
+
+    def composed(self, template: SemanticTemplate) -> tuple[str, ...]:
+        """Return the nonterminals of the form that have lines, in the order of their names."""
+        return tuple(sorted(template.tracked & self.lines_of.keys()))
+
+
+def lines_of(templates: Iterable[SemanticTemplate]) -> tuple[SemanticTemplate, ...]:
+    """Return the templates that are lines for a nonterminal."""
+    return tuple(each for each in templates if each.nonterminal)
+
+
+def names_in_order(template: SemanticTemplate) -> tuple[str, ...]:
+    """Return the nonterminals that the form of a template mentions, each once."""
+    slots = (slot for slot in template.slots() if not isinstance(slot, Wildcard))
+    return tuple(dict.fromkeys(slot.name for slot in slots))
+
+
+def apart(line: SemanticTemplate, scope: int) -> SemanticTemplate:
+    """Return a line whose numbered wildcards are different from those of lines with another ``scope``."""
+
+    def renamed(wildcard: Wildcard) -> Wildcard:
+        number = wildcard.id
+        if number is not None:
+            number += scope * _NUMBERS_OF_A_LINE
+        return replace(
+            wildcard,
+            id=number,
+            where=wildcard.where and _in_condition(wildcard.where, renamed),
+            meta=_in_symbols(wildcard.meta, renamed),
+        )
+
+    if not scope:
+        return line
+    form = map_slots(line.form, renamed)
+    return replace(line, pattern=_in_symbols(line.pattern, renamed), form=form)
+
+
+def number_slots(leaves: Leaves, form: Form, scope: int) -> tuple[Leaves, Form]:
+    """Number the wildcards of a line that have no number, so that they are not taken for those of another line.
+
+    Those of the form are the ones of the words in their order, name by name; where the form has more, they
+    share the last one.
+    """
+    turns: Counter[str] = Counter()
+
+    def number(wildcard: Wildcard) -> Wildcard:
+        if wildcard.id is not None or not wildcard.entity_class:
+            return wildcard
+        turn = turns[wildcard.name]
+        turns[wildcard.name] += 1
+        first = scope * _NUMBERS_OF_A_LINE + _NUMBERS_OF_A_LINE // 2
+        return replace(wildcard, id=first + min(turn, most.get(wildcard.name, turn)))
+
+    most: dict[str, int] = {}
+    numbered = tuple(number(each) if isinstance(each, Wildcard) else each for each in leaves)
+    most = {name: count - 1 for name, count in turns.items()}
+    turns.clear()
+    return numbered, map_slots(form, number)
+
+
+def scope_below(scope: int, place: int) -> int:
+    """Return the scope of the composed nonterminal at ``place`` of a form; the scope of a template is 0."""
+    return scope * _MOST_COMPOSED + place + 1
+
+
+def _in_symbols(symbols: Symbols, change: Callable[[Wildcard], Wildcard]) -> Symbols:
+    def changed(symbol: Symbol) -> Symbol:
+        if isinstance(symbol, Choice):
+            return Choice(tuple(_in_symbols(each, change) for each in symbol.alternatives))
+        return change(symbol) if isinstance(symbol, Wildcard) else symbol
+
+    return tuple(map(changed, symbols))
+
+
+def _in_condition(condition: Condition, change: Callable[[Wildcard], Wildcard]) -> Condition:
+    match condition:
+        case Combination(operator, left, right):
+            return Combination(operator, _in_condition(left, change), _in_condition(right, change))
+        case Negation(operand):
+            return Negation(_in_condition(operand, change))
+        case Comparison(value=Wildcard() as wildcard):
+            return replace(condition, value=change(wildcard))
+    return condition

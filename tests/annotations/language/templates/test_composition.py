@@ -1,0 +1,242 @@
+"""Lines for nonterminals: their forms compose along the derivation, in generation and in parsing alike."""
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from annotations.language.errors import LanguageError
+from annotations.language.forms import loose_references, read_form, to_corpus, to_template
+from annotations.language.grammar import Budget, Grammar, read_productions
+from annotations.language.templates import (
+    TaskCategory,
+    TemplateChart,
+    TemplateExpander,
+    generate,
+    generation_size,
+    print_template,
+    read_sides,
+    read_template,
+    set_problems,
+    template_checker,
+)
+from tests.annotations.language.random_grammars import FEW, TOKENS, small_grammars
+from tests.annotations.language.templates.test_expansion import small_templates
+
+RULES = """
+$Main = $goto | $goto $next
+$goto = ( go | walk ) to the {room}
+$next = and find the {kobject} | then $do | and say hello
+$do = $place it on the {placement} | bring it to me
+$place = put | place
+"""
+GRAMMAR = Grammar(read_productions(RULES).productions)
+GOTO = "$goto -> (go | walk) to the {room 1} = (go {room 1})"
+FIND = "$next -> and find the {kobject} = (find {kobject})"
+THEN = "$next -> then $do = $do"
+PLACE = "$do -> $place it on the {placement 1} = (sequence (take it) (put it {placement 1}))"
+BRING = "$do -> bring it to me = (bring it)"
+BOTH = "$goto $next = (sequence $goto $next)"
+
+
+def category(*lines, grammar=GRAMMAR):
+    return TaskCategory("1", grammar, tuple(map(read_template, lines)))
+
+
+ALL = category("$goto = $goto", BOTH, GOTO, FIND, THEN, PLACE, BRING)
+
+
+def forms(*categories):
+    return {each.command: each.form_text for each in generate(categories).expansions}
+
+
+def codes(problems, severity=None):
+    return [each for each in problems if severity is None or each.severity == severity]
+
+
+def test_a_line_keeps_its_nonterminal_and_prints_as_it_reads():
+    line = read_template(PLACE)
+    assert line.nonterminal == "do"
+    assert read_template(print_template(line)) == line
+    assert read_sides("$do -> stop", "(stop)")[0].nonterminal == "do"
+    plain = read_template("$do \\-> stop = (stop)")
+    assert plain.nonterminal == "" and print_template(plain) == "$do \\-> stop = (stop)"
+
+
+@pytest.mark.parametrize(
+    ("text", "column"),
+    [("$do -> = (go)", 7), ("$do -> (a | b = (go)", 8), ("$do -> a {x y} = (go)", 10)],
+)
+def test_trouble_behind_the_arrow_has_its_place(text, column):
+    with pytest.raises(LanguageError) as raised:
+        read_template(text)
+    assert raised.value.position.column >= column
+
+
+def test_forms_of_lines_compose_and_sequences_are_flat():
+    made = forms(ALL)
+    assert made["walk to the <room>"] == '( go " <room> " )'
+    assert (
+        made["go to the <room> then put it on the <location>"]
+        == '( sequence ( go " <room> " ) ( take it ) ( put it " <location> " ) )'
+    )
+    assert len(made) == generation_size([ALL]) == 10
+
+
+def test_the_reader_leaves_a_sequence_in_a_sequence_alone():
+    text = "( sequence ( go ) ( sequence ( stop ) ( go ) ) )"
+    assert to_corpus(read_form(text)) == text
+
+
+def test_words_that_no_line_derives_have_no_form():
+    assert "go to the <room> and say hello" not in forms(ALL)
+
+
+def test_the_later_line_wins_and_the_conflict_is_reported():
+    later = category(BOTH, GOTO, THEN, BRING, '$do -> bring it to (me | us) = (hand it "me")')
+    generated = generate([later])
+    form = '( sequence ( go " <room> " ) ( hand it " me " ) )'
+    assert forms(later)["go to the <room> then bring it to me"] == form
+    assert len(generated.conflicts) == 2
+    chart = TemplateChart([later])
+    assert [each.form_text for each in chart.parse("go to the <room> then bring it to me")] == [
+        form,
+        '( sequence ( go " <room> " ) ( bring it ) )',
+    ]
+
+
+def test_wildcards_of_different_lines_are_different_and_those_of_one_line_the_same():
+    rules = "$Main = x\n$a = to {room 1} or {room 1}\n$b = from {room 1}"
+    one = category(
+        "$a $b = (sequence $a $b)",
+        "$a -> to {room 1} or {room 1} = (go {room 1})",
+        "$b -> from {room 1} to {beacon} = (leave {room 1} {beacon})",
+        grammar=Grammar(read_productions(rules).productions),
+    )
+    (derivation,) = TemplateExpander(one.grammar, one.lines).derivations(one.templates[0])
+    first, again, other, beacon = (each for each in derivation.symbols if hasattr(each, "id"))
+    assert first.identity == again.identity != other.identity
+    written = to_template(derivation.form)
+    assert written == (
+        f"(sequence (go {{room {first.id}}}) (leave {{room {other.id}}} {{beacon {beacon.id}}}))"
+    )
+
+
+def test_a_nonterminal_without_lines_is_its_text_also_beside_one_with_lines():
+    rules = "$Main = x\n$verb = bring | fetch\n$thing = the {kobject}"
+    one = category(
+        "$verb $thing = (do $thing $verb)",
+        "$thing -> the {kobject} = (is_a {kobject})",
+        grammar=Grammar(read_productions(rules).productions),
+    )
+    assert forms(one)["fetch the <object>"] == '( do ( is_a " <object> " ) " fetch " )'
+
+
+@pytest.mark.parametrize(
+    ("line", "others", "said"),
+    [
+        ("$nowhere -> x = (go)", (), "the grammar has no $nowhere"),
+        ("$do and $do = (sequence $do $do)", (BRING,), "more than once"),
+        ("$do now = (go ($do it))", (BRING,), "as a predicate"),
+        ("$goto $next = (go {name})", (), "{name}"),
+        ("bring it to me = (bring it)", (), "“it”"),
+    ],
+)
+def test_what_is_wrong_with_a_template_or_a_line_is_said(line, others, said):
+    lines = tuple(map(read_template, (*others, line)))
+    checker = template_checker(GRAMMAR, lines=tuple(each for each in lines if each.nonterminal))
+    assert any(said in problem.message for problem in checker.problems(lines[-1]))
+
+
+def test_a_line_that_nothing_reaches_and_two_forms_for_a_phrase_are_said():
+    odd = category("$goto = $goto", GOTO, BRING, "$goto -> walk to the {room} = (walk {room})")
+    said = [problem.message for problem in set_problems([odd], generate([odd]))]
+    assert any("no template takes the form of $do" in each for each in said)
+    assert any(each.startswith("1 phrase") for each in said)
+
+
+def test_lines_in_a_cycle_are_refused_with_their_place():
+    cyclic = category("$do = $do", "$do -> then $next = $next", "$next -> and $do = $do")
+    with pytest.raises(LanguageError) as raised:
+        generate([cyclic])
+    assert "$do" in raised.value.message and "$next" in raised.value.message
+
+
+def test_the_form_of_a_line_in_the_place_of_another_kind_is_a_misuse():
+    from annotations.language.predicates import infer_signatures
+
+    declared = infer_signatures(
+        [read_form("(find (λ$1:e (is_a $1 {kobject})))"), read_form("(go {room})")]
+    )
+    lines = (read_template(GOTO),)
+    checker = template_checker(GRAMMAR, declared, lines=lines)
+    (problem,) = checker.problems(read_template("$goto = (find $goto)"))
+    assert problem.position.column == len("$goto = (find ") + 1
+
+
+@pytest.mark.parametrize(
+    ("text", "loose"),
+    [
+        ("(put it {room})", ("it",)),
+        ("(sequence (find {kobject}) (put it {room}))", ("it",)),
+        ('(sequence (find "<object>") (put it))', ()),
+        ("(sequence (find (λ$1:e (person $1))) (follow them))", ()),
+        ("(sequence (find (λ$1:e (person $1))) (put it))", ("it",)),
+        ("(sequence (find (λ$1:e (is_a $1 {kobject}))) (put it) (follow them))", ()),
+        ('(follow them "<room>")', ("them",)),
+    ],
+)
+def test_a_reference_needs_something_described_before(text, loose):
+    assert loose_references(read_form(text)) == loose
+
+
+LINES = st.builds(
+    lambda template, name: read_template(f"${name} -> {print_template(template)}"),
+    small_templates(),
+    st.sampled_from(["A", "B", "C"]),
+)
+COMMANDS = st.lists(st.lists(st.sampled_from(TOKENS), max_size=4), max_size=10)
+
+
+@given(
+    small_grammars(),
+    st.lists(small_templates(), max_size=3),
+    st.lists(LINES, max_size=3),
+    st.booleans(),
+    COMMANDS,
+)
+def test_parsing_is_the_inverse_of_generating(grammar, templates, lines, whole, others):
+    if whole:
+        templates = [*templates, read_template("$A $B = (sequence $A $B)")]
+    one = TaskCategory("1", grammar, (*templates, *lines))
+    try:
+        assume(generation_size([one]) <= FEW)
+    except LanguageError:  # a cycle through lines
+        assume(False)
+    generated = {each.command: each for each in generate([one]).expansions}
+    chart = TemplateChart([one])
+    for command, expansion in generated.items():
+        kept = chart.parse(command)[0]
+        assert kept.form_text == expansion.form_text
+        assert kept.template_index == expansion.template_index
+    for command in map(" ".join, others):
+        assert bool(chart.parse(command)) == (command in generated)
+
+
+def steps(length, alternatives):
+    """The steps of parsing ``length`` words that each of so many nonterminals reads in many ways."""
+    names = [f"s{n}" for n in range(alternatives)]
+    words = "{void} | a | a a | a a a"
+    rules = "$Main = x\n" + "\n".join(f"${name} = {words}" for name in names)
+    grammar = Grammar(read_productions(rules).productions)
+    template = read_template(
+        " ".join(f"${n}" for n in names) + f" = (go {' '.join(f'${n}' for n in names)})"
+    )
+    budget = Budget()
+    TemplateChart([TaskCategory("1", grammar, (template,))]).parse(" ".join(["a"] * length), budget)
+    return budget.spent
+
+
+@pytest.mark.parametrize(("length", "alternatives"), [(6, 6), (10, 10)])
+def test_steps_grow_polynomially_with_length_and_grammar(length, alternatives):
+    """Doubling both multiplies the steps by at most 2⁵; readings themselves grow exponentially."""
+    assert steps(2 * length, 2 * alternatives) <= 32 * steps(length, alternatives)
