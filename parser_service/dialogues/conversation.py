@@ -153,7 +153,7 @@ def _begin(
         form = read_form(candidates[0].get("form", ""))
     except LanguageError:
         form = UNKNOWN
-    return machine.begin(form, heard, is_sure, before)
+    return machine.begin(form, heard, is_sure, before, candidates[0].get("values", ()))
 
 
 def _turn(who: str, text: str) -> dict[str, str]:

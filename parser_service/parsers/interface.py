@@ -52,7 +52,8 @@ class Candidate:
     ``origin`` names what gave the parser this form: the pairs it learned from (``TRAINING``), a step of
     ``candidates``, or what the parser documents; empty where it does not tell. ``parts`` are the
     numbers that the score is made of, by name. ``is_cut`` says that the utterance is longer than the parser
-    reads. None of them tells two answers apart.
+    reads. ``values`` are the entities of the class tokens of the form, in order, where the parser knows which
+    words it took for which (None for a token of which it does not). None of them tells two answers apart.
     """
 
     form: str
@@ -60,6 +61,7 @@ class Candidate:
     origin: str = field(default="", compare=False)
     parts: Mapping[str, float] = field(default_factory=dict, compare=False)
     is_cut: bool = field(default=False, compare=False)
+    values: tuple[str | None, ...] = field(default=(), compare=False)
 
 
 def refuse(ranked: Sequence[Candidate], score: float) -> list[Candidate]:

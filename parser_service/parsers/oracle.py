@@ -9,7 +9,7 @@ from typing import Self
 
 from annotations.language.errors import Refusal
 from annotations.language.grammar import Grammar, print_production, read_production
-from annotations.language.grounding import Anonymizer
+from annotations.language.grounding import UtteranceReader
 from annotations.language.ontology import Ontology, read_ontology, write_ontology
 from annotations.language.templates import (
     TaskCategory,
@@ -46,9 +46,10 @@ class OracleConfig:
 class GrammarOracle(Parser):
     """Returns the form of the template that derives the command (Walker et al. 2019, baselines).
 
-    It is right on every generated command by construction and has no answer for any other. A command
-    with entities is parsed once more with class tokens in their place. It learns nothing from pairs:
-    it consists of the annotated grammar and the ontology of ``Knowledge``, and saves a copy of both.
+    It is right on every generated command by construction and has no answer for what is no command. An
+    utterance is read as it is, then with its entities as class tokens, and then in every way that
+    ``UtteranceReader`` knows; the first of these that the grammar derives counts. It learns nothing from
+    pairs: it consists of the annotated grammar and the ontology of ``Knowledge``, and saves a copy of both.
     """
 
     name = "grammar-oracle"
@@ -67,7 +68,8 @@ class GrammarOracle(Parser):
         super().__init__(config, seed, knowledge)
         self._categories = tuple(self.knowledge.grammar or ())
         self._chart = TemplateChart(self._categories)
-        self._anonymizer = Anonymizer(self.knowledge.ontology or Ontology(()))
+        ontology = self.knowledge.ontology or Ontology(())
+        self._reader = UtteranceReader(ontology, self._chart.vocabulary)
 
     def fit(
         self,
@@ -86,20 +88,29 @@ class GrammarOracle(Parser):
     def predict(
         self, utterances: Sequence[str], beam_width: int = 1, check: Check = keep_going
     ) -> list[list[Candidate]]:
-        """Return the forms of all derivations, first the one that generation keeps; none outside the
-        grammar. All are equally good: each derives the very command."""
+        """Return the forms of the best derivations, first the one that generation keeps; none outside the
+        grammar.
+
+        The score is 0 for the very command, and less by what is read otherwise than it is written."""
         answers = []
         for utterance in utterances:
             check()
-            forms = self._forms(utterance) or self._forms(
-                self._anonymizer.anonymize(utterance).text
-            )
-            answers.append([Candidate(form, 0.0, GRAMMAR_FORM) for form in forms[:beam_width]])
+            answers.append(self._candidates(normalise_line(utterance))[:beam_width])
         return answers
 
-    def _forms(self, text: str) -> list[str]:
-        derivations = self._chart.parse(normalise_line(text.replace(",", " , ")))
-        return list(dict.fromkeys(derivation.form_text for derivation in derivations))
+    def _candidates(self, utterance: str) -> list[Candidate]:
+        for heard in self._reader.lattices(utterance):
+            found: dict[tuple[str, tuple[str | None, ...]], float] = {}
+            for each in self._chart.parse(heard.lattice):
+                values = heard.values(each.arcs)
+                key = each.form_text, values if any(values) else ()
+                found.setdefault(key, 0.0 - each.cost)
+            if found:
+                return [
+                    Candidate(form, score, GRAMMAR_FORM, values=values)
+                    for (form, values), score in found.items()
+                ]
+        return []
 
     def save(self, folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)

@@ -15,6 +15,7 @@ from annotations.language.grounding import (
     fill_all,
     resolve_slots,
     say_with_blank,
+    with_values,
 )
 from annotations.language.plans import doubts_about
 from parser_service.parsers.interface import Candidate
@@ -69,7 +70,7 @@ class AnswerWriter:
         head = {**about, **parse.as_json()}
         said = UtteranceMentions(heard, self.language.ontology)
         candidates = prefer_grounded(
-            candidates, heard, about.get("score_kind"), lambda form: self._slots(form, said)
+            candidates, heard, about.get("score_kind"), lambda each: self._slots(each, said)
         )
         answers = [self._write(each, said) for each in candidates]
         if candidates:
@@ -82,7 +83,7 @@ class AnswerWriter:
         form = form_of(candidate.form)
         if form is None:
             return as_json(ParsedCandidate(candidate.form, score_of(candidate)).as_json())
-        slots = self._slots(candidate.form, heard) or ()
+        slots = self._slots(candidate, heard) or ()
         written = self._fill(candidate, form, slots)
         return self._write_anew(candidate, form, slots) if written is None else written
 
@@ -90,12 +91,14 @@ class AnswerWriter:
         given, language = fill_all(form, slots), self.language
         return as_json(answer_with(candidate, given, language, language.lookup).as_json())
 
-    def _slots(self, text: str, heard: UtteranceMentions) -> Slots | None:
+    def _slots(self, candidate: Candidate, heard: UtteranceMentions) -> Slots | None:
         """Return the slots of a form with their entities; None for a text that is no form."""
-        if form_of(text) is None:
+        if form_of(candidate.form) is None:
             return None
-        slots = self._outlines.slots(text)
-        return resolve_slots(slots, heard, self.language.ontology, self.language.evidence)
+        slots = self._outlines.slots(candidate.form)
+        language = self.language
+        resolved = resolve_slots(slots, heard, language.ontology, language.evidence)
+        return with_values(resolved, candidate.values)
 
     def _fill(self, candidate: Candidate, form: Form, slots: Slots) -> str | None:
         """Return the outline with its entities; None where it would say something else."""
@@ -152,6 +155,7 @@ class AnswerWriter:
         doubts = [each.as_json() for each in doubts_about(slots)]
         return {
             "score": as_json(score_of(candidate)),
+            "values": as_json(list(candidate.values)),
             "open_slots": as_json(list(questions_of(given, self.language, sentence_of))),
             "remarks": as_json(remarks_on(given, self.language.ontology)),
             "is_executable": as_json(outline.is_executable and not doubts),

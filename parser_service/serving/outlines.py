@@ -127,7 +127,7 @@ class Outlines:
             return None
         asked = self.asked(form, paths) or ()
         answer, _ = self._make(form, paths, dict(zip(asked, classes, strict=True)))
-        own = {name: _await(name) for name in ("score", "open_slots", "remarks")}
+        own = {name: _await(name) for name in ("score", "open_slots", "remarks", "values")}
         plan = answer["plan"] | {name: _await(name) for name in ("is_executable", "problems")}
         text = as_json(answer | own | {"plan": plan})
         return Outline(text, answer["plan"]) if _is_sound(text, paths) else None

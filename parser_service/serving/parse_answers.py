@@ -47,7 +47,7 @@ class ParsedCandidate:
     """One candidate. ``grounded`` names the entities of the utterance, certain and likely ones, and
     ``remarks`` say what stays open; ``open_slots`` ask for it (``grounding.open_slots_as_json``). ``plan``
     is what a robot does (``plans.Plan.as_json``). Where the parser wrote no well-formed form there is
-    nothing but ``form`` and ``score``."""
+    nothing but ``form`` and ``score``. ``values`` are those of ``Candidate``."""
 
     form: str
     score: float
@@ -59,6 +59,7 @@ class ParsedCandidate:
     open_slots: tuple[dict[str, Any], ...] = ()
     remarks: tuple[str, ...] = ()
     plan: dict[str, Any] | None = None
+    values: tuple[str | None, ...] = ()
 
     def as_json(self) -> dict[str, Any]:
         """Return plain values, as REST answers them (docs/reference/parse-server.md)."""
@@ -72,6 +73,7 @@ class ParsedCandidate:
             "open_slots": list(self.open_slots),
             "remarks": list(self.remarks),
             "plan": self.plan,
+            "values": list(self.values),
         }
 
 
@@ -134,11 +136,9 @@ def read_answers(
 ) -> ParsedUtterance:
     """Return what a parser answered to ``text``, with the entities that were heard in its place."""
 
-    def slots_of(text: str) -> tuple[Slot, ...] | None:
-        form = form_of(text)
-        if form is None:
-            return None
-        return deanonymize(form, heard, language.ontology, language.evidence).slots
+    def slots_of(candidate: Candidate) -> tuple[Slot, ...] | None:
+        form = form_of(candidate.form)
+        return None if form is None else _given(candidate, form, heard, language).slots
 
     candidates = prefer_grounded(candidates, heard, score_kind, slots_of)
     answers = tuple(answer_of(each, heard, language) for each in candidates)
@@ -150,7 +150,7 @@ def prefer_grounded(
     candidates: Sequence[Candidate],
     heard: Anonymized,
     score_kind: str | None,
-    slots_of: Callable[[str], Sequence[Slot] | None],
+    slots_of: Callable[[Candidate], Sequence[Slot] | None],
 ) -> list[Candidate]:
     """Order candidates that are about equally good by how well the entities of the utterance fill them.
 
@@ -160,12 +160,12 @@ def prefer_grounded(
 
     Args:
         score_kind: that of the parser; where scores only order the candidates, equal ones are equally good.
-        slots_of: returns the slots of a form with their entities; None for a text that is no form.
+        slots_of: returns the slots of a candidate with their entities; None for a text that is no form.
     """
     ordered: list[Candidate] = []
     for group in _about_equal(candidates, score_kind):
         if len(group) > 1:
-            group.sort(key=lambda each: _misfit(slots_of(each.form), heard))
+            group.sort(key=lambda each: _misfit(slots_of(each), heard))
         ordered += group
     return ordered
 
@@ -215,8 +215,14 @@ def answer_of(candidate: Candidate, heard: Anonymized, language: WorldLanguage) 
     form = form_of(candidate.form)
     if form is None:
         return ParsedCandidate(candidate.form, score_of(candidate))
-    given = deanonymize(form, heard, language.ontology, language.evidence)
+    given = _given(candidate, form, heard, language)
     return answer_with(candidate, given, language, language.lookup)
+
+
+def _given(
+    candidate: Candidate, form: Form, heard: Anonymized, language: WorldLanguage
+) -> Deanonymized:
+    return deanonymize(form, heard, language.ontology, language.evidence, candidate.values)
 
 
 def answer_with(
@@ -242,6 +248,7 @@ def answer_with(
         open_slots=tuple(questions_of(given, language)),
         remarks=remarks_on(given, language.ontology),
         plan=plan.as_json(),
+        values=candidate.values,
     )
 
 

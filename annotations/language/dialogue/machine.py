@@ -8,7 +8,7 @@ closer to an end: it fills a slot, uses up patience or an attempt, or moves to a
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from enum import StrEnum
 from typing import Any
@@ -149,6 +149,7 @@ class DialogueManager:
         heard: Anonymized,
         is_sure: bool = True,
         before: DialogueState | None = None,
+        values: Sequence[str | None] = (),
     ) -> DialogueState:
         """Return the first state for an utterance and the form that a parser gave for it.
 
@@ -157,12 +158,13 @@ class DialogueManager:
             heard: the utterance.
             is_sure: whether the parser is; if not, the form is checked first.
             before: the state that was REPHRASING, if this utterance is its answer.
+            values: the entities of the class tokens of the form that the parser says itself (``deanonymize``).
         """
         attempts, offers = (before.attempts, before.offers) if before else (0, ())
         if isinstance(form, Unknown):
             asked = DialogueState(Phase.REPHRASING, attempts=attempts, offers=offers)
             return _rephrase(asked, "I do not understand that.")
-        given = deanonymize(form, heard, self.ontology, self.evidence)
+        given = deanonymize(form, heard, self.ontology, self.evidence, values)
         state = DialogueState(
             Phase.CHECKING, form, given.form, given.slots, attempts=attempts, offers=offers
         )

@@ -130,6 +130,11 @@ GOING_WORDS = frozenset(_words.words("going"))
 POLITE_OPENINGS = _words.words("polite_openings")
 NO_COMMAND_WORDS = frozenset(_words.words("no_command"))
 
+_courtesy = WordFile("courtesy")
+COURTESY_OPENINGS = _courtesy.words("openings")
+COURTESY_CLOSINGS = _courtesy.words("closings")
+COURTESY_ANYWHERE = _courtesy.words("anywhere")
+
 _nouns = WordFile("nouns")
 NUMBERS = _nouns.words("numbers")
 PERSON_WORDS = frozenset(_nouns.words("persons"))

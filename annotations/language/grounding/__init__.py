@@ -13,6 +13,7 @@ from annotations.language.grounding.deanonymizer import (
     ground_like,
     ground_text,
     resolve_slots,
+    with_values,
 )
 from annotations.language.grounding.grounding import Grounded, ground
 from annotations.language.grounding.questions import (
@@ -24,6 +25,7 @@ from annotations.language.grounding.questions import (
 )
 from annotations.language.grounding.role_evidence import Evidence
 from annotations.language.grounding.roles import SlotPath
+from annotations.language.grounding.utterance_lattice import HeardLattice, UtteranceReader
 from annotations.language.grounding.utterance_mentions import UtteranceMentions
 
 __all__ = [
@@ -34,10 +36,12 @@ __all__ = [
     "Evidence",
     "FormSlots",
     "Grounded",
+    "HeardLattice",
     "Slot",
     "SlotPath",
     "Span",
     "UtteranceMentions",
+    "UtteranceReader",
     "choices_of",
     "deanonymize",
     "fill_all",
@@ -50,4 +54,5 @@ __all__ = [
     "question_for",
     "resolve_slots",
     "say_with_blank",
+    "with_values",
 ]

@@ -18,7 +18,7 @@ _INFLECTED = ("object", "category", "location", "room")
 QUESTION_WORD = "question"
 
 
-class _Likeness(IntEnum):
+class Likeness(IntEnum):
     """How a spelling relates to an entity; if several fit, the closest wins."""
 
     EXACT = 0
@@ -58,10 +58,10 @@ class Anonymized:
 
 
 @dataclass(frozen=True, slots=True)
-class _Reading:
+class Reading:
     """One way to understand some words."""
 
-    likeness: _Likeness
+    likeness: Likeness
     entity_class: str
     value: str
     entity: Entity
@@ -86,12 +86,12 @@ class Anonymizer:
 
     def __init__(self, ontology: Ontology, numbered: bool = False) -> None:
         self._numbered = numbered
-        readings: defaultdict[tuple[str, ...], list[_Reading]] = defaultdict(list)
+        readings: defaultdict[tuple[str, ...], list[Reading]] = defaultdict(list)
         for entity in ontology.entities:
-            for words, reading in _readings(entity):
+            for words, reading in readings_of(entity):
                 if key := tuple(_TOKEN.findall(words.casefold())):
                     readings[key].append(reading)
-        self._readings: dict[tuple[str, ...], tuple[_Reading, ...]] = {}
+        self._readings: dict[tuple[str, ...], tuple[Reading, ...]] = {}
         for key, options in readings.items():
             closest = min(each.rank for each in options)
             likely = (each for each in options if each.rank == closest)
@@ -117,7 +117,7 @@ class Anonymizer:
             end = stop
         return Anonymized(text, "".join((*pieces, text[end:])), tuple(spans))
 
-    def _find_matches(self, text: str) -> Iterator[tuple[int, int, tuple[_Reading, ...]]]:
+    def _find_matches(self, text: str) -> Iterator[tuple[int, int, tuple[Reading, ...]]]:
         """Yield (start, end, readings) for each match."""
         tokens = list(_TOKEN.finditer(text))
         words = [token[0].casefold() for token in tokens]
@@ -133,22 +133,22 @@ class Anonymizer:
             place += 1
 
 
-def _readings(entity: Entity) -> Iterator[tuple[str, _Reading]]:
+def readings_of(entity: Entity) -> Iterator[tuple[str, Reading]]:
     """Yield every spelling of an entity with its reading."""
     entity_class, text = entity.entity_class, entity.text
-    exact = _Reading(_Likeness.EXACT, entity_class, text, entity)
+    exact = Reading(Likeness.EXACT, entity_class, text, entity)
     yield text, exact
     if entity_class == "question":
-        yield QUESTION_WORD, _Reading(_Likeness.EXACT, entity_class, QUESTION_WORD, entity)
+        yield QUESTION_WORD, Reading(Likeness.EXACT, entity_class, QUESTION_WORD, entity)
     for alias in entity.aliases:
-        yield alias, _Reading(_Likeness.ALIAS, entity_class, text, entity)
+        yield alias, Reading(Likeness.ALIAS, entity_class, text, entity)
     singular = entity.attribute("singular") if entity_class == "category" else None
     if singular and singular != text:
-        yield singular, _Reading(_Likeness.EXACT, "object", singular, entity)
+        yield singular, Reading(Likeness.EXACT, "object", singular, entity)
         return
     for noun in (text, *entity.aliases) if entity_class in _INFLECTED else ():
         for spelling in spellings(noun):
-            yield spelling, _Reading(_Likeness.INFLECTED, entity_class, text, entity)
+            yield spelling, Reading(Likeness.INFLECTED, entity_class, text, entity)
 
 
 _CLASS_ORDER = {name: place for place, name in enumerate(ENTITY_CLASSES)}

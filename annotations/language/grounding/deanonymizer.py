@@ -73,7 +73,11 @@ class Deanonymized:
 
 
 def deanonymize(
-    form: Form, anonymized: Anonymized, ontology: Ontology, evidence: Evidence | None = None
+    form: Form,
+    anonymized: Anonymized,
+    ontology: Ontology,
+    evidence: Evidence | None = None,
+    values: Sequence[str | None] = (),
 ) -> Deanonymized:
     """Put the entities of an utterance back into the form that a parser gave for it.
 
@@ -82,10 +86,24 @@ def deanonymize(
     likely assignment by ``evidence`` (of English alone if there is none). A slot stays open, with a likely
     value, if the evidence does not decide which value it gets, or if the utterance joins several by "or"
     and the grammar does not have this form with an "or".
+
+    ``values`` are the entities of the class tokens, in order, where the parser itself says them: these are certain.
     """
     known = evidence or default_evidence()
     heard = UtteranceMentions(anonymized, ontology)
-    return fill_all(form, resolve_slots(FormSlots.of(form), heard, ontology, known))
+    slots = resolve_slots(FormSlots.of(form), heard, ontology, known)
+    return fill_all(form, with_values(slots, values))
+
+
+def with_values(slots: tuple[Slot, ...], values: Sequence[str | None]) -> tuple[Slot, ...]:
+    """Return the slots with the entities that a parser says for the class tokens of its form, in order."""
+    said = iter(values)
+    return tuple(
+        replace(slot, candidates=(value,), is_named=True, value=value, likely=None, is_choice=False)
+        if slot.entity_class and (value := next(said, None)) is not None
+        else slot
+        for slot in slots
+    )
 
 
 def fill_all(form: Form, slots: tuple[Slot, ...]) -> Deanonymized:

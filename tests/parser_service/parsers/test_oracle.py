@@ -59,9 +59,75 @@ def test_a_comma_may_stand_at_its_word(oracle):
         assert forms(oracle, command) == ['( go " <room> " )']
 
 
-@pytest.mark.parametrize("utterance", ["", "find", "find the cup", "please find the <object>"])
+@pytest.mark.parametrize("utterance", ["", "find", "find the cup", "find the <object> please not"])
 def test_outside_the_grammar_there_is_no_answer(oracle, utterance):
     assert forms(oracle, utterance, beam_width=5) == []
+
+
+@pytest.mark.parametrize(
+    "utterance",
+    [
+        "Find the tin of soup.",
+        "please find the Tin-of-Soup",
+        "Hey robot, could you please find the tin of soups? Thanks!",
+        "find the tín of soup please",
+    ],
+)
+def test_words_are_read_as_people_write_them(oracle, utterance):
+    (best, *_) = oracle.predict([utterance], 5)[0]
+    assert (best.form, best.values) == ('( find " <object> " )', ("tin of soup",))
+
+
+def test_what_is_read_as_it_is_written_scores_better(oracle):
+    scores = [
+        oracle.predict([each])[0][0].score
+        for each in (
+            "find the tin of soup",
+            "find the tin of soup.",
+            "please find the tin of soup.",
+        )
+    ]
+    assert scores == sorted(scores, reverse=True) and scores[0] == 0
+
+
+def test_overlapping_names_are_read_as_the_grammar_has_them():
+    grammar = Grammar(
+        read_productions(
+            "$Main = find the {kobject} | find the person in the {gesture} {kobject} at the {beacon 1} or {beacon 2}"
+        ).productions
+    )
+    templates = map(
+        read_template,
+        (
+            "find the {kobject} = (find {kobject})",
+            "find the person in the {gesture} {kobject} at the {beacon 1} or {beacon 2}"
+            " = (find {beacon 2} {beacon 1} {kobject} {gesture})",
+        ),
+    )
+    things = Ontology(
+        (
+            Entity("object", "orange"),
+            Entity("object", "orange coat"),
+            Entity("object", "coat"),
+            Entity("gesture", "orange"),
+            Entity("location", "bed"),
+            Entity("location", "bed side table"),
+        )
+    )
+    oracle = GrammarOracle(
+        knowledge=Knowledge(
+            ontology=things, grammar=(TaskCategory("1", grammar, tuple(templates)),)
+        )
+    )
+    values = [
+        oracle.predict([each])[0][0].values
+        for each in (
+            "Find the orange",
+            "find the orange coat",
+            "Find the person in the orange coat at the bed side table or bed",
+        )
+    ]
+    assert values == [("orange",), ("orange coat",), ("bed", "bed side table", "coat", "orange")]
 
 
 def test_of_several_derivations_generation_and_the_oracle_keep_the_same(oracle):

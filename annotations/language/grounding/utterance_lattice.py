@@ -1,0 +1,304 @@
+"""Prepare an utterance for a grammar: the lattices of what it can be read as, the strictest one first.
+
+1. The words as they are: a command of the grammar.
+2. The longest names of entities, left to right, as class tokens: what ``Anonymizer`` makes of it.
+3. Everything: all names of entities, also where they overlap; words without their case, accents, apostrophes
+   and hyphens; "a" for "an", a plural for a singular; and paths that pass over punctuation and courtesy.
+
+What the third one reads otherwise than it is written costs something, so that the closest reading is the best.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections import defaultdict
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from annotations.language.english import (
+    COURTESY_ANYWHERE,
+    COURTESY_CLOSINGS,
+    COURTESY_OPENINGS,
+    spellings,
+)
+from annotations.language.grammar import Arc, Lattice
+from annotations.language.grounding.anonymizer import (
+    Anonymized,
+    Anonymizer,
+    Likeness,
+    Reading,
+    Span,
+    readings_of,
+)
+from annotations.language.ontology import Ontology
+
+# A word with the apostrophes inside it, a class token, or a sign.
+_TOKEN = re.compile(r"<\w+>|\w+(?:['’]\w+)*|[^\w\s]")
+_SIGNS_INSIDE = re.compile(r"[^\w]|_")
+_CLASS_TOKEN = re.compile(r"<([^\W\d]\w*?)\d*>")
+_HYPHENS = frozenset("-‐‑–")
+_ARTICLES = {"a": "an", "an": "a"}
+# Costs of reading something otherwise than it is written.
+FOLDED, INFLECTED, SKIPPED = 1, 3, 2
+LONGEST_NAME = 8  # words
+
+
+@dataclass(frozen=True, slots=True)
+class HeardLattice:
+    """A lattice, and the entities for which its numbered arcs stand."""
+
+    lattice: Lattice
+    spans: tuple[Span, ...] = ()
+
+    def values(self, arcs: Sequence[int | None]) -> tuple[str | None, ...]:
+        """Return the entity of each arc, None for an arc that stands for none."""
+        return tuple(None if number is None else self.spans[number].value for number in arcs)
+
+
+class UtteranceReader:
+    """Makes the lattices of utterances.
+
+    Args:
+        ontology: the entities that an utterance can name.
+        vocabulary: the words and class tokens of the grammar; no other word gets an arc of the third lattice.
+    """
+
+    def __init__(self, ontology: Ontology, vocabulary: Collection[str]) -> None:
+        self.anonymizer = Anonymizer(ontology)
+        self._ontology = ontology
+        self._vocabulary = frozenset(vocabulary)
+
+    def lattices(self, utterance: str) -> Iterator[HeardLattice]:
+        """Yield the lattices of an utterance that is normalised; stop at the first one that the grammar derives."""
+        yield HeardLattice(Lattice.of_words(_words(utterance)))
+        heard = self.anonymizer.anonymize(utterance)
+        if heard.spans:
+            yield _longest(heard)
+        yield _Everything(self, utterance).heard()
+
+    @cached_property
+    def names(self) -> dict[tuple[str, ...], tuple[Reading, ...]]:
+        """Folded words → the entities that they can name: for each class, those that are called most like it."""
+        found: defaultdict[tuple[str, ...], list[Reading]] = defaultdict(list)
+        for entity in self._ontology.entities:
+            for words, reading in readings_of(entity):
+                if key := tuple(fold(each) for each in _spoken(words)):
+                    found[key].append(reading)
+        return {key: _closest(readings) for key, readings in found.items()}
+
+    @cached_property
+    def words(self) -> dict[str, tuple[str, ...]]:
+        """Folded word → the words of the grammar that it may be."""
+        found: defaultdict[str, list[str]] = defaultdict(list)
+        for word in sorted(self._vocabulary):
+            found[fold(word)].append(word)
+        return {folded: tuple(each) for folded, each in found.items()}
+
+    def has(self, word: str) -> bool:
+        """Whether the grammar has a word or a class token."""
+        return word in self._vocabulary
+
+
+def fold(word: str) -> str:
+    """Return a word without its case, accents, and signs such as apostrophes and hyphens; a lone sign stays."""
+    parts = unicodedata.normalize("NFKD", word.casefold())
+    letters = "".join(each for each in parts if not unicodedata.combining(each))
+    return _SIGNS_INSIDE.sub("", letters) or word
+
+
+def _words(text: str) -> list[str]:
+    return text.replace(",", " , ").split()
+
+
+def _spoken(text: str) -> list[str]:
+    """Return the words of a name, without signs between them."""
+    return [token for token in _TOKEN.findall(text) if token[0].isalnum()]
+
+
+def _closest(readings: Sequence[Reading]) -> tuple[Reading, ...]:
+    best: dict[str, list[Reading]] = {}
+    for reading in sorted(readings, key=lambda each: each.likeness):
+        rivals = best.setdefault(reading.entity_class, [])
+        if not rivals or rivals[0].likeness == reading.likeness:
+            rivals.append(reading)
+    return tuple(dict.fromkeys(reading for each in best.values() for reading in each))
+
+
+def _longest(heard: Anonymized) -> HeardLattice:
+    """Return the one path that has the longest names as class tokens."""
+    arcs: list[Arc] = []
+    end = 0
+
+    def add(words: Sequence[str], number: int = -1) -> None:
+        for word in words:
+            arcs.append(Arc(len(arcs), len(arcs) + 1, word, 0, number))
+
+    for number, span in enumerate(heard.spans):
+        # A token that is joined to what stands beside it is no word of its own.
+        add(_words(heard.original[end : span.start]))
+        add([span.token], number)
+        end = span.end
+    add(_words(heard.original[end:]))
+    if [arc.word for arc in arcs] != _words(heard.text):
+        return HeardLattice(Lattice.of_words(_words(heard.text)))
+    return HeardLattice(Lattice(arcs, len(arcs)), heard.spans)
+
+
+class _Everything:
+    """Collects the arcs of the third lattice. Places are between tokens."""
+
+    def __init__(self, reader: UtteranceReader, utterance: str) -> None:
+        self.reader = reader
+        self.utterance = utterance
+        self.tokens = list(_TOKEN.finditer(utterance))
+        self.texts = [token[0] for token in self.tokens]
+        self.folded = [fold(text) for text in self.texts]
+        self.spans: list[Span] = []
+
+    def heard(self) -> HeardLattice:
+        arcs = [*self._word_arcs(), *self._entity_arcs()]
+        return HeardLattice(
+            Lattice(_skipping(arcs, self._skipped(), len(self.tokens)), len(self.tokens)),
+            tuple(self.spans),
+        )
+
+    def _is_word(self, place: int) -> bool:
+        return self.texts[place][0].isalnum()
+
+    def _word_arcs(self) -> Iterator[Arc]:
+        for place, (text, folded) in enumerate(zip(self.texts, self.folded, strict=True)):
+            costs: dict[str, int] = {}
+            if match := _CLASS_TOKEN.fullmatch(text):
+                costs[f"<{match[1]}>"] = 0
+            if self.reader.has(text):
+                costs[text] = 0
+            # A capital at the beginning of a sentence is no other word.
+            for word in self.reader.words.get(folded, ()):
+                costs.setdefault(word, 0 if word == text.casefold() else FOLDED)
+            if folded in _ARTICLES:
+                for word in self.reader.words.get(_ARTICLES[folded], ()):
+                    costs.setdefault(word, FOLDED)
+            if not costs:
+                for spelling in spellings(folded):
+                    for word in self.reader.words.get(spelling, ()):
+                        costs.setdefault(word, INFLECTED)
+            for word, cost in costs.items():
+                if self.reader.has(word):
+                    yield Arc(place, place + 1, word, cost)
+            yield from self._hyphenated(place)
+
+    def _hyphenated(self, place: int) -> Iterator[Arc]:
+        """Yield the words of the grammar with a hyphen that several tokens are: "t-shirt", "t shirt"."""
+        joined, end = "", place
+        while end < len(self.texts) and end - place < 5:
+            if self._is_word(end):
+                joined += self.folded[end]
+            elif self.texts[end] not in _HYPHENS:
+                return
+            end += 1
+            if end - place > 1:
+                for word in self.reader.words.get(joined, ()):
+                    if not _HYPHENS.isdisjoint(word):
+                        yield Arc(place, end, word, FOLDED)
+
+    def _entity_arcs(self) -> Iterator[Arc]:
+        for start in range(len(self.tokens)):
+            if not self._is_word(start):
+                continue
+            key: list[str] = []
+            for end in range(start, len(self.tokens)):
+                if self._is_word(end):
+                    key.append(self.folded[end])
+                    yield from self._named(tuple(key), start, end + 1)
+                elif self.texts[end] not in _HYPHENS:
+                    break
+                if len(key) == LONGEST_NAME:
+                    break
+
+    def _named(self, key: tuple[str, ...], start: int, end: int) -> Iterator[Arc]:
+        by_class: defaultdict[str, list[Reading]] = defaultdict(list)
+        for reading in self.reader.names.get(key, ()):
+            by_class[reading.entity_class].append(reading)
+        first, last = self.tokens[start].start(), self.tokens[end - 1].end()
+        for entity_class, readings in by_class.items():
+            token = f"<{entity_class}>"
+            if not self.reader.has(token):
+                continue
+            for value in dict.fromkeys(each.value for each in readings):
+                same = [each for each in readings if each.value == value]
+                cost = FOLDED if same[0].likeness is Likeness.INFLECTED else 0
+                others = tuple(each.entity for each in same[1:])
+                number = len(self.spans)
+                self.spans.append(
+                    Span(first, last, token, entity_class, same[0].entity, value, others)
+                )
+                yield Arc(start, end, token, cost, number)
+
+    def _skipped(self) -> list[tuple[int, int]]:
+        """Return the ranges of tokens that may be passed over, as first and next place."""
+        skipped = [
+            (place, place + 1)
+            for place, text in enumerate(self.texts)
+            if not self._is_word(place) and not text.startswith("<")
+        ]
+        for phrase in COURTESY_ANYWHERE:
+            skipped += self._places_of(phrase, range(len(self.texts)))
+        # Openings and closings follow one another from the two ends.
+        skipped += self._chain(COURTESY_OPENINGS)
+        skipped += self._chain_back(COURTESY_CLOSINGS)
+        return sorted(set(skipped))
+
+    def _places_of(self, phrase: str, starts: Collection[int]) -> Iterator[tuple[int, int]]:
+        words = [fold(word) for word in phrase.split()]
+        for start in starts:
+            if self.folded[start : start + len(words)] == words:
+                yield start, start + len(words)
+
+    def _chain(self, phrases: Sequence[str]) -> Iterator[tuple[int, int]]:
+        waiting, seen = [0], {0}
+        while waiting:
+            place = waiting.pop()
+            ranges = [each for phrase in phrases for each in self._places_of(phrase, (place,))]
+            yield from ranges
+            after = [end for _, end in ranges]
+            if place < len(self.texts) and not self._is_word(place):
+                after.append(place + 1)
+            waiting += [end for end in after if end not in seen and end < len(self.texts)]
+            seen.update(after)
+
+    def _chain_back(self, phrases: Sequence[str]) -> Iterator[tuple[int, int]]:
+        waiting, seen = [len(self.texts)], {len(self.texts)}
+        while waiting:
+            end = waiting.pop()
+            starts = []
+            for phrase in phrases:
+                start = end - len(phrase.split())
+                if start >= 0 and [*self._places_of(phrase, (start,))]:
+                    yield start, end
+                    starts.append(start)
+            if end and not self._is_word(end - 1):
+                starts.append(end - 1)
+            waiting += [start for start in starts if start not in seen and start > 0]
+            seen.update(starts)
+
+
+def _skipping(arcs: Sequence[Arc], skipped: Sequence[tuple[int, int]], end: int) -> Iterator[Arc]:
+    """Yield the arcs, and for each the arcs that pass over what may be skipped before it, or after it at the end.
+
+    A range counts by its signs and words, so that passing over less is cheaper.
+    """
+    before: dict[int, dict[int, int]] = {place: {place: 0} for place in range(end + 1)}
+    for start, stop in sorted(skipped, key=lambda each: each[1]):
+        for first, cost in list(before[start].items()):
+            total = cost + SKIPPED * (stop - start)
+            if total < before[stop].get(first, total + 1):
+                before[stop][first] = total
+    for arc in arcs:
+        endings = {arc.end: 0}
+        if end != arc.end and arc.end in before[end]:
+            endings[end] = before[end][arc.end]
+        for first, cost in before[arc.start].items():
+            for last, more in endings.items():
+                yield Arc(first, last, arc.word, arc.cost + cost + more, arc.number)
