@@ -23,7 +23,7 @@ from annotations.language.forms import (
     children,
     diff,
     diff_unordered,
-    read_form,
+    read_template_form,
     to_corpus,
     to_reading,
     to_template,
@@ -58,7 +58,7 @@ class Piece:
 def form_of(text: str) -> Form | None:
     """Read ``text`` (any notation) as a form; None where it is not one."""
     try:
-        return read_form(text)
+        return read_template_form(text)
     except LanguageError:
         return None
 

@@ -32,6 +32,7 @@ from annotations.language.symbols import (
     Wildcard,
     places_in_form,
     places_in_pattern,
+    split_head,
 )
 
 _NONTERMINAL = re.compile(r"[^\W\d]\w*")
@@ -91,7 +92,9 @@ def rename_nonterminal_in_pattern(text: str, old: str, new: str) -> str:
     try:
         reader.whole_line()
     except LanguageError:
-        return _rename_places(text, places_in_pattern(text), old, new)
+        name, start = split_head(text)
+        head = text[:start].replace(f"${old}", f"${new}") if name == old else text[:start]
+        return head + _rename_places(text[start:], places_in_pattern(text[start:]), old, new)
     starts = sorted(place.column - 1 for name, place in reader.references if name == old)
     return replace_parts(text, ((start, start + 1 + len(old)) for start in starts), f"${new}")
 

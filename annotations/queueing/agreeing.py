@@ -14,7 +14,7 @@ from annotations.language.forms import (
     Constant,
     FormDistances,
     head_predicate,
-    read_form,
+    read_template_form,
 )
 from annotations.models import Assignment, WorkItem, World
 from annotations.models.corpus import Verdict
@@ -91,7 +91,7 @@ def categories_of(world: World, forms: set[str]) -> dict[str, str]:
 
 def head_of(answer: str) -> str:
     """Return the outermost predicate of a form; the verdict itself where it is none."""
-    return answer if answer in Verdict.values else head_predicate(read_form(answer))
+    return answer if answer in Verdict.values else head_predicate(read_template_form(answer))
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +136,9 @@ def form_distances(known: FormDistances) -> Distances:
 
     def distances(answers: Sequence[Hashable]) -> list[list[float]]:
         verdicts = {each: Constant(each) for each in Verdict.values} | {Verdict.UNKNOWN: UNKNOWN}
-        return known.matrix([verdicts.get(each) or read_form(each) for each in map(str, answers)])
+        return known.matrix(
+            [verdicts.get(each) or read_template_form(each) for each in map(str, answers)]
+        )
 
     return distances
 

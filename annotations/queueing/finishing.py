@@ -9,7 +9,7 @@ from django.db.models import F, Q
 from django.utils import timezone
 
 from annotations.labelling.label_answers import NoLongerYours
-from annotations.language.forms import equivalent, read_form
+from annotations.language.forms import equivalent, read_template_form
 from annotations.models import Assignment, Label, WorkItem
 from annotations.models.corpus import Verdict
 from annotations.models.queueing import (
@@ -145,7 +145,7 @@ def agree(first: Label, second: Label) -> bool:
         return False
     if first.form == second.form or first.verdict != Verdict.FORM:
         return True
-    return equivalent(read_form(first.form), read_form(second.form))
+    return equivalent(read_template_form(first.form), read_template_form(second.form))
 
 
 def _follow(item: WorkItem, kind: WorkKind, reason: str) -> WorkItem:

@@ -11,7 +11,7 @@ from django.core.exceptions import ValidationError
 from django.db import models
 
 from annotations.language.errors import LanguageError, Position
-from annotations.language.forms import read_form
+from annotations.language.forms import read_template_form
 from annotations.language.predicates import ArgumentKind
 from annotations.rows.stored_problems import is_stored_problems
 from annotations.world_archive.archive_tables import ArchiveTable
@@ -133,7 +133,7 @@ def _check_file_name(name: str, place: Position) -> None:
 @lru_cache(maxsize=50_000)
 def _is_form(text: str) -> bool:
     try:
-        read_form(text)
+        read_template_form(text)
     except LanguageError:
         return False
     return True

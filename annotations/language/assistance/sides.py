@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from annotations.language.errors import LanguageError, Position
-from annotations.language.forms import read_form, to_template
+from annotations.language.forms import read_template_form, to_template
 from annotations.language.grammar import Grammar
 from annotations.language.symbols import (
     Nonterminal,
@@ -15,21 +15,24 @@ from annotations.language.symbols import (
     places_in_pattern,
     print_sequence,
     slot_key,
+    split_head,
 )
 
 
 def format_pattern(text: str) -> str:
     """Return the pattern with single spaces; a text that cannot be read as it is."""
+    name, start = split_head(text)
     try:
-        return print_sequence(SymbolReader(text.strip(), Position()).whole_line())
+        pattern = print_sequence(SymbolReader(text[start:].strip(), Position()).whole_line())
     except LanguageError:
         return text
+    return f"${name} -> {pattern}" if name else pattern
 
 
 def format_form(text: str) -> str:
     """Return the form in template notation on one line; a text that cannot be read as it is."""
     try:
-        return to_template(read_form(text))
+        return to_template(read_template_form(text))
     except LanguageError:
         return text
 

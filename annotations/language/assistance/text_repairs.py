@@ -137,7 +137,7 @@ def unheard(template: SemanticTemplate, grammar: Grammar) -> Iterator[RepairCand
     }
     for match in re.finditer(r"\{[^}]*+(?:\}|\Z)|\$\w+|[^\s(){}|,$]+", template.pattern_text):
         word = match.group()
-        if word[0] in "{$" or word in heard:
+        if word[0] in "{$" or word in heard or word == "->":
             continue
         for name, rank in nearest(word, heard, 3):
             edit = TextEdit(PATTERN, match.start(), match.end(), name)

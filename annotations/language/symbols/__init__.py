@@ -11,6 +11,7 @@ from annotations.language.symbols.slot_places import (
     places_in_form,
     places_in_pattern,
     slot_key,
+    split_head,
 )
 from annotations.language.symbols.symbols import (
     ENTITY_CLASSES,
@@ -52,5 +53,6 @@ __all__ = [
     "print_wildcard",
     "read_wildcard",
     "slot_key",
+    "split_head",
     "walk",
 ]

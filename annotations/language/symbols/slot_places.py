@@ -13,6 +13,8 @@ from annotations.language.symbols.symbols import Nonterminal, Wildcard
 # A dollar sign before a digit is a variable of a form, not a nonterminal.
 _SLOT = r"(?P<nonterminal>\$[^\W\d]\w*)|(?P<wildcard>\{(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*\})"
 _IN_PATTERN = re.compile(rf"\\.|{_SLOT}", re.DOTALL)
+# The nonterminal that a line ``$name -> pattern`` is for.
+_HEAD = re.compile(r"\s*\$(?P<name>[^\W\d]\w*)\s*->")
 _IN_FORM = re.compile(rf'"[^"]*"|{_SLOT}')
 
 
@@ -39,9 +41,21 @@ def slot_key(slot: Nonterminal | Wildcard) -> object:
     return None if slot.kind == "void" else slot.identity
 
 
+def split_head(text: str) -> tuple[str, int]:
+    """Return the nonterminal that a left side is a line for, and where its pattern begins.
+
+    ``$name -> pattern`` gives ``name``; a pattern of commands gives nothing, and 0.
+    """
+    head = _HEAD.match(text)
+    return (head["name"], head.end()) if head else ("", 0)
+
+
 def places_in_pattern(text: str) -> tuple[SlotPlace, ...]:
-    """Return the slots of a pattern in order; what is in the note of a wildcard does not count."""
-    return tuple(_places(text, _IN_PATTERN))
+    """Return the slots of a pattern in order; what is in the note of a wildcard does not count.
+
+    What stands before the arrow of a line is no slot of its pattern.
+    """
+    return tuple(_places(text, _IN_PATTERN, split_head(text)[1]))
 
 
 def places_in_form(text: str) -> tuple[SlotPlace, ...]:
@@ -49,8 +63,8 @@ def places_in_form(text: str) -> tuple[SlotPlace, ...]:
     return tuple(_places(text, _IN_FORM))
 
 
-def _places(text: str, pattern: re.Pattern[str]) -> Iterator[SlotPlace]:
-    for match in pattern.finditer(text):
+def _places(text: str, pattern: re.Pattern[str], begin: int = 0) -> Iterator[SlotPlace]:
+    for match in pattern.finditer(text, begin):
         if match["nonterminal"]:
             yield SlotPlace(Nonterminal(match["nonterminal"][1:]), match.start(), match.end())
         elif match["wildcard"]:

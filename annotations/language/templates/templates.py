@@ -32,11 +32,11 @@ from annotations.language.symbols import (
     Symbols,
     Wildcard,
     print_sequence,
+    split_head,
 )
 
 # An escaped character, a brace, an equals sign, or the comment that ends the line.
 _MARK = re.compile(r"\\.|[{}=]|#.*")
-_HEAD = re.compile(r"\s*\$(?P<name>[^\W\d]\w*)\s*->")
 _EXAMPLE = "a template is pattern = form, as in: fetch the {object} = (bring {object})"
 _LINE_EXAMPLE = "a line for a nonterminal is $name -> pattern = form"
 
@@ -209,10 +209,8 @@ def _read_left(text: str, place: Position) -> _Left:
         raise LanguageError("the template has no pattern", place, _EXAMPLE)
     place, text = _behind_spaces(text, place), text.strip()
     require_length(text, "pattern", MAX_PATTERN, place)
-    start = pattern_start(text)
-    name = ""
-    if start:
-        name = text[1:].split("->", 1)[0].strip()
+    name, start = split_head(text)
+    if name:
         require_name(name, "nonterminal", MAX_NONTERMINAL, place)
         if not text[start:].strip():
             raise LanguageError("nothing follows the arrow", place.shifted(start), _LINE_EXAMPLE)
@@ -221,12 +219,6 @@ def _read_left(text: str, place: Position) -> _Left:
     except LanguageError as error:
         inside = error.position.inside(place.shifted(start))
         raise LanguageError(error.message, inside, error.hint) from None
-
-
-def pattern_start(text: str) -> int:
-    """Return where the pattern begins in a left side: behind the arrow of ``$name ->``, else at 0."""
-    head = _HEAD.match(text)
-    return head.end() if head else 0
 
 
 @lru_cache(maxsize=1 << 12)

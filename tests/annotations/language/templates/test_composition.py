@@ -4,9 +4,13 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from annotations.language.assistance.sides import format_form, format_pattern
 from annotations.language.errors import LanguageError
 from annotations.language.forms import loose_references, read_form, to_corpus, to_template
 from annotations.language.grammar import Budget, Grammar, read_productions
+from annotations.language.names import rename_nonterminal_in_pattern
+from annotations.language.predicates import infer_signatures
+from annotations.language.symbols import places_in_pattern
 from annotations.language.templates import (
     TaskCategory,
     TemplateChart,
@@ -162,8 +166,6 @@ def test_lines_in_a_cycle_are_refused_with_their_place():
 
 
 def test_the_form_of_a_line_in_the_place_of_another_kind_is_a_misuse():
-    from annotations.language.predicates import infer_signatures
-
     declared = infer_signatures(
         [read_form("(find (λ$1:e (is_a $1 {kobject})))"), read_form("(go {room})")]
     )
@@ -240,3 +242,12 @@ def steps(length, alternatives):
 def test_steps_grow_polynomially_with_length_and_grammar(length, alternatives):
     """Doubling both multiplies the steps by at most 2⁵; readings themselves grow exponentially."""
     assert steps(2 * length, 2 * alternatives) <= 32 * steps(length, alternatives)
+
+
+def test_a_line_is_laid_out_and_renamed_with_its_nonterminal():
+    assert format_pattern("$do   ->  bring   it") == "$do -> bring it"
+    assert format_form("$do") == "$do"
+    for text in ("$do -> $do it", "$do -> $do (it"):  # the second one cannot be read
+        renamed = rename_nonterminal_in_pattern(text, "do", "act")
+        assert renamed == text.replace("$do", "$act")
+    assert [place.start for place in places_in_pattern("$do -> $place it")] == [7]
