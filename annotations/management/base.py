@@ -47,8 +47,9 @@ class ReportingCommand(BaseCommand):
     """A command that answers with one report.
 
     A subclass gives ``add_options`` and ``report(**options)``, which returns a JSON-ready mapping or
-    raises ``RefusedReport`` or ``Refusal``. With ``--json`` the report is the only
-    thing on standard output. Errors go to standard error as sentences, and the exit status is 1.
+    raises ``RefusedReport`` or ``Refusal``; None where it has printed its answers already. With ``--json``
+    the report is the only thing on standard output. Errors go to standard error as sentences, and the exit
+    status is 1.
 
     What a command with ``audited`` has done goes into the audit log under these words, for the world that
     its option ``world`` names; ``audit_subject`` says what it was about.
@@ -73,7 +74,7 @@ class ReportingCommand(BaseCommand):
         """Declares the arguments of this command."""
 
     # A subclass names the options that it takes.
-    report: Callable[..., Mapping[str, Any]]
+    report: Callable[..., Mapping[str, Any] | None]
 
     def audit_subject(self, report: Mapping[str, Any], options: Mapping[str, Any]) -> str:
         """Return what the work was about, never a secret."""
@@ -103,6 +104,8 @@ class ReportingCommand(BaseCommand):
             raise CommandError(refusal.message) from refusal
         except OSError as error:
             raise CommandError(file_sentence(error)) from error
+        if report is None:
+            return
         if self.audited:
             world = World.objects.filter(name=options.get("world") or "").first()
             record_command(self.audited, self.audit_subject(report, options), world)

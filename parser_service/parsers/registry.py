@@ -221,6 +221,11 @@ def title_of(parser: str) -> str:
     return PARSERS[parser].title if parser in PARSERS else parser
 
 
+def untrained() -> list[str]:
+    """Return the names of the parsers that training pairs change nothing of: they answer without a run."""
+    return [name for name, each in PARSERS.items() if not each.learns]
+
+
 def needing(needs: Needs) -> list[str]:
     """Return the names of the parsers that need this most."""
     return [name for name, each in PARSERS.items() if each.needs is needs]

@@ -22,7 +22,7 @@ def parse_batch(job: Job, progress: Progress) -> dict[str, Any]:
     """
     progress.report(0, "loading the parser")
     shelf = Shelf(settings.PARSER_MEMORY_MB * 1_000_000, Metrics())
-    service = shelf.load(job.world_name, job.arguments["run"])
+    service = shelf.load(job.world_name, job.arguments["run"], job.arguments.get("parser", ""))
     with kept_uploads(job) as (upload,):
         lines = upload.read()
     count, answered = len(numbered_lines(lines)), 0

@@ -14,8 +14,11 @@ from annotations.models import Job, JobKind, User, World
 MOST_AT_ONCE = 3  # batches of one person that wait or run
 
 
-def request_batch(world: World, lines: bytes, beam: int, run: int | None, by: User) -> Job:
-    """Let a worker parse JSON lines, in ``beam`` ways each. ``run`` None asks the promoted parser.
+def request_batch(
+    world: World, lines: bytes, beam: int, run: int | None, by: User, parser: str = ""
+) -> Job:
+    """Let a worker parse JSON lines, in ``beam`` ways each. ``run`` None asks the promoted parser, or ``parser``,
+    one that needs no run.
 
     Raises Refusal where ``MOST_AT_ONCE`` batches of the person wait or run.
     """
@@ -29,4 +32,5 @@ def request_batch(world: World, lines: bytes, beam: int, run: int | None, by: Us
                 "too_many_batches",
                 HTTPStatus.CONFLICT,
             )
-        return request_job(JobKind.PARSE, world.name, by, {"beam": beam, "run": run}, [upload])
+        arguments = {"beam": beam, "run": run, "parser": parser}
+        return request_job(JobKind.PARSE, world.name, by, arguments, [upload])

@@ -1,10 +1,11 @@
-"""JSON lines: an utterance in each, and an answer to each in their order."""
+"""Lines with an utterance in each, and an answer to each in their order."""
 
 from __future__ import annotations
 
 import json
 import logging
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from annotations.language.errors import Refusal
@@ -17,54 +18,85 @@ logger = logging.getLogger(__name__)
 FAILED = "the parser failed. The log of the server or worker that ran it says why."
 
 
+@dataclass(frozen=True, slots=True)
+class LineAnswer:
+    """What came of line ``number``: the answer as JSON, or in ``fault`` a sentence about what is wrong with it."""
+
+    number: int
+    json: str = ""
+    fault: str = ""
+
+
 def answer_lines(service: ServedParser, body: bytes, beam: int) -> Iterator[list[str]]:
-    """Yield the answers as JSON, some at a time. What is wrong with a line is said in its place."""
+    """Yield the answers to JSON lines as JSON, some at a time. What is wrong with a line is said in its place."""
     numbered = numbered_lines(body)
     together = service.parser.lines_together
     for at in range(0, len(numbered), together):
         # One thread does both. A second one that parsed the next lines meanwhile would have to wait for
         # the interpreter's lock after each operation of the network, for longer than writing takes.
-        answers = _ask_some(service, numbered[at : at + together], beam)
-        yield [_write(service, *answer) for answer in answers.items()]
+        answers = answer_some(service, numbered[at : at + together], beam, _read_json_line)
+        yield [each.json or _refuse_line(each) for each in answers]
 
 
-def _ask_some(
-    service: ServedParser, lines: list[tuple[int, bytes]], beam: int
-) -> dict[int, AskedUtterance | str]:
-    """Return what the parser answers to each line, by its number; what is wrong with one as JSON."""
-    answers: dict[int, AskedUtterance | str] = dict.fromkeys((number for number, _ in lines), "")
+def answer_some(
+    service: ServedParser,
+    lines: Sequence[tuple[int, bytes]],
+    beam: int,
+    read: Callable[[bytes], str],
+) -> list[LineAnswer]:
+    """Return what the parser answers to each of the numbered lines, asked together.
+
+    Args:
+        read: returns the utterance of a line, empty where there is nothing to parse; raises Refusal for a line
+            that cannot be read.
+    """
+    faults: dict[int, str] = {}
     utterances: dict[int, str] = {}
     for number, line in lines:
         try:
-            utterances[number] = require_utterance(read_object(line).get("utterance"))
+            utterances[number] = read(line)
         except Refusal as error:
-            answers[number] = _refuse_line(number, error.message)
+            faults[number] = error.message
+    spoken = {number: utterance for number, utterance in utterances.items() if utterance}
+    answers = dict.fromkeys(utterances, service.heard_nothing())
     try:
-        asked = service.ask(list(utterances.values()), beam) if utterances else []
-        answers |= zip(utterances, asked, strict=True)
+        asked = service.ask(list(spoken.values()), beam) if spoken else []
+        answers |= zip(spoken, asked, strict=True)
     except NotServed as error:
-        answers |= {number: _refuse_line(number, error.message) for number in utterances}
+        faults |= dict.fromkeys(spoken, error.message)
     except Exception:
         logger.exception("A batch for %s", service.world)
-        answers |= {number: _refuse_line(number, FAILED) for number in utterances}
-    return answers
+        faults |= dict.fromkeys(spoken, FAILED)
+    return [
+        LineAnswer(number, fault=faults[number])
+        if number in faults
+        else _write(service, number, answers[number])
+        for number, _ in lines
+    ]
 
 
-def _write(service: ServedParser, number: int, answer: AskedUtterance | str) -> str:
-    if isinstance(answer, str):
-        return answer
+def _write(service: ServedParser, number: int, answer: AskedUtterance) -> LineAnswer:
     try:
-        return service.write(answer)
+        return LineAnswer(number, service.write(answer))
     except Exception:
         logger.exception("Line %s of a batch for %s", number, service.world)
-        return _refuse_line(number, FAILED)
+        return LineAnswer(number, fault=FAILED)
 
 
-def _refuse_line(number: int, sentence: str) -> str:
-    return as_json({"line": number, "detail": f"Line {number}: {sentence}"})
+def _refuse_line(answer: LineAnswer) -> str:
+    return as_json({"line": answer.number, "detail": f"Line {answer.number}: {answer.fault}"})
 
 
-def read_object(body: bytes) -> dict[str, Any]:
+def _read_json_line(line: bytes) -> str:
+    return require_utterance(utterance_in(read_object(line)))
+
+
+def utterance_in(line: Mapping[str, Any]) -> object:
+    """Return the utterance of a JSON line, or the command where it has no utterance."""
+    return line.get("utterance", line.get("command"))
+
+
+def read_object(body: bytes | str) -> dict[str, Any]:
     """Return the JSON object that ``body`` writes. Raises Refusal."""
     try:
         value = json.loads(body)

@@ -1,4 +1,4 @@
-"""Load the parser of a run. Loads torch where the parser needs it."""
+"""Load the parser of a run, or make one that needs no run. Loads torch where the parser needs it."""
 
 from __future__ import annotations
 
@@ -6,10 +6,11 @@ from functools import lru_cache
 from http import HTTPStatus
 
 from annotations.language.errors import Refusal
+from annotations.models import World
 from annotations.models.background import Status
 from parser_service.models import TrainingRun
 from parser_service.parsers.interface import Parser
-from parser_service.parsers.registry import load_class
+from parser_service.parsers.registry import entry, load_class, untrained
 from parser_service.runs.checkpoints import model_folder
 from parser_service.runs.training.knowledge import knowledge_of
 
@@ -33,6 +34,18 @@ def load_anew(run: TrainingRun) -> Parser:
             HTTPStatus.CONFLICT,
         )
     return load_class(run.parser).load(folder, knowledge_of(run.world, run.protocol))
+
+
+def make_untrained(name: str, world: World) -> Parser:
+    """Return the parser ``name``, made of what ``world`` says now. Raises Refusal where it has to be trained."""
+    if name not in untrained():
+        raise Refusal(
+            f"{name} cannot answer without a run; these can: {', '.join(untrained())}.",
+            "needs_training",
+        )
+    parser = load_class(name)(knowledge=knowledge_of(world, entry(name).protocols[-1]))
+    parser.fit(())
+    return parser
 
 
 def size_of(run: TrainingRun) -> int:

@@ -18,10 +18,11 @@ from annotations.language.grounding import Anonymized
 from annotations.models import Entity, Predicate, World
 from parser_service.models import ActionNames, Promotion, TrainingRun
 from parser_service.parsers.conditions import Protocol
-from parser_service.parsers.interface import Candidate
+from parser_service.parsers.interface import Candidate, Parser
+from parser_service.parsers.registry import entry
 from parser_service.serving.answer_writing import AnswerWriter
 from parser_service.serving.batching import Batcher
-from parser_service.serving.loading import load_anew, size_of
+from parser_service.serving.loading import load_anew, make_untrained, size_of
 from parser_service.serving.metrics import Metrics
 from parser_service.serving.preparing import WorldLanguage
 from parser_service.serving.remote import SEATS, TOGETHER, RemoteAsker, Unanswered
@@ -46,9 +47,10 @@ class NotServed(Refusal):
 @dataclass(frozen=True, slots=True)
 class LoadedParser:
     """The parser of a run in memory. ``knowledge`` is what of its world it was loaded with;
-    ``lines_together`` is how many lines of a longer request it is given at once."""
+    ``lines_together`` is how many lines of a longer request it is given at once. ``run`` is None for a
+    parser that needs none."""
 
-    run: int
+    run: int | None
     name: str
     score_kind: str
     knowledge: tuple[object, ...]
@@ -79,6 +81,10 @@ class ServedParser:
         except Unanswered as error:
             raise NotServed(503, error.message) from error
         return list(zip(heard, utterances, answers, strict=True))
+
+    def heard_nothing(self) -> AskedUtterance:
+        """Return what there is to write where nothing was said: no candidate, without asking the parser."""
+        return self.writer.language.anonymizer.anonymize(""), "", []
 
     def write(self, asked: AskedUtterance) -> str:
         """Return an answer as JSON, with who gave it."""
@@ -202,11 +208,17 @@ class Shelf:
             service = self._wait_for(world, patience)
         return service
 
-    def load(self, world: str, run: int | None) -> ServedParser:
-        """Return what answers in ``world``, loaded for the caller alone. Raises Refusal."""
+    def load(self, world: str, run: int | None, untrained: str = "") -> ServedParser:
+        """Return what answers in ``world``, loaded for the caller alone: its promoted parser, that of ``run``,
+        or the parser ``untrained``, which needs no run. Raises Refusal."""
         wanted = read_wanted().get(world)
         if wanted is None:
             raise Refusal(f"There is no world {world}.", "no_such_world", HTTPStatus.NOT_FOUND)
+        if untrained:
+            row = World.objects.get(pk=wanted.world)
+            parser = make_untrained(untrained, row)
+            loaded = self._hold(parser, knowledge=wanted.knowledge(entry(untrained).protocols[-1]))
+            return ServedParser(world, loaded, AnswerWriter(WorldLanguage.of(row)), wanted)
         if run is None and wanted.run is None:
             raise Refusal(_nobody_answers(world, wanted), "no_promoted_run", HTTPStatus.CONFLICT)
         return self._load(world, wanted, run or wanted.run, None)
@@ -322,18 +334,25 @@ class Shelf:
         if held is not None and (held.parser.run, held.parser.knowledge) == (row.pk, knowledge):
             return ServedParser(name, held.parser, writer, wanted)
         parser = load_anew(row).hesitant()
-        loaded = LoadedParser(
-            run=row.pk,
-            name=row.parser,
+        loaded = self._hold(parser, knowledge, row.pk, size_of(row))
+        return ServedParser(name, loaded, writer, wanted)
+
+    def _hold(
+        self, parser: Parser, knowledge: tuple[object, ...], run: int | None = None, size: int = 0
+    ) -> LoadedParser:
+        # What needs no run looks at each line alone, so that several together would only come later.
+        together = 1 if run is None else LINES_TOGETHER
+        return LoadedParser(
+            run=run,
+            name=parser.name,
             score_kind=str(parser.score_kind or ""),
             knowledge=knowledge,
-            size=size_of(row),
+            size=size,
             batcher=RemoteAsker(parser.predict, self._seats)
             if parser.asks_a_server
             else Batcher(parser.predict, self._turn, self.metrics.batches.observe),
-            lines_together=TOGETHER if parser.asks_a_server else LINES_TOGETHER,
+            lines_together=TOGETHER if parser.asks_a_server else together,
         )
-        return ServedParser(name, loaded, writer, wanted)
 
 
 def _words(wanted: WantedParser) -> tuple[object, ...]:

@@ -1,44 +1,118 @@
-"""``parse TEXT --world W``: the answers of a trained parser to an utterance."""
+"""``parse TEXT --world W`` and ``parse --file FILE --world W``: the answers of a parser to utterances."""
 
 from __future__ import annotations
 
+import json
+import os
 from collections.abc import Mapping
 from http import HTTPStatus
+from pathlib import Path
 from typing import Any
 
+from django.conf import settings
 from django.core.management.base import CommandParser
 
 from annotations.language.errors import Refusal
 from annotations.management.base import ReportingCommand, find_world
 from annotations.models import World
 from parser_service.models import TrainingRun
+from parser_service.parsers.registry import untrained
 from parser_service.runs.training.evaluating import BEAM_WIDTH
 from parser_service.serving.default_runs import best_run
-from parser_service.serving.parse_answers import parse
+from parser_service.serving.line_files import answer_file, require_utf8
+from parser_service.serving.lines import LineAnswer
+from parser_service.serving.loading import load_parser, make_untrained
+from parser_service.serving.metrics import Metrics
+from parser_service.serving.parse_answers import ask
 from parser_service.serving.preparing import require_utterance
+from parser_service.serving.shelf import ServedParser, Shelf
+
+STANDARD_INPUT = "-"
 
 
 class Command(ReportingCommand):
-    help = "Parse an utterance with the best parser trained in a world, or with that of a run."
+    help = (
+        "Parse an utterance, or every line of a file, with the best parser trained in a world, with that of a run, or "
+        "with one that needs no run."
+    )
 
     def add_options(self, parser: CommandParser) -> None:
-        parser.add_argument("text")
+        what = parser.add_mutually_exclusive_group(required=True)
+        what.add_argument("text", nargs="?", help="the utterance")
+        what.add_argument(
+            "--file",
+            help="a file with an utterance in each line, plain or as JSON lines; - is the standard input",
+        )
         parser.add_argument("--world", required=True)
-        parser.add_argument("--run", type=int, help="number of a succeeded run (default: the best)")
+        who = parser.add_mutually_exclusive_group()
+        who.add_argument("--run", type=int, help="number of a succeeded run (default: the best)")
+        who.add_argument(
+            "--parser",
+            choices=untrained(),
+            help="a parser made of what the world says now, without a run",
+        )
         parser.add_argument(
             "--beam", type=int, default=BEAM_WIDTH, help="largest number of candidates"
         )
 
-    def report(self, *, text: str, world: str, **options: Any) -> Mapping[str, Any]:
-        utterance = require_utterance(text)
+    def report(
+        self, *, text: str | None, file: str | None, world: str, **options: Any
+    ) -> Mapping[str, Any] | None:
+        utterance = "" if text is None else require_utterance(text)
         if options["beam"] < 1:
             raise Refusal("--beam has to be at least 1.", "option_out_of_range")
-        run = find_run(find_world(world), options["run"])
-        answers = parse(run, utterance, options["beam"]).as_json()
-        return {"run": run.pk, "parser": run.parser, **answers}
+        if file not in (None, STANDARD_INPUT):
+            require_utf8(Path(file))
+        found = find_world(world)
+        run = None if options["parser"] else find_run(found, options["run"])
+        if file is not None:
+            shelf = Shelf(settings.PARSER_MEMORY_MB * 1_000_000, Metrics())
+            service = shelf.load(found.name, run.pk if run else None, options["parser"] or "")
+            self._answer_file(service, file, options["beam"], options["json"])
+            return None
+        parser = load_parser(run).hesitant() if run else make_untrained(options["parser"], found)
+        answers = ask(parser, found, utterance, options["beam"]).as_json()
+        about = {"world": found.name, "run": run.pk if run else None, "parser": parser.name}
+        return {**about, "score_kind": str(parser.score_kind or ""), **answers}
+
+    def _answer_file(self, service: ServedParser, name: str, beam: int, as_json: bool) -> None:
+        """Print the answer to each line of a file as soon as it is there.
+
+        Raises Refusal at the end where some lines could not be parsed.
+        """
+        blank = json.loads(service.write(service.heard_nothing()))
+        faults: list[LineAnswer] = []
+        count = 0
+        is_standard = name == STANDARD_INPUT
+        with open(0 if is_standard else name, "rb", closefd=not is_standard) as lines:
+            try:
+                for answers in answer_file(service, lines, beam):
+                    for each in answers:
+                        self.stdout.write(self._say(each, blank, as_json))
+                    self.stdout.flush()
+                    faults += [each for each in answers if each.fault]
+                    count += len(answers)
+            except BrokenPipeError:
+                # Whoever reads the answers, such as head, has enough. Python would complain once more at its end.
+                os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        if faults:
+            raise Refusal(
+                f"{len(faults):,} of {count:,} lines could not be parsed. The first is line {faults[0].number}: "
+                f"{faults[0].fault}",
+                "lines_refused",
+            )
+
+    def _say(self, answer: LineAnswer, blank: Mapping[str, Any], as_json: bool) -> str:
+        if as_json and not answer.fault:
+            return answer.json
+        if answer.fault:
+            report = {**blank, "line": answer.number, "error": answer.fault}
+            return json.dumps(report, ensure_ascii=False) if as_json else f"{answer.fault}\n"
+        return f"{self.describe(json.loads(answer.json))}\n"
 
     def describe(self, report: Mapping[str, Any]) -> str:
-        lines = [f"{report['parser']} (run {report['run']}): {report['parsed_text']}"]
+        who = f"{report['parser']} (run {report['run']})" if report["run"] else report["parser"]
+        lines = [f"{who}: {report['parsed_text']}"]
         for candidate in report["candidates"]:
             shown = candidate["reading"] or f"{candidate['form']}   (no well-formed form)"
             lines.append(f"{candidate['score']:8.3f}  {shown}")

@@ -30,6 +30,7 @@ from annotations.web.rest.parsing import BoundedJSONParser
 from annotations.web.rest.permissions import ApiRequest, HasDuty
 from annotations.web.rest.routes import WorldRoute
 from annotations.web.rest.streaming import JSON_LINES, BrokenOff
+from parser_service.parsers.registry import untrained
 from parser_service.serving.batch_requests import request_batch
 from parser_service.serving.parser_client import AWAY, ParserAway, client
 from parser_service.serving.preparing import MOST_CANDIDATES, numbered_lines
@@ -71,6 +72,17 @@ class BatchQuery(serializers.Serializer[Any]):
 
     beam = serializers.IntegerField(default=5, min_value=1, max_value=MOST_CANDIDATES)
     run = serializers.IntegerField(default=None, min_value=1, max_value=MOST_KEY, allow_null=True)
+
+
+class JobQuery(BatchQuery):
+    """The same for a job; ``parser`` asks one that needs no run, made of what the world says when the job begins."""
+
+    parser = serializers.ChoiceField(choices=untrained(), default="")
+
+    def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        if attrs["run"] and attrs["parser"]:
+            raise ValidationError("Name a run or a parser, not both.")
+        return attrs
 
 
 class SpanSerializer(serializers.Serializer[Any]):
@@ -197,13 +209,13 @@ class ParseJobs(WorldRoute):
 
     @extend_schema(
         operation_id="start_parse",
-        parameters=[BatchQuery],
+        parameters=[JobQuery],
         request={JSON_LINES: OpenApiTypes.STR},
         responses={202: JobSerializer},
     )
     @once
     def post(self, request: ApiRequest, **kwargs: object) -> Response:
-        query = BatchQuery(data=request.query_params)
+        query = JobQuery(data=request.query_params)
         query.is_valid(raise_exception=True)
         if not isinstance(request.data, bytes) or not request.data.strip():
             raise ValidationError("There is no line to parse.")
