@@ -10,6 +10,7 @@ from datetime import timedelta
 import pytest
 
 from annotations import background
+from annotations.importing.generator_import import import_generator
 from annotations.jobs.carrying_out import carry_out
 from annotations.jobs.files import results_folder
 from annotations.jobs.sweeping import sweep
@@ -19,6 +20,7 @@ from parser_service.promotions.promoting import promote
 from parser_service.serving.batch_requests import MOST_AT_ONCE
 from parser_service.web.serving import parsing_rest
 from parser_service.web.serving.parsing_rest import MOST_LINES
+from tests.annotations.conftest import TINY, as_bytes
 from tests.parser_service.live_server import parse_server  # noqa: F401  a fixture
 from tests.parser_service.served import make_home, trained_run
 
@@ -121,6 +123,18 @@ def test_a_worker_answers_as_the_parse_server_does(world, ask, send):
     key = ask("post", "parse/jobs/", lines).json()["id"]
     carry_out_next()
     assert answers_of(ask("get", f"jobs/{key}/result/")) == at_once
+
+
+def test_a_worker_parses_with_the_grammar_oracle_without_a_run(world, ask):
+    assert not import_generator(world.name, as_bytes(TINY)).problems
+    lines = b'{"command": "find the tea"}\n{"utterance": "sing"}\n'
+    assert ask("post", "parse/jobs/?parser=knn", lines).status_code == 400
+    assert ask("post", "parse/jobs/?parser=grammar-oracle&run=1", lines).status_code == 400
+    asked = ask("post", "parse/jobs/?parser=grammar-oracle", lines)
+    report = {"lines": 2, "run": None, "parser": "grammar-oracle"}
+    assert (asked.status_code, carry_out_next().report) == (202, report)
+    first, second = answers_of(ask("get", f"jobs/{asked.json()['id']}/result/"))
+    assert (first["run"], first["is_unknown"], second["is_unknown"]) == (None, False, True)
 
 
 def test_a_batch_that_nothing_answers_fails_with_a_sentence(world, ask):
