@@ -244,9 +244,8 @@ def _read_objects(
     tables: Iterable[Table], belongs: Mapping[str, list[Cell]], problems: list[Problem]
 ) -> Iterator[Entity]:
     """Yield the categories, one for each place where their objects belong, each before its objects."""
-    classes: dict[
-        str, tuple[str, str, list[Entity]]
-    ] = {}  # folded plural → plural, singular, objects
+    # Folded plural → the plural with its place, the singular, the objects.
+    classes: dict[str, tuple[Cell, str, list[Entity]]] = {}
     homes: dict[str, str] = {}  # folded object → its first class
     for table in tables:
         heading = table.heading
@@ -268,7 +267,7 @@ def _read_objects(
             )
             continue
         objects: list[Entity] = []
-        classes[plural.casefold()] = plural, singular, objects
+        classes[plural.casefold()] = Cell(plural, heading.position), singular, objects
         seen: set[str] = set()
         for row in table.rows:
             text, _, remark = row[0].text.replace("_", " ").partition("(")
@@ -283,12 +282,11 @@ def _read_objects(
             attributes = {"category": plural, **({"remark": said} if said else {})}
             objects.append(Entity("object", named.text, (), attributes, named.position))
     places = _places_of(classes, belongs, problems)
-    for key, (plural, singular, objects) in classes.items():
-        attributes = {"singular": singular} if singular != plural else {}
+    for key, (named, singular, objects) in classes.items():
+        attributes = {"singular": singular} if singular != named.text else {}
         for place in places[key] or [""]:
             kept = {"defaultLocation": place} if place else {}
-            position = objects[0].position if objects else Position(OBJECTS)
-            yield Entity("category", plural, (), {**kept, **attributes}, position)
+            yield Entity("category", named.text, (), {**kept, **attributes}, named.position)
         yield from objects
 
 
@@ -305,7 +303,7 @@ def _names_of_class(heading: str) -> tuple[str, str]:
 
 
 def _places_of(
-    classes: Mapping[str, tuple[str, str, list[Entity]]],
+    classes: Mapping[str, tuple[Cell, str, list[Entity]]],
     belongs: Mapping[str, list[Cell]],
     problems: list[Problem],
 ) -> dict[str, list[str]]:
@@ -313,12 +311,12 @@ def _places_of(
     singular."""
     known: dict[str, str] = {}
     for key, (plural, singular, _) in classes.items():
-        for name in (plural, singular):
-            known.setdefault(_stem(name), key)
+        for name in (plural.text, singular):
+            known.setdefault(stem_of(name), key)
     places: dict[str, list[str]] = defaultdict(list)
     for location, cells in belongs.items():
         for cell in cells:
-            named = known.get(_stem(cell.text))
+            named = known.get(stem_of(cell.text))
             if named is None:
                 sentence = f"no objects are of the class {cell.text}"
                 problems.append(warning_at(cell.position, sentence, "name a class of objects.md"))
@@ -327,7 +325,7 @@ def _places_of(
     return places
 
 
-def _stem(name: str) -> str:
+def stem_of(name: str) -> str:
     """Return a name without case, underscores and the ending of a plural."""
     folded = " ".join(name.casefold().replace("_", " ").split())
     if folded.endswith("ies"):
