@@ -10,16 +10,20 @@ from typing import Any
 
 from annotations import models
 from annotations.background.progress import UNWATCHED, Progress
+from annotations.checking.entity_check import entity_problems
 from annotations.checking.world_problems import check_again
 from annotations.importing.import_reports import Refusable
 from annotations.importing.target_world import lock_world, require_world_name
 from annotations.language.decoding import read_tree
 from annotations.language.errors import LanguageError, Position, Problem, error_at
 from annotations.language.ontology import Entity, Ontology, place_in_folder, read_competition
+from annotations.language.ontology.published_generators import GENERATORS, lost_rows, warnings_of
+from annotations.language.templates import TaskCategory
 from annotations.models import User, World
 from annotations.rows.decisions import respect
+from annotations.rows.from_rows import ontology_of, predicates_of, task_categories
 from annotations.rows.history import keys_changed_by_people
-from annotations.rows.stored_problems import as_json
+from annotations.rows.stored_problems import as_json, first_problems
 from annotations.rows.synchronise import Changes, RowPlan, plan
 
 # What the folder decides. Entities of other classes stay as the world has them.
@@ -30,6 +34,9 @@ CLASSES = ("object", "category", "room", "location", "name")
 class CompetitionReport(Refusable):
     """What was read and done. ``entities`` counts them by class, ``without_room`` locations whose room nobody has said.
 
+    ``lost`` counts, by published generator and class, the rows that the generator does not read as they are meant; its
+    ``problems`` say which, and what grammar and templates ask for that no entity of the world is.
+
     With an error among the ``problems`` nothing was stored. ``left_out`` are entities that people have deleted or
     renamed here.
     """
@@ -37,6 +44,7 @@ class CompetitionReport(Refusable):
     world: str
     entities: Mapping[str, int] = field(default_factory=dict)
     without_room: tuple[str, ...] = ()
+    lost: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
     problems: tuple[Problem, ...] = ()
     changes: Changes = field(default_factory=Changes)
     left_out: tuple[str, ...] = ()
@@ -49,6 +57,7 @@ class CompetitionReport(Refusable):
                 for name, value in told.items()
             },
             "entities": dict(self.entities),
+            "lost": {name: dict(counts) for name, counts in self.lost.items()},
             "problems": [as_json(problem) for problem in self.problems],
             "changes": asdict(self.changes),
         }
@@ -85,10 +94,17 @@ def import_competition(
     report = CompetitionReport(
         world_name,
         entities=dict(Counter(each.entity_class for each in ontology.entities)),
-        problems=tuple(sorted((*problems, *unread))),
+        problems=first_problems((*problems, *unread)),
     )
     if report.is_refused:
         return report
+    lost = tuple(lost_rows(files, ontology))
+    of_generators = {
+        name: Counter(row.entity.entity_class for row in lost if row.generator == name)
+        for name in GENERATORS
+    }
+    found = [*report.problems, *warnings_of(lost)]
+    categories = _categories_of(world_name)
     progress.report(0.6, "writing")
     with progress.writing():
         world = lock_world(world_name, by)
@@ -96,8 +112,12 @@ def import_competition(
         planned = plan_competition(stored, ontology, brings_back)
         changes = planned.apply(by)
         check_again(world, models.Entity)
+        if categories:
+            found += entity_problems(categories, ontology_of(world), predicates_of(world))
         report = replace(
             report,
+            lost=of_generators,
+            problems=first_problems(found),
             changes=changes,
             without_room=tuple(_without_room(world)),
             left_out=tuple(f"{row} ({why})" for row, why in planned.left_out),
@@ -150,6 +170,16 @@ def _key_of(row: models.Entity) -> tuple[str, str, str]:
     """Return what tells entities apart: a category stands once for each place where its objects belong."""
     beside = {"category": "defaultLocation", "object": "category"}.get(row.entity_class, "")
     return row.entity_class, row.text, row.attributes.get(beside, "")
+
+
+def _categories_of(world_name: str) -> tuple[TaskCategory, ...]:
+    """Return the task categories of the world; none where there is none, or where a stored line cannot be read, which
+    its page says."""
+    world = World.objects.filter(name=world_name).first()
+    try:
+        return task_categories(world) if world else ()
+    except LanguageError:
+        return ()
 
 
 def _without_room(world: World) -> list[str]:

@@ -146,10 +146,10 @@ def lost_rows(files: Mapping[str, bytes], ontology: Ontology) -> Iterator[LostRo
     by_file: dict[str, dict[int, Entity]] = defaultdict(dict)
     for entity in ontology.entities:
         by_file[entity.position.source].setdefault(entity.position.line, entity)
-    texts = {name: read_text(files[name], name)[0] for name in by_file}
+    texts = {name: _Text(read_text(files[name], name)[0]) for name in by_file}
     for generator, readers in GENERATORS.items():
         for name, entities in by_file.items():
-            reading = _Reading(texts[name], readers[name](texts[name]))
+            reading = _Reading(texts[name], readers[name](texts[name].whole))
             for entity in entities.values():
                 row = reading.row_of(entity)
                 if row is None or (row.text, row.beside) != _expected(entity):
@@ -187,20 +187,27 @@ def _say_read(row: ReadRow, entity: Entity) -> str:
     return f"{row.text} {row.beside}".strip()
 
 
+class _Text:
+    """A text with its lines, and where each of them starts."""
+
+    def __init__(self, text: str) -> None:
+        self.whole, self.lines = text, text.split("\n")
+        self.offsets = Offsets(text)
+
+    def start_of(self, line: int) -> int:
+        return self.offsets.index(Position("", line))
+
+
 class _Reading:
     """What a generator reads in a text, and what there is to write for a row that it does not read."""
 
-    def __init__(self, text: str, rows: Iterable[ReadRow]) -> None:
-        self._lines = text.split("\n")
-        offsets = Offsets(text)
-        self._starts = [
-            offsets.index(Position("", line)) for line in range(1, len(self._lines) + 1)
-        ]
+    def __init__(self, text: _Text, rows: Iterable[ReadRow]) -> None:
+        self._text, self._lines = text, text.lines
         self._rows: dict[int, ReadRow] = {}
         self._users: dict[int, int] = {}  # index of a stroke → the line of the row that it ends
         self._classes: set[str] = set()
         for row in rows:
-            line = offsets.position(row.start).line
+            line = text.offsets.position(row.start).line
             self._rows.setdefault(line, row)
             self._users[row.end - 1] = line
             if self._lines[line - 1].lstrip().startswith("#"):
@@ -242,7 +249,7 @@ class _Reading:
             return "write a number into the first cell"
         if beside and not _LETTERS_OR_NOTHING.fullmatch(beside[0]):
             return "write one class into the third cell, in letters and blanks, or nothing"
-        first_stroke = self._starts[line - 1] + self._lines[line - 1].find("|")
+        first_stroke = self._text.start_of(line) + self._lines[line - 1].find("|")
         above = self._users.get(first_stroke, line)
         if above != line or len(beside) < 2:
             which = "the row above" if above != line else "this row"

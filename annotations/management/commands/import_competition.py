@@ -15,7 +15,8 @@ from annotations.management.base import RefusedReport, ReportingCommand, add_bri
 class Command(ReportingCommand):
     help = (
         "Imports names, rooms, locations and objects from the Markdown folder of a competition. What the world has of "
-        "these is replaced; grammar and templates stay. Refused whole where a file has an error."
+        "these is replaced; grammar and templates stay. Says which rows the published generators lose, and what "
+        "grammar and templates ask for that no entity is. Refused whole where a file has an error."
     )
 
     audited = "import files"

@@ -8,6 +8,7 @@ import pytest
 
 from annotations.editing.edits import change, delete
 from annotations.importing.competition_import import import_competition
+from annotations.importing.generator_import import import_generator
 from annotations.language.ontology.competition_folder import COMPETITION_FILES, LOCATIONS, NAMES
 from annotations.models import Entity, World
 from tests.annotations.commands.run_command import run
@@ -80,6 +81,29 @@ def test_rooms_of_locations_and_what_people_changed_stay(world, folder, admin):
     assert not entities(text="milk")
     import_competition("home", folder, brings_back=True)
     assert entities(text="milk")
+
+
+def test_the_report_names_what_published_generators_lose(world, folder):
+    report = import_competition("home", folder)
+    assert report.lost == {"2025": {"location": 1}, "April 2026": {"location": 8}}
+    places = {(each.position.source, each.position.line) for each in report.problems}
+    assert places == {(LOCATIONS, line) for line in (6, 8, 10, 14, 16, 19, 21, 23)}
+    assert import_competition("home", folder).problems == report.problems
+
+
+def test_the_report_names_what_the_grammar_has_no_entity_for_any_more(world, folder, shared_data):
+    import_generator("home", shared_data / "generator-2018")
+    report = import_competition("home", folder)
+    places = [
+        (each.position.source, each.position.line)
+        for each in report.problems
+        if each.position.source != LOCATIONS
+    ]
+    alike = ("gpsr_category_2_grammar.txt", 17)  # {aobject}
+    cereal = ("gpsr_category_3_semantics.txt", 33)
+    assert alike in places and cereal in places
+    assert not report.is_refused
+    assert import_competition("home", folder).problems == report.problems
 
 
 def test_nothing_is_stored_where_a_file_has_an_error(world, folder, tmp_path):

@@ -10,7 +10,7 @@ from django.core.files.uploadedfile import SimpleUploadedFile
 
 from annotations.background import claim
 from annotations.jobs.carrying_out import carry_out
-from annotations.language.ontology.competition_folder import NAMES
+from annotations.language.ontology.competition_folder import LOCATIONS, NAMES, OBJECTS
 from annotations.models import Entity, Job, JobKind
 from tests.annotations.language.ontology.test_competition_folder import FOLDER
 
@@ -57,15 +57,15 @@ def test_files_and_an_archive_are_imported(world, adam, make):
 
 def test_a_large_folder_is_imported_by_a_worker(world, adam, settings, tmp_path):
     settings.VAR_DIR = tmp_path
-    names = "".join(f"| {'x' * 400} {number} |\n" for number in range(1_200))
-    answer = adam.post(PAGE, {"files": files(**{NAMES: FOLDER[NAMES] + names})})
+    prose = f"{'Who they are. ' * 30}\n" * 1_200
+    answer = adam.post(PAGE, {"files": files(**{NAMES: prose + FOLDER[NAMES]})})
     job = Job.objects.get()
     assert answer["Location"] == f"/jobs/{job.pk}/"
     assert (job.kind, job.status) == (JobKind.IMPORT_COMPETITION, "queued")
     carry_out(claim("a worker", "quick", Job, job))
     job.refresh_from_db()
-    assert job.report["entities"]["name"] == 1_202
-    assert len(texts("name")) == 1_202
+    assert job.report["entities"]["name"] == 2
+    assert texts("name") == ["Ada", "Antônia"]
 
 
 def test_a_fault_is_shown_at_its_place_and_nothing_is_stored(world, adam):
@@ -74,6 +74,31 @@ def test_a_fault_is_shown_at_its_place_and_nothing_is_stored(world, adam):
     assert [(each["file"], each["line"]) for each in answer.context["problems"]] == [(NAMES, 1)]
     assert not Entity.objects.exists()
     assert not Job.objects.exists()
+
+
+def test_a_row_that_a_generator_loses_is_shown_beside_its_entity(world, adam):
+    adam.post(PAGE, {"files": files()})
+    lost = Entity.objects.get(text="Antônia")
+    (job,) = Job.objects.all()
+    assert job.report["lost"]["April 2026"] == {"name": 1, "location": 1}
+    answer = adam.get(f"/jobs/{job.pk}/")
+    shown = next(each for each in answer.context["problems"] if each["file"] == NAMES)
+    assert (shown["line"], shown["severity"]) == (5, "warning")
+    assert shown["url"] == f"/w/home/ontology/{lost.pk}/"
+    assert "April 2026" in answer.content.decode()
+
+
+def test_a_script_in_a_name_is_shown_as_text(world, adam):
+    script = "<script>alert(1)</script>"
+    for name in (NAMES, OBJECTS):
+        text = FOLDER[name].replace("Ada", script).replace("red_bull", script)
+        answer = adam.post(PAGE, {"files": files(**{name: text})})
+        assert answer.status_code == 422
+        assert script not in answer.content.decode()
+    place = FOLDER[LOCATIONS].replace("| drinks |", f"| {script} |")
+    answer = adam.post(PAGE, {"files": files(**{LOCATIONS: place})}, follow=True)
+    assert (answer.status_code, script in answer.content.decode()) == (200, False)
+    assert "&lt;script&gt;" in answer.content.decode()
 
 
 def test_a_file_that_is_no_archive_is_refused(world, adam):
