@@ -92,8 +92,11 @@ def _read_json_line(line: bytes) -> str:
 
 
 def utterance_in(line: Mapping[str, Any]) -> object:
-    """Return the utterance of a JSON line, or the command where it has no utterance."""
-    return line.get("utterance", line.get("command"))
+    """Return the utterance of a JSON line, or the command where it has none. Raises Refusal without either."""
+    for name in ("utterance", "command"):
+        if name in line:
+            return line[name]
+    raise Refusal('The object has neither an "utterance" nor a "command".', "no_utterance")
 
 
 def read_object(body: bytes | str) -> dict[str, Any]:

@@ -21,6 +21,7 @@ LOCATIONS, OBJECTS = "maps/location_names.md", "objects/objects.md"
 COMPETITION_FILES = (NAMES, ROOMS, LOCATIONS, OBJECTS)
 
 MOST_LINES = 20_000  # of a file
+MOST_CELLS = 20  # of a row that are told apart
 _PLACEMENT = re.compile(r"\( ?p ?\)", re.IGNORECASE)
 _PROSE = ("- ", "* ", "+ ", "![", "[", ">")  # begins of lists, pictures, links and quotations
 _NOTHING = ("", "-", "–", "—")
@@ -148,7 +149,7 @@ def _cells(line: str, name: str, number: int) -> list[Cell]:
     if inner.startswith("|"):
         start, inner = start + 1, inner[1:]
     cells, at = [], start
-    for text in inner.removesuffix("|").split("|"):
+    for text in inner.removesuffix("|").split("|", MOST_CELLS):
         column = at + len(text) - len(text.lstrip()) + 1
         cells.append(Cell(" ".join(text.split()), Position(name, number, column)))
         at += len(text) + 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from time import process_time
 
 import pytest
 
@@ -15,7 +16,7 @@ from annotations.language.ontology.competition_folder import (
     read_competition,
 )
 from annotations.language.ontology.published_generators import GENERATORS, lost_rows, warnings_of
-from tests.annotations.language.ontology.test_competition_folder import FOLDER
+from tests.annotations.language.ontology.test_competition_folder import FOLDER, MOST_SECONDS
 
 OLDER, NEWER = GENERATORS
 HEAD = "| Number | Name | Object Category |\n| - | - | - |\n| 0 | table (p) | drinks |\n"
@@ -148,6 +149,24 @@ def test_a_warning_stands_at_its_row_and_names_the_generators():
     assert not (bed.is_error or name.is_error)
     assert NEWER in bed.message and OLDER not in bed.message and "| 1 | bed | |" in bed.hint
     assert NEWER in name.message and OLDER in name.message and "Gabrielle" in name.hint
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        "".join(f"| é{number} |\n" for number in range(19_000)),
+        f"| Zoë {'|' * 1_000_000}\n",
+        f"| Zoë {'| ' * 100_000}\n| Eve | {' ' * 100_000}",
+        f"| Zoë |\n{'prose ' * 100_000}\n",
+    ],
+)
+def test_large_files_take_less_than_two_seconds(names):
+    files = {name: text.encode() for name, text in WHOLE.items()}
+    files[NAMES] += names.encode()
+    began = process_time()
+    ontology, _ = read_competition(files)
+    assert warnings_of(lost_rows(files, ontology))
+    assert process_time() - began < MOST_SECONDS
 
 
 HINTS = {
