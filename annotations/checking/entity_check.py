@@ -9,8 +9,8 @@ from dataclasses import replace
 from annotations.language.english import say_count
 from annotations.language.errors import Position, Problem, warning_at
 from annotations.language.forms import Application, Constant, walk
-from annotations.language.grounding.drawing import holds, is_of_type, wildcards_in
-from annotations.language.ontology import Entity, Ontology
+from annotations.language.grounding import may_fill
+from annotations.language.ontology import Ontology
 from annotations.language.plans import Lookup
 from annotations.language.predicates import Predicate
 from annotations.language.symbols import Wildcard, print_wildcard
@@ -27,7 +27,9 @@ def entity_problems(
     """
     categories = list(categories)
     for wildcard, places in _wildcards(categories).items():
-        if not any(_fits(wildcard, entity) for entity in ontology.of_class(wildcard.entity_class)):
+        if not any(
+            may_fill(entity, wildcard) for entity in ontology.of_class(wildcard.entity_class)
+        ):
             written = print_wildcard(wildcard)
             said = f"the world has no entity for {written}{_in_others(places)}"
             hint = f"add such an entity of the class {wildcard.entity_class}, or change the lines"
@@ -76,15 +78,6 @@ def _constants_of(template: SemanticTemplate) -> Iterator[tuple[str, str, int]]:
         for place, argument in enumerate(node.arguments):
             if isinstance(argument, Constant) and not argument.token_class:
                 yield str(argument.value), node.predicate, place
-
-
-def _fits(wildcard: Wildcard, entity: Entity) -> bool:
-    if not is_of_type(entity, wildcard):
-        return False
-    condition = wildcard.where
-    if condition is None or any(True for _ in wildcards_in(condition)):
-        return True
-    return holds(condition, entity, lambda other: "")
 
 
 def _in_others(places: set[Position]) -> str:

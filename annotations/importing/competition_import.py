@@ -16,8 +16,15 @@ from annotations.importing.import_reports import Refusable
 from annotations.importing.target_world import lock_world, require_world_name
 from annotations.language.decoding import read_tree
 from annotations.language.errors import LanguageError, Position, Problem, error_at
-from annotations.language.ontology import Entity, Ontology, place_in_folder, read_competition
-from annotations.language.ontology.published_generators import GENERATORS, lost_rows, warnings_of
+from annotations.language.ontology import (
+    PUBLISHED_GENERATORS,
+    Entity,
+    Ontology,
+    lost_rows,
+    place_in_folder,
+    read_competition,
+    warnings_of_lost,
+)
 from annotations.language.templates import TaskCategory
 from annotations.models import User, World
 from annotations.rows.decisions import respect
@@ -101,9 +108,9 @@ def import_competition(
     lost = tuple(lost_rows(files, ontology))
     of_generators = {
         name: Counter(row.entity.entity_class for row in lost if row.generator == name)
-        for name in GENERATORS
+        for name in PUBLISHED_GENERATORS
     }
-    found = [*report.problems, *warnings_of(lost)]
+    found = [*report.problems, *warnings_of_lost(lost)]
     categories = _categories_of(world_name)
     progress.report(0.6, "writing")
     with progress.writing():

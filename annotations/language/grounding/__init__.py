@@ -15,6 +15,7 @@ from annotations.language.grounding.deanonymizer import (
     resolve_slots,
     with_values,
 )
+from annotations.language.grounding.drawing import may_fill
 from annotations.language.grounding.grounding import Grounded, ground
 from annotations.language.grounding.questions import (
     choices_of,
@@ -49,6 +50,7 @@ __all__ = [
     "ground",
     "ground_like",
     "ground_text",
+    "may_fill",
     "noun_for",
     "open_slots_as_json",
     "question_for",

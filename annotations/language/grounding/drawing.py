@@ -145,6 +145,16 @@ def is_of_type(entity: Entity, wildcard: Wildcard) -> bool:
     return (entity.attribute(attribute) or default).lower() == restriction
 
 
+def may_fill(entity: Entity, wildcard: Wildcard) -> bool:
+    """Return whether an entity of its class fits a wildcard; a condition on another wildcard is taken to hold."""
+    if not is_of_type(entity, wildcard):
+        return False
+    condition = wildcard.where
+    if condition is None or any(True for _ in wildcards_in(condition)):
+        return True
+    return holds(condition, entity, lambda other: "")
+
+
 def _key(entity: Entity) -> tuple[str, str]:
     """Return what tells values apart: the spoken text, so two sinks are one value."""
     return entity.entity_class, entity.text.lower()

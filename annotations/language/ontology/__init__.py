@@ -15,18 +15,26 @@ from annotations.language.ontology.ontology_files import (
     read_ontology,
     write_ontology,
 )
+from annotations.language.ontology.published_generators import (
+    PUBLISHED_GENERATORS,
+    lost_rows,
+    warnings_of_lost,
+)
 
 __all__ = [
     "COMPETITION_FILES",
     "ONTOLOGY_FILES",
+    "PUBLISHED_GENERATORS",
     "Additions",
     "Entity",
     "Ontology",
     "additions_to",
+    "lost_rows",
     "ontology_problems",
     "place_in_folder",
     "read_competition",
     "read_entities",
     "read_ontology",
+    "warnings_of_lost",
     "write_ontology",
 ]

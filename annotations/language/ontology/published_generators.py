@@ -124,7 +124,7 @@ def _read_objects_of_2026(text: str) -> Iterator[ReadRow]:
 
 # Generator → file → what it reads there.
 _COLUMNS = {NAMES: _read_column(_NAME), ROOMS: _read_column(_ROOM)}
-GENERATORS: Mapping[str, Mapping[str, Reader]] = {
+PUBLISHED_GENERATORS: Mapping[str, Mapping[str, Reader]] = {
     "2025": {
         **_COLUMNS,
         LOCATIONS: _read_locations(_LOCATION_2025),
@@ -149,7 +149,7 @@ def lost_rows(files: Mapping[str, bytes], ontology: Ontology) -> Iterator[LostRo
     for entity in ontology.entities:
         by_file[entity.position.source].setdefault(entity.position.line, entity)
     texts = {name: _Text(read_text(files[name], name)[0]) for name in by_file}
-    for generator, readers in GENERATORS.items():
+    for generator, readers in PUBLISHED_GENERATORS.items():
         for name, entities in by_file.items():
             reading = _Reading(texts[name], readers[name](texts[name].whole))
             for entity in entities.values():
@@ -159,7 +159,7 @@ def lost_rows(files: Mapping[str, bytes], ontology: Ontology) -> Iterator[LostRo
                     yield LostRow(generator, entity, misread, reading.hint_for(entity))
 
 
-def warnings_of(lost: Iterable[LostRow]) -> tuple[Problem, ...]:
+def warnings_of_lost(lost: Iterable[LostRow]) -> tuple[Problem, ...]:
     """Return a warning for each row that is lost, and one alone for generators of which it says the same."""
     generators: dict[tuple[Position, str, str, str], list[str]] = defaultdict(list)
     for row in lost:

@@ -15,10 +15,14 @@ from annotations.language.ontology.competition_folder import (
     ROOMS,
     read_competition,
 )
-from annotations.language.ontology.published_generators import GENERATORS, lost_rows, warnings_of
+from annotations.language.ontology.published_generators import (
+    PUBLISHED_GENERATORS,
+    lost_rows,
+    warnings_of_lost,
+)
 from tests.annotations.language.ontology.test_competition_folder import FOLDER, MOST_SECONDS
 
-OLDER, NEWER = GENERATORS
+OLDER, NEWER = PUBLISHED_GENERATORS
 HEAD = "| Number | Name | Object Category |\n| - | - | - |\n| 0 | table (p) | drinks |\n"
 WHOLE = {
     **FOLDER,
@@ -143,7 +147,7 @@ def test_a_warning_stands_at_its_row_and_names_the_generators():
     files[NAMES] += "| Gabriëlle |\n".encode()
     files[LOCATIONS] += b"| 1 | bed |\n| 2 | sofa | |\n"
     ontology, _ = read_competition(files)
-    bed, name = warnings_of(lost_rows(files, ontology))
+    bed, name = warnings_of_lost(lost_rows(files, ontology))
     assert (bed.position.source, bed.position.line, bed.position.column) == (LOCATIONS, 5, 7)
     assert (name.position.source, name.position.line) == (NAMES, 4)
     assert not (bed.is_error or name.is_error)
@@ -165,7 +169,7 @@ def test_large_files_take_less_than_two_seconds(names):
     files[NAMES] += names.encode()
     began = process_time()
     ontology, _ = read_competition(files)
-    assert warnings_of(lost_rows(files, ontology))
+    assert warnings_of_lost(lost_rows(files, ontology))
     assert process_time() - began < MOST_SECONDS
 
 
@@ -184,5 +188,5 @@ def test_what_a_hint_says_to_write_is_read(file):
         place = {"names": NAMES, "objects": OBJECTS, "locations": LOCATIONS}[file]
         files[place] = text.format(name).encode()
         ontology, _ = read_competition(files)
-        (warning,) = warnings_of(lost_rows(files, ontology))
+        (warning,) = warnings_of_lost(lost_rows(files, ontology))
         assert lost_in(**{file: text.format(warning.hint.removeprefix("write "))}) == []
