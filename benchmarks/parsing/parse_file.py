@@ -1,10 +1,10 @@
 """What ``manage.py parse --file`` costs with the grammar oracle, from the start of Python to the last answer.
 
-    GPSR_SHARED_DATA=… .venv/bin/python -m benchmarks.parsing.parse_file [--file LINES] [--times 3]
+    GPSR_SHARED_DATA=… .venv/bin/python -m benchmarks.parsing.parse_file [--file LINES] [--grammar FOLDER] [--times 3]
 
-Loads the starter world into a fresh SQLite database, imports a competition's folder there, and parses every line of
-its commands several times. Seconds of processor time are user and system time together; the smallest of the runs
-counts, because other work on the machine only adds.
+Loads the starter world, or the grammar and templates of a folder, into a fresh SQLite database, imports a
+competition's folder there, and parses every line of its commands several times. Seconds of processor time are user and
+system time together; the smallest of the runs counts, because other work on the machine only adds.
 """
 
 from __future__ import annotations
@@ -23,11 +23,17 @@ COMPETITION = DATA / "competition-2025"
 def main() -> None:
     arguments = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     arguments.add_argument("--file", type=Path, default=COMPETITION / "commands.jsonl")
+    arguments.add_argument(
+        "--grammar", type=Path, help="files of a generator, in place of the starter world"
+    )
     arguments.add_argument("--times", type=int, default=3, help="how often to run the command")
     given = arguments.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         site = Site(Path(folder) / "var")
-        run(site, "shell", "-c", STARTER)
+        if given.grammar:
+            run(site, "import_generator", str(given.grammar.resolve()), "--world", WORLD)
+        else:
+            run(site, "shell", "-c", STARTER)
         run(site, "import_competition", str(COMPETITION), "--world", WORLD)
         asked = (
             "--file",
