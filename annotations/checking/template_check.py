@@ -75,18 +75,16 @@ def check_template(
             too_long.append(error.problem)
     if too_long:
         return CheckedTemplate(tuple(too_long))
+    template, unread = read_sides(pattern, form)
     try:
         declared = predicates_of(world)
         grammar = grammar_of(category) if category else Grammar(())
-        checker = checker_of(
-            grammar,
-            declared,
-            category.name if category else "",
-            composition_of(category) if category else (),
-        )
+        lines = composition_of(category) if category else ()
+        if template is not None and template.nonterminal:
+            lines = (*lines, template)  # it may close a cycle
+        checker = checker_of(grammar, declared, category.name if category else "", lines)
     except LanguageError as error:
         return CheckedTemplate((error.problem,))
-    template, unread = read_sides(pattern, form)
     if template is None:
         return CheckedTemplate(unread, checker=checker)
     checked = CheckedTemplate(

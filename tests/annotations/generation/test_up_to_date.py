@@ -30,8 +30,14 @@ TWO_CATEGORIES = {
     "locations.xml": '<rooms><room name="kitchen"><location name="sink" isPlacement="true"/>'
     "</room></rooms>",
 }
-PATTERNS = ("$go out", "$fetch $thing", "get it", "(go|run) out", "$go $fetch", "$nothing", "$go")
-FORMS = ("(go)", "(bring $thing)", '($fetch "it")', "(stop)", "UNKNOWN")
+PATTERNS = (
+    *("$go out", "$fetch $thing", "get it", "(go|run) out", "$go $fetch", "$nothing", "$go"),
+    *("$thing -> the {kobject}", "$thing -> it", "$fetch -> (get|take)", "$go $thing out"),
+)
+FORMS = (
+    *("(go)", "(bring $thing)", '($fetch "it")', "(stop)", "UNKNOWN"),
+    *("$thing", "(sequence $fetch $thing)", "(is_a {kobject})"),
+)
 EXPANSIONS = ("get it", "the {kobject} | it", "go", "(drive | run) out")
 edits = st.tuples(
     st.sampled_from(["add", "change", "change", "delete", "restore", "status", "production"]),
