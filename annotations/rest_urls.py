@@ -95,6 +95,7 @@ corpus = [
     path("import/competition/", import_rest.ImportCompetition.as_view(), name="import-competition"),
     path("import/pairs/", import_rest.ImportPairs.as_view(), name="import-pairs"),
     path("generate/", import_rest.Generate.as_view(), name="generate"),
+    path("generation/", import_rest.Generation.as_view(), name="generation"),
     path("download/", import_rest.Archive.as_view(), name="download"),
     path("download/<slug:part>/", import_rest.ArchivePart.as_view(), name="download-part"),
     path("complexity/", command_rest.ComplexityOfWorld.as_view(), name="complexity"),

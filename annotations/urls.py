@@ -52,6 +52,7 @@ urlpatterns = [
     path("download/", world_pages.download, name="download"),
     path("download/<slug:part>/", world_pages.download_part, name="download_part"),
     path("generate/", import_pages.generate, name="generate"),
+    path("generation/", import_pages.generation, name="generation"),
     path("ontology/", entity_pages.ontology, name="ontology"),
     path("ontology/new/", entity_pages.entity_new, name="entity_new"),
     path("ontology/paste/", entity_pages.entities_new, name="entities_new"),

@@ -12,7 +12,7 @@ from typing import Any
 from django.db import IntegrityError, transaction
 from django.db.models import Count
 
-from annotations.generation.grounded_pairs import GroundedCommands
+from annotations.generation.grounded_pairs import GroundedCommands, commands_to_ground
 from annotations.language.english import CHECK_WORDS
 from annotations.language.errors import LanguageError, Refusal
 from annotations.language.forms import canonical_text
@@ -20,10 +20,10 @@ from annotations.language.grounding import Grounded
 from annotations.language.ontology import Ontology
 from annotations.language.paraphrases import Named, entities_of
 from annotations.language.predicates import gloss
-from annotations.language.templates import Expansion, generate
+from annotations.language.templates import Expansion
 from annotations.models import Campaign, CampaignPrompt, User, World
 from annotations.models.campaigns import Balance, Wording
-from annotations.rows.from_rows import ontology_of, predicates_of, task_categories
+from annotations.rows.from_rows import ontology_of, predicates_of
 from annotations.rows.synchronise import BATCH
 
 MOST_PROMPTS = 20_000
@@ -72,8 +72,7 @@ def draw_prompts(world: World, choice: PromptChoice) -> list[DrawnPrompt]:
         LanguageError: the world makes too many commands to draw from, or a stored text cannot be read.
         Refusal: nothing is left to ask for, or it would be more than ``MOST_PROMPTS``.
     """
-    categories = task_categories(world)
-    expansions = generate(categories).expansions
+    categories, expansions = commands_to_ground(world)
     if not expansions:
         said = "This world makes no commands yet. Write templates first: they give commands their forms."
         raise Refusal(said, "nothing_to_paraphrase")

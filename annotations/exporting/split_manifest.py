@@ -33,6 +33,7 @@ def manifest_of(split: Split, part: str | None = None, source: str | None = None
         "seed": split.seed,
         "proportions": split.proportions,
         "tests_on_models": split.tests_on_models,
+        "sample": split.sample or None,
         "content_hash": split.content_hash,
         "created_at": split.created_at.isoformat(),
         "chosen": chosen,

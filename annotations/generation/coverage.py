@@ -19,7 +19,8 @@ class Coverage:
     """One task category's grammar. ``size`` is an upper estimate of its anonymized commands.
 
     Where the grammar is small enough, ``commands`` counts the distinct ones, ``covered`` those that
-    templates have made a form for; else both are None. ``trouble`` says why it has no size.
+    templates have made a form for; else, and where the world has a sample, both are None.
+    ``trouble`` says why it has no size.
     """
 
     task_category: str
@@ -42,16 +43,26 @@ class Coverage:
 
 def coverage_of(world: models.World) -> list[Coverage]:
     """Return one entry for each task category, in order. Raises LanguageError where a row cannot be read."""
-    known = frozenset(world.commands.values_list("anonymized_text", flat=True))
+    known = known_commands(world)
     return [_coverage(category, known) for category in task_categories(world)]
 
 
+def known_commands(world: models.World | None) -> frozenset[str] | None:
+    """Return the commands that have a form; None where they are a sample, so that others may have one too."""
+    if world is None:
+        return frozenset()
+    if world.sample_note:
+        return None
+    return frozenset(world.commands.values_list("anonymized_text", flat=True))
+
+
 def count_coverage(
-    categories: Sequence[TaskCategory], commands: frozenset[str]
+    categories: Sequence[TaskCategory], commands: frozenset[str] | None
 ) -> dict[str, Coverage]:
     """Count by task category how many commands of its grammar are among ``commands``, which have a form.
 
-    Enumerates the grammar, so this belongs to imports and generation, never to a page.
+    Without ``commands`` nothing is counted. Enumerates the grammar, so this belongs to imports and generation,
+    never to a page.
     """
     return {category.name: _coverage(category, commands) for category in categories}
 
@@ -65,7 +76,7 @@ def store_coverage(world: models.World, counted: Mapping[str, Coverage]) -> None
         category.save(update_fields=["commands_in_grammar", "commands_with_form"])
 
 
-def _coverage(category: TaskCategory, known: frozenset[str]) -> Coverage:
+def _coverage(category: TaskCategory, known: frozenset[str] | None) -> Coverage:
     grammar = category.grammar
     counts = len(grammar.productions), len(category.templates)
     try:
@@ -74,6 +85,8 @@ def _coverage(category: TaskCategory, known: frozenset[str]) -> Coverage:
         return Coverage(category.name, *counts, trouble=str(error))
     if commands is None:
         return Coverage(category.name, *counts, size)
+    if known is None:
+        return Coverage(category.name, *counts, size, samples=spread(commands, SAMPLES))
     covered = sum(command in known for command in commands)
     return Coverage(
         category.name,

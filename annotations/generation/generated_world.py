@@ -19,6 +19,7 @@ from annotations.generation.template_problems import store_template_problems
 from annotations.language.errors import Problem, warning_at
 from annotations.language.forms import depth, head_predicate, read_form
 from annotations.language.templates import BoundedCache, Expansion, Generated
+from annotations.language.templates.sample_notes import SampleNote
 from annotations.models.description import ProblemSubject
 from annotations.rows.from_rows import AnnotatedCategory
 from annotations.rows.staging import Staging
@@ -128,7 +129,8 @@ def counters_of(world: models.World) -> Counters:
 class GeneratedWorld:
     """What has to be done so that a world holds what was generated.
 
-    Entering it reads and collects; only ``write``, inside a transaction, writes.
+    Entering it reads and collects; only ``write``, inside a transaction, writes. ``sample`` is remembered
+    with the world: what sample the commands are, if any.
     """
 
     def __init__(
@@ -137,10 +139,12 @@ class GeneratedWorld:
         categories: Sequence[AnnotatedCategory],
         generated: Generated,
         progress: Progress = UNWATCHED,
+        sample: SampleNote | None = None,
     ) -> None:
         self._world = world
         self._categories = categories
         self._generated = generated
+        self._sample = sample
         rows = {category.value.name: category.template_rows for category in categories}
         self.commands = CommandRows(world, generated.expansions, rows, progress)
 
@@ -164,7 +168,9 @@ class GeneratedWorld:
                     task_category=expansion.task_category,
                 )
             )
-        self._coverage = count_coverage(values, commands)
+        # Commands outside a sample are not without a form, so nothing is counted.
+        is_sample = self._sample is not None and not self._sample.is_all
+        self._coverage = count_coverage(values, None if is_sample else commands)
         return self
 
     def __exit__(self, *raised: Any) -> None:
@@ -189,7 +195,9 @@ class GeneratedWorld:
         store_coverage(self._world, self._coverage)
         revision, generations = counters
         models.World.objects.filter(pk=self._world.pk).update(
-            generated_revision=revision, generations=generations + 1
+            generated_revision=revision,
+            generations=generations + 1,
+            sample=self._sample.as_json() if self._sample else {},
         )
         return changes
 

@@ -9,16 +9,13 @@ from annotations import models
 from annotations.background.progress import UNWATCHED, Progress
 from annotations.generation.complexity import Complexity, complexity
 from annotations.generation.generated_world import GeneratedWorld, counters_of
+from annotations.generation.language_size import MOST_SAMPLED_AT_ONCE, make_commands
 from annotations.jobs.requesting import request_job
 from annotations.jobs.watching import JobProgress
 from annotations.jobs.weight import MOST_COMMANDS
 from annotations.language.errors import LanguageError
-from annotations.language.templates import (
-    DEFAULT_LIMIT,
-    Generated,
-    generate,
-    generation_size,
-)
+from annotations.language.templates import DEFAULT_LIMIT, Generated, generation_size
+from annotations.language.templates.sample_notes import Balance, SampleNote, SampleRequest
 from annotations.rows.from_rows import AnnotatedCategory, annotated_categories, task_categories
 from annotations.rows.synchronise import Changes
 
@@ -27,12 +24,16 @@ MOST_ATTEMPTS = 3
 
 @dataclass(frozen=True)
 class GenerationReport:
-    """What a generation gave. ``columns`` are those of the complexity table, all of them last."""
+    """What a generation gave. ``columns`` are those of the complexity table, all of them last.
+
+    ``sample`` says what sample the commands are, if any.
+    """
 
     generated: Generated
     columns: tuple[Complexity, ...]
     categories: tuple[AnnotatedCategory, ...]
     changes: Changes
+    sample: SampleNote | None = None
 
     def as_json(self) -> dict[str, Any]:
         """Return figures by task category; under ``all`` those of all together."""
@@ -71,6 +72,7 @@ class GenerationReport:
             "mean_form_length": by_category("mean_form_length"),
             "commands_per_form": by_category("commands_per_form"),
             "changes": self.changes.as_json(),
+            "sample": self.sample.as_json() if self.sample else None,
         }
 
     def _place(self, task_category: str, index: int) -> object:
@@ -78,15 +80,33 @@ class GenerationReport:
         return next(each.templates for each in values if each.name == task_category)[index].position
 
 
-def start_generation(world: models.World, by: models.User) -> models.Job | GenerationReport:
-    """Generate now, or queue a job. Raises LanguageError where the templates cannot be expanded."""
-    if is_heavy_generation(world):
-        return request_job(models.JobKind.GENERATE, world.name, by)
-    return generate_pairs(world)
+def start_generation(
+    world: models.World, by: models.User, request: SampleRequest | None = None
+) -> models.Job | GenerationReport:
+    """Generate now, or queue a job; what was asked for the last time, without a ``request``.
+
+    Raises LanguageError where the templates cannot be expanded.
+    """
+    if is_heavy_generation(world, request):
+        return request_job(models.JobKind.GENERATE, world.name, by, _arguments(request))
+    return generate_pairs(world, request=request)
 
 
-def is_heavy_generation(world: models.World) -> bool:
-    """Return whether the templates of ``world`` make many commands."""
+def _arguments(request: SampleRequest | None) -> dict[str, Any]:
+    if request is None:
+        return {}
+    return {
+        "sample": request.size,
+        "seed": request.seed,
+        "balanced": str(request.balance),
+    }
+
+
+def is_heavy_generation(world: models.World, request: SampleRequest | None = None) -> bool:
+    """Return whether many commands are asked for, or the templates of ``world`` make many."""
+    size = (request or world.sample_request).size
+    if size:
+        return size > MOST_SAMPLED_AT_ONCE
     try:
         return generation_size(task_categories(world)) > MOST_COMMANDS
     except LanguageError:
@@ -96,12 +116,20 @@ def is_heavy_generation(world: models.World) -> bool:
 def generate_pairs_of(job: models.Job, progress: JobProgress) -> dict[str, Any]:
     if job.world is None:
         raise LanguageError(f"there is no world “{job.world_name}” any more")
-    limits = {"limit": job.arguments["limit"]} if "limit" in job.arguments else {}
-    return generate_pairs(job.world, progress=progress, **limits).as_json()
+    arguments = job.arguments
+    limits = {"limit": arguments["limit"]} if "limit" in arguments else {}
+    request = None
+    if "sample" in arguments:
+        balance = Balance(arguments["balanced"])
+        request = SampleRequest(arguments["sample"], arguments["seed"], balance)
+    return generate_pairs(job.world, progress=progress, request=request, **limits).as_json()
 
 
 def generate_pairs(
-    world: models.World, limit: int = DEFAULT_LIMIT, progress: Progress = UNWATCHED
+    world: models.World,
+    limit: int = DEFAULT_LIMIT,
+    progress: Progress = UNWATCHED,
+    request: SampleRequest | None = None,
 ) -> GenerationReport:
     """Store the commands and logical forms of ``world`` and say what they are.
 
@@ -109,12 +137,17 @@ def generate_pairs(
     and its paraphrases stay. Conflicts are stored as warnings. All is computed before anything is
     written, so that others wait for the writing alone.
 
+    Args:
+        limit: of commands, where all are made.
+        request: the sample to draw, or ``EVERYTHING``; what was asked for the last time, without one.
+
     Raises:
         LanguageError: the templates make more than ``limit`` commands (nothing is changed then), a
-            stored text cannot be read, or somebody else keeps changing the world meanwhile.
+            stored text cannot be read, somebody else keeps changing the world meanwhile, or as
+            ``Language.sample``.
     """
     for _ in range(MOST_ATTEMPTS):
-        report = _generate_once(world, limit, progress)
+        report = _generate_once(world, limit, progress, request)
         if report is not None:
             return report
     raise LanguageError(
@@ -122,19 +155,28 @@ def generate_pairs(
     )
 
 
-def _generate_once(world: models.World, limit: int, progress: Progress) -> GenerationReport | None:
+def _generate_once(
+    world: models.World, limit: int, progress: Progress, request: SampleRequest | None
+) -> GenerationReport | None:
     """Generate once. Return None where others have changed templates or commands meanwhile."""
     progress.report(0, "expanding the templates")
-    counters = counters_of(models.World.objects.get(pk=world.pk))
+    before = models.World.objects.get(pk=world.pk)
+    counters = counters_of(before)
     categories = annotated_categories(world)
-    generated = generate([category.value for category in categories], limit)
+    generated, sample = make_commands(
+        [category.value for category in categories],
+        request or before.sample_request,
+        limit,
+        lambda share: progress.report(share / 2, "drawing commands"),
+    )
     progress.report(0.5, "comparing with the stored commands")
-    with GeneratedWorld(world, categories, generated, progress) as rows:
+    with GeneratedWorld(world, categories, generated, progress, sample) as rows:
         progress.report(0.9, "writing")
         with progress.writing():
             if counters_of(models.World.objects.select_for_update().get(pk=world.pk)) != counters:
                 return None
             changes = rows.write(counters)
-            report = GenerationReport(generated, tuple(complexity(world)), categories, changes)
+            columns = tuple(complexity(world))
+            report = GenerationReport(generated, columns, categories, changes, sample)
             progress.conclude(report.as_json())
     return report

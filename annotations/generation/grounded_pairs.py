@@ -11,15 +11,13 @@ from annotations.language.errors import LanguageError
 from annotations.language.forms import canonical_text
 from annotations.language.grounding import Grounded, ground
 from annotations.language.ontology import Ontology
-from annotations.language.templates import (
-    Derivation,
-    Expansion,
-    TaskCategory,
-    TemplateExpander,
-    generate,
-)
+from annotations.language.templates import Derivation, Expansion, TaskCategory, generate
+from annotations.language.templates.ranked_templates import RankedGrammar, RankedTemplate
 from annotations.models import World
-from annotations.rows.from_rows import ontology_of, task_categories
+from annotations.rows.from_rows import annotated_categories, ontology_of
+
+# All derivations of a template with more are not kept.
+MOST_EXPANDED = 20_000
 
 
 def grounded_pairs(world: World, count: int, seed: int = 0) -> list[tuple[str, str]]:
@@ -31,12 +29,43 @@ def grounded_pairs(world: World, count: int, seed: int = 0) -> list[tuple[str, s
     Raises:
         LanguageError: the world makes no command, or none that its ontology can ground.
     """
-    categories = task_categories(world)
-    expansions = generate(categories).expansions
+    categories, expansions = commands_to_ground(world)
     if not expansions:
         raise LanguageError(f"the world {world} makes no command", hint="import templates first")
     drawn = _draw(categories, expansions, ontology_of(world), Random(seed))
     return list(islice(drawn, count))
+
+
+def commands_to_ground(
+    world: World,
+) -> tuple[tuple[TaskCategory, ...], tuple[Expansion, ...]]:
+    """Return the task categories of ``world`` and its commands: those that are stored, where they are a sample.
+
+    Raises:
+        LanguageError: the world makes too many commands, or a stored text cannot be read.
+    """
+    annotated = annotated_categories(world)
+    categories = tuple(each.value for each in annotated)
+    if not world.sample_request.size:
+        return categories, generate(categories).expansions
+    places = {
+        (each.value.name, row.pk): index
+        for each in annotated
+        for index, row in enumerate(each.template_rows)
+    }
+    columns = (
+        "anonymized_text",
+        "logical_form__text",
+        "task_category",
+        "template",
+        "is_in_grammar",
+    )
+    stored = world.commands.order_by("position").values_list(*columns)
+    return categories, tuple(
+        Expansion(command, form, name, places[name, template], in_grammar)
+        for command, form, name, template, in_grammar in stored
+        if (name, template) in places
+    )
 
 
 def _draw(
@@ -63,11 +92,15 @@ def _draw(
 
 
 class GroundedCommands:
-    """The commands of one category with entities in them; derivations are expanded a template at a time."""
+    """The commands of one category with entities in them.
+
+    Derivations are expanded a template at a time; where it has more than ``MOST_EXPANDED`` commands, one at a time.
+    """
 
     def __init__(self, category: TaskCategory) -> None:
         self._category = category
-        self._expander = TemplateExpander(category.grammar, category.lines)
+        self._ranked = RankedGrammar(category.grammar, category.lines)
+        self._templates: dict[int, RankedTemplate] = {}
         self._by_text: dict[int, dict[str, list[Derivation]]] = {}
 
     def draw(self, expansion: Expansion, ontology: Ontology, random: Random) -> Grounded:
@@ -81,9 +114,22 @@ class GroundedCommands:
 
     def _derivations_of(self, expansion: Expansion) -> list[Derivation]:
         index = expansion.template_index
+        template = self._category.templates[index]
+        if index not in self._templates:
+            self._templates[index] = self._ranked.template(template)
+        ranked = self._templates[index]
+        if ranked.size > MOST_EXPANDED:
+            words = tuple(expansion.command.split())
+            derivation = next(ranked.derivations_of(words, expansion.form_text), None)
+            if derivation is None:
+                raise LanguageError(
+                    f"no template makes “{expansion.command}” with its form any more",
+                    hint="generate the commands anew",
+                )
+            return ranked.intact(derivation, index)
         if index not in self._by_text:
             by_text: dict[str, list[Derivation]] = defaultdict(list)
-            for each in self._expander.derivations(self._category.templates[index], index):
+            for each in self._ranked.expander.derivations(template, index):
                 by_text[each.anonymized_text].append(each)
             self._by_text[index] = by_text
         return self._by_text[index][expansion.command]

@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from annotations import models
-from annotations.language.errors import LanguageError, Problem
+from annotations.generation.coverage import known_commands
+from annotations.language.errors import LanguageError, Position, Problem, warning_at
 from annotations.language.grammar import Budget, Grammar, passages
 from annotations.language.templates import BoundedCache
 from annotations.rows.from_rows import task_categories
@@ -74,7 +75,11 @@ def uncovered_of(world: models.World, task_category: str = "") -> UncoveredRepor
         categories = task_categories(world)
     except LanguageError as error:
         return UncoveredReport((), (), problems=(error.problem,))
-    covered = frozenset(world.commands.values_list("anonymized_text", flat=True))
+    covered = known_commands(world)
+    if covered is None:
+        said = f"the commands are {world.sample_note}, so nobody knows which others have no form"
+        hint = "generate all commands, where these are not too many"
+        return UncoveredReport((), (), problems=(warning_at(Position(), said, hint),))
     chosen = [each for each in categories if task_category in ("", each.name)]
     commands: list[UncoveredCommand] = []
     all_of, without_form = Counter[str](), Counter[str]()

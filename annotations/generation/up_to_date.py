@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from annotations import models
 from annotations.generation.generated_world import GeneratedWorld, counters_of
 from annotations.generation.kept_expansions import generate_at_once
+from annotations.generation.language_size import MOST_SAMPLED_AT_ONCE, make_commands
 from annotations.jobs.requesting import request_job
 from annotations.language.errors import LanguageError
 from annotations.rows.from_rows import annotated_categories
@@ -35,18 +36,25 @@ def bring_up_to_date(world: models.World) -> UpdateOutcome:
     """Write the commands, forms, conflicts and coverage that ``generate_pairs`` would give.
 
     To be called inside the transaction that changed a template or the grammar, which has marked the
-    world as changed. A world that is too large, or that cannot be expanded, is left as it is and stays
-    marked. Rows that are right already are not touched.
+    world as changed. A sample is drawn anew with its seed. A world that is too large, or that cannot be expanded, is
+    left as it is and stays marked. Rows that are right already are not touched.
     """
     locked = models.World.objects.select_for_update().get(pk=world.pk)
     if not locked.commands_are_stale:
         return UpdateOutcome(True)
     try:
         categories = annotated_categories(locked)
-        generated = generate_at_once([category.value for category in categories])
+        values = [category.value for category in categories]
+        request, sample = locked.sample_request, None
+        if request.size > MOST_SAMPLED_AT_ONCE:
+            return UpdateOutcome(False, trouble=f"a sample of {request.size:,} commands is drawn")
+        if request.size:
+            generated, sample = make_commands(values, request, None)
+        else:
+            generated = generate_at_once(values)
     except LanguageError as error:
         return UpdateOutcome(False, trouble=str(error))
-    with GeneratedWorld(locked, categories, generated) as rows:
+    with GeneratedWorld(locked, categories, generated, sample=sample) as rows:
         changes = rows.write(counters_of(locked))
         return UpdateOutcome(True, changes, rows.commands.new_forms)
 

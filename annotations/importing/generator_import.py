@@ -11,7 +11,7 @@ from typing import Any, Self
 from annotations import models
 from annotations.background.progress import UNWATCHED, Progress
 from annotations.checking.world_problems import check_again
-from annotations.generation.coverage import count_coverage, store_coverage
+from annotations.generation.coverage import count_coverage, known_commands, store_coverage
 from annotations.importing.gathered_files import GatheredFiles, gather
 from annotations.importing.generator_files import Generator, read_generator
 from annotations.importing.import_plans import (
@@ -101,13 +101,13 @@ def _compare_and_store(
         return replace(report, is_waiting=True)
     prepared = PreparedProductions(world, generator, apart.productions, brings_back)
     progress.report(0.6, "counting the commands of the grammar")
-    coverage = count_coverage(generator.texts.categories(), _commands_of(world))
+    coverage = count_coverage(generator.texts.categories(), known_commands(world))
     progress.report(0.8, "writing")
     with prepared as productions, progress.writing():
         world = lock_world(report.world, by)
         changes = store(world, generator, productions, by, brings_back)
         if report.left_out.productions:  # the grammar is not that of the files
-            coverage = count_coverage(task_categories(world), _commands_of(world))
+            coverage = count_coverage(task_categories(world), known_commands(world))
         store_coverage(world, coverage)
         # The problems of the rows are not those of the files where lines were left out.
         if report.left_out.productions or report.left_out.templates:
@@ -117,12 +117,6 @@ def _compare_and_store(
         report = replace(report, changes=changes)
         progress.conclude(report.as_json())
     return report
-
-
-def _commands_of(world: World | None) -> frozenset[str]:
-    if world is None:
-        return frozenset()
-    return frozenset(world.commands.values_list("anonymized_text", flat=True))
 
 
 class PreparedProductions:

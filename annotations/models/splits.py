@@ -10,6 +10,7 @@ from django.db import models
 from annotations.language.corpus import Criterion, Part
 from annotations.language.errors import LanguageError
 from annotations.language.forms import depth, head_predicate, read_form
+from annotations.language.templates.sample_notes import SampleNote
 from annotations.models.people import User
 from annotations.models.worlds import World
 
@@ -90,7 +91,8 @@ class Split(models.Model):
 
     ``proportions`` are the shares of train, validation and test that were asked for, fractions of 1; empty
     where nobody asked for any. ``tests_on_models`` says that what language models wrote is in validation and test
-    too. ``follows`` is the split that this one freezes anew.
+    too. ``sample`` is a ``SampleNote`` as JSON where the commands were a sample then, else empty. ``follows`` is
+    the split that this one freezes anew.
     """
 
     world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="splits")
@@ -99,6 +101,7 @@ class Split(models.Model):
     seed = models.PositiveBigIntegerField(null=True, blank=True)
     proportions = models.JSONField(default=list, blank=True)
     tests_on_models = models.BooleanField(default=False, db_default=False)
+    sample = models.JSONField(default=dict, blank=True, editable=False)
     follows = models.ForeignKey(
         "self", null=True, blank=True, on_delete=models.SET_NULL, related_name="followed_by"
     )
@@ -114,6 +117,11 @@ class Split(models.Model):
 
     def __str__(self) -> str:
         return self.name
+
+    @property
+    def sample_note(self) -> SampleNote | None:
+        """What to say of the commands; None where they were all that the templates made."""
+        return SampleNote.from_json(self.sample)
 
 
 class ExampleQuerySet(models.QuerySet["Example"]):

@@ -13,6 +13,7 @@ from django.core.validators import RegexValidator
 from django.db import models
 from django.utils import timezone
 
+from annotations.language.templates.sample_notes import EVERYTHING, SampleNote, SampleRequest
 from annotations.models.people import User, digest_of
 
 if TYPE_CHECKING:
@@ -86,8 +87,8 @@ class World(models.Model):
 
     ``revision`` counts the changes of its grammar and of templates that make commands;
     ``generated_revision`` is the one that its commands were made from, ``generations`` how often
-    they were. A world whose deletion was
-    requested is shown to nobody, until its last row is gone.
+    they were. ``sample`` is a ``SampleNote`` as JSON where a sample was asked for, else empty. A world whose
+    deletion was requested is shown to nobody, until its last row is gone.
     """
 
     name = models.CharField(
@@ -102,6 +103,7 @@ class World(models.Model):
     revision = models.PositiveIntegerField(default=0, editable=False)
     generated_revision = models.PositiveIntegerField(default=0, editable=False)
     generations = models.PositiveIntegerField(default=0, editable=False)
+    sample = models.JSONField(default=dict, blank=True, editable=False)
     deletion_requested_at = models.DateTimeField(null=True, blank=True, editable=False)
 
     if TYPE_CHECKING:
@@ -120,6 +122,18 @@ class World(models.Model):
     def commands_are_stale(self) -> bool:
         """Whether grammar or templates have changed since commands were last generated."""
         return self.generated_revision < self.revision
+
+    @property
+    def sample_note(self) -> SampleNote | None:
+        """What to say of the commands; None where they are all that the templates make."""
+        note = SampleNote.from_json(self.sample)
+        return None if note is None or note.is_all else note
+
+    @property
+    def sample_request(self) -> SampleRequest:
+        """What somebody asked for when the commands were last made."""
+        note = SampleNote.from_json(self.sample)
+        return EVERYTHING if note is None else note.request
 
     @property
     def awaits_first_commands(self) -> bool:

@@ -178,6 +178,14 @@ class PreparedSplit:
     def __exit__(self, *raised: Any) -> None:
         self._staging.__exit__(*raised)
 
+    def _sample_of(self, world: World) -> dict[str, Any]:
+        """Return the note about the sample that the commands are, where the split has any of them."""
+        is_of_world = self.seed is not None  # an imported split has commands of its own
+        if not is_of_world or not any(each.source == Source.GENERATED for each in self.examples):
+            return {}
+        now = World.objects.get(pk=world.pk)
+        return now.sample if now.sample_note else {}
+
     def store(self, world: World, by: User | None = None) -> tuple[Split, bool]:
         """Store the split; inside a transaction.
 
@@ -204,6 +212,7 @@ class PreparedSplit:
             proportions=self.proportions,
             follows=self.follows,
             tests_on_models=self.tests_on_models,
+            sample=self._sample_of(world),
             content_hash=self.content_hash,
             created_by=by,
         )

@@ -44,7 +44,7 @@ from annotations.worlds.parts import registered_parts
 
 FORMAT, VERSION = "gpsr-workbench-world", 1
 NONE_OF_THEM: Mapping[str, Any] = {"pk__in": ()}
-WORLD_FIELDS = ("description", "revision", "generated_revision")
+WORLD_FIELDS = ("description", "revision", "generated_revision", "sample")
 
 
 @dataclass(frozen=True)

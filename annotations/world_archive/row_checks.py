@@ -13,6 +13,7 @@ from django.db import models
 from annotations.language.errors import LanguageError, Position
 from annotations.language.forms import read_template_form
 from annotations.language.predicates import ArgumentKind
+from annotations.language.templates.sample_notes import SampleNote
 from annotations.rows.stored_problems import is_stored_problems
 from annotations.world_archive.archive_tables import ArchiveTable
 
@@ -197,7 +198,17 @@ def _is_settings(value: Any) -> bool:
     return isinstance(value, dict) and all(isinstance(each, of_types) for each in value.values())
 
 
+def _is_sample(value: Any) -> bool:
+    """Return whether this is a note about a sample, or nothing."""
+    try:
+        SampleNote.from_json(value)
+    except ValueError:
+        return False
+    return isinstance(value, dict)
+
+
 SHAPES: Shapes = {
+    "sample": _is_sample,
     "entities": _is_named,
     "flags": _is_flags,
     "settings": _is_settings,

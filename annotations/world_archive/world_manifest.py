@@ -57,6 +57,7 @@ def read_manifest(archive: zipfile.ZipFile, name: str) -> WorldManifest:
             place,
             "update the older of the two installations",
         )
+    values.setdefault("sample", {})  # archives of earlier releases do not have it
     for field in WORLD_FIELDS:
         column = World._meta.get_field(field)
         assert isinstance(column, Field)

@@ -107,6 +107,7 @@ class RankedRule:
 
     def __init__(self, text: str, sequences: Iterable[RankedSequence], atom: Atoms = 0) -> None:
         self.atom = atom
+        self.name = text.removeprefix("$")
         self.text = text
         self.sequences = sorted(sequences, key=lambda each: each.text)
         counts: Counts = {atom: 1} if atom else {}
@@ -137,7 +138,7 @@ class RankedRule:
     def spell(self, choices: Cursor) -> Iterator[tuple[str, ...] | str]:
         """Yield runs of words, and the names of atoms where these stand."""
         if self.atom:
-            yield self.text.removeprefix("$")
+            yield self.name
         else:
             yield from self.sequences[choices.take()].spell(choices)
 

@@ -19,7 +19,14 @@ from typing import TypeAlias
 from annotations.language.errors import LanguageError
 from annotations.language.forms import canonical_text
 from annotations.language.grammar import CHECK_STEPS, Budget, Grammar, Production
-from annotations.language.grammar.ranking import Atoms, Choices, Cursor, RankedRule, Ranking
+from annotations.language.grammar.ranking import (
+    Atoms,
+    Choices,
+    Cursor,
+    RankedRule,
+    RankedSequence,
+    Ranking,
+)
 from annotations.language.limits import MAX_INDEXED_BYTES
 from annotations.language.symbols import Choice, Symbols
 from annotations.language.templates.composition import SynchronousGrammar, names_in_order
@@ -207,6 +214,16 @@ class RankedTemplate:
         self._require_indexable(text, "form")
         return words, FilledForm(filled.form, text, filled.choices)
 
+    def derivations_of(self, words: tuple[str, ...], form_text: str) -> Iterator[RankedDerivation]:
+        """Yield the derivations that become ``words`` with a form.
+
+        Raises:
+            TooManyCombinations: while looking, when that takes more than ``CHECK_STEPS``.
+        """
+        for derivation in _Matcher(self, words, Budget(CHECK_STEPS), {}).derivations(0, len(words)):
+            if self.pair(derivation)[1].text == form_text:
+                yield derivation
+
     def intact(self, derivation: RankedDerivation, index: int) -> list[Derivation]:
         """Return the derivations that become the same words, with their wildcards, as ``TemplateExpander`` makes them.
 
@@ -343,6 +360,125 @@ class RankedTemplate:
                 self.template.position,
                 f"{MAX_INDEXED_BYTES:,} is the limit; shorten the pattern and the form",
             )
+
+
+# Nonterminals that the form mentions → where they stand.
+_Spans: TypeAlias = "dict[str, tuple[int, int]]"
+
+
+class _Matcher:
+    """Finds the derivations of one template or line between places of a command."""
+
+    def __init__(
+        self,
+        ranked: RankedTemplate,
+        words: tuple[str, ...],
+        budget: Budget,
+        others: dict[RankedTemplate, _Matcher],
+    ) -> None:
+        self._ranked = ranked
+        self._words = words
+        self._budget = budget
+        self._others = others  # one for each line, so that each place is looked at once
+        self._ends: dict[tuple[RankedRule, int], frozenset[int]] = {}
+        others[ranked] = self
+
+    def derivations(self, start: int, end: int) -> Iterator[RankedDerivation]:
+        """Yield the derivations between two places."""
+        for choices, spans in self._of_sequence(self._ranked._sequence, 0, start, end, {}):
+            for became in self._became(0, spans):
+                yield RankedDerivation(choices, became)
+
+    def ends(self, start: int) -> frozenset[int]:
+        """Return where a derivation that begins at ``start`` can end."""
+        return self._ends_of_sequence(self._ranked._sequence, start)
+
+    def _became(
+        self, place: int, spans: _Spans
+    ) -> Iterator[tuple[tuple[str, Choices | tuple[int, RankedDerivation]], ...]]:
+        """Yield what the atoms became, from the one at ``place`` on."""
+        ranking = self._ranked._ranking
+        if place == len(ranking.atoms):
+            if len(spans) == len(ranking.atoms):
+                yield ()
+            return
+        name = ranking.atoms[place]
+        if name not in spans:
+            yield from self._became(place + 1, spans)
+        elif name in self._ranked._composed:
+            for number, line in enumerate(self._ranked._grammar.lines(name)):
+                for inner in self._of_line(line).derivations(*spans[name]):
+                    for others in self._became(place + 1, spans):
+                        yield (name, (number, inner)), *others
+        else:
+            for choices, below in self._of_rule(ranking.body(name), *spans[name], spans):
+                for others in self._became(place + 1, below):
+                    yield (name, choices), *others
+
+    def _of_line(self, line: RankedTemplate) -> _Matcher:
+        return self._others.get(line) or _Matcher(line, self._words, self._budget, self._others)
+
+    def _of_rule(
+        self, rule: RankedRule, start: int, end: int, spans: _Spans
+    ) -> Iterator[tuple[Choices, _Spans]]:
+        if rule.atom:
+            before = spans.setdefault(rule.name, (start, end))
+            if self._words[slice(*before)] == self._words[start:end]:
+                yield (), spans
+            return
+        for number, sequence in enumerate(rule.sequences):
+            if end in self._ends_of_sequence(sequence, start):
+                for choices, bound in self._of_sequence(sequence, 0, start, end, spans):
+                    yield (number, *choices), bound
+
+    def _of_sequence(
+        self, sequence: RankedSequence, index: int, start: int, end: int, spans: _Spans
+    ) -> Iterator[tuple[Choices, _Spans]]:
+        self._budget.spend()
+        if index == len(sequence.parts):
+            if start == end:
+                yield (), spans
+            return
+        part = sequence.parts[index]
+        if isinstance(part, tuple):
+            stop = start + len(part)
+            if self._words[start:stop] == part:
+                yield from self._of_sequence(sequence, index + 1, stop, end, spans)
+            return
+        for stop in sorted(self._ends_of(part, start)):
+            if stop <= end:
+                for choices, bound in self._of_rule(part, start, stop, dict(spans)):
+                    following = self._of_sequence(sequence, index + 1, stop, end, bound)
+                    for others, all_bound in following:
+                        yield (*choices, *others), all_bound
+
+    def _ends_of(self, rule: RankedRule, start: int) -> frozenset[int]:
+        key = rule, start
+        if key not in self._ends:
+            if rule.name in self._ranked._composed and rule.atom:
+                lines = self._ranked._grammar.lines(rule.name)
+                ends = [self._of_line(line).ends(start) for line in lines]
+            else:
+                body = self._ranked._ranking.body(rule.name) if rule.atom else rule
+                ends = [self._ends_of_sequence(each, start) for each in body.sequences]
+            self._ends[key] = frozenset().union(*ends)
+        return self._ends[key]
+
+    def _ends_of_sequence(self, sequence: RankedSequence, start: int) -> frozenset[int]:
+        reached = frozenset((start,))
+        for part in sequence.parts:
+            self._budget.spend(len(reached))
+            if isinstance(part, tuple):
+                reached = frozenset(
+                    place + len(part)
+                    for place in reached
+                    if self._words[place : place + len(part)] == part
+                )
+            else:
+                reached = frozenset().union(*(self._ends_of(part, place) for place in reached))
+            if not reached:
+                break
+        return reached
 
 
 def _choice(value: tuple[str, ...] | Composed) -> tuple[object, ...]:

@@ -12,8 +12,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
-from enum import StrEnum
+from dataclasses import dataclass
 from itertools import accumulate
 from random import Random
 
@@ -34,6 +33,7 @@ from annotations.language.templates.ranked_templates import (
     RankedGrammar,
     RankedTemplate,
 )
+from annotations.language.templates.sample_notes import Balance, SampleNote, SampleRequest
 
 # A sample that asks for every form looks at all of them first: about 10,000 a second.
 MOST_FORMS = 100_000
@@ -47,45 +47,17 @@ MOST_IN_VAIN = 1_000
 MOST_UNEVEN = 50
 
 
-class Balance(StrEnum):
-    """What a sample has equally often: nothing but derivations, the lines of the templates, or the forms."""
-
-    NONE = "none"
-    LINES = "lines"
-    FORMS = "forms"
-
-
-@dataclass(frozen=True, slots=True)
-class SampleRequest:
-    """``size`` commands, drawn under a ``seed``. The same world and request give the same sample."""
-
-    size: int
-    seed: int = 0
-    balance: Balance = Balance.NONE
-
-
-@dataclass(frozen=True, slots=True)
-class SampledCommand:
-    """A command of a sample and one derivation of it; ``template_index`` is the template of the derivation."""
-
-    task_category: str
-    template_index: int
-    derivation: RankedDerivation
-
-
 @dataclass(frozen=True)
 class Sample:
     """What ``sample`` gives.
 
     ``generated`` is as ``generate`` would have it, of the commands of the sample alone; it says of no template
-    that it is unmatched. ``n_derivations`` is the size of the language, ``n_drawn`` how many derivations were
-    looked at. ``sources`` are command → the derivation that it was drawn by.
+    that it is unmatched. ``note`` says how many there are. ``n_drawn`` derivations were looked at.
     """
 
     generated: Generated
-    n_derivations: int
+    note: SampleNote
     n_drawn: int
-    sources: Mapping[str, SampledCommand] = field(default_factory=dict, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -258,8 +230,9 @@ class _Drawing:
         self._report = report
         self._judge = _Judge(language.categories, populations)
         self._judged: dict[str, _Judged] = {}  # every command that was looked at
-        self._taken: dict[str, _Drawn] = {}
+        self._taken: dict[str, None] = {}
         self._n_drawn = 0
+        self._is_cut = False  # there may be commands that were not looked at
         self._most_drawn = max(request.size * MOST_DRAWS_PER_COMMAND, FEWEST_DRAWS)
 
     def sample(self) -> Sample:
@@ -281,21 +254,16 @@ class _Drawing:
             (),
             tuple(self._language.left_out),
         )
-        sources = {
-            command: SampledCommand(
-                drawn.population.category.name, drawn.population.template_index, drawn.derivation
-            )
-            for command, drawn in self._taken.items()
-            if drawn.form_text == self._judged[command].expansion.form_text
-        }
-        return Sample(generated, self._language.size, self._n_drawn, sources)
+        note = SampleNote(self._request, len(judged), self._language.size, is_all=not self._is_cut)
+        return Sample(generated, note, self._n_drawn)
 
-    @property
     def _is_full(self) -> bool:
-        return len(self._taken) >= self._request.size or self._n_drawn >= self._most_drawn
+        is_full = len(self._taken) >= self._request.size or self._n_drawn >= self._most_drawn
+        self._is_cut |= is_full
+        return is_full
 
     def _take(self, drawn: _Drawn) -> None:
-        self._taken[drawn.command] = drawn
+        self._taken[drawn.command] = None
         self._report(len(self._taken) / self._request.size)
 
     def _take_any(self) -> None:
@@ -303,7 +271,7 @@ class _Drawing:
             if drawn.command not in self._taken:
                 self._look_up(drawn)
                 self._take(drawn)
-            if self._is_full:
+            if self._is_full():
                 return
 
     def _take_in_turn(self, groups: Mapping[str, _Group]) -> None:
@@ -313,7 +281,7 @@ class _Drawing:
         while waiting:
             still = []
             for group in waiting:
-                if self._is_full:
+                if self._is_full():
                     return
                 if (drawn := self._next_of(group)) is not None:
                     self._take(drawn)
@@ -325,9 +293,9 @@ class _Drawing:
         for in_vain, drawn in enumerate(group.derivations, start=1):
             if drawn.command not in self._taken and group.is_of(self._look_up(drawn).expansion):
                 return drawn
-            if self._n_drawn >= self._most_drawn or (
-                in_vain >= MOST_IN_VAIN and group.size > FEWEST_DRAWS
-            ):
+            is_given_up = in_vain >= MOST_IN_VAIN and group.size > FEWEST_DRAWS
+            if is_given_up or self._n_drawn >= self._most_drawn:
+                self._is_cut = True
                 return None
         return None
 
@@ -378,6 +346,7 @@ class _Drawing:
                 first = population.ranked.derivation_of(form, 0)
                 for drawn in self._read(population, first):
                     classes.setdefault(drawn.form_text, []).append((population, form))
+        self._n_drawn = 0  # nothing was drawn so far
         return {
             text: _Group(
                 sum(form.size for _, form in of_form),

@@ -8,6 +8,7 @@ from typing import Any
 from django.urls import reverse
 from django.utils.http import urlencode
 
+from annotations.language.templates.sample_notes import SampleNote
 from annotations.models import Entity, JobKind, Production, SemanticTemplate, World
 
 MOST_PROBLEMS = 500
@@ -61,6 +62,7 @@ def shown_report(
         "n_problems_left_out": max(0, len(problems) - MOST_PROBLEMS),
         "n_errors": n_errors,
         "is_refused": n_errors > 0,
+        "sample_note": SampleNote.from_json(report.get("sample")),
         "removals": _shown_texts(report.get("removals") or {}),
         "left_out": _shown_texts(report.get("left_out") or {}),
     }

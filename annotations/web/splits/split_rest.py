@@ -26,6 +26,7 @@ from annotations.web.rest.idempotency import once
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import Figures, RowsRoute, RowsViewSet
+from annotations.web.rest.samples import SampleSerializer
 from annotations.web.splits.split_filters import (
     MOST_CHANGES,
     MOST_SHOWN,
@@ -52,13 +53,18 @@ class SplitSerializer(serializers.ModelSerializer[Split]):
     proportions = serializers.ListField(child=serializers.FloatField())
     follows = serializers.IntegerField(source="follows_id", allow_null=True)
     created_by = serializers.CharField(source="created_by.username", default=None)
+    sample = serializers.SerializerMethodField()
 
     class Meta:
         model = Split
         fields = [
             *("id", "name", "criterion", "seed", "proportions", "counts", "content_hash"),
-            *("tests_on_models", "follows", "created_by", "created_at"),
+            *("tests_on_models", "sample", "follows", "created_by", "created_at"),
         ]
+
+    @extend_schema_field(SampleSerializer(allow_null=True))
+    def get_sample(self, row: Split) -> Any:
+        return row.sample or None
 
     @extend_schema_field(PartCountSerializer(many=True))
     def get_counts(self, row: Split) -> Any:

@@ -8,7 +8,8 @@ from django.contrib import messages
 from django.http import HttpResponse
 from django.shortcuts import redirect, render
 
-from annotations.generation.generating import start_generation
+from annotations.generation.generating import GenerationReport, start_generation
+from annotations.generation.language_size import language_size
 from annotations.importing.import_jobs import (
     start_competition_import,
     start_generator_import,
@@ -16,11 +17,15 @@ from annotations.importing.import_jobs import (
 )
 from annotations.jobs.requesting import keep_report
 from annotations.language.errors import LanguageError
+from annotations.language.grammar import readable
+from annotations.language.templates import DEFAULT_LIMIT
+from annotations.language.templates.sample_notes import SampleNote
 from annotations.models import Duty, Job, JobKind, World
 from annotations.people.access import READ_AND_WRITE, WRITE, PageRequest, WorldRequest, world_view
 from annotations.people.allowances import may_take_long, takes_files
 from annotations.web.background.report_presentation import shown_report
 from annotations.web.forms import posted
+from annotations.web.worlds.generation_forms import GenerationForm
 from annotations.web.worlds.import_forms import CompetitionForm, ImportForm, PairsForm, uploads_of
 
 
@@ -110,12 +115,42 @@ def _page(
 @may_take_long
 @world_view(Duty.ANNOTATE, WRITE)
 def generate(request: WorldRequest, world: World) -> HttpResponse:
-    """Expand all templates into commands and forms."""
+    """Make commands and forms of the templates, as many as the last time."""
     try:
         started = start_generation(world, request.user)
     except LanguageError as error:
         messages.error(request, f"Nothing was generated: {error}")
         return redirect("templates", world=world.name)
+    return _generated(request, world, started)
+
+
+@may_take_long
+@world_view(Duty.ANNOTATE, READ_AND_WRITE)
+def generation(request: WorldRequest, world: World) -> HttpResponse:
+    """Say how many commands the templates can make, and make all of them or a sample."""
+    initial = GenerationForm.initial_of(SampleNote.from_json(world.sample))
+    form = GenerationForm(posted(request), initial=initial)
+    if form.is_bound and form.is_valid():
+        try:
+            started = start_generation(world, request.user, form.request)
+        except LanguageError as error:
+            form.add_error(None, f"Nothing was generated: {error}")
+        else:
+            return _generated(request, world, started)
+    context: dict[str, Any] = {"form": form, "limit": DEFAULT_LIMIT}
+    try:
+        size = language_size(world)
+        context |= {"size": readable(size), "is_too_large": size > DEFAULT_LIMIT}
+    except LanguageError as error:
+        context["problems"] = [error.problem]
+    status = 422 if form.errors else 200
+    return render(request, "annotations/worlds/generation.html", context, status=status)
+
+
+def _generated(
+    request: WorldRequest, world: World, started: Job | GenerationReport
+) -> HttpResponse:
+    """Say what was generated, or show the job that does it."""
     if isinstance(started, Job):
         return redirect("job", pk=started.pk)
     made, changes = started.columns[-1], started.changes

@@ -15,6 +15,7 @@ from rest_framework.response import Response
 
 from annotations.exporting.generator_export import GeneratorPart
 from annotations.generation.generating import start_generation
+from annotations.generation.language_size import language_size
 from annotations.importing.import_jobs import (
     start_competition_import,
     start_generator_import,
@@ -24,15 +25,24 @@ from annotations.importing.pair_files import Notation
 from annotations.language.decoding import ENCODINGS
 from annotations.language.english import say_count
 from annotations.language.errors import Refusal
-from annotations.models import Duty, Job
+from annotations.language.templates.sample_notes import (
+    LARGEST_SEED,
+    MOST_COUNTED,
+    MOST_SAMPLED,
+    Balance,
+    SampleRequest,
+)
+from annotations.models import Duty, Job, SemanticTemplate
 from annotations.people.allowances import may_take_long, takes_files
 from annotations.web.background.job_rest import JobSerializer, address_of_job
+from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.negotiation import AnyType
 from annotations.web.rest.parsing import FilesParser
 from annotations.web.rest.permissions import ApiRequest, ForSiteAdmins
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import Route, WorldRoute
+from annotations.web.rest.samples import SampleSerializer
 from annotations.web.worlds.downloads import archive_of, file_of
 from annotations.web.worlds.import_forms import (
     CompetitionForm,
@@ -206,16 +216,54 @@ class ImportPairs(Doing, WorldRoute):
         return self.answer(lambda: start_pairs_import(self.world, *values))
 
 
+class WantedCommands(Fields):
+    """``sample`` commands are drawn under a ``seed``, with equally many of each of what is ``balanced``; with 0 all
+    are made. Without ``sample`` as many as the last time."""
+
+    sample = serializers.IntegerField(min_value=0, max_value=MOST_SAMPLED, required=False)
+    seed = serializers.IntegerField(min_value=0, max_value=LARGEST_SEED, default=0)
+    balanced = serializers.ChoiceField(
+        choices=[each.value for each in Balance], default=Balance.NONE.value
+    )
+
+
 @may_take_long
 class Generate(Doing, WorldRoute):
-    """Expands all templates into commands and forms."""
+    """Makes commands and forms of the templates: all, or a sample of them."""
 
     duties = {"POST": Duty.ANNOTATE}
 
-    @extend_schema(request=None, responses={200: DoneSerializer, 202: DoneSerializer})
+    @extend_schema(request=WantedCommands, responses={200: DoneSerializer, 202: DoneSerializer})
     @once
     def post(self, request: ApiRequest, **kwargs: object) -> Response:
-        return self.answer(lambda: start_generation(self.world, request.user))
+        wanted = WantedCommands(data=request.data)
+        wanted.is_valid(raise_exception=True)
+        sent = wanted.validated_data
+        asked = None
+        if "sample" in sent:
+            asked = SampleRequest(sent["sample"], sent["seed"], Balance(sent["balanced"]))
+        return self.answer(lambda: start_generation(self.world, request.user, asked))
+
+
+class LanguageSerializer(serializers.Serializer[Any]):
+    """``derivations`` is the number of derivations of all templates as text, an upper bound on their distinct
+    commands; ``sample`` says what sample of them the commands are now, if any."""
+
+    derivations = serializers.CharField()
+    sample = SampleSerializer(allow_null=True)
+
+
+@may_take_long
+class Generation(WorldRoute):
+    """Says how many commands the templates can make, without making them."""
+
+    model = SemanticTemplate
+
+    @extend_schema(operation_id="generation", responses={200: LanguageSerializer})
+    def get(self, request: ApiRequest, **kwargs: object) -> Response:
+        size = min(language_size(self.world), MOST_COUNTED)
+        answer = {"derivations": str(size), "sample": self.world.sample or None}
+        return Response(LanguageSerializer(answer).data)
 
 
 @may_take_long

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from http import HTTPStatus
+from typing import Any
 
 from django.db.models import QuerySet
-from drf_spectacular.utils import extend_schema
+from drf_spectacular.utils import extend_schema, extend_schema_field
 from rest_framework import serializers
 from rest_framework.exceptions import PermissionDenied
 from rest_framework.response import Response
@@ -17,6 +18,7 @@ from annotations.web.rest.idempotency import once
 from annotations.web.rest.permissions import ApiRequest, ChangedBySiteAdmins, ForSiteAdmins
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import ManyRows, RowRoute, Tagged
+from annotations.web.rest.samples import SampleSerializer
 from annotations.web.worlds.world_forms import WorldForm
 from annotations.worlds.world_deletion import request_deletion, start_deletion
 
@@ -26,10 +28,15 @@ class WorldSerializer(serializers.ModelSerializer[World]):
 
     duties = serializers.SerializerMethodField()
     commands_are_stale = serializers.BooleanField()
+    sample = serializers.SerializerMethodField()
 
     class Meta:
         model = World
-        fields = ["name", "description", "created_at", "commands_are_stale", "duties"]
+        fields = ["name", "description", "created_at", "commands_are_stale", "sample", "duties"]
+
+    @extend_schema_field(SampleSerializer(allow_null=True))
+    def get_sample(self, world: World) -> Any:
+        return world.sample or None
 
     def get_duties(self, world: World) -> list[str]:
         by_world = self.context["duties"]
