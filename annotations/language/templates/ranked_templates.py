@@ -31,7 +31,7 @@ from annotations.language.limits import MAX_INDEXED_BYTES
 from annotations.language.symbols import Choice, Symbols
 from annotations.language.templates.composition import SynchronousGrammar, names_in_order
 from annotations.language.templates.filling import Composed, fill_anonymized
-from annotations.language.templates.synchronous import Derivation, FilledForm, TemplateExpander
+from annotations.language.templates.synchronous import Derivation, TemplateExpander
 from annotations.language.templates.templates import SemanticTemplate
 
 # (nonterminal, number of the line): how often a sample has it.
@@ -42,11 +42,22 @@ LineCounts: TypeAlias = "Counter[tuple[str, int]]"
 class RankedDerivation:
     """One derivation of a template or a line: the choices of its pattern, and what the nonterminals of its form became.
 
-    A nonterminal became choices, or a derivation of the line with a number.
+    A nonterminal became choices, or a derivation of a line.
     """
 
     choices: Choices
-    became: tuple[tuple[str, Choices | tuple[int, RankedDerivation]], ...]
+    became: tuple[tuple[str, Became], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class LineDerivation:
+    """A derivation of one of the lines of a nonterminal; ``number`` is that of the line among these."""
+
+    number: int
+    derivation: RankedDerivation
+
+
+Became: TypeAlias = "Choices | LineDerivation"
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,7 +158,7 @@ class RankedTemplate:
         atoms, rank = _pick(self._counts, rank)
         rank, of_pattern = divmod(rank, self._sequence.counts[atoms])
         choices = self._sequence.choices(atoms, of_pattern)
-        became: list[tuple[str, Choices | tuple[int, RankedDerivation]]] = []
+        became: list[tuple[str, Became]] = []
         for place, name in enumerate(self._ranking.atoms):
             if not atoms & self._ranking.bit(name):
                 continue
@@ -166,7 +177,7 @@ class RankedTemplate:
         """Draw a derivation in which nonterminals take their least ``used`` lines, and count these."""
         atoms = _draw(self._counts, random)
         choices = self._sequence.choices(atoms, random.randrange(self._sequence.counts[atoms]))
-        became: list[tuple[str, Choices | tuple[int, RankedDerivation]]] = []
+        became: list[tuple[str, Became]] = []
         for place, name in enumerate(self._ranking.atoms):
             if not atoms & self._ranking.bit(name):
                 continue
@@ -175,7 +186,8 @@ class RankedTemplate:
                 numbers = [number for number, line in enumerate(lines) if line.size]
                 number = min(numbers, key=lambda each: (used[name, each], random.random()))
                 used[name, number] += 1
-                became.append((name, (number, lines[number].derivation_by_lines(random, used))))
+                inner_line = lines[number].derivation_by_lines(random, used)
+                became.append((name, LineDerivation(number, inner_line)))
             else:
                 body = self._ranking.body(name)
                 inner = _draw(self._weights(place, atoms, body), random)
@@ -195,15 +207,16 @@ class RankedTemplate:
     def derivation_of(self, form: FormClass, rank: int) -> RankedDerivation:
         """Return derivation ``rank`` of those of a class; 0 ≤ rank < form.size."""
         rank, of_pattern = divmod(rank, self._sequence.counts[form.atoms])
-        became: dict[str, Choices | tuple[int, RankedDerivation]] = dict(form.became)
+        became: dict[str, Became] = dict(form.became)
         for name, number, inner in form.lines:
             rank, own = divmod(rank, inner.size)
-            became[name] = number, self._grammar.lines(name)[number].derivation_of(inner, own)
+            line = self._grammar.lines(name)[number]
+            became[name] = LineDerivation(number, line.derivation_of(inner, own))
         choices = self._sequence.choices(form.atoms, of_pattern)
         return RankedDerivation(choices, tuple(became.items()))
 
-    def pair(self, derivation: RankedDerivation) -> tuple[tuple[str, ...], FilledForm]:
-        """Return the words of a derivation and its form.
+    def pair(self, derivation: RankedDerivation) -> tuple[tuple[str, ...], str]:
+        """Return the words of a derivation and the canonical text of its form.
 
         Raises:
             LanguageError: a text is too long to be stored, or the words for a predicate are not a name.
@@ -212,7 +225,7 @@ class RankedTemplate:
         text = canonical_text(filled.form)
         self._require_indexable(" ".join(words), "command")
         self._require_indexable(text, "form")
-        return words, FilledForm(filled.form, text, filled.choices)
+        return words, text
 
     def derivations_of(self, words: tuple[str, ...], form_text: str) -> Iterator[RankedDerivation]:
         """Yield the derivations that become ``words`` with a form.
@@ -221,7 +234,7 @@ class RankedTemplate:
             TooManyCombinations: while looking, when that takes more than ``CHECK_STEPS``.
         """
         for derivation in _Matcher(self, words, Budget(CHECK_STEPS), {}).derivations(0, len(words)):
-            if self.pair(derivation)[1].text == form_text:
+            if self.pair(derivation)[1] == form_text:
                 yield derivation
 
     def intact(self, derivation: RankedDerivation, index: int) -> list[Derivation]:
@@ -248,11 +261,11 @@ class RankedTemplate:
     ) -> SemanticTemplate:
         """Return the template with nothing but one derivation, and collect what its nonterminals become."""
         for name, value in derivation.became:
-            if isinstance(value[-1], RankedDerivation):
-                line = self._grammar.lines(name)[value[0]]
-                lines.append(line._narrow(value[-1], productions, lines))
+            if isinstance(value, LineDerivation):
+                line = self._grammar.lines(name)[value.number]
+                lines.append(line._narrow(value.derivation, productions, lines))
             else:
-                expansion = self._ranking.narrow_body(name, Cursor(value))  # type: ignore[arg-type]
+                expansion = self._ranking.narrow_body(name, Cursor(value))
                 symbols: Symbols = (Choice(expansion),)
                 productions.append(Production(name, symbols, self.template.position))
         pattern = self._ranking.narrow(self.template.pattern, Cursor(derivation.choices))
@@ -274,14 +287,13 @@ class RankedTemplate:
             if name not in values:
                 continue
             value = values[name]
-            if name in self._composed:
-                number, inner = value
-                words, filled = self._grammar.lines(name)[number]._read(inner)  # type: ignore[arg-type]
+            if isinstance(value, LineDerivation):
+                line = self._grammar.lines(name)[value.number]
+                words, filled = line._read(value.derivation)
                 words_of[name] = words
-                bound[name] = Composed(filled.form, (number, *filled.choices))
+                bound[name] = Composed(filled.form, (value.number, *filled.choices))
             else:
-                cursor = Cursor(value)  # type: ignore[arg-type]
-                words_of[name] = spell(self._ranking.body(name).spell(cursor))
+                words_of[name] = spell(self._ranking.body(name).spell(Cursor(value)))
                 bound[name] = words_of[name]
         words = spell(self._sequence.spell(Cursor(derivation.choices)))
         try:
@@ -290,10 +302,10 @@ class RankedTemplate:
             raise LanguageError(error.message, self.template.form_position, error.hint) from None
         return words, Composed(form, tuple(map(_choice, map(bound.__getitem__, self._names))))
 
-    def _line_derivation(self, name: str, rank: int) -> tuple[int, RankedDerivation]:
+    def _line_derivation(self, name: str, rank: int) -> LineDerivation:
         lines = self._grammar.lines(name)
         number, rank = _pick({number: line.size for number, line in enumerate(lines)}, rank)
-        return number, lines[number].derivation(rank)
+        return LineDerivation(number, lines[number].derivation(rank))
 
     def _weights(self, place: int, atoms: Atoms, body: RankedRule) -> dict[Atoms, int]:
         """Return how many ways of completing begin with each set of atoms inside the one at ``place``."""
@@ -393,9 +405,7 @@ class _Matcher:
         """Return where a derivation that begins at ``start`` can end."""
         return self._ends_of_sequence(self._ranked._sequence, start)
 
-    def _became(
-        self, place: int, spans: _Spans
-    ) -> Iterator[tuple[tuple[str, Choices | tuple[int, RankedDerivation]], ...]]:
+    def _became(self, place: int, spans: _Spans) -> Iterator[tuple[tuple[str, Became], ...]]:
         """Yield what the atoms became, from the one at ``place`` on."""
         ranking = self._ranked._ranking
         if place == len(ranking.atoms):
@@ -409,7 +419,7 @@ class _Matcher:
             for number, line in enumerate(self._ranked._grammar.lines(name)):
                 for inner in self._of_line(line).derivations(*spans[name]):
                     for others in self._became(place + 1, spans):
-                        yield (name, (number, inner)), *others
+                        yield (name, LineDerivation(number, inner)), *others
         else:
             for choices, below in self._of_rule(ranking.body(name), *spans[name], spans):
                 for others in self._became(place + 1, below):

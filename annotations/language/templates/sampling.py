@@ -382,11 +382,11 @@ class _Drawing:
         """Yield the derivation with its command, or nothing where it has no words."""
         self._n_drawn += 1
         try:
-            words, filled = population.ranked.pair(derivation)
+            words, form_text = population.ranked.pair(derivation)
         except LanguageError as error:
             raise _CannotBeStored(population, error.problem) from None
         if words:
-            yield _Drawn(population, derivation, " ".join(words), filled.text)
+            yield _Drawn(population, derivation, " ".join(words), form_text)
 
     def _look_up(self, drawn: _Drawn) -> _Judged:
         if drawn.command not in self._judged:
