@@ -18,8 +18,7 @@ from annotations.generation.coverage import count_coverage, store_coverage
 from annotations.generation.template_problems import store_template_problems
 from annotations.language.errors import Problem, warning_at
 from annotations.language.forms import depth, head_predicate, read_form
-from annotations.language.templates import BoundedCache, Expansion, Generated
-from annotations.language.templates.sample_notes import SampleNote
+from annotations.language.templates import BoundedCache, Expansion, Generated, SampleNote
 from annotations.models.description import ProblemSubject
 from annotations.rows.from_rows import AnnotatedCategory
 from annotations.rows.staging import Staging

@@ -14,8 +14,14 @@ from annotations.jobs.requesting import request_job
 from annotations.jobs.watching import JobProgress
 from annotations.jobs.weight import MOST_COMMANDS
 from annotations.language.errors import LanguageError
-from annotations.language.templates import DEFAULT_LIMIT, Generated, generation_size
-from annotations.language.templates.sample_notes import Balance, SampleNote, SampleRequest
+from annotations.language.templates import (
+    DEFAULT_LIMIT,
+    Balance,
+    Generated,
+    SampleNote,
+    SampleRequest,
+    generation_size,
+)
 from annotations.rows.from_rows import AnnotatedCategory, annotated_categories, task_categories
 from annotations.rows.synchronise import Changes
 

@@ -11,8 +11,14 @@ from annotations.language.errors import LanguageError
 from annotations.language.forms import canonical_text
 from annotations.language.grounding import Grounded, ground
 from annotations.language.ontology import Ontology
-from annotations.language.templates import Derivation, Expansion, TaskCategory, generate
-from annotations.language.templates.ranked_templates import RankedGrammar, RankedTemplate
+from annotations.language.templates import (
+    Derivation,
+    Expansion,
+    RankedGrammar,
+    RankedTemplate,
+    TaskCategory,
+    generate,
+)
 from annotations.models import World
 from annotations.rows.from_rows import annotated_categories, ontology_of
 

@@ -5,9 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Sequence
 
 from annotations import models
-from annotations.language.templates import BoundedCache, Generated, TaskCategory, generate
-from annotations.language.templates.sample_notes import SampleNote, SampleRequest
-from annotations.language.templates.sampling import Language
+from annotations.language.templates import (
+    BoundedCache,
+    Generated,
+    Language,
+    SampleNote,
+    SampleRequest,
+    TaskCategory,
+    generate,
+)
 from annotations.rows.from_rows import task_categories
 
 # A sample of so many commands is drawn while somebody waits: about a second on one core.

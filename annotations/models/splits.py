@@ -10,7 +10,7 @@ from django.db import models
 from annotations.language.corpus import Criterion, Part
 from annotations.language.errors import LanguageError
 from annotations.language.forms import depth, head_predicate, read_form
-from annotations.language.templates.sample_notes import SampleNote
+from annotations.language.templates import SampleNote
 from annotations.models.people import User
 from annotations.models.worlds import World
 

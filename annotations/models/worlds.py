@@ -13,7 +13,7 @@ from django.core.validators import RegexValidator
 from django.db import models
 from django.utils import timezone
 
-from annotations.language.templates.sample_notes import EVERYTHING, SampleNote, SampleRequest
+from annotations.language.templates import EVERYTHING, SampleNote, SampleRequest
 from annotations.models.people import User, digest_of
 
 if TYPE_CHECKING:

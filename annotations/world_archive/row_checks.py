@@ -13,7 +13,7 @@ from django.db import models
 from annotations.language.errors import LanguageError, Position
 from annotations.language.forms import read_template_form
 from annotations.language.predicates import ArgumentKind
-from annotations.language.templates.sample_notes import SampleNote
+from annotations.language.templates import SampleNote
 from annotations.rows.stored_problems import is_stored_problems
 from annotations.world_archive.archive_tables import ArchiveTable
 

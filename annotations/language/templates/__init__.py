@@ -26,6 +26,17 @@ from annotations.language.templates.generator_folder import (
     read_generator_folder,
 )
 from annotations.language.templates.grammar_expansions import DEFAULT_LIMIT, GrammarExpansions
+from annotations.language.templates.ranked_templates import RankedGrammar, RankedTemplate
+from annotations.language.templates.sample_notes import (
+    EVERYTHING,
+    LARGEST_SEED,
+    MOST_COUNTED,
+    MOST_SAMPLED,
+    Balance,
+    SampleNote,
+    SampleRequest,
+)
+from annotations.language.templates.sampling import Language, Sample
 from annotations.language.templates.synchronous import Derivation, TemplateExpander
 from annotations.language.templates.template_checks import (
     TemplateChecker,
@@ -43,6 +54,11 @@ from annotations.language.templates.templates import (
 
 __all__ = [
     "DEFAULT_LIMIT",
+    "EVERYTHING",
+    "LARGEST_SEED",
+    "MOST_COUNTED",
+    "MOST_SAMPLED",
+    "Balance",
     "BoundedCache",
     "Composition",
     "Conflict",
@@ -53,6 +69,12 @@ __all__ = [
     "GeneratedState",
     "GeneratorFolder",
     "GrammarExpansions",
+    "Language",
+    "RankedGrammar",
+    "RankedTemplate",
+    "Sample",
+    "SampleNote",
+    "SampleRequest",
     "SemanticTemplate",
     "TaskCategory",
     "TemplateChart",

@@ -11,8 +11,8 @@ from django.core.management.base import CommandError, CommandParser
 from annotations.generation.generating import generate_pairs
 from annotations.generation.grounded_pairs import grounded_pairs
 from annotations.language.corpus import by_length, write_pairs
-from annotations.language.templates import DEFAULT_LIMIT
-from annotations.language.templates.sample_notes import (
+from annotations.language.templates import (
+    DEFAULT_LIMIT,
     LARGEST_SEED,
     MOST_SAMPLED,
     Balance,

@@ -8,7 +8,7 @@ from typing import Any
 from django.urls import reverse
 from django.utils.http import urlencode
 
-from annotations.language.templates.sample_notes import SampleNote
+from annotations.language.templates import SampleNote
 from annotations.models import Entity, JobKind, Production, SemanticTemplate, World
 
 MOST_PROBLEMS = 500

@@ -6,7 +6,7 @@ from typing import Any
 
 from rest_framework import serializers
 
-from annotations.language.templates.sample_notes import Balance
+from annotations.language.templates import Balance
 
 
 class SampleSerializer(serializers.Serializer[Any]):

@@ -6,7 +6,7 @@ from typing import Any
 
 from django import forms
 
-from annotations.language.templates.sample_notes import (
+from annotations.language.templates import (
     LARGEST_SEED,
     MOST_SAMPLED,
     Balance,

@@ -18,8 +18,7 @@ from annotations.importing.import_jobs import (
 from annotations.jobs.requesting import keep_report
 from annotations.language.errors import LanguageError
 from annotations.language.grammar import readable
-from annotations.language.templates import DEFAULT_LIMIT
-from annotations.language.templates.sample_notes import SampleNote
+from annotations.language.templates import DEFAULT_LIMIT, SampleNote
 from annotations.models import Duty, Job, JobKind, World
 from annotations.people.access import READ_AND_WRITE, WRITE, PageRequest, WorldRequest, world_view
 from annotations.people.allowances import may_take_long, takes_files

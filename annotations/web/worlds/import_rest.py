@@ -25,7 +25,7 @@ from annotations.importing.pair_files import Notation
 from annotations.language.decoding import ENCODINGS
 from annotations.language.english import say_count
 from annotations.language.errors import Refusal
-from annotations.language.templates.sample_notes import (
+from annotations.language.templates import (
     LARGEST_SEED,
     MOST_COUNTED,
     MOST_SAMPLED,
