@@ -29,6 +29,9 @@ Counts: TypeAlias = "dict[Atoms, int]"
 Choices: TypeAlias = "tuple[int, ...]"
 
 
+STEPS_PER_JOIN = 4  # what joining two sets of atoms costs in steps of a budget
+
+
 class Cursor:
     """Reads choices one after the other; ``place`` is that of the next one."""
 
@@ -59,7 +62,7 @@ class RankedSequence:
                 self._rests.insert(0, rest)
                 continue
             counts: Counts = {}
-            budget.spend(len(part.counts) * len(rest))
+            budget.spend(STEPS_PER_JOIN * len(part.counts) * len(rest))
             for own, n_own in part.counts.items():
                 for other, n_other in rest.items():
                     counts[own | other] = counts.get(own | other, 0) + n_own * n_other

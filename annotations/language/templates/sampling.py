@@ -17,8 +17,9 @@ from itertools import accumulate
 from random import Random
 
 from annotations.language.errors import LanguageError, Problem
-from annotations.language.grammar import Recognizer, readable
+from annotations.language.grammar import Expander, Recognizer, RuleBook, Run, anonymized, readable
 from annotations.language.templates.chart import ChartDerivation, TemplateChart
+from annotations.language.templates.composition import SynchronousGrammar
 from annotations.language.templates.expansion import (
     Conflict,
     Expansion,
@@ -180,18 +181,21 @@ class _Judge:
             with_templates.append(TaskCategory(category.name, category.grammar, templates))
             self._recognizers[category.name] = Recognizer(category.grammar)
         self._chart = TemplateChart(with_templates)
+        self._rules = [_WordRules(each) for each in with_templates]
 
     def judge(self, drawn: _Drawn) -> _Judged:
         """Return what becomes of the command of a derivation."""
         name, index = drawn.population.category.name, drawn.population.template_index
-        derivations = [
-            ChartDerivation(
-                each.form_text,
-                each.task_category,
-                self._places[each.task_category][each.template_index],
-            )
-            for each in self._chart.parse(drawn.command)
-        ] or [ChartDerivation(drawn.form_text, name, index)]
+        derivations = [ChartDerivation(drawn.form_text, name, index)]
+        if self._is_ambiguous(drawn.command):
+            derivations = [
+                ChartDerivation(
+                    each.form_text,
+                    each.task_category,
+                    self._places[each.task_category][each.template_index],
+                )
+                for each in self._chart.parse(drawn.command)
+            ]
         kept = derivations[0]
         in_grammar = self._recognizers[kept.task_category].accepts(drawn.command)
         expansion = Expansion(
@@ -212,6 +216,76 @@ class _Judge:
             if len(forms) > 1
         )
         return _Judged(expansion, tuple(conflicts))
+
+    def _is_ambiguous(self, command: str) -> bool:
+        """Return whether there may be more than one derivation: only then the chart has to say which wins."""
+        words = tuple(command.split())
+        found = 0
+        for rules in self._rules:
+            found += rules.count(words, at_most=2 - found)
+            if found > 1:
+                return True
+        return False
+
+
+class _WordRules:
+    """Counts the ways in which templates and their lines derive words, whatever their nonterminals became.
+
+    So it never counts too few, and is much quicker than a parse that gives forms.
+    """
+
+    def __init__(self, category: TaskCategory) -> None:
+        grammar = SynchronousGrammar(category.grammar, category.lines)
+        lines = {name: [line.pattern for line in lines] for name, lines in grammar.lines_of.items()}
+        self._book = RuleBook(Expander(grammar.alternatives, anonymized), lines)
+        self._roots = [
+            self._book.add_pattern(each.pattern)
+            for each in category.templates
+            if not each.nonterminal
+        ]
+
+    def count(self, words: tuple[str, ...], at_most: int) -> int:
+        """Return how many derivations ``words`` have, or ``at_most`` where they have more."""
+        known: dict[tuple[int, int], dict[int, int]] = {}
+        found = 0
+        for root in self._roots:
+            found += self._of_rule(root, 0, words, known).get(len(words), 0)
+            if found >= at_most:
+                return at_most
+        return found
+
+    def _of_rule(
+        self,
+        rule: int,
+        start: int,
+        words: tuple[str, ...],
+        known: dict[tuple[int, int], dict[int, int]],
+    ) -> dict[int, int]:
+        """Return end → number of derivations of a rule that begin at ``start``; 2 stands for more."""
+        key = rule, start
+        if key in known:
+            return known[key]
+        ends: dict[int, int] = {}
+        word = words[start] if start < len(words) else ""
+        for alternative in self._book.rules[rule].candidates(word):
+            reached = {start: 1}
+            for item in alternative:
+                following: dict[int, int] = {}
+                for place, count in reached.items():
+                    if isinstance(item, Run):
+                        stop = place + len(item.words)
+                        if words[place:stop] == item.words:
+                            following[stop] = min(2, following.get(stop, 0) + count)
+                        continue
+                    for stop, inner in self._of_rule(item, place, words, known).items():
+                        following[stop] = min(2, following.get(stop, 0) + count * inner)
+                reached = following
+                if not reached:
+                    break
+            for stop, count in reached.items():
+                ends[stop] = min(2, ends.get(stop, 0) + count)
+        known[key] = ends
+        return ends
 
 
 class _Drawing:
