@@ -96,7 +96,7 @@ PLACES = (
         page="commands",
         count="commands",
         waiting=Waiting(count="stale", reason="out of date"),
-        pages_below=("command", "logical_forms", "logical_form", "complexity"),
+        pages_below=("command", "logical_forms", "logical_form", "complexity", "generation"),
     ),
     Place(
         label="Paraphrases",

@@ -70,3 +70,22 @@ def test_more_than_the_limit_is_refused_with_the_number(tiny_world):
     assert report is None
     assert "up to 3 commands" in str(failure)
     assert not tiny_world.commands.exists()
+
+
+def test_a_sample_is_drawn_under_a_seed_and_remembered(tiny_world):
+    report, _ = run("generate_pairs", "home", "--sample", 2, "--seed", 4, "--balanced", "forms")
+    assert report["commands"]["all"] == 2
+    assert report["sample"] == {
+        **{"commands": 2, "of": "3", "is_all": False},
+        **{"size": 2, "seed": 4, "balanced": "forms"},
+    }
+    assert run("generate_pairs", "home")[0]["sample"] == report["sample"]
+    report, _ = run("generate_pairs", "home", "--sample", 0)
+    assert (report["commands"]["all"], report["sample"]) == (3, None)
+
+
+def test_balance_needs_a_sample(tiny_world):
+    for options in (["--balanced", "lines"], ["--sample", -1], ["--sample", 2, "--seed", -1]):
+        report, failure = run("generate_pairs", "home", *options)
+        assert report is None
+        assert failure is not None

@@ -39,7 +39,7 @@ def large(tiny_world) -> World:
     """A world with more commands than anybody would make, and 40 of them."""
     grammar = tiny_world.grammar
     digits = " | ".join(f"w{number}" for number in range(10))
-    source = grammar.productions.get(nonterminal="Main").source
+    source = grammar.productions.filter(nonterminal="Main")[0].source
     grammar.productions.create(
         nonterminal="digit", expansion=digits, source=source, line=90, position=90
     )

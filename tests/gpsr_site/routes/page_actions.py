@@ -65,6 +65,7 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "import_competition": "post import-competition",
     "import_pairs": "post import-pairs",
     "generate": "post generate",
+    "generation": "post generate",
     "job_cancel": "post job-cancel, post site-job-cancel",
     "job_answer": "post job-answer",
     # What annotators write, and what is said of it before it is stored

@@ -206,6 +206,8 @@ POLICY = [
     Rule("template_consequences", *ANNOTATORS, method="post"),
     Rule("history", LOG_IN, NOWHERE, GONE_ON, NO, GONE_ON, method="post"),
     Rule("generate", LOG_IN, NOWHERE, GONE_ON, NO, GONE_ON, method="post"),
+    Rule("generation", *ANNOTATORS),
+    Rule("generation", LOG_IN, NOWHERE, GONE_ON, NO, GONE_ON, method="post"),
     Rule("split_new", *ANNOTATORS),
     Rule("split_renew", LOG_IN, NOWHERE, GONE_ON, NO, GONE_ON, method="post"),
     Rule("split_new", *ANNOTATORS, method="post"),
