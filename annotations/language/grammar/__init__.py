@@ -24,6 +24,14 @@ from annotations.language.grammar.productions import (
     read_production,
     read_productions,
 )
+from annotations.language.grammar.ranking import (
+    Atoms,
+    Choices,
+    Cursor,
+    RankedRule,
+    RankedSequence,
+    Ranking,
+)
 from annotations.language.grammar.recognizer import (
     Alternative,
     Chart,
@@ -42,9 +50,12 @@ __all__ = [
     "TRIPLE_FILES",
     "Alternative",
     "Arc",
+    "Atoms",
     "Budget",
     "Chart",
     "ChartRule",
+    "Choices",
+    "Cursor",
     "Expander",
     "Grammar",
     "GrammarFile",
@@ -52,6 +63,9 @@ __all__ = [
     "Item",
     "Lattice",
     "Production",
+    "RankedRule",
+    "RankedSequence",
+    "Ranking",
     "Recognizer",
     "RuleBook",
     "Run",

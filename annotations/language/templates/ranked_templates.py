@@ -18,11 +18,14 @@ from typing import TypeAlias
 
 from annotations.language.errors import LanguageError
 from annotations.language.forms import canonical_text
-from annotations.language.grammar import CHECK_STEPS, Budget, Grammar, Production
-from annotations.language.grammar.ranking import (
+from annotations.language.grammar import (
+    CHECK_STEPS,
     Atoms,
+    Budget,
     Choices,
     Cursor,
+    Grammar,
+    Production,
     RankedRule,
     RankedSequence,
     Ranking,
