@@ -29,11 +29,11 @@ from annotations.language.forms import (
     to_template,
 )
 from annotations.language.predicates import gloss
-from annotations.language.symbols import ENTITY_CLASSES, read_wildcard
+from annotations.language.symbols import read_wildcard
 from annotations.models import World
-from annotations.rows.from_rows import predicates_of
+from annotations.rows.from_rows import classes_of, predicates_of
 
-CLASS_TOKEN = re.compile(rf"<({'|'.join(ENTITY_CLASSES)})(\d*)>")
+CLASS_TOKEN = re.compile(r"<([a-z][a-z_]*+)(\d*+)>")
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +76,8 @@ def gloss_of(world: World, form: Form) -> str:
     """Write ``form`` as an English sentence, with the glosses of the world's predicates."""
     if not hasattr(world, "declared"):  # one query a page, however many forms it shows
         world.declared = predicates_of(world)
-    return gloss(form, world.declared)
+        world.classes = classes_of(world)
+    return gloss(form, world.declared, world.classes)
 
 
 @lru_cache(maxsize=8192)

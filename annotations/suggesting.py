@@ -33,6 +33,7 @@ from annotations.models import TaskCategory as StoredCategory
 from annotations.models import World
 from annotations.models.description import TemplateStatus
 from annotations.rows.from_rows import (
+    classes_of,
     composition_of,
     grammar_of,
     predicates_of,
@@ -120,7 +121,7 @@ def suggest_forms(
     """Return forms for a pattern, the most likely first; none for a pattern that cannot be read."""
     if category is None or not pattern.strip() or len(pattern) > MAX_PATTERN:
         return []
-    declared = predicates_of(world)
+    declared, classes = predicates_of(world), classes_of(world)
     try:
         symbols = make_template(pattern.strip(), "UNKNOWN").pattern
         suggester = FormSuggester(task_categories(world), declared or None)
@@ -130,7 +131,7 @@ def suggest_forms(
     return [
         SuggestedForm(
             to_template(suggestion.form),
-            gloss(suggestion.form, declared),
+            gloss(suggestion.form, declared, classes),
             suggestion.template.pattern_text,
             suggestion.is_guess,
         )
@@ -207,6 +208,7 @@ class _Lifting:
         self.pattern = pattern
         self.symbols = make_template(pattern, "UNKNOWN").pattern
         self.predicates: Mapping[str, Predicate] = predicates_of(world)
+        self.classes = classes_of(world)
         self.checker: TemplateChecker = checker_of(
             grammar_of(category), self.predicates, category.name, composition_of(category)
         )
@@ -229,7 +231,7 @@ class _Lifting:
 
     def gloss(self, text: str) -> str:
         """Return the English sentence of a form in the notation of templates."""
-        return gloss(make_template(self.pattern, text).form, self.predicates)
+        return gloss(make_template(self.pattern, text).form, self.predicates, self.classes)
 
     def _is_well_typed(self, text: str) -> bool:
         template, _ = read_sides(self.pattern, text)

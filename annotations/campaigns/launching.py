@@ -96,7 +96,9 @@ def draw_prompts(world: World, choice: PromptChoice) -> list[DrawnPrompt]:
     for key in random.sample(list(groups), len(groups)):
         for expansion, grounded in _draw(groups[key], sources, ontology, choice, random):
             is_english = choice.wording == Wording.ENGLISH
-            shown = gloss(grounded.form, declared) if is_english else grounded.text
+            shown = (
+                gloss(grounded.form, declared, ontology.classes) if is_english else grounded.text
+            )
             grounded_form = canonical_text(grounded.form)
             entities = entities_of(grounded, ontology)
             line = patterns[expansion.task_category][expansion.template_index]

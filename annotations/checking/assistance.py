@@ -28,7 +28,13 @@ from annotations.language.grammar import Grammar
 from annotations.language.symbols import SlotPlace
 from annotations.language.templates import BoundedCache
 from annotations.models import TaskCategory, World
-from annotations.rows.from_rows import grammar_of, predicates_of, ready_templates, template_of
+from annotations.rows.from_rows import (
+    classes_of,
+    grammar_of,
+    predicates_of,
+    ready_templates,
+    template_of,
+)
 from annotations.rows.stored_problems import as_stored
 
 KEPT_SECONDS = 3600
@@ -50,7 +56,7 @@ def assist(world: World, category: TaskCategory | None, pattern: str, form: str)
     problems = checked.problems
     if checked.checker is not None:
         usage = partial(_usage, world, checked.checker.grammar)
-        problems = with_repairs(problems, sides, checked.checker, usage)
+        problems = with_repairs(problems, sides, checked.checker, usage, classes_of(world))
         slots = [
             {
                 "pattern": _places(each.in_pattern, sides.pattern),
@@ -84,15 +90,16 @@ def completion_tag(category: TaskCategory) -> str:
     """Return what changes whenever ``completions_of`` may return something else."""
     world = category.grammar.world
     predicates = world.predicates.values_list("name", "kind", "signatures", "gloss")
-    known = f"{category.pk} {world.revision} {list(predicates)}"
+    known = f"{category.pk} {world.revision} {list(predicates)} {classes_of(world)}"
     return sha256(known.encode()).hexdigest()
 
 
 def completions_of(category: TaskCategory) -> dict[str, Any]:
     """Return the fields of ``Completions`` as JSON; kept until something changes."""
+    world = category.grammar.world
     kept: dict[str, Any] | None = cache.get_or_set(
         f"completions:{completion_tag(category)}",
-        lambda: asdict(completions(grammar_of(category), predicates_of(category.grammar.world))),
+        lambda: asdict(completions(grammar_of(category), predicates_of(world), classes_of(world))),
         KEPT_SECONDS,
     )
     assert kept is not None

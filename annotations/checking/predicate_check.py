@@ -10,7 +10,7 @@ from annotations.language.errors import LanguageError, Position
 from annotations.language.forms import to_reading
 from annotations.language.predicates import Predicate, check_form, gloss, sample_forms
 from annotations.models import SemanticTemplate, World
-from annotations.rows.from_rows import predicates_of, template_of
+from annotations.rows.from_rows import classes_of, predicates_of, template_of
 
 # Templates with a problem that they have not got now, each with what it says.
 BrokenTemplates: TypeAlias = "tuple[tuple[SemanticTemplate, tuple[str, ...]], ...]"
@@ -34,10 +34,11 @@ class CheckedPredicate:
 
 def check_predicate(world: World, predicate: Predicate) -> CheckedPredicate:
     """Say ``predicate`` in English and check the templates of ``world`` with it."""
-    before = predicates_of(world)
+    before, classes = predicates_of(world), classes_of(world)
     after = {**before, predicate.name: predicate}
     samples = (
-        PredicateSample(to_reading(form), gloss(form, after)) for form in sample_forms(predicate)
+        PredicateSample(to_reading(form), gloss(form, after, classes))
+        for form in sample_forms(predicate)
     )
     return CheckedPredicate(tuple(samples), _broken(world, predicate.name, before, after))
 

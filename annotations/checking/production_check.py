@@ -14,7 +14,7 @@ from annotations.language.grammar import CHECK_STEPS, Budget, Grammar, readable
 from annotations.language.symbols import SymbolReader
 from annotations.models import Production, TaskCategory, World
 from annotations.rows.composition import split_entry
-from annotations.rows.from_rows import Line, Lines, grammar_from, lines_of
+from annotations.rows.from_rows import Line, Lines, classes_of, grammar_from, lines_of
 
 MOST_EXPANSIONS = 500  # looked at for samples
 SHOWN_EXPANSIONS = 12
@@ -89,7 +89,8 @@ class CheckedProduction:
 
 def check_production(edit: ProductionEdit) -> CheckedProduction:
     """Read the expansion, check the grammars that have it, and expand some of it."""
-    reader = SymbolReader(edit.expansion, Position(EXPANSION_FIELD))
+    classes = classes_of(edit.world)
+    reader = SymbolReader(edit.expansion, Position(EXPANSION_FIELD), classes)
     try:
         expansion = reader.whole_line()
     except LanguageError as error:

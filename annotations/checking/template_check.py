@@ -8,6 +8,7 @@ from itertools import islice
 from random import Random
 
 from annotations.generation.kept_expansions import checker_of
+from annotations.language.assistance import read_known_sides
 from annotations.language.errors import LanguageError, Position, Problem
 from annotations.language.grammar import CHECK_STEPS, Budget, Grammar
 from annotations.language.grounding import ground
@@ -17,11 +18,16 @@ from annotations.language.templates import (
     Derivation,
     SemanticTemplate,
     TemplateChecker,
-    read_sides,
 )
 from annotations.models import SemanticTemplate as StoredTemplate
 from annotations.models import TaskCategory, World
-from annotations.rows.from_rows import composition_of, grammar_of, ontology_of, predicates_of
+from annotations.rows.from_rows import (
+    classes_of,
+    composition_of,
+    grammar_of,
+    ontology_of,
+    predicates_of,
+)
 from annotations.rows.stored_problems import StoredRemark, as_stored, from_stored
 
 MOST_COMMANDS = 2_000  # looked at to count and sample what a template makes
@@ -75,7 +81,7 @@ def check_template(
             too_long.append(error.problem)
     if too_long:
         return CheckedTemplate(tuple(too_long))
-    template, unread = read_sides(pattern, form)
+    template, unread = read_known_sides(pattern, form, classes_of(world))
     try:
         declared = predicates_of(world)
         grammar = grammar_of(category) if category else Grammar(())
@@ -88,7 +94,7 @@ def check_template(
     if template is None:
         return CheckedTemplate(unread, checker=checker)
     checked = CheckedTemplate(
-        checker.problems(template), template, checker, gloss(template.form, declared)
+        checker.problems(template), template, checker, gloss(template.form, declared, classes)
     )
     if checked.has_errors:
         return checked
@@ -103,10 +109,12 @@ def check_template(
 def recall_check(world: World, row: StoredTemplate) -> CheckedTemplate:
     """Return what ``check_template`` said of ``row`` when it was saved, without expanding anything."""
     problems = tuple(from_stored(remark) for remark in row.problems)
-    template, unread = read_sides(row.pattern, row.form)
+    classes = classes_of(world)
+    template, unread = read_known_sides(row.pattern, row.form, classes)
     if template is None:
         return CheckedTemplate(problems or unread)
-    return CheckedTemplate(problems, template, gloss=gloss(template.form, predicates_of(world)))
+    said = gloss(template.form, predicates_of(world), classes)
+    return CheckedTemplate(problems, template, gloss=said)
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,7 +150,8 @@ def samples_of(world: World, checked: CheckedTemplate, seed: int = 0) -> Grounde
             missing = error.message
             continue
         rows.setdefault(
-            grounded.text, GroundedSample(grounded.text, gloss(grounded.form, declared))
+            grounded.text,
+            GroundedSample(grounded.text, gloss(grounded.form, declared, ontology.classes)),
         )
     shown = tuple(islice(rows.values(), SHOWN_SAMPLES))
     return GroundedSamples(shown, (seed + 1) % LARGEST_SEED, missing)

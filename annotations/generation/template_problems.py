@@ -7,12 +7,15 @@ from collections.abc import Iterable, Sequence
 
 from annotations import models
 from annotations.generation.kept_expansions import checker_of, problems_of
+from annotations.language.assistance import read_known_sides
 from annotations.language.errors import LanguageError
 from annotations.language.grammar import CHECK_STEPS, Budget
-from annotations.language.templates import Generated, TemplateChecker, read_sides, shared_problems
+from annotations.language.symbols import EntityClasses
+from annotations.language.templates import Generated, TemplateChecker, shared_problems
 from annotations.models.description import TemplateStatus
 from annotations.rows.from_rows import (
     AnnotatedCategory,
+    classes_of,
     composition_of,
     grammar_of,
     predicates_of,
@@ -30,7 +33,7 @@ def store_template_problems(
 
     A row of which the same is said keeps its remarks as they are, with their places.
     """
-    declared = predicates_of(world)
+    declared, classes = predicates_of(world), classes_of(world)
     remarks: dict[models.SemanticTemplate, list[StoredRemark]] = defaultdict(list)
     for category in categories:
         value = category.value
@@ -40,7 +43,7 @@ def store_template_problems(
             continue
         for row in category.template_rows:
             if row not in remarks:  # else checked against the grammar of an earlier category
-                remarks[row] = _check(row, checker)
+                remarks[row] = _check(row, checker, classes)
         for index, problem in shared_problems(value, generated):
             remark = as_stored(problem)
             of_row = remarks[category.template_rows[index]]
@@ -61,7 +64,8 @@ def check_unready_templates(world: models.World) -> None:
     """
     unready = models.SemanticTemplate.objects.filter(grammar__world=world)
     rows = list(unready.exclude(status=TemplateStatus.READY))
-    changed, steps, declared = [], 0, predicates_of(world)
+    changed, steps = [], 0
+    declared, classes = predicates_of(world), classes_of(world)
     for category in models.TaskCategory.objects.filter(grammar__world=world) if rows else ():
         try:
             checker = checker_of(
@@ -73,7 +77,7 @@ def check_unready_templates(world: models.World) -> None:
         rows = [row for row in rows if row not in here]  # checked against the first grammar only
         for row in here:
             budget = Budget(CHECK_STEPS)
-            remarks = _check(row, checker, budget)
+            remarks = _check(row, checker, classes, budget)
             steps += budget.spent
             if steps > MOST_STEPS:
                 break
@@ -84,10 +88,13 @@ def check_unready_templates(world: models.World) -> None:
 
 
 def _check(
-    row: models.SemanticTemplate, checker: TemplateChecker, budget: Budget | None = None
+    row: models.SemanticTemplate,
+    checker: TemplateChecker,
+    classes: EntityClasses,
+    budget: Budget | None = None,
 ) -> list[StoredRemark]:
     """Return what ``checker`` says of the row alone."""
-    template, unread = read_sides(row.pattern, row.form)
+    template, unread = read_known_sides(row.pattern, row.form, classes)
     problems = problems_of(checker, template, budget) if template else unread
     return [as_stored(problem) for problem in problems]
 

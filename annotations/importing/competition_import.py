@@ -17,6 +17,7 @@ from annotations.importing.target_world import lock_world, require_world_name
 from annotations.language.decoding import read_tree
 from annotations.language.errors import LanguageError, Position, Problem, error_at
 from annotations.language.ontology import (
+    COMPETITION_CLASSES,
     PUBLISHED_GENERATORS,
     Entity,
     Ontology,
@@ -32,9 +33,6 @@ from annotations.rows.from_rows import ontology_of, predicates_of, task_categori
 from annotations.rows.history import keys_changed_by_people
 from annotations.rows.stored_problems import as_json, first_problems
 from annotations.rows.synchronise import Changes, RowPlan, plan
-
-# What the folder decides. Entities of other classes stay as the world has them.
-CLASSES = ("object", "category", "room", "location", "name")
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +77,7 @@ def import_competition(
 ) -> CompetitionReport:
     """Make the names, rooms, locations and objects of a world those of a folder.
 
-    Grammar, templates and the entities of other classes stay. A location keeps its room, and an entity the aliases and
+    Grammar, templates and the entities of classes that such a folder does not have stay. A location keeps its room, and an entity the aliases and
     attributes that people have added. The same folder twice changes nothing.
 
     Args:
@@ -136,7 +134,7 @@ def import_competition(
 def plan_competition(
     stored: models.Ontology, read: Ontology, brings_back: bool = False
 ) -> RowPlan[models.Entity]:
-    """Plan the entities of ``CLASSES``; those of other classes come behind them, as they are."""
+    """Plan the entities of the folder's classes; those of other classes come behind them, as they are."""
     rows = list(stored.entities.order_by("position"))
     rooms = {row.text: row.attributes["room"] for row in rows if row.attributes.get("room")}
     changed_by_people = keys_changed_by_people(models.Entity, stored.world)
@@ -147,7 +145,7 @@ def plan_competition(
             # The folder decides what it says; rooms, aliases and the like are what people have added.
             row.aliases, row.attributes = kept.aliases, {**kept.attributes, **row.attributes}
     for row in rows:
-        if row.entity_class not in CLASSES:
+        if row.entity_class not in COMPETITION_CLASSES:
             texts = {"entity_class": row.entity_class, "text": row.text, "aliases": row.aliases}
             place = {"attributes": row.attributes, "source": row.source, "line": row.line}
             wanted.append(models.Entity(ontology=stored, **texts, **place))

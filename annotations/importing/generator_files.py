@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from annotations.importing.predicates_file import PREDICATES_FILE, read_predicates
 from annotations.language.decoding import read_text
@@ -11,7 +11,8 @@ from annotations.language.errors import LanguageError, Position, Problem, warnin
 from annotations.language.forms import read_form
 from annotations.language.grammar import TRIPLE_FILES, is_grammar_name
 from annotations.language.ontology import ONTOLOGY_FILES, Ontology, read_ontology
-from annotations.language.predicates import Predicate, infer_signatures
+from annotations.language.predicates import Predicate, Signature, infer_signatures
+from annotations.language.symbols import DEFAULT_CLASSES, EntityClasses
 from annotations.language.templates import (
     Generated,
     GeneratorFolder,
@@ -49,15 +50,17 @@ def read_generator(
     files: Mapping[str, bytes],
     edited: Mapping[str, Predicate] | None = None,
     known_problems: Iterable[Problem] = (),
+    classes: EntityClasses = DEFAULT_CLASSES,
 ) -> Generator:
     """Read files given as name → bytes. Raises nothing: errors are among the problems.
 
     Args:
         edited: predicates that people have changed; they hold whatever the files say.
         known_problems: the problems that were found before the files were read.
+        classes: those that the world has; the files may declare more.
     """
-    ontology, ontology_problems = read_ontology(files)
-    texts = read_generator_files(files)
+    ontology, ontology_problems = read_ontology(files, classes)
+    texts = read_generator_files(files, ontology.classes)
     problems = [*known_problems, *texts.problems]
     known = {*ONTOLOGY_FILES, *TRIPLE_FILES, PREDICATES_FILE}
     for name in files:
@@ -65,12 +68,15 @@ def read_generator(
         if not is_read and not name.lower().startswith("readme"):
             hint = f"known are *.txt, {', '.join(ONTOLOGY_FILES)} and {PREDICATES_FILE}"
             problems.append(warning_at(Position(name), "not a generator file; ignored", hint))
-    declared, further = _read_declared(files)
+    declared, further = _read_declared(files, ontology.classes)
     problems += further
     predicates = dict(declared or {})
     if not texts.has_errors:
         inferred, further = _examine(texts.categories(), declared, edited or {})
-        predicates = predicates or inferred
+        predicates = predicates or {
+            name: replace(each, signatures=_within(each.signatures, ontology.classes))
+            for name, each in inferred.items()
+        }
         problems += further
     distinct = set(problems)
     of_templates = {each for each in distinct if is_template_name(each.position.source)}
@@ -82,17 +88,24 @@ def read_generator(
     return Generator(texts, ontology, predicates, by_subject)
 
 
-def _read_declared(files: Mapping[str, bytes]) -> tuple[dict[str, Predicate] | None, list[Problem]]:
+def _read_declared(
+    files: Mapping[str, bytes], classes: EntityClasses
+) -> tuple[dict[str, Predicate] | None, list[Problem]]:
     name = next((name for name in files if name.lower() == PREDICATES_FILE), None)
     if name is None:
         return None, []
     problems: list[Problem] = []
     try:
-        predicates = read_predicates(files[name], name, problems)
+        predicates = read_predicates(files[name], name, problems, classes)
         problems += read_text(files[name], name)[1]
     except LanguageError as error:
         return None, [error.problem]
     return predicates, problems
+
+
+def _within(signatures: Iterable[Signature], classes: EntityClasses) -> tuple[Signature, ...]:
+    """Return the signatures with texts for class tokens of no class, which a form may write out."""
+    return tuple(sorted({each.within(classes) for each in signatures}))
 
 
 def _examine(

@@ -16,6 +16,7 @@ from annotations.importing.gathered_files import GatheredFiles, gather
 from annotations.importing.generator_files import Generator, read_generator
 from annotations.importing.import_plans import (
     differences_of,
+    plan_classes,
     plan_entities,
     plan_predicates,
     plan_productions,
@@ -24,10 +25,11 @@ from annotations.importing.import_plans import (
 from annotations.importing.import_reports import ImportReport
 from annotations.importing.target_world import lock_world, require_world_name
 from annotations.language.errors import LanguageError
+from annotations.language.symbols import DEFAULT_CLASSES
 from annotations.models import Entity, Production, User, World
 from annotations.models.description import ProblemSubject
 from annotations.rows.composition import rule_sources, template_sources
-from annotations.rows.from_rows import predicates_of, task_categories
+from annotations.rows.from_rows import classes_of, predicates_of, task_categories
 from annotations.rows.staging import Staging
 from annotations.rows.stored_problems import store_problems, store_problems_of_import
 from annotations.rows.synchronise import Changes, RowPlan, synchronise
@@ -66,7 +68,8 @@ def import_generator(
     progress.report(0.05, "reading the files")
     world = World.objects.filter(name=world_name).first()
     edited = predicates_of(world, world.predicates.filter(is_edited=True)) if world else {}
-    generator = read_generator(gathered.files, edited, gathered.problems)
+    classes = classes_of(world) if world else DEFAULT_CLASSES
+    generator = read_generator(gathered.files, edited, gathered.problems, classes)
     progress.check()
     texts = generator.texts
     report = ImportReport(
@@ -190,6 +193,7 @@ def store(
     changes += plan_templates(grammar, generator, brings_back).apply(by)
     if not changes.is_none or changes.moved:
         world.mark_changed()
+    changes += plan_classes(world, generator).apply(by)
     changes += plan_entities(ontology, generator, brings_back).apply(by)
     changes += plan_predicates(world, generator, brings_back).apply(by)
     for subject, problems in generator.problems.items():

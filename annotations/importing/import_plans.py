@@ -153,6 +153,22 @@ def _is_of_people(template: models.SemanticTemplate) -> bool:
     )
 
 
+def plan_classes(world: models.World, generator: Generator) -> RowPlan[models.EntityClass]:
+    """Plan the classes of entities; none is removed, and what people have changed stays as it is."""
+    wanted = [
+        models.EntityClass.of(world, value, position)
+        for position, value in enumerate(generator.ontology.classes)
+    ]
+    keys = keys_changed_by_people(models.EntityClass, world)
+    changed = {row.token: row for row in world.entity_classes.filter(pk__in=keys)}
+    fields = ["singular", "plural", "said", "hue", "is_closed"]
+    for row in wanted:
+        if stored := changed.get(row.token):
+            for name in fields:
+                setattr(row, name, getattr(stored, name))
+    return plan(world.entity_classes.all(), wanted, lambda row: row.token, [*fields, "position"])
+
+
 def plan_entities(
     ontology: models.Ontology, generator: Generator, brings_back: bool
 ) -> RowPlan[models.Entity]:

@@ -20,7 +20,8 @@ from annotations.language.limits import (
     require_name,
     require_writable,
 )
-from annotations.language.predicates import ArgumentKind, Predicate, PredicateKind, Signature
+from annotations.language.predicates import Predicate, PredicateKind, Signature, known_kinds
+from annotations.language.symbols import DEFAULT_CLASSES, EntityClasses
 from annotations.language.text import normalise_line
 
 PREDICATES_FILE = "predicates.json"
@@ -29,12 +30,16 @@ _EXAMPLE = '[{"name": "go", "kind": "action", "signatures": [["room"]], "gloss":
 
 
 def read_predicates(
-    data: bytes, source: str = PREDICATES_FILE, problems: list[Problem] | None = None
+    data: bytes,
+    source: str = PREDICATES_FILE,
+    problems: list[Problem] | None = None,
+    classes: EntityClasses = DEFAULT_CLASSES,
 ) -> dict[str, Predicate]:
     """Return the predicates that a file declares, by name.
 
     Args:
         problems: where the errors of single rows go; the first one is raised without it.
+        classes: those that arguments may be of.
 
     Raises:
         LanguageError: with the position, where the file is no such list or a value is unknown.
@@ -54,7 +59,7 @@ def read_predicates(
     predicates: dict[str, Predicate] = {}
     for row, place in _rows_with_places(text, source):
         try:
-            predicate = _predicate(row, place)
+            predicate = _predicate(row, place, classes)
             if predicate.name in predicates:
                 raise LanguageError(f"{predicate.name} is declared twice", place, "merge the two")
         except LanguageError as error:
@@ -80,7 +85,7 @@ def write_predicates(predicates: Iterable[Predicate]) -> str:
     return "[\n  " + ",\n  ".join(json.dumps(row, ensure_ascii=False) for row in rows) + "\n]\n"
 
 
-def _predicate(row: Any, place: Position) -> Predicate:
+def _predicate(row: Any, place: Position, classes: EntityClasses) -> Predicate:
     if not (isinstance(row, dict) and isinstance(row.get("name"), str) and row["name"]):
         raise LanguageError("this row has no name", place, _EXAMPLE)
     row = {**row, "name": normalise_line(row["name"])}  # JSON may write a character as an escape
@@ -94,15 +99,16 @@ def _predicate(row: Any, place: Position) -> Predicate:
         raise LanguageError(
             f"the signatures of {row['name']} are no list of lists", place, _EXAMPLE
         )
-    try:
-        kind = PredicateKind(row.get("kind", ""))
-        read = tuple(Signature(tuple(map(ArgumentKind, each))) for each in signatures)
-    except ValueError as error:
-        kinds = ", ".join(ArgumentKind)
-        hint = f"a predicate is an action or a description; kinds of arguments are {kinds}"
-        sentence = f"{row['name']} has a kind, or arguments of a kind, that there is not"
-        raise LanguageError(sentence, place, hint) from error
-    return Predicate(row["name"], kind, read, gloss)
+    kind, kinds = row.get("kind", ""), known_kinds(classes)
+    are_known = all(argument in kinds for each in signatures for argument in each)
+    if kind not in set(PredicateKind) or not are_known:
+        raise LanguageError(
+            f"{row['name']} has a kind, or arguments of a kind, that there is not",
+            place,
+            f"a predicate is an action or a description; kinds of arguments are {', '.join(kinds)}",
+        )
+    read = tuple(Signature(tuple(map(str, each))) for each in signatures)
+    return Predicate(row["name"], PredicateKind(kind), read, gloss)
 
 
 def _rows_with_places(text: str, source: str) -> Iterator[tuple[Any, Position]]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from annotations.checking.assistance import shown_problem
-from annotations.language.assistance import Sides, format_form, with_repairs
+from annotations.language.assistance import Sides, format_form, read_known_sides, with_repairs
 from annotations.language.errors import LanguageError, Offsets, Position, Problem, warning_at
 from annotations.language.forms import (
     CLASS_TOKEN,
@@ -23,9 +23,9 @@ from annotations.language.grammar import Grammar
 from annotations.language.limits import MAX_FORM
 from annotations.language.predicates import gloss
 from annotations.language.symbols import Nonterminal, Wildcard
-from annotations.language.templates import read_sides, template_checker
+from annotations.language.templates import template_checker
 from annotations.models import World
-from annotations.rows.from_rows import predicates_of
+from annotations.rows.from_rows import classes_of, predicates_of
 
 PLACE = Position("form")
 STAND_IN = "do it"  # the pattern of a template whose form alone is looked at
@@ -47,19 +47,19 @@ def check_label(
 
     Returns JSON as ``annotations.checking.assistance.assist`` does, without slots.
     """
-    declared = predicates_of(world)
+    declared, classes = predicates_of(world), classes_of(world)
     sides, checker = Sides(STAND_IN, text), template_checker(Grammar(()), declared)
     reading = sentence = ""
     if len(text) > MAX_FORM:
         problems = tuple(_check_as_label(text, anonymized_text, may_be_unknown))
     else:
-        template, unread = read_sides(STAND_IN, text)
+        template, unread = read_known_sides(STAND_IN, text, classes)
         remarks = checker.problems(template) if template else unread
         problems = tuple(each for each in remarks if each.position.source == PLACE.source)
-        problems = with_repairs(problems, sides, checker)
+        problems = with_repairs(problems, sides, checker, classes=classes)
         if template and not any(problem.is_error for problem in problems):
             problems += tuple(_check_as_label(text, anonymized_text, may_be_unknown))
-            reading, sentence = to_reading(template.form), gloss(template.form, declared)
+            reading, sentence = to_reading(template.form), gloss(template.form, declared, classes)
     return {
         "problems": [shown_problem(each, sides) for each in problems],
         "formatted": {"form": format_form(text)} if len(text) <= MAX_FORM else {},

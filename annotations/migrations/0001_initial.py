@@ -256,7 +256,7 @@ class Migration(migrations.Migration):
             name='Entity',
             fields=[
                 ('id', models.BigAutoField(auto_created=True, primary_key=True, serialize=False, verbose_name='ID')),
-                ('entity_class', models.CharField(choices=annotations.models.description.entity_class_choices, max_length=20)),
+                ('entity_class', models.CharField(max_length=20)),
                 ('text', models.TextField()),
                 ('aliases', models.JSONField(blank=True, default=list)),
                 ('attributes', models.JSONField(blank=True, default=dict)),

@@ -40,7 +40,7 @@ class Migration(migrations.Migration):
             fields=[
                 ('id', models.BigIntegerField(auto_created=True, blank=True, db_index=True, verbose_name='ID')),
                 ('version', models.PositiveIntegerField(default=1)),
-                ('entity_class', models.CharField(choices=annotations.models.description.entity_class_choices, max_length=20)),
+                ('entity_class', models.CharField(max_length=20)),
                 ('text', models.TextField()),
                 ('aliases', models.JSONField(blank=True, default=list)),
                 ('attributes', models.JSONField(blank=True, default=dict)),

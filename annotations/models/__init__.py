@@ -19,6 +19,7 @@ from annotations.models.corpus import (
 )
 from annotations.models.description import (
     Entity,
+    EntityClass,
     Grammar,
     Guidelines,
     Ontology,
@@ -61,6 +62,7 @@ __all__ = [
     "EarlierText",
     "Editable",
     "Entity",
+    "EntityClass",
     "Example",
     "FindingStatus",
     "Grammar",

@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any
 
+from django.core.validators import MaxValueValidator
 from django.db import models
 from django.db.models.fields.json import KeyTextTransform
 from django.db.models.functions import Coalesce, Left, Lower
 
-from annotations.language.symbols import ENTITY_CLASSES
+from annotations.language.symbols import (
+    DEFAULT_CLASSES,
+    HUES,
+    MAX_CLASS_WORDS,
+    MAX_TOKEN,
+    EntityClasses,
+)
+from annotations.language.symbols import EntityClass as ClassValue
 from annotations.models.editing import Editable
 from annotations.models.people import User
 from annotations.models.worlds import World
@@ -16,8 +25,68 @@ from annotations.models.worlds import World
 MOST_CHARACTERS_OF_GUIDELINES = 20_000
 
 
-def entity_class_choices() -> list[tuple[str, str]]:
-    return [(name, name) for name in ENTITY_CLASSES]
+class EntityClassQuerySet(models.QuerySet["EntityClass"]):
+    def as_value(self) -> EntityClasses:
+        """Return the classes as a value. Those that every world has come first, whether they have rows or not."""
+        return DEFAULT_CLASSES.with_rows(row.as_value for row in self)
+
+    def add_defaults(self, world: World) -> None:
+        """Store the classes that a new world starts with."""
+        rows = (
+            EntityClass.of(world, value, position) for position, value in enumerate(DEFAULT_CLASSES)
+        )
+        self.bulk_create(rows)
+
+
+class EntityClass(Editable):
+    """A class of the entities of a world, as ``annotations.language.symbols.EntityClass`` explains it.
+
+    The token stands in entities, templates, forms and commands, and does not change.
+    """
+
+    edited_fields = ("token", "singular", "plural", "said", "hue", "is_closed")
+
+    world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="entity_classes")
+    token = models.CharField(max_length=MAX_TOKEN)
+    singular = models.CharField(max_length=MAX_CLASS_WORDS)
+    plural = models.CharField(max_length=MAX_CLASS_WORDS)
+    said = models.CharField(max_length=MAX_CLASS_WORDS)
+    hue = models.PositiveSmallIntegerField(validators=[MaxValueValidator(HUES - 1)])
+    is_closed = models.BooleanField(default=False)
+    position = models.PositiveIntegerField()
+
+    objects = EntityClassQuerySet.as_manager()
+
+    class Meta:
+        ordering = ["position"]
+        verbose_name_plural = "entity classes"
+        constraints = [
+            models.UniqueConstraint(
+                fields=["world", "token"],
+                name="entity_class_token",
+                violation_error_message="There is a class of this token already.",
+            ),
+            models.UniqueConstraint(fields=["world", "position"], name="entity_class_position"),
+        ]
+
+    def __str__(self) -> str:
+        return self.token
+
+    @classmethod
+    def of(cls, world: World, value: ClassValue, position: int) -> EntityClass:
+        """Return an unsaved row for a value."""
+        return cls(world=world, position=position, **asdict(value))
+
+    @property
+    def as_value(self) -> ClassValue:
+        return ClassValue(
+            self.token, self.singular, self.plural, self.hue, self.said, self.is_closed
+        )
+
+    @property
+    def is_of_every_world(self) -> bool:
+        """Whether a new world starts with it, so that no world goes without."""
+        return self.token in DEFAULT_CLASSES
 
 
 class Ontology(models.Model):
@@ -29,10 +98,9 @@ class Ontology(models.Model):
 
 class EntityQuerySet(models.QuerySet["Entity"]):
     def count_by_class(self) -> dict[str, int]:
-        """Return how many entities each class has, in the order of the classes; those that have none are left out."""
+        """Return how many entities each class has; those that have none are left out."""
         counted = self.order_by().values_list("entity_class").annotate(models.Count("pk"))
-        counts = dict(counted)
-        return {name: counts[name] for name in ENTITY_CLASSES if name in counts}
+        return dict(counted)
 
 
 # Of an attribute that tells entities of one text apart; an index of PostgreSQL has a longest row.
@@ -55,7 +123,7 @@ class Entity(Editable):
     edited_fields = ("entity_class", "text", "aliases", "attributes")
 
     ontology = models.ForeignKey(Ontology, on_delete=models.CASCADE, related_name="entities")
-    entity_class = models.CharField(max_length=20, choices=entity_class_choices)
+    entity_class = models.CharField(max_length=MAX_TOKEN)
     text = models.TextField()
     aliases = models.JSONField(default=list, blank=True)
     attributes = models.JSONField(default=dict, blank=True)

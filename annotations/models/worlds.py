@@ -5,7 +5,7 @@ from __future__ import annotations
 import secrets
 from collections import defaultdict
 from datetime import timedelta
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from django.conf import settings
 from django.contrib.auth.models import AnonymousUser
@@ -18,6 +18,7 @@ from annotations.models.people import User, digest_of
 
 if TYPE_CHECKING:
     from annotations.language.predicates import Predicate
+    from annotations.language.symbols import EntityClasses
 
 
 class Duty(models.TextChoices):
@@ -108,7 +109,8 @@ class World(models.Model):
 
     if TYPE_CHECKING:
         role: str  # where ``WorldQuerySet.seen_by`` annotates it
-        declared: dict[str, Predicate]  # where ``form_presentation`` keeps it
+        declared: dict[str, Predicate]  # where ``form_presentation`` keeps them
+        classes: EntityClasses
 
     objects = WorldQuerySet.as_manager()
 
@@ -117,6 +119,13 @@ class World(models.Model):
 
     def __str__(self) -> str:
         return self.name
+
+    def save(self, *args: Any, **kwargs: Any) -> None:
+        """Store the world; a new one with the classes of entities that every world starts with."""
+        is_new = self._state.adding
+        super().save(*args, **kwargs)
+        if is_new:
+            self.entity_classes.add_defaults(self)
 
     @property
     def commands_are_stale(self) -> bool:

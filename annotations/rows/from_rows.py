@@ -12,7 +12,8 @@ from annotations import models
 from annotations.language.errors import Position
 from annotations.language.grammar import Grammar, Production, apply_alias, read_production
 from annotations.language.ontology import Entity, Ontology
-from annotations.language.predicates import ArgumentKind, Predicate, PredicateKind, Signature
+from annotations.language.predicates import Predicate, PredicateKind, Signature
+from annotations.language.symbols import EntityClasses
 from annotations.language.templates import (
     BoundedCache,
     SemanticTemplate,
@@ -129,7 +130,12 @@ def template_of(row: models.SemanticTemplate) -> SemanticTemplate:
 def ontology_of(world: models.World, rows: Iterable[models.Entity] | None = None) -> Ontology:
     """Return the ontology in the order of its rows, empty where there are none; ``rows`` limits it to some."""
     chosen = models.Entity.objects.filter(ontology__world=world) if rows is None else rows
-    return Ontology(tuple(map(entity_of, chosen)))
+    return Ontology(tuple(map(entity_of, chosen)), classes_of(world))
+
+
+def classes_of(world: models.World) -> EntityClasses:
+    """Return the classes of the world's entities."""
+    return world.entity_classes.all().as_value()
 
 
 def entity_of(row: models.Entity) -> Entity:
@@ -146,7 +152,7 @@ def predicates_of(
 
 
 def predicate_of(row: models.Predicate) -> Predicate:
-    signatures = (Signature(tuple(map(ArgumentKind, kinds))) for kinds in row.signatures)
+    signatures = (Signature(tuple(kinds)) for kinds in row.signatures)
     return Predicate(row.name, PredicateKind(row.kind), tuple(signatures), row.gloss)
 
 

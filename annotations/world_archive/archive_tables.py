@@ -22,6 +22,7 @@ from annotations.models import (
     Contributor,
     EarlierText,
     Entity,
+    EntityClass,
     Example,
     Guidelines,
     Label,
@@ -117,6 +118,7 @@ class ArchiveTable:
 
 # Rows stand behind those that they refer to.
 OUR_TABLES = (
+    ArchiveTable("entity_classes", EntityClass, "world"),
     ArchiveTable("entities", Entity, "ontology"),
     ArchiveTable("task_categories", TaskCategory, "grammar"),
     ArchiveTable("productions", Production, "grammar"),
@@ -235,6 +237,7 @@ OUR_TABLES = (
             "template": "templates",
             "production": "productions",
             "entity": "entities",
+            "entity_class": "entity_classes",
             "predicate": "predicates",
             "paraphrase": "paraphrases",
             "form": "forms",

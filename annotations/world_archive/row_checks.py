@@ -12,7 +12,8 @@ from django.db import models
 
 from annotations.language.errors import LanguageError, Position
 from annotations.language.forms import read_template_form
-from annotations.language.predicates import ArgumentKind
+from annotations.language.predicates import is_entity_kind
+from annotations.language.symbols import is_token
 from annotations.language.templates import SampleNote
 from annotations.rows.stored_problems import is_stored_problems
 from annotations.world_archive.archive_tables import ArchiveTable
@@ -153,9 +154,10 @@ def _is_text_by_text(value: Any) -> bool:
 
 
 def _is_signatures(value: Any) -> bool:
-    kinds = set(ArgumentKind)
+    """Return whether these are signatures. Whether the world has their classes is checked with its rows."""
     return isinstance(value, list) and all(
-        _is_texts(row) and kinds.issuperset(row) for row in value
+        _is_texts(row) and all(is_token(kind) or not is_entity_kind(kind) for kind in row)
+        for row in value
     )
 
 

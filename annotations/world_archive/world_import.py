@@ -5,6 +5,7 @@ from __future__ import annotations
 import zipfile
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from secrets import token_hex
 from typing import IO, Any
@@ -17,14 +18,16 @@ from annotations.background.progress import UNWATCHED, Progress
 from annotations.importing.target_world import require_world_name
 from annotations.importing.zip_archives import MANIFEST, open_archive, read_lines
 from annotations.language.errors import LanguageError, Position, Problem, Refusal
+from annotations.language.symbols import EntityClasses
 from annotations.language.text import TextChanges, normalise_json, say_changes
 from annotations.models import Assignment, Grammar, Membership, Ontology, Split, User, World
 from annotations.models.worlds import Role
-from annotations.rows.from_rows import annotated_categories, predicates_of
+from annotations.rows.from_rows import annotated_categories, classes_of, predicates_of
 from annotations.rows.stored_problems import as_json
 from annotations.rows.synchronise import BATCH, batches
 from annotations.splits.freezing import content_hash_of
 from annotations.world_archive.archive_tables import ArchiveTable, tables
+from annotations.world_archive.class_checks import check_classes
 from annotations.world_archive.row_checks import check_row, parse_object
 from annotations.world_archive.row_texts import equal_row, normalise_columns
 from annotations.world_archive.world_manifest import WorldManifest, read_manifest
@@ -83,6 +86,8 @@ def import_world(
             Ontology.objects.create(world=world)
         World.objects.filter(pk=world.pk).update(**manifest.world_values)
         try:
+            if "entity_classes" in manifest.rows:
+                world.entity_classes.all().delete()  # the archive has those that a world starts with
             loader = _Loader(archive, manifest, world, progress)
             rows = loader.load()
             _check_world(world)
@@ -142,6 +147,11 @@ class _Loader:
         self._done = 0
         self._changed: list[tuple[Position, TextChanges]] = []  # lines of the table that is read
         self.warnings: list[Problem] = []
+
+    @cached_property
+    def _stored_classes(self) -> EntityClasses:
+        """The classes of the entities, once their table has been read, which is the first."""
+        return classes_of(self._world)
 
     def load(self) -> dict[str, int]:
         """Store the rows of all tables; return how many by table. Raises LanguageError."""
@@ -216,6 +226,7 @@ class _Loader:
             place = Position(table.path, number)
             values = parse_object(line, place)
             check_row(table, values, place)
+            check_classes(table.name, values, self._stored_classes, place)
             yield self._row(table, self._normalise(table, values, place), place)
 
     def _normalise(

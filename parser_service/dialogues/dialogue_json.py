@@ -37,7 +37,7 @@ def as_json(row: Dialogue) -> dict[str, Any]:
         "form": to_corpus(state.parsed),
         "grounded": to_corpus(state.form),
         "reading": to_reading(state.form),
-        "english": gloss(state.form, language.predicates),
+        "english": gloss(state.form, language.predicates, language.ontology.classes),
         "plan": plan_of(state, language).as_json(),
         "offers": [asdict(offer) for offer in state.offers],
         "transcript": row.transcript,

@@ -149,7 +149,9 @@ class AnswerWriter:
             sentence = self._outlines.sentence(candidate.form, paths, slot.path)
             if sentence is not None:
                 return sentence.fill(plain)
-            return say_with_blank(slot.path, fill_all(form, slots).form, self.language.predicates)
+            language = self.language
+            filled = fill_all(form, slots).form
+            return say_with_blank(slot.path, filled, language.predicates, language.ontology.classes)
 
         given = Deanonymized(form, slots)
         doubts = [each.as_json() for each in doubts_about(slots)]

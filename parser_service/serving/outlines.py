@@ -135,7 +135,12 @@ class Outlines:
     @remembered(REMEMBERED)
     def sentence(self, form: str, paths: Paths, blank: SlotPath) -> Outline | None:
         """Return the outline of the sentence with a blank in the place of the slot at ``blank``."""
-        text = say_with_blank(blank, _with_signs(form, paths), self.language.predicates)
+        text = say_with_blank(
+            blank,
+            _with_signs(form, paths),
+            self.language.predicates,
+            self.language.ontology.classes,
+        )
         return Outline(text) if _is_sound(text, paths) else None
 
     def _make(
@@ -153,7 +158,8 @@ class _AwaitingLookup(Lookup):
 
     def __init__(self, lookup: Lookup, classes: Mapping[AskedEntity, str]) -> None:
         self._lookup = lookup
-        self._classes = classes
+        self.classes = lookup.classes
+        self._class_of = classes
         self.names: dict[AskedEntity, str] = {}
 
     def value(self, text: str, predicate: str, place: int) -> tuple[Value, bool]:
@@ -161,7 +167,7 @@ class _AwaitingLookup(Lookup):
             return self._lookup.value(text, predicate, place)
         asked = AskedEntity(read_stand_in(text)[0], predicate, place)
         name = self.names.setdefault(asked, name_of_entity(len(self.names)))
-        entity_class = self._classes.get(asked, "")
+        entity_class = self._class_of.get(asked, "")
         awaited = _AwaitedNamed(entity_class, name) if entity_class else _AwaitedWords(name)
         return awaited, False
 

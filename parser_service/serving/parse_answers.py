@@ -29,7 +29,6 @@ from annotations.language.grounding import (
 from annotations.language.ontology import Ontology
 from annotations.language.plans import Lookup, make_plan
 from annotations.language.predicates import gloss
-from annotations.language.symbols import ENTITY_CLASSES
 from annotations.models import World
 from parser_service.models import TrainingRun
 from parser_service.parsers.interface import UNKNOWN, Candidate, Parser, ScoreKind
@@ -249,7 +248,7 @@ def answer_with(
         is_unknown=isinstance(given.form, Unknown),
         grounded=to_corpus(given.form),
         reading=to_reading(given.form),
-        english=gloss(given.form, language.predicates),
+        english=gloss(given.form, language.predicates, language.ontology.classes),
         open_slots=tuple(questions_of(given, language)),
         remarks=remarks_on(given, language.ontology),
         plan=plan.as_json(),
@@ -271,7 +270,9 @@ def questions_of(
     given: Deanonymized, language: WorldLanguage, sentence_of: Callable[[Slot], str] | None = None
 ) -> Iterator[dict[str, Any]]:
     """Yield the open slots, with at most ``MOST_OFFERED`` choices each where the utterance names none."""
-    for slot in open_slots_as_json(given, language.predicates, sentence_of):
+    for slot in open_slots_as_json(
+        given, language.predicates, sentence_of, language.ontology.classes
+    ):
         if not slot["is_named"]:
             slot["choices"] = slot["choices"][:MOST_OFFERED]
         yield slot
@@ -291,8 +292,8 @@ def unknown_tokens(utterance: str, ontology: Ontology) -> tuple[str, ...]:
     sentences = []
     for token in dict.fromkeys(CLASS_TOKEN.findall(utterance)):
         entity_class = token.rstrip("0123456789")
-        if entity_class not in ENTITY_CLASSES:
-            known = ", ".join(f"<{name}>" for name in ENTITY_CLASSES)
+        if entity_class not in ontology.classes:
+            known = ", ".join(f"<{name}>" for name in ontology.classes.tokens)
             sentences.append(f"<{token}> is not a class of entities. There are: {known}.")
         elif not ontology.of_class(entity_class):
             sentences.append(f"<{token}>: this world has no entity of the class {entity_class}.")

@@ -8,27 +8,19 @@ from dataclasses import dataclass
 from annotations.language.grammar import Grammar
 from annotations.language.predicates import Predicate, PredicateKind
 from annotations.language.symbols import (
-    WILDCARD_NAMES,
+    DEFAULT_CLASSES,
+    EntityClasses,
     Wildcard,
     print_sequence,
     print_wildcard,
     walk,
+    wildcard_names,
 )
 from annotations.language.templates import bare
 
 SHOWN_ALTERNATIVES = 4
 LONGEST_DETAIL = 80  # characters
 
-_MEANINGS = {
-    "object": "the name of an object",
-    "category": "the name of an object category",
-    "name": "the name of a person",
-    "location": "the name of a location",
-    "room": "the name of a room",
-    "gesture": "a gesture",
-    "question": "a question",
-    "whattosay": "something to say",
-}
 _KINDS = {
     PredicateKind.ACTION: "Something to do",
     PredicateKind.SEQUENCE: "Does its arguments, one after the other",
@@ -58,8 +50,12 @@ class Completions:
     predicates: tuple[Completion, ...]
 
 
-def completions(grammar: Grammar, predicates: Mapping[str, Predicate]) -> Completions:
-    """Return what the templates of a task category can say.
+def completions(
+    grammar: Grammar,
+    predicates: Mapping[str, Predicate],
+    classes: EntityClasses = DEFAULT_CLASSES,
+) -> Completions:
+    """Return what the templates of a task category can say, in a world with these classes of entities.
 
     Wildcards are those of the grammar with their numbers, and one of each kind.
     """
@@ -70,7 +66,7 @@ def completions(grammar: Grammar, predicates: Mapping[str, Predicate]) -> Comple
         for symbol in walk(alternative, notes=False)
         if isinstance(symbol, Wildcard)
     }
-    plain = {bare(each) for each in written} | {Wildcard(name) for name in WILDCARD_NAMES}
+    plain = {bare(each) for each in written} | {Wildcard(name) for name in wildcard_names(classes)}
     of_nonterminals: list[Completion] = []
     for name in sorted(grammar.rules):
         alternatives = grammar.rules[name]
@@ -86,13 +82,13 @@ def completions(grammar: Grammar, predicates: Mapping[str, Predicate]) -> Comple
         of_predicates.append(Completion(name, _shorten(signatures), info))
     return Completions(
         tuple(of_nonterminals),
-        tuple(map(_wildcard, sorted(plain, key=print_wildcard))),
-        tuple(map(_wildcard, sorted(written - plain, key=print_wildcard))),
+        tuple(_wildcard(each, classes) for each in sorted(plain, key=print_wildcard)),
+        tuple(_wildcard(each, classes) for each in sorted(written - plain, key=print_wildcard)),
         tuple(of_predicates),
     )
 
 
-def _wildcard(wildcard: Wildcard) -> Completion:
+def _wildcard(wildcard: Wildcard, classes: EntityClasses) -> Completion:
     said = []
     if wildcard.obfuscated:
         said.append("It is not said by its name: an object by its category, a place by its room.")
@@ -109,7 +105,7 @@ def _wildcard(wildcard: Wildcard) -> Completion:
     else:
         restriction = wildcard.restriction
         kind = f" ({restriction})" if restriction not in ("", "room") else ""
-        meaning = _MEANINGS[wildcard.entity_class] + kind
+        meaning = f"one of the {classes.plural(wildcard.entity_class)}{kind}"
     return Completion(print_wildcard(wildcard), meaning, " ".join(said))
 
 

@@ -16,6 +16,7 @@ from annotations.language.assistance.candidates import FORM, PATTERN, RepairCand
 from annotations.language.assistance.left_out import Usage, left_out, no_usage
 from annotations.language.assistance.trial import Sides, Trial
 from annotations.language.errors import LanguageError, Offsets, Problem, Repair
+from annotations.language.symbols import DEFAULT_CLASSES, EntityClasses
 from annotations.language.templates import SemanticTemplate, TemplateChecker
 
 MOST_PROBLEMS = 6  # of one template that repairs are looked for
@@ -33,6 +34,7 @@ def with_repairs(
     sides: Sides,
     checker: TemplateChecker,
     usage: Callable[[], Usage] = no_usage,
+    classes: EntityClasses = DEFAULT_CLASSES,
 ) -> tuple[Problem, ...]:
     """Return the problems with what can be done about each.
 
@@ -40,8 +42,9 @@ def with_repairs(
         problems: their positions are in texts called "pattern" and "form", which ``sides`` holds.
         checker: of the task category that the template is for.
         usage: how other templates say slots; asked for only where the form leaves one out.
+        classes: those that wildcards may be of.
     """
-    offering = _Offering(sides, Trial(checker), usage)
+    offering = _Offering(sides, Trial(checker, classes), usage)
     return tuple(
         replace(problem, repairs=offering.repairs(problem) if number < MOST_PROBLEMS else ())
         for number, problem in enumerate(problems)
@@ -102,7 +105,7 @@ class _Offering:
         sides = self.sides
         text = sides.text(source)
         yield from text_repairs.wildcards(
-            ((PATTERN, sides.pattern), (FORM, sides.form)), source, offset
+            ((PATTERN, sides.pattern), (FORM, sides.form)), source, offset, self.trial.classes
         )
         yield from text_repairs.marks(text, source, offset)
         if source == PATTERN:

@@ -4,19 +4,23 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from annotations.language.errors import LanguageError, Position
+from annotations.language.errors import LanguageError, Position, Problem
 from annotations.language.forms import read_template_form, to_template
 from annotations.language.grammar import Grammar
 from annotations.language.symbols import (
+    EntityClasses,
     Nonterminal,
     SlotPlace,
     SymbolReader,
+    kinds_in_form,
+    kinds_in_pattern,
     places_in_form,
     places_in_pattern,
     print_sequence,
     slot_key,
     split_head,
 )
+from annotations.language.templates import SemanticTemplate, read_sides
 
 
 def format_pattern(text: str) -> str:
@@ -35,6 +39,20 @@ def format_form(text: str) -> str:
         return to_template(read_template_form(text))
     except LanguageError:
         return text
+
+
+def read_known_sides(
+    pattern: str, form: str, classes: EntityClasses
+) -> tuple[SemanticTemplate | None, tuple[Problem, ...]]:
+    """Read both sides as ``read_sides`` does. A wildcard that is of none of ``classes`` cannot be read."""
+    template, problems = read_sides(pattern, form)
+    unread = {problem.position.source for problem in problems}
+    found: list[Problem] = []
+    if "pattern" not in unread:
+        found += kinds_in_pattern(pattern, classes, Position("pattern"))
+    if "form" not in unread:
+        found += kinds_in_form(form, classes, Position("form"))
+    return (None if found else template), (*problems, *found)
 
 
 @dataclass(frozen=True, slots=True)

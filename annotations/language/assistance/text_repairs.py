@@ -18,11 +18,12 @@ from annotations.language.assistance.candidates import (
 from annotations.language.errors import TextEdit
 from annotations.language.grammar import Grammar
 from annotations.language.symbols import (
-    WILDCARD_NAMES,
+    EntityClasses,
     Text,
     Wildcard,
     places_in_pattern,
     walk,
+    wildcard_names,
 )
 from annotations.language.templates import SemanticTemplate
 
@@ -83,13 +84,14 @@ def _bare_word(form: str, pattern: str, offset: int) -> Iterator[RepairCandidate
 
 
 def wildcards(
-    texts: Iterable[tuple[str, str]], source: str, offset: int
+    texts: Iterable[tuple[str, str]], source: str, offset: int, classes: EntityClasses
 ) -> Iterator[RepairCandidate]:
     """Yield candidates for a wildcard of an unknown kind or type around ``offset``, on every side.
 
     Args:
         texts: (source, text) of both sides.
         source: the side on which the wildcard cannot be read.
+        classes: those that wildcards may be of.
     """
     sides = dict(texts)
     around = next(
@@ -99,8 +101,9 @@ def wildcards(
     if around is None:
         return
     kind = re.match(r"\{\s*(\w+)", around.group())
-    if kind and kind[1].lower() not in WILDCARD_NAMES:
-        for name, rank in nearest(kind[1], WILDCARD_NAMES):
+    names = wildcard_names(classes)
+    if kind and kind[1].lower() not in names:
+        for name, rank in nearest(kind[1], names):
             edits = [
                 TextEdit(side, match.start(1), match.end(1), name)
                 for side, text in sides.items()

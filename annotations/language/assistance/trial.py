@@ -6,15 +6,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice
 
+from annotations.language.assistance.sides import read_known_sides
 from annotations.language.errors import LanguageError, Problem, Repair
 from annotations.language.forms import Form
 from annotations.language.grammar import Budget
-from annotations.language.symbols import Nonterminal
+from annotations.language.symbols import DEFAULT_CLASSES, EntityClasses, Nonterminal
 from annotations.language.templates import (
     SemanticTemplate,
     TemplateChecker,
     fill_anonymized,
-    read_sides,
 )
 
 FILLINGS = 3  # of the nonterminals of a form, with which predicates are checked
@@ -44,8 +44,9 @@ class Trial:
     It leaves out how the commands fit the grammar, and looks at a few fillings of the form alone.
     """
 
-    def __init__(self, checker: TemplateChecker) -> None:
+    def __init__(self, checker: TemplateChecker, classes: EntityClasses = DEFAULT_CLASSES) -> None:
         self.checker = checker
+        self.classes = classes
         self.grammar = checker.grammar
         self.predicates = checker.predicates or {}
         self._budget = Budget(MEMBERSHIP_STEPS)
@@ -58,7 +59,7 @@ class Trial:
         Where a side cannot be read, None and the problems of reading.
         """
         if sides not in self._known:
-            template, unread = read_sides(sides.pattern, sides.form)
+            template, unread = read_known_sides(sides.pattern, sides.form, self.classes)
             if template is None:
                 self._known[sides] = None, unread
             else:

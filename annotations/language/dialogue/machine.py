@@ -210,7 +210,7 @@ class DialogueManager:
             alias = Offer(slot.entity_class, values[0], slot.phrases[0]) if is_alias else None
             return self._fill(state, slot, values[0], alias)
         if len(values) > 1:
-            return self._miss(state, f"Please name one {noun_for(slot)}. ")
+            return self._miss(state, f"Please name one {noun_for(slot, self.ontology.classes)}. ")
         if reaction in (Reaction.YES, Reaction.EITHER) and slot.likely is not None:
             return self._fill(state, slot, slot.likely)
         is_new = reaction is Reaction.NEW and slot.phrases
@@ -226,7 +226,7 @@ class DialogueManager:
         if learnt is not None:
             return self._fill(state, slot, learnt)
         if self.anonymizer.anonymize(word).spans:
-            return self._miss(state, f"“{word}” is no {noun_for(slot)}. ")
+            return self._miss(state, f"“{word}” is no {noun_for(slot, self.ontology.classes)}. ")
         is_said_twice = word.casefold() in {phrase.casefold() for phrase in slot.phrases}
         if is_new or is_said_twice:
             return self._fill(state, slot, word, Offer(slot.entity_class, word))
@@ -285,17 +285,19 @@ def state_with_prompt(
     dialogue: DialogueManager, state: DialogueState, sorry: str = ""
 ) -> DialogueState:
     """Return the state with what to say in it."""
-    slot = state.asked
+    slot, classes = state.asked, dialogue.ontology.classes
     if state.phase is Phase.REPHRASING:
         prompt = "Please say it another way."
     elif slot is None:
-        said = gloss(state.form, dialogue.predicates)
+        said = gloss(state.form, dialogue.predicates, classes)
         words = re.sub(r"\bme\b", "you", said)
         prompt = f"Did you mean: {said}?" if state.phase is Phase.CHECKING else f"Shall I {words}?"
     elif state.phase is Phase.LEARNING:
-        prompt = f"I do not know any {noun_for(slot)} called “{state.word}”. Shall I learn it?"
+        prompt = (
+            f"I do not know any {noun_for(slot, classes)} called “{state.word}”. Shall I learn it?"
+        )
     else:
-        prompt = question_for(slot, state.form, dialogue.predicates)
+        prompt = question_for(slot, state.form, dialogue.predicates, classes=classes)
         if slot.phrases and slot.entity_class and not slot.is_named:
             prompt = f"{prompt} Name one that I know, or say “new”."
     return replace(state, prompt=sorry + prompt)

@@ -143,7 +143,6 @@ RECIPIENT_PRONOUNS = _nouns.words("recipients")
 ANY_OBJECT = _nouns.text("any_object")
 OPEN_CATEGORIES = _nouns.words("open_categories")
 PLURALS = _nouns.texts_by_name("plurals")
-CLASS_WORDS = _nouns.texts_by_name("classes")
 OBFUSCATED = _nouns.texts_by_name("obfuscated")
 PRONOUNS = _nouns.tables_by_name("pronouns")
 
@@ -173,7 +172,6 @@ ARGUMENT_QUESTIONS = _arguments.texts_by_name("questions")
 _paraphrases = WordFile("paraphrases")
 COURTESY_WORDS = frozenset(_paraphrases.words("courtesy"))
 CHECK_WORDS = _paraphrases.words("checks")
-DESCRIBED_CLASSES = frozenset(_paraphrases.words("described"))
 
 
 @cache

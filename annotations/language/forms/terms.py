@@ -11,13 +11,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from annotations.language.symbols import ENTITY_CLASSES, Nonterminal, Wildcard
+from annotations.language.symbols import DEFAULT_CLASSES, Nonterminal, Wildcard
 
 # Words of the notation: arguments that hold together, as the bodies of one λ do, and actions in order.
 CONJUNCTION = "and"
 SEQUENCE = "sequence"
 CLASS_TOKEN = re.compile(r"<([^\W\d]\w*)>")
-_BARE_TOKEN = re.compile(rf"({'|'.join(ENTITY_CLASSES)})[0-9]+")
+# Files of others write <object0> so. Any word may end in a number, and no world is at hand here.
+_BARE_TOKEN = re.compile(rf"({'|'.join(DEFAULT_CLASSES.tokens)})[0-9]+")
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,7 +22,15 @@ from annotations.language.grammar.productions import (
     Production,
     read_productions,
 )
-from annotations.language.symbols import Choice, Nonterminal, Symbol, Symbols, Wildcard
+from annotations.language.symbols import (
+    DEFAULT_CLASSES,
+    Choice,
+    EntityClasses,
+    Nonterminal,
+    Symbol,
+    Symbols,
+    Wildcard,
+)
 
 TEMPLATE_SUFFIX = "_semantics.txt"
 # Text files of a generator folder that belong to the ontology (docs/reference/formats.md, Ontology files).
@@ -66,8 +74,10 @@ class GrammarFolder:
         return tuple(_follow_imports(self.files, name, set()))
 
 
-def read_grammar_files(contents: Mapping[str, bytes]) -> GrammarFolder:
-    """Read the grammar files among ``contents`` (file name → bytes).
+def read_grammar_files(
+    contents: Mapping[str, bytes], classes: EntityClasses = DEFAULT_CLASSES
+) -> GrammarFolder:
+    """Read the grammar files among ``contents`` (file name → bytes). Wildcards may be of ``classes``.
 
     Every ``*.txt`` may be a grammar file except templates, slot-filling rules, a README, the two text
     files of the ontology and triples. One that holds comments or prose only is left out with a warning,
@@ -80,7 +90,7 @@ def read_grammar_files(contents: Mapping[str, bytes]) -> GrammarFolder:
     for name in sorted(filter(is_grammar_name, contents)):
         try:
             text, changes = read_text(contents[name], name)
-            file = read_productions(text, name)
+            file = read_productions(text, name, classes)
         except EmptyFile as error:
             unread.append(error.problem)
         except LanguageError as error:

@@ -15,6 +15,8 @@ from annotations.language.errors import (
 )
 from annotations.language.limits import MAX_NONTERMINAL, require_name
 from annotations.language.symbols import (
+    DEFAULT_CLASSES,
+    EntityClasses,
     SymbolReader,
     Symbols,
     lone_closing_parentheses,
@@ -139,7 +141,9 @@ class GrammarFile:
         return self.defines(nonterminal) or nonterminal in self.heads
 
 
-def read_productions(text: str, source: str = "") -> GrammarFile:
+def read_productions(
+    text: str, source: str = "", classes: EntityClasses = DEFAULT_CLASSES
+) -> GrammarFile:
     """Read a grammar file. Errors are not raised but listed in ``problems``, each at its place.
 
     What GPSRCmdGen accepts silently is accepted with a warning: a production without an expansion is left
@@ -148,6 +152,7 @@ def read_productions(text: str, source: str = "") -> GrammarFile:
     Args:
         text: the file's text (``decoding.decode`` takes care of its encoding).
         source: the file's name, for positions.
+        classes: those that wildcards may be of.
     """
     problems: list[Problem] = []
     body, comments = split_comments(text.removeprefix("\ufeff"), source, problems)
@@ -168,7 +173,7 @@ def read_productions(text: str, source: str = "") -> GrammarFile:
         return GrammarFile(source, "", "", (), (), (warning,), is_prose=True)
     for line, place in places:
         try:
-            if (production := _read_line(line, place, problems)) is not None:
+            if (production := _read_line(line, place, problems, classes)) is not None:
                 productions.append(production)
         except LanguageError as error:
             problems.append(error.problem)
@@ -180,7 +185,9 @@ def read_productions(text: str, source: str = "") -> GrammarFile:
     )
 
 
-def _read_line(line: str, place: Position, problems: list[Problem]) -> Production | None:
+def _read_line(
+    line: str, place: Position, problems: list[Problem], classes: EntityClasses
+) -> Production | None:
     """Return the production of a line of a file; None where GPSRCmdGen leaves the line out."""
     match = _PRODUCTION.fullmatch(line)
     if match is not None and not match["expansion"].replace("|", " ").strip():
@@ -202,11 +209,16 @@ def _read_line(line: str, place: Position, problems: list[Problem]) -> Productio
             )
         )
         line = line[: start + lone[0]]
-    return read_production(line, place)
+    return read_production(line, place, classes)
 
 
-def read_production(line: str, position: Position | None = None) -> Production:
+def read_production(
+    line: str, position: Position | None = None, classes: EntityClasses | None = None
+) -> Production:
     """Read one line ``$name = expansion`` without comments.
+
+    Args:
+        classes: those that wildcards may be of; None for any.
 
     Raises:
         LanguageError: the line is not a production, or its expansion is malformed.
@@ -224,7 +236,7 @@ def read_production(line: str, position: Position | None = None) -> Production:
         raise LanguageError(
             f"${match['head']} has no expansion", place.shifted(start), "write {void} for no words"
         )
-    reader = SymbolReader(match["expansion"], place.shifted(start))
+    reader = SymbolReader(match["expansion"], place.shifted(start), classes)
     expansion = reader.whole_line()
     head = place.shifted(match.start("head") - 1)
     require_name(match["head"], "nonterminal", MAX_NONTERMINAL, head)

@@ -10,10 +10,9 @@ from enum import IntEnum
 
 from annotations.language.english import spellings
 from annotations.language.ontology import Entity, Ontology
-from annotations.language.symbols import ENTITY_CLASSES
+from annotations.language.symbols import EntityClasses
 
 _TOKEN = re.compile(r"<\w+>|\w+|[^\w\s]")
-_INFLECTED = ("object", "category", "location", "room")
 # A grounded question becomes this word; the question itself is only in the note.
 QUESTION_WORD = "question"
 
@@ -66,17 +65,12 @@ class Reading:
     value: str
     entity: Entity
 
-    @property
-    def rank(self) -> tuple[int, int]:
-        """Those of the lowest rank are meant: the closest likeness, and then the first class."""
-        return self.likeness, _CLASS_ORDER.get(self.entity_class, len(_CLASS_ORDER))
-
 
 class Anonymizer:
     """Finds entities by the longest match of whole words, left to right, ignoring case.
 
     Texts, aliases, plurals and singulars count. An exact text wins over an alias, an alias over an
-    inflection; after that the order of ``ENTITY_CLASSES`` decides. The singular of a category is a
+    inflection; after that the order of the ontology's classes decides. The singular of a category is a
     word for any of its objects, as in ``{object?}``, and becomes ``<object>``.
 
     Args:
@@ -88,13 +82,18 @@ class Anonymizer:
         self._numbered = numbered
         readings: defaultdict[tuple[str, ...], list[Reading]] = defaultdict(list)
         for entity in ontology.entities:
-            for words, reading in readings_of(entity):
+            for words, reading in readings_of(entity, ontology.classes):
                 if key := tuple(_TOKEN.findall(words.casefold())):
                     readings[key].append(reading)
         self._readings: dict[tuple[str, ...], tuple[Reading, ...]] = {}
+
+        def rank(reading: Reading) -> tuple[int, int]:
+            """Those of the lowest rank are meant: the closest likeness, and then the first class."""
+            return reading.likeness, ontology.classes.place(reading.entity_class)
+
         for key, options in readings.items():
-            closest = min(each.rank for each in options)
-            likely = (each for each in options if each.rank == closest)
+            closest = min(map(rank, options))
+            likely = (each for each in options if rank(each) == closest)
             self._readings[key] = tuple(dict.fromkeys(likely))
         self._longest = max(map(len, self._readings), default=0)
 
@@ -133,8 +132,8 @@ class Anonymizer:
             place += 1
 
 
-def readings_of(entity: Entity) -> Iterator[tuple[str, Reading]]:
-    """Yield every spelling of an entity with its reading."""
+def readings_of(entity: Entity, classes: EntityClasses) -> Iterator[tuple[str, Reading]]:
+    """Yield every spelling of an entity of one of the classes with its reading."""
     entity_class, text = entity.entity_class, entity.text
     exact = Reading(Likeness.EXACT, entity_class, text, entity)
     yield text, exact
@@ -146,9 +145,6 @@ def readings_of(entity: Entity) -> Iterator[tuple[str, Reading]]:
     if singular and singular != text:
         yield singular, Reading(Likeness.EXACT, "object", singular, entity)
         return
-    for noun in (text, *entity.aliases) if entity_class in _INFLECTED else ():
+    for noun in (text, *entity.aliases) if classes.has_plurals(entity_class) else ():
         for spelling in spellings(noun):
             yield spelling, Reading(Likeness.INFLECTED, entity_class, text, entity)
-
-
-_CLASS_ORDER = {name: place for place, name in enumerate(ENTITY_CLASSES)}

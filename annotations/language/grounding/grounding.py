@@ -194,7 +194,8 @@ class _Speaker:
             return self._ontology.singular(entity.attribute("category") or "object")
         if wildcard.entity_class == "location":
             return entity.attribute("room") or "room"
-        return OBFUSCATED.get(wildcard.entity_class, wildcard.entity_class)
+        said = OBFUSCATED.get(wildcard.entity_class)
+        return said or self._ontology.classes.singular(wildcard.entity_class)
 
     def _gender(self) -> str:
         """Return the gender for a pronoun.

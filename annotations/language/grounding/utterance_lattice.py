@@ -83,7 +83,7 @@ class UtteranceReader:
         """Folded words → the entities that they can name: for each class, those that are called most like it."""
         found: defaultdict[tuple[str, ...], list[Reading]] = defaultdict(list)
         for entity in self._ontology.entities:
-            for words, reading in readings_of(entity):
+            for words, reading in readings_of(entity, ontology.classes):
                 if key := tuple(fold(each) for each in _spoken(words)):
                     found[key].append(reading)
         return {key: _closest(readings) for key, readings in found.items()}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from annotations.language.ontology.additions import Additions, additions_to, read_entities
 from annotations.language.ontology.competition_folder import (
+    COMPETITION_CLASSES,
     COMPETITION_FILES,
     place_in_folder,
     read_competition,
@@ -22,6 +23,7 @@ from annotations.language.ontology.published_generators import (
 )
 
 __all__ = [
+    "COMPETITION_CLASSES",
     "COMPETITION_FILES",
     "ONTOLOGY_FILES",
     "PUBLISHED_GENERATORS",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from annotations.language.errors import Position, Problem, warning_at
 from annotations.language.ontology.entities import Entity, Ontology
@@ -54,7 +54,7 @@ def additions_to(ontology: Ontology, entities: Iterable[Entity]) -> Additions:
         (duplicates if _key(entity) in known else new).append(entity)
         known.add(_key(entity))
     before = {(each.position, each.message) for each in ontology_problems(ontology)}
-    after = ontology_problems(Ontology((*ontology.entities, *new)))
+    after = ontology_problems(replace(ontology, entities=(*ontology.entities, *new)))
     problems = {each for each in after if (each.position, each.message) not in before}
     owner: dict[tuple[str, str], str] = {}  # class and name → the entity that has the name first
     for entity in ontology.entities:

@@ -19,6 +19,14 @@ from annotations.language.ontology.ontology_checks import ontology_problems
 NAMES, ROOMS = "names/names.md", "maps/room_names.md"
 LOCATIONS, OBJECTS = "maps/location_names.md", "objects/objects.md"
 COMPETITION_FILES = (NAMES, ROOMS, LOCATIONS, OBJECTS)
+# File → the classes of what it lists.
+_LISTED = {
+    NAMES: ("name",),
+    ROOMS: ("room",),
+    LOCATIONS: ("location",),
+    OBJECTS: ("object", "category"),
+}
+COMPETITION_CLASSES = frozenset(name for names in _LISTED.values() for name in names)
 
 MOST_LINES = 20_000  # of a file
 MOST_CELLS = 20  # of a row that are told apart

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from annotations.language.errors import Position
+from annotations.language.symbols import DEFAULT_CLASSES, EntityClasses
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,9 +41,10 @@ class Entity:
 
 @dataclass(frozen=True)
 class Ontology:
-    """Rows in the order of their files."""
+    """Rows in the order of their files, and the classes that they may be of."""
 
     entities: tuple[Entity, ...] = ()
+    classes: EntityClasses = DEFAULT_CLASSES
 
     @cached_property
     def by_class(self) -> Mapping[str, tuple[Entity, ...]]:

@@ -5,7 +5,7 @@ What is written reads back as the same rows.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from io import BytesIO
@@ -19,19 +19,33 @@ from defusedxml.sax import make_parser
 
 from annotations.language.decoding import EmptyFile, read_text
 from annotations.language.errors import LanguageError, Position, Problem, error_at, warning_at
-from annotations.language.limits import MAX_NESTING
+from annotations.language.limits import MAX_NESTING, require_length
 from annotations.language.ontology.entities import Entity, Ontology
 from annotations.language.ontology.ontology_checks import ontology_problems
+from annotations.language.symbols import (
+    DEFAULT_CLASSES,
+    HUES,
+    MAX_CLASS_WORDS,
+    MAX_TOKEN,
+    EntityClass,
+    EntityClasses,
+    require_token,
+)
 from annotations.language.text import normalise_line
 
 ALIAS_SEPARATOR = ";"
 
-Found = Iterator[Entity | Problem]
+Found = Iterator[Entity | EntityClass | Problem]
 _DECLARATION = '<?xml version="1.0" encoding="utf-8"?>'
 
 
-def read_ontology(files: Mapping[str, bytes]) -> tuple[Ontology, tuple[Problem, ...]]:
+def read_ontology(
+    files: Mapping[str, bytes], known: EntityClasses = DEFAULT_CLASSES
+) -> tuple[Ontology, tuple[Problem, ...]]:
     """Read ontology files given as name → content; other names are ignored, and so is the case of letters.
+
+    Args:
+        known: the classes that entities may be of, beside those that the files declare.
 
     Returns:
         The rows, and every problem with its place: an error for a file that cannot be read, which
@@ -39,23 +53,28 @@ def read_ontology(files: Mapping[str, bytes]) -> tuple[Ontology, tuple[Problem, 
     """
     entities: list[Entity] = []
     problems: list[Problem] = []
-    for known, reader in _READERS.items():
-        names = sorted(name for name in files if name.lower() == known)
+    classes = known
+    for known_name, reader in _READERS.items():
+        names = sorted(name for name in files if name.lower() == known_name)
         for name in names[:1]:
-            rows, unread = _read(reader, files[name], name)
+            results, unread = _read(reader, files[name], name)
+            rows = [each for each in results if isinstance(each, Entity)]
+            classes = classes.with_rows(each for each in results if isinstance(each, EntityClass))
+            if known_name == ENTITIES:
+                unread += _of_no_class(rows, classes)
             entities += rows
             problems += unread
         for name in names[1:]:
             sentence = f"{names[0]} has the same name but for the case of its letters"
             problems.append(error_at(Position(name), sentence, "keep one of the two"))
     entities, lonely = _add_singulars(entities)
-    ontology = Ontology(tuple(entities))
+    ontology = Ontology(tuple(entities), classes)
     return ontology, (*problems, *lonely, *ontology_problems(ontology))
 
 
 def _read(
     reader: Callable[[str, str], Found], data: bytes, name: str
-) -> tuple[list[Entity], list[Problem]]:
+) -> tuple[list[Entity | EntityClass], list[Problem]]:
     try:
         text, changes = read_text(data, name)
         results = list(reader(text, name))
@@ -65,8 +84,8 @@ def _read(
         return [], [warning if is_harmless else error.problem]
     except LanguageError as error:
         return [], [error.problem]
-    entities = [each for each in results if isinstance(each, Entity)]
-    return entities, [*changes, *(each for each in results if isinstance(each, Problem))]
+    rows = [each for each in results if not isinstance(each, Problem)]
+    return rows, [*changes, *(each for each in results if isinstance(each, Problem))]
 
 
 def _read_nested(text: str, source: str, root: str, outer: str, inner: str) -> Found:
@@ -147,8 +166,62 @@ def _read_sayings(text: str, source: str) -> Found:
             yield Entity("whattosay", saying, position=Position(source, number))
 
 
+def _read_classes(text: str, source: str) -> Found:
+    seen: set[str] = set()
+    for item in _children(read_xml(text, source, "classes"), "class"):
+        if isinstance(item, Problem):
+            yield item
+            continue
+        try:
+            read = _read_class(item)
+        except LanguageError as error:
+            yield error_at(item.position, error.message, error.hint)
+            continue
+        if read.token in seen:
+            yield error_at(item.position, f"the class {read.token} is declared twice", "merge them")
+        seen.add(read.token)
+        yield read
+
+
+def _read_class(item: Element) -> EntityClass:
+    """Read ``<class token="pose" singular="pose" plural="poses" hue="20" said="pose" closed="true"/>``.
+
+    Words that are left out are those of the token.
+    """
+    token = item.attributes.get("token", "")
+    require_token(token)
+    words = token.replace("_", " ")
+    hue = item.attributes.get("hue", "0")
+    if not (hue.isascii() and hue.isdecimal() and len(hue) < 4 and int(hue) < HUES):
+        raise LanguageError(f"the hue of {token} is no number from 0 to {HUES - 1}", hint="like 40")
+    said = {name: item.attributes.get(name) or words for name in ("singular", "plural", "said")}
+    for name, text in said.items():
+        require_length(text, f"{name} of {token}", MAX_CLASS_WORDS, item.position)
+    is_closed = item.attributes.get("closed", "").lower() == "true"
+    return EntityClass(token, hue=int(hue), is_closed=is_closed, **said)
+
+
+def _read_entities(text: str, source: str) -> Found:
+    """Yield the entities of classes without a file of their own: ``<pose name="sitting"/>``."""
+    for item in read_xml(text, source, "entities").children:
+        yield from _read_named(item, item.tag)
+
+
+def _of_no_class(rows: Iterable[Entity], classes: EntityClasses) -> Iterator[Problem]:
+    for each in rows:
+        if each.entity_class not in classes:
+            yield error_at(
+                each.position,
+                f"there is no class {each.entity_class[:MAX_TOKEN]}",
+                f"declare it in {CLASSES}; there are {', '.join(classes.tokens)}",
+            )
+
+
+CLASSES, ENTITIES = "classes.xml", "entities.xml"
+
 # Rows are kept in this order.
 _READERS: dict[str, Callable[[str, str], Found]] = {
+    CLASSES: _read_classes,
     "objects.xml": partial(_read_nested, root="categories", outer="category", inner="object"),
     "locations.xml": partial(_read_nested, root="rooms", outer="room", inner="location"),
     "names.xml": _read_names,
@@ -156,6 +229,7 @@ _READERS: dict[str, Callable[[str, str], Found]] = {
     "questions.xml": _read_questions,
     "whattosay.txt": _read_sayings,
     "categories.txt": _read_categories,
+    ENTITIES: _read_entities,
 }
 
 ONTOLOGY_FILES = tuple(_READERS)
@@ -308,7 +382,7 @@ class _Handler(ContentHandler):
 
 
 def write_ontology(ontology: Ontology) -> dict[str, str]:
-    """Return file name → text, for every file that has a row."""
+    """Return file name → text, for every file that has a row. Classes as a new world has them need no row."""
     names = [
         f"    <name{_write_attributes(each, is_named=False)}>{escape(each.text)}</name>"
         for each in ontology.of_class("name")
@@ -323,7 +397,9 @@ def write_ontology(ontology: Ontology) -> dict[str, str]:
     ]
     singulars = [f"{plural}, {singular}" for plural, singular in ontology.singulars.items()]
     head = ["name plural, name singular"] if singulars else []
+    own = [each for each in ontology.entities if each.entity_class not in DEFAULT_CLASSES]
     files = {
+        CLASSES: _write_document("classes", map(_write_class, _changed_classes(ontology.classes))),
         "objects.xml": _write_nested(ontology, "categories", "category", "object"),
         "locations.xml": _write_nested(ontology, "rooms", "room", "location"),
         "names.xml": _write_document("names", names),
@@ -331,8 +407,28 @@ def write_ontology(ontology: Ontology) -> dict[str, str]:
         "questions.xml": _write_document("questions", questions),
         "categories.txt": _write_lines([*head, *singulars]),
         "whattosay.txt": _write_lines(each.text for each in ontology.of_class("whattosay")),
+        ENTITIES: _write_document(
+            "entities", (f"    <{each.entity_class}{_write_attributes(each)}/>" for each in own)
+        ),
     }
     return {name: text for name, text in files.items() if text}
+
+
+def _changed_classes(classes: EntityClasses) -> Iterator[EntityClass]:
+    return (each for each in classes if each != DEFAULT_CLASSES.get(each.token))
+
+
+def _write_class(entity_class: EntityClass) -> str:
+    values = {
+        "token": entity_class.token,
+        "singular": entity_class.singular,
+        "plural": entity_class.plural,
+        "hue": str(entity_class.hue),
+        "said": entity_class.said,
+        "closed": "true" if entity_class.is_closed else "false",
+    }
+    written = "".join(f" {key}={quoteattr(value)}" for key, value in values.items())
+    return f"    <class{written}/>"
 
 
 def _write_nested(ontology: Ontology, root: str, outer: str, inner: str) -> str:
@@ -370,8 +466,9 @@ def _write_lines(lines: Iterable[str]) -> str:
     return "".join(f"{line}\n" for line in lines)
 
 
-def _write_document(root: str, rows: Sequence[str]) -> str:
-    return _write_lines([_DECLARATION, f"<{root}>", *rows, f"</{root}>"]) if rows else ""
+def _write_document(root: str, rows: Iterable[str]) -> str:
+    lines = list(rows)
+    return _write_lines([_DECLARATION, f"<{root}>", *lines, f"</{root}>"]) if lines else ""
 
 
 def _write_attributes(entity: Entity, without: tuple[str, ...] = (), is_named: bool = True) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from annotations.language.english import DESCRIBED_CLASSES
 from annotations.language.forms import Constant, Form, walk
 from annotations.language.grounding import Grounded
 from annotations.language.ontology import Entity, Ontology
@@ -32,17 +31,15 @@ def entities_in(prompt: str, form: Form, ontology: Ontology) -> tuple[Named, ...
     named = []
     for text in dict.fromkeys(each for each in texts if isinstance(each, str)):
         entity = entities.get(text)
-        is_described = entity is not None and entity.entity_class in DESCRIBED_CLASSES
+        is_described = entity is not None and ontology.classes.is_closed(entity.entity_class)
         aliases = entity.aliases if entity else ()
         if not lost_entities(prompt, [Named(text, aliases)]):
             named.append(Named(text, aliases, is_described))
     return tuple(named)
 
 
-def _as_named(
-    entity_class: str | None, entity: Entity, text: str, ontology: Ontology
-) -> Named | None:
-    is_described = entity_class in DESCRIBED_CLASSES
+def _as_named(entity_class: str, entity: Entity, text: str, ontology: Ontology) -> Named | None:
+    is_described = ontology.classes.is_closed(entity_class)
     whole = Named(entity.text, entity.aliases, is_described)
     category = entity.attribute("category")
     vague = (category and ontology.singular(category), entity.attribute("room"))

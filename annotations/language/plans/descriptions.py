@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from annotations.language.forms import CONJUNCTION, Application, Constant, Form, Lambda, Variable
 from annotations.language.plans.plan import Condition, Described, Number, OpenValue, Value
 from annotations.language.predicates import Predicate, gloss
+from annotations.language.symbols import EntityClasses
 
 ValueOf = Callable[[Constant, str, int], Value]
 _SUPERLATIVES = ("est", "most")
@@ -22,6 +23,7 @@ class Describer:
 
     predicates: Mapping[str, Predicate]
     value_of: ValueOf
+    classes: EntityClasses
     _made: int = field(default=0, init=False)
 
     def new_id(self) -> str:
@@ -46,7 +48,8 @@ class Describer:
         ids = {variable: self.new_id(), **ids}
         applications = [each for each in conjuncts if isinstance(each, Application)]
         about = [each for each in applications if each.arguments[:1] == (Variable(variable),)]
-        text = gloss(Lambda(variable, "e", tuple(conjuncts)), self.predicates) if conjuncts else ""
+        whole = Lambda(variable, "e", tuple(conjuncts))
+        text = gloss(whole, self.predicates, self.classes) if conjuncts else ""
         # ``(name $2 $1)`` for ``$1``: the description of something else that names it.
         naming = (each for each in applications if Variable(variable) in each.arguments[1:])
         owner = None if about or is_inner else next(naming, None)

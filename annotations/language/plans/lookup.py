@@ -9,34 +9,30 @@ from annotations.language.english import ANY_OBJECT, spellings
 from annotations.language.grounding import QUESTION_WORD
 from annotations.language.ontology import Entity, Ontology
 from annotations.language.plans.plan import Named, Value, Words
-from annotations.language.predicates import ENTITY_KINDS, ArgumentKind, Predicate
+from annotations.language.predicates import Predicate, is_entity_kind
 
 # Words in the place of an entity that name none: any category, any question, where the robot is.
 NEUTRAL_WORDS = frozenset((ANY_OBJECT, QUESTION_WORD, "current"))
-_SPOKEN = frozenset((ArgumentKind.WHATTOSAY, ArgumentKind.QUESTION))
-_KINDS = {
-    ("is_a", 1): frozenset((ArgumentKind.OBJECT, ArgumentKind.CATEGORY)),
-    ("name", 1): frozenset((ArgumentKind.NAME,)),
-    ("at", 1): frozenset((ArgumentKind.LOCATION, ArgumentKind.ROOM)),
-    ("go", 0): frozenset((ArgumentKind.LOCATION, ArgumentKind.ROOM)),
-    **{
-        (action, 1): frozenset((ArgumentKind.LOCATION, ArgumentKind.ROOM))
-        for action in ("put", "guide", "follow")
-    },
+_SPOKEN = frozenset(("whattosay", "question"))
+_PLACES = frozenset(("location", "room"))
+_KINDS: dict[tuple[str, int], frozenset[str]] = {
+    ("is_a", 1): frozenset(("object", "category")),
+    ("name", 1): frozenset(("name",)),
+    ("at", 1): _PLACES,
+    ("go", 0): _PLACES,
+    **{(action, 1): _PLACES for action in ("put", "guide", "follow")},
 }
-# Entity class → the attributes that a robot needs.
-_ATTRIBUTES = {
-    "object": ("category",),
-    "location": ("room",),
-    "name": ("gender",),
-    "question": ("answer",),
-}
+# A class and the attribute of its members that a robot needs.
+_ATTRIBUTES = frozenset(
+    (("object", "category"), ("location", "room"), ("name", "gender"), ("question", "answer"))
+)
 
 
 class Lookup:
     """Finds entities by text, alias or singular, ignoring case."""
 
     def __init__(self, ontology: Ontology, predicates: Mapping[str, Predicate]) -> None:
+        self.classes = ontology.classes
         self._predicates = predicates
         self._rows: defaultdict[str, list[Entity]] = defaultdict(list)
         for entity in ontology.entities:
@@ -56,14 +52,14 @@ class Lookup:
             taken = {
                 each.arguments[place] for each in declared.signatures if each.arguments[place:]
             }
-            kinds = ENTITY_KINDS & taken
+            kinds = frozenset(filter(is_entity_kind, taken))
         rows = self._rows.get(text.casefold(), [])
         fitting = [each for each in rows if each.entity_class in kinds] or rows
         if fitting:
             entity_class = fitting[0].entity_class
             same_class = [each for each in fitting if each.entity_class == entity_class]
             attributes: dict[str, str] = {}  # those that the rows agree on
-            for name in _ATTRIBUTES.get(entity_class, ()):
+            for name in (name for each, name in _ATTRIBUTES if each == entity_class):
                 values = {each.attribute(name) for each in same_class}
                 value = values.pop() if len(values) == 1 else None
                 if value:

@@ -60,7 +60,7 @@ from annotations.language.predicates import (
 
 MOST_STEPS = 50
 NOT_UNDERSTOOD = "I did not understand that. What shall I do?"
-_PLACES = frozenset((ArgumentKind.LOCATION, ArgumentKind.ROOM))
+_PLACES = frozenset(("location", "room"))
 
 
 def make_plan(
@@ -123,7 +123,7 @@ class _Planner:
     last: dict[str, Value] = field(default_factory=dict)  # person or thing → the one described last
 
     def __post_init__(self) -> None:
-        self.describer = Describer(self.predicates, self.text_value)
+        self.describer = Describer(self.predicates, self.text_value, self.lookup.classes)
 
     def add(self, form: Form) -> None:
         """Add the steps of a whole form."""
@@ -169,7 +169,7 @@ class _Planner:
         action = str(form.predicate)
         before, self.waiting = self.waiting, []
         spoken = Lambda(1, "e", (*scope.conjuncts, form)) if scope.conjuncts else form
-        text = gloss(spoken, self.predicates)
+        text = gloss(spoken, self.predicates, self.lookup.classes)
         arguments: dict[str, Value] = {}
         for place, argument in enumerate(self._gather(form, scope)):
             value = self._value(argument, action, place, scope)
@@ -312,9 +312,9 @@ def argument_name(action: str, place: int, argument: Form, entity_class: str = "
     if isinstance(name, str):
         return name
     kind = argument_kind(argument)
-    if kind in _PLACES or entity_class in ("location", "room"):
+    if kind in _PLACES or entity_class in _PLACES:
         said = "place"
-    elif kind is ArgumentKind.NUMBER:
+    elif kind == ArgumentKind.NUMBER:
         said = "number"
     elif isinstance(argument, Unknown):
         said = "unknown"
@@ -322,7 +322,7 @@ def argument_name(action: str, place: int, argument: Form, entity_class: str = "
         predicates = {node.predicate for node in walk(argument) if isinstance(node, Application)}
         said = "person" if predicates & PERSON_PREDICATES else "thing"
     else:
-        said = "name" if kind is ArgumentKind.NAME or entity_class == "name" else "text"
+        said = "name" if "name" in (kind, entity_class) else "text"
     return name.get(said) or name.get("") or f"argument_{place + 1}"
 
 

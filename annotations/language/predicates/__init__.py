@@ -15,10 +15,12 @@ from annotations.language.predicates.predicates import (
     sample_forms,
 )
 from annotations.language.predicates.signatures import (
-    ENTITY_KINDS,
     ArgumentKind,
     Signature,
+    admits,
     argument_kind,
+    is_entity_kind,
+    known_kinds,
     print_signatures,
     read_signatures,
     signature_of,
@@ -30,12 +32,12 @@ from annotations.language.predicates.standing_in import (
 )
 
 __all__ = [
-    "ENTITY_KINDS",
     "ArgumentKind",
     "Misuse",
     "Predicate",
     "PredicateKind",
     "Signature",
+    "admits",
     "argument_kind",
     "can_stand_in",
     "check_form",
@@ -43,7 +45,9 @@ __all__ = [
     "find_misuses",
     "gloss",
     "infer_signatures",
+    "is_entity_kind",
     "is_loose",
+    "known_kinds",
     "pattern_of_name",
     "print_signatures",
     "read_signatures",

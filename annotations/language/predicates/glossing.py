@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TypeGuard
 
-from annotations.language.english import CLASS_WORDS, NUMBERS, plural
+from annotations.language.english import NUMBERS, plural
 from annotations.language.forms import (
     CONJUNCTION,
     Application,
@@ -24,17 +24,18 @@ from annotations.language.predicates.gloss_patterns import (
     read_pattern,
 )
 from annotations.language.predicates.signatures import ArgumentKind, argument_kind
-from annotations.language.symbols import Wildcard
+from annotations.language.symbols import EntityClasses, Wildcard
 
 NOT_UNDERSTOOD = "a command that the robot does not understand"
 
 
 @dataclass(frozen=True, slots=True)
 class _Scope:
-    """How to say predicates, the conjuncts that hold here, the variables that are being described."""
+    """How to say predicates and classes, the conjuncts that hold here, the variables that are being described."""
 
     patterns: Mapping[str, str]
     actions: frozenset[str]
+    classes: EntityClasses
     conjuncts: tuple[Application, ...] = ()
     said: frozenset[int] = frozenset()
 
@@ -88,14 +89,17 @@ class _NounPhrase:
         return " ".join([*self.before, noun, *joined])
 
 
-def sentence(form: Form, patterns: Mapping[str, str], actions: frozenset[str]) -> str:
+def sentence(
+    form: Form, patterns: Mapping[str, str], actions: frozenset[str], classes: EntityClasses
+) -> str:
     """Return the gloss of a form, from the pattern of each predicate (see ``gloss_patterns``).
 
-    ``actions`` names the predicates that are actions; the others describe.
+    ``actions`` names the predicates that are actions; the others describe. ``classes`` say how class
+    tokens are called.
     """
     if isinstance(form, Unknown):
         return NOT_UNDERSTOOD
-    scope = _Scope(patterns, actions)
+    scope = _Scope(patterns, actions, classes)
     if isinstance(form, Lambda):
         bodies, scope = _open(form, scope)
         to_do = [body for body in bodies if not scope.describes(body)]
@@ -176,8 +180,8 @@ def _slot(slot: PatternSlot, arguments: tuple[Form, ...], scope: _Scope) -> str:
     if slot.value or slot.place >= len(arguments):
         return ""
     argument = arguments[slot.place]
-    if slot.kind in (ArgumentKind.TEXT, ArgumentKind.NAME):
-        return _bare(argument)
+    if slot.kind in (ArgumentKind.TEXT, "name"):
+        return _bare(argument, scope)
     return _phrase(argument, scope, slot.kind == "plural")
 
 
@@ -194,18 +198,19 @@ def _phrase(form: Form, scope: _Scope, is_plural: bool = False) -> str:
         return "something"
     if isinstance(form, Reference):
         return form.word
-    return _bare(form) if argument_kind(form) is ArgumentKind.NUMBER else f"the {_bare(form)}"
+    said = _bare(form, scope)
+    return said if argument_kind(form) == ArgumentKind.NUMBER else f"the {said}"
 
 
-def _bare(form: Form) -> str:
+def _bare(form: Form, scope: _Scope) -> str:
     """Say a constant or a slot without an article."""
     if isinstance(form, Constant) and isinstance(form.value, int):
         return NUMBERS[form.value] if 0 <= form.value < len(NUMBERS) else str(form.value)
     kind = argument_kind(form)
-    if kind is ArgumentKind.TEXT and isinstance(form, Constant):
+    if kind == ArgumentKind.TEXT and isinstance(form, Constant):
         return str(form.value)
     if isinstance(form, Constant | Wildcard):
-        return CLASS_WORDS.get(kind, str(kind))
+        return scope.classes.noun(kind)
     return to_reading(form)
 
 
@@ -232,14 +237,14 @@ def _describe(variable: int, scope: _Scope, is_plural: bool = False) -> str:
 def _add(phrase: _NounPhrase, conjunct: Application, scope: _Scope) -> None:
     """Put one description before the noun, after it or in its place."""
     kinds = [argument_kind(each) for each in conjunct.arguments]
-    phrase.is_person |= ArgumentKind.GESTURE in kinds or ArgumentKind.NAME in kinds
+    phrase.is_person |= "gesture" in kinds or "name" in kinds
     phrase.is_plural |= any(
         isinstance(each, Constant) and isinstance(each.value, int) and each.value != 1
         for each in conjunct.arguments
     )
     chosen = _choose(conjunct, scope.patterns, False)
     if chosen.pieces == (PatternSlot(1),) and len(conjunct.arguments) > 1:
-        phrase.noun = _bare(conjunct.arguments[1])
+        phrase.noun = _bare(conjunct.arguments[1], scope)
         return
     before, underscore, after = _fill(chosen, conjunct.arguments, scope).partition("_")
     if not underscore:

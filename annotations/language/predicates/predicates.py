@@ -26,11 +26,12 @@ from annotations.language.limits import MAX_GLOSS
 from annotations.language.predicates.gloss_patterns import ALL_IN_ORDER, default_pattern
 from annotations.language.predicates.glossing import sentence
 from annotations.language.predicates.signatures import (
-    ENTITY_KINDS,
     ArgumentKind,
     Signature,
+    is_entity_kind,
     signature_of,
 )
+from annotations.language.symbols import DEFAULT_CLASSES, EntityClasses
 
 ALIKE = 0.6  # the share of common letters from which on one name is offered for another
 
@@ -129,17 +130,19 @@ def find_misuses(form: Form, predicates: Mapping[str, Predicate]) -> Iterator[Mi
                 yield misuse
 
 
-def gloss(form: Form, predicates: Mapping[str, Predicate]) -> str:
+def gloss(
+    form: Form, predicates: Mapping[str, Predicate], classes: EntityClasses = DEFAULT_CLASSES
+) -> str:
     """Return a short English sentence for a form, the same on every call.
 
     ``( bring ( lambda $1 e ( is_a $1 " <object> " ) ) )`` is "bring me the object". Predicates that
-    are not declared are glossed by their names.
+    are not declared are glossed by their names. ``classes`` say how class tokens are called.
     """
     declared = declared_or_inferred(predicates, form)
     used = {name: declared[name] for name in map(_name_of, _applications(form))}
     patterns = {name: each.gloss or _default(each) for name, each in used.items()}
     actions = frozenset(name for name, each in used.items() if each.is_action)
-    return sentence(form, patterns, actions)
+    return sentence(form, patterns, actions, classes)
 
 
 def declared_or_inferred(
@@ -226,11 +229,11 @@ def sample_forms(predicate: Predicate) -> Iterator[Form]:
             yield Application("find", (Lambda(1, "e", (form,)),))
 
 
-def _argument(kind: ArgumentKind) -> Form:
-    if kind in ENTITY_KINDS:
+def _argument(kind: str) -> Form:
+    if is_entity_kind(kind):
         return Constant(f"<{kind}>")
     thing = Constant("<object>")
-    others: dict[ArgumentKind, Form] = {
+    others: dict[str, Form] = {
         ArgumentKind.VARIABLE: Variable(1),
         ArgumentKind.LAMBDA: Lambda(2, "e", (Application("is_a", (Variable(2), thing)),)),
         ArgumentKind.FORM: Application("go", (Constant("<room>"),)),

@@ -12,15 +12,16 @@ from enum import StrEnum
 
 from annotations.language.errors import LanguageError, Position
 from annotations.language.forms import Application, Constant, Form, Lambda, Unknown, Variable
-from annotations.language.symbols import ENTITY_CLASSES, Wildcard
+from annotations.language.symbols import DEFAULT_CLASSES, EntityClasses, Wildcard, is_token
 
 MOST_ARGUMENTS = 20
 
 
 class ArgumentKind(StrEnum):
-    """LAMBDA is what a λ describes, FORM an application, TEXT a name written out, ANY unrestricted.
+    """The kinds of arguments that every world has, beside the classes of its entities.
 
-    The entity classes stand for a class token or a wildcard of that class.
+    LAMBDA is what a λ describes, FORM an application, TEXT a name written out, ANY unrestricted. Any other
+    kind of an argument is the token of a class: it stands for a class token or a wildcard of that class.
     """
 
     VARIABLE = "variable"
@@ -30,28 +31,33 @@ class ArgumentKind(StrEnum):
     TEXT = "text"
     UNKNOWN = "unknown"
     ANY = "any"
-    OBJECT = "object"
-    CATEGORY = "category"
-    NAME = "name"
-    LOCATION = "location"
-    ROOM = "room"
-    GESTURE = "gesture"
-    QUESTION = "question"
-    WHATTOSAY = "whattosay"
-
-    def admits(self, given: ArgumentKind) -> bool:
-        """Return whether an argument of kind ``given`` is allowed where this kind is declared.
-
-        A written-out text may be an entity of any class, and where texts are allowed, tokens are
-        too.
-        """
-        if ArgumentKind.ANY in (self, given) or self is given:
-            return True
-        is_text = ArgumentKind.TEXT in (self, given)
-        return is_text and {self, given} - {ArgumentKind.TEXT} <= ENTITY_KINDS
 
 
-ENTITY_KINDS = frozenset(map(ArgumentKind, ENTITY_CLASSES))
+_STRUCTURAL = frozenset(map(str, ArgumentKind))
+
+
+def is_entity_kind(kind: str) -> bool:
+    """Return whether a kind of argument is a class of entities."""
+    return kind not in _STRUCTURAL
+
+
+def known_kinds(classes: EntityClasses) -> tuple[str, ...]:
+    """Return the kinds of arguments that a world with these classes has."""
+    return (*map(str, ArgumentKind), *classes.tokens)
+
+
+def admits(declared: str, given: str) -> bool:
+    """Return whether an argument of kind ``given`` is allowed where a kind is declared.
+
+    A written-out text may be an entity of any class, and where texts are allowed, tokens are too.
+    """
+    if ArgumentKind.ANY in (declared, given) or declared == given:
+        return True
+    if declared == ArgumentKind.TEXT:
+        return is_entity_kind(given)
+    return given == ArgumentKind.TEXT and is_entity_kind(declared)
+
+
 _OF_TYPE = {
     Variable: ArgumentKind.VARIABLE,
     Lambda: ArgumentKind.LAMBDA,
@@ -62,28 +68,36 @@ _OF_TYPE = {
 
 @dataclass(frozen=True, slots=True, order=True)
 class Signature:
-    """The kinds of the arguments of a predicate, in order. An overloaded predicate has several."""
+    """The kinds of the arguments of a predicate, in order. An overloaded predicate has several.
 
-    arguments: tuple[ArgumentKind, ...]
+    A kind is an ``ArgumentKind`` or the token of a class of entities.
+    """
+
+    arguments: tuple[str, ...]
 
     def __str__(self) -> str:
         return f"({', '.join(self.arguments)})"
 
+    def within(self, classes: EntityClasses) -> Signature:
+        """Return the signature with TEXT for the tokens that are of none of the classes."""
+        known = known_kinds(classes)
+        kinds = (each if each in known else ArgumentKind.TEXT for each in self.arguments)
+        return Signature(tuple(kinds))
+
     def mismatches(self, given: Signature) -> tuple[int, ...]:
         """Return the places (from 0) where ``given``, of the same length, is not allowed."""
         pairs = zip(self.arguments, given.arguments, strict=True)
-        return tuple(place for place, (mine, its) in enumerate(pairs) if not mine.admits(its))
+        return tuple(place for place, (mine, its) in enumerate(pairs) if not admits(mine, its))
 
 
-def argument_kind(form: Form) -> ArgumentKind:
+def argument_kind(form: Form) -> str:
     """Return the kind of a form as an argument."""
     if isinstance(form, Constant):
         if isinstance(form.value, int):
             return ArgumentKind.NUMBER
-        is_class = form.token_class in ENTITY_CLASSES
-        return ArgumentKind(form.token_class) if is_class else ArgumentKind.TEXT
+        return form.token_class if is_token(form.token_class) else ArgumentKind.TEXT
     if isinstance(form, Wildcard) and form.entity_class:
-        return ArgumentKind(form.entity_class)
+        return form.entity_class
     return _OF_TYPE.get(type(form), ArgumentKind.ANY)
 
 
@@ -108,8 +122,11 @@ def print_signatures(signatures: Iterable[Signature]) -> str:
     return "\n".join(line for _, line in sorted(lines))
 
 
-def read_signatures(text: str) -> tuple[Signature, ...]:
+def read_signatures(text: str, classes: EntityClasses = DEFAULT_CLASSES) -> tuple[Signature, ...]:
     """Read what ``print_signatures`` writes; the parentheses may be missing around arguments.
+
+    Args:
+        classes: those that an argument may be of.
 
     Raises:
         LanguageError: with the line, for an unknown kind or a misplaced question mark.
@@ -117,11 +134,11 @@ def read_signatures(text: str) -> tuple[Signature, ...]:
     signatures: set[Signature] = set()
     for number, line in enumerate(text.splitlines(), start=1):
         if line.strip():
-            signatures |= _read_line(line, Position("", number))
+            signatures |= _read_line(line, Position("", number), classes)
     return tuple(sorted(signatures))
 
 
-def _read_line(line: str, place: Position) -> set[Signature]:
+def _read_line(line: str, place: Position, classes: EntityClasses) -> set[Signature]:
     bare = line.strip()
     inside = bare[1:-1] if bare.startswith("(") and bare.endswith(")") else bare
     if "(" in inside or ")" in inside:
@@ -134,14 +151,15 @@ def _read_line(line: str, place: Position) -> set[Signature]:
             f"line {place.line} has {len(words)} arguments", place, f"{MOST_ARGUMENTS} is the limit"
         )
     names = [word.removesuffix("?").strip() for word in words]
-    unknown = next((name for name in names if name not in set(ArgumentKind)), None)
+    known = known_kinds(classes)
+    unknown = next((name for name in names if name not in known), None)
     if unknown is not None:
         raise LanguageError(
             f"there is no kind of argument {unknown[:40] or 'without a name'} (line {place.line})",
             place,
-            f"the kinds are {', '.join(ArgumentKind)}",
+            f"the kinds are {', '.join(known)}",
         )
-    kinds = tuple(map(ArgumentKind, names))
+    kinds = tuple(names)
     optional = [word.endswith("?") for word in words]
     least = optional.index(True) if True in optional else len(words)
     if not all(optional[least:]):

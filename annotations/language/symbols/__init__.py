@@ -3,8 +3,20 @@
 from __future__ import annotations
 
 from annotations.language.symbols.cursor import lone_closing_parentheses
+from annotations.language.symbols.entity_classes import (
+    DEFAULT_CLASSES,
+    HUES,
+    MAX_CLASS_WORDS,
+    MAX_TOKEN,
+    MOST_CLASSES,
+    EntityClass,
+    EntityClasses,
+    is_token,
+    require_token,
+    wildcard_names,
+)
+from annotations.language.symbols.kind_checks import kinds_in_form, kinds_in_pattern
 from annotations.language.symbols.printing import print_sequence, print_symbol, print_wildcard
-from annotations.language.symbols.reader import NAMES as WILDCARD_NAMES
 from annotations.language.symbols.reader import SymbolReader, read_wildcard
 from annotations.language.symbols.slot_places import (
     SlotPlace,
@@ -14,7 +26,6 @@ from annotations.language.symbols.slot_places import (
     split_head,
 )
 from annotations.language.symbols.symbols import (
-    ENTITY_CLASSES,
     TYPES,
     Choice,
     Combination,
@@ -30,13 +41,18 @@ from annotations.language.symbols.symbols import (
 )
 
 __all__ = [
-    "ENTITY_CLASSES",
+    "DEFAULT_CLASSES",
+    "HUES",
+    "MAX_CLASS_WORDS",
+    "MAX_TOKEN",
+    "MOST_CLASSES",
     "TYPES",
-    "WILDCARD_NAMES",
     "Choice",
     "Combination",
     "Comparison",
     "Condition",
+    "EntityClass",
+    "EntityClasses",
     "Negation",
     "Nonterminal",
     "SlotPlace",
@@ -45,6 +61,9 @@ __all__ = [
     "Symbols",
     "Text",
     "Wildcard",
+    "is_token",
+    "kinds_in_form",
+    "kinds_in_pattern",
     "lone_closing_parentheses",
     "places_in_form",
     "places_in_pattern",
@@ -52,7 +71,9 @@ __all__ = [
     "print_symbol",
     "print_wildcard",
     "read_wildcard",
+    "require_token",
     "slot_key",
     "split_head",
     "walk",
+    "wildcard_names",
 ]

@@ -9,8 +9,13 @@ from difflib import get_close_matches
 from annotations.language.errors import Position
 from annotations.language.limits import MAX_NONTERMINAL, require_name
 from annotations.language.symbols.cursor import Cursor
+from annotations.language.symbols.entity_classes import (
+    DEFAULT_CLASSES,
+    TOKEN,
+    EntityClasses,
+    wildcard_names,
+)
 from annotations.language.symbols.symbols import (
-    ALIASES,
     TYPES,
     Choice,
     Nonterminal,
@@ -23,9 +28,8 @@ from annotations.language.symbols.where_clauses import read_condition
 
 _HEAD_WORD = re.compile(r"\w+")
 # The generator reads letters and then digits: {object1} is {object 1}.
-_LETTERS_BEFORE_ID = re.compile(r"[^\W\d_]++(?=\d++\b)")
+_LETTERS_BEFORE_ID = re.compile(r"[^\W\d]*[^\W\d_](?=\d++\b)")
 _KEYWORD = re.compile(r"(where\b|meta\s*:)", re.IGNORECASE)
-NAMES = (*TYPES, *ALIASES)
 _NONTERMINAL = re.compile(r"\$([^\W\d]\w*)")
 _SPECIAL = r"\s$\{\}()|,"
 _WORD = re.compile(rf"(?:[^{_SPECIAL}\\]|\\.)+")
@@ -43,8 +47,11 @@ class WildcardHead:
     obfuscated: bool = False
 
 
-def read_head(cursor: Cursor) -> WildcardHead:
+def read_head(cursor: Cursor, classes: EntityClasses | None = None) -> WildcardHead:
     """Read ``kind[?] [type] [id]`` and stop before ``where``, ``meta:`` or the closing brace.
+
+    Args:
+        classes: those that a kind may be of; None for any kind that is written like one.
 
     Raises:
         LanguageError: an unknown kind, a type its kind does not have, or an id too long.
@@ -53,12 +60,12 @@ def read_head(cursor: Cursor) -> WildcardHead:
     start = cursor.index
     written = cursor.match(_LETTERS_BEFORE_ID) or cursor.match(_HEAD_WORD)
     if written is None:
-        raise cursor.fail("a wildcard needs a kind", f"one of {', '.join(NAMES)}")
+        names = wildcard_names(classes or DEFAULT_CLASSES)
+        raise cursor.fail("a wildcard needs a kind", f"one of {', '.join(names)}")
     name = written.lower()
-    if name not in NAMES:
-        near = get_close_matches(name, NAMES, 1)
-        hint = f"did you mean {{{near[0]}}}?" if near else f"the kinds are {', '.join(NAMES)}"
-        raise cursor.fail(f"there is no wildcard {{{written}}}", hint, at=start)
+    is_known = TOKEN.fullmatch(name) if classes is None else name in wildcard_names(classes)
+    if not is_known:
+        raise cursor.fail(*no_such_kind(written, classes or DEFAULT_CLASSES), at=start)
     cursor.skip_spaces()
     obfuscated = cursor.accept("?")
     type_ = ""
@@ -76,6 +83,14 @@ def read_head(cursor: Cursor) -> WildcardHead:
     return WildcardHead(name, type_, identifier, obfuscated)
 
 
+def no_such_kind(written: str, classes: EntityClasses) -> tuple[str, str]:
+    """Return the message and the hint for a wildcard of a kind that is not of ``classes``."""
+    names = wildcard_names(classes)
+    near = get_close_matches(written.lower(), names, 1)
+    hint = f"did you mean {{{near[0]}}}?" if near else f"the kinds are {', '.join(names)}"
+    return f"there is no wildcard {{{written}}}", hint
+
+
 def _next_word(cursor: Cursor) -> str | None:
     cursor.skip_spaces()
     if _KEYWORD.match(cursor.text, cursor.index):
@@ -90,10 +105,12 @@ class SymbolReader(Cursor):
     """A recursive reader of one line; ``references`` collects the nonterminals it meets.
 
     Brackets are matched first, so the recursion never goes deeper than ``limits.MAX_NESTING``.
+    ``classes`` are those that wildcards may be of; None for all.
     """
 
-    def __init__(self, text: str, origin: Position) -> None:
+    def __init__(self, text: str, origin: Position, classes: EntityClasses | None = None) -> None:
         super().__init__(text, origin)
+        self.classes = classes
         self.references: list[tuple[str, Position]] = []
 
     def whole_line(self) -> Symbols:
@@ -114,7 +131,7 @@ class SymbolReader(Cursor):
         """Read the wildcard that begins at the next character, an opening brace."""
         end = self.pairs[self.index]
         self.accept("{")
-        head = read_head(self)
+        head = read_head(self, self.classes)
         where = read_condition(self, self.wildcard) if self.match(_WHERE) is not None else None
         self.skip_spaces()
         meta = self.meta(end) if self.match(_META) is not None else ()

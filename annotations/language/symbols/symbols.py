@@ -6,17 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
-ENTITY_CLASSES = (
-    "object",
-    "category",
-    "name",
-    "location",
-    "room",
-    "gesture",
-    "question",
-    "whattosay",
-)
-
+# Kinds of wildcards that stand for no entity.
+NO_ENTITY = ("void", "pron")
 # Wildcard name as written → (kind, type). docs/reference/formats.md, Wildcards.
 ALIASES: dict[str, tuple[str, str]] = {
     "kobject": ("object", "known"),
@@ -28,16 +19,12 @@ ALIASES: dict[str, tuple[str, str]] = {
     "male": ("name", "male"),
     "female": ("name", "female"),
 }
+# Kind → its types; other kinds have none.
 TYPES: dict[str, tuple[str, ...]] = {
     "object": ("known", "alike", "special"),
-    "category": (),
     "location": ("room", "placement", "beacon"),
     "name": ("male", "female"),
-    "gesture": (),
-    "question": (),
-    "void": (),
     "pron": ("obj", "sub", "pos", "paj", "posadj", "pab", "posabs"),
-    "whattosay": (),
 }
 
 
@@ -99,7 +86,7 @@ class Wildcard:
 
     @property
     def kind(self) -> str:
-        """The kind after aliases: object, category, location, name, gesture, question, void, pron, whattosay."""
+        """The kind after aliases: a class of entities (``room`` is a location), void or pron."""
         return ALIASES[self.name][0] if self.name in ALIASES else self.name
 
     @property
@@ -110,7 +97,7 @@ class Wildcard:
     @property
     def entity_class(self) -> str:
         """The class of its token: rooms are ``room``, beacons and placements ``location``; empty for void and pron."""
-        if self.kind in ("void", "pron"):
+        if self.kind in NO_ENTITY:
             return ""
         return "room" if self.restriction == "room" else self.kind
 

@@ -11,7 +11,6 @@ from django.db.models import Count, Min, Q, QuerySet, TextField
 from django.db.models.functions import Cast
 from django.db.models.lookups import IContains
 
-from annotations.language.symbols import ENTITY_CLASSES
 from annotations.lists.filtering import Choices, PageFilters, Search
 from annotations.models import Production, SemanticTemplate, TaskCategory, World
 from annotations.models.description import (
@@ -21,6 +20,7 @@ from annotations.models.description import (
 )
 from annotations.people.access import WorldRequest
 from annotations.rows.composition import split_entry
+from annotations.rows.from_rows import classes_of
 
 
 def template_file_choices(request: WorldRequest) -> Choices:
@@ -38,6 +38,11 @@ def grammar_category_choices(request: WorldRequest) -> Choices:
     """Return the task categories of the world's grammar, whether they have commands or not."""
     rows = TaskCategory.objects.filter(grammar__world=request.world)
     return [(name, name) for name in rows.values_list("name", flat=True)]
+
+
+def entity_class_choices(request: WorldRequest) -> Choices:
+    """Return the classes of the world's entities."""
+    return [(name, name) for name in classes_of(request.world).tokens]
 
 
 def _sources_of(rows: QuerySet[Any]) -> Choices:
@@ -66,9 +71,8 @@ class EntitySearch(Search):
 
 class EntityFilters(PageFilters):
     q = EntitySearch()
-    entity_class = django_filters.ChoiceFilter(
-        label="Class", choices=[(name, name) for name in ENTITY_CLASSES]
-    )
+    entity_class = django_filters.ChoiceFilter(label="Class")
+    world_choices = {"entity_class": entity_class_choices}
 
 
 class PredicateFilters(PageFilters):

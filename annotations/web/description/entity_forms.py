@@ -13,10 +13,14 @@ from annotations.language.names import require_entity_name
 from annotations.language.ontology import Additions, additions_to, read_entities
 from annotations.language.ontology import Entity as EntityValue
 from annotations.models import Editable, Entity, Ontology, World
-from annotations.models.description import entity_class_choices
-from annotations.rows.from_rows import ontology_of
+from annotations.rows.from_rows import classes_of, ontology_of
 from annotations.rows.row_kinds import as_text
 from annotations.web.forms import sentence_of
+
+
+def choices_in(world: World) -> list[tuple[str, str]]:
+    """Return the classes that an entity of the world may be of."""
+    return [(name, name) for name in classes_of(world).tokens]
 
 
 class LinesField(forms.CharField):
@@ -53,7 +57,7 @@ class AttributeLinesField(forms.CharField):
 class EntityForm(forms.Form):
     """One entity. The name of a stored one changes only by renaming."""
 
-    entity_class = forms.ChoiceField(label="Class", choices=entity_class_choices)
+    entity_class = forms.ChoiceField(label="Class")
     text = forms.CharField(label="Name", max_length=MAX_ENTITY)
     aliases = LinesField(
         max_length=20_000, help_text="Other names that people use for it, one a line."
@@ -69,6 +73,7 @@ class EntityForm(forms.Form):
         self.world = world
         self.row = row
         self.fields["text"].disabled = row is not None
+        self.fields["entity_class"] = class_field(world)
 
     def clean(self) -> dict[str, Any]:
         cleaned = self.cleaned_data
@@ -103,7 +108,7 @@ class EntityForm(forms.Form):
 class EntitiesForm(forms.Form):
     """Many entities of one class, one a line."""
 
-    entity_class = forms.ChoiceField(label="Class", choices=entity_class_choices)
+    entity_class = forms.ChoiceField(label="Class")
     lines = forms.CharField(
         label="Entities",
         max_length=200_000,
@@ -122,6 +127,7 @@ class EntitiesForm(forms.Form):
     def __init__(self, world: World, *args: Any, **kwargs: Any):
         super().__init__(*args, **kwargs)
         self.world = world
+        self.fields["entity_class"] = class_field(world)
 
     def clean(self) -> dict[str, Any]:
         cleaned = self.cleaned_data

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from django.contrib import messages
@@ -17,6 +18,7 @@ from annotations.lists.listing import Listing, Sort, render_list
 from annotations.models import Duty, Entity, World
 from annotations.models.description import ProblemSubject
 from annotations.people.access import READ_AND_WRITE, PageRequest, WorldRequest, world_view
+from annotations.rows.from_rows import classes_of
 from annotations.rows.occurrences import MOST_SHOWN, occurrences_of
 from annotations.rows.row_kinds import KINDS
 from annotations.web.description.description_filters import EntityFilters
@@ -42,10 +44,15 @@ def ontology(request: WorldRequest, world: World) -> HttpResponse:
     entities = Entity.objects.filter(ontology__world=world)
     context = {
         "listing": Listing(request, EntityFilters, entities, SORTS, size=100),
-        "classes": entities.count_by_class(),
+        "classes": counted_classes(world, entities.count_by_class()),
         "problems": world.problems.filter(subject=ProblemSubject.ONTOLOGY),
     }
     return render_list(request, "annotations/description/ontology.html", context)
+
+
+def counted_classes(world: World, counts: Mapping[str, int]) -> dict[str, int]:
+    """Return the counts in the order of the world's classes, without those of no entity."""
+    return {name: counts[name] for name in classes_of(world).tokens if name in counts}
 
 
 @world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.ANNOTATE)

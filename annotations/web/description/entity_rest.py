@@ -10,8 +10,8 @@ from rest_framework import serializers
 
 from annotations.language.errors import Problem, Refusal
 from annotations.language.limits import MAX_ENTITY
+from annotations.language.symbols import MAX_TOKEN
 from annotations.models import Entity
-from annotations.models.description import entity_class_choices
 from annotations.web.description.description_filters import EntityFilters
 from annotations.web.description.entity_forms import EntityForm, initial_values, ontology_in
 from annotations.web.rest.fields import AttributesField, Fields, LineField
@@ -33,7 +33,7 @@ class EntitySerializer(serializers.ModelSerializer[Entity]):
 
 
 class EntityChange(Fields):
-    entity_class = serializers.ChoiceField(choices=entity_class_choices())
+    entity_class = LineField(max_length=MAX_TOKEN, help_text="The token of a class of the world.")
     aliases = serializers.ListField(child=LineField(max_length=MAX_ENTITY), max_length=200)
     attributes = AttributesField()
 

@@ -11,17 +11,17 @@ from annotations.language.errors import LanguageError
 from annotations.language.limits import MAX_GLOSS, MAX_PREDICATE
 from annotations.language.names import require_predicate
 from annotations.language.predicates import (
-    ArgumentKind,
     Predicate,
     PredicateKind,
     Signature,
+    known_kinds,
     print_signatures,
     read_signatures,
 )
 from annotations.models import Predicate as StoredPredicate
 from annotations.models import World
 from annotations.models.description import predicate_kind_choices
-from annotations.rows.from_rows import predicate_of
+from annotations.rows.from_rows import classes_of, predicate_of
 from annotations.web.forms import sentence_of
 
 
@@ -37,8 +37,6 @@ class PredicateForm(forms.Form):
         label="Arguments",
         max_length=5_000,
         widget=forms.Textarea(attrs={"rows": 3, "placeholder": "(object, room?)"}),
-        help_text="One way to use it a line; ? marks arguments at the end that may be missing. "
-        f"Kinds: {', '.join(ArgumentKind)}.",
     )
     gloss = forms.CharField(
         label="English",
@@ -54,7 +52,12 @@ class PredicateForm(forms.Form):
         super().__init__(*args, **kwargs)
         self.world = world
         self.row = row
+        self.classes = classes_of(world)
         self.fields["name"].disabled = row is not None
+        self.fields["signatures"].help_text = (
+            "One way to use it a line; ? marks arguments at the end that may be missing. "
+            f"Kinds: {', '.join(known_kinds(self.classes))}."
+        )
 
     def clean_name(self) -> str:
         name = str(self.cleaned_data["name"])
@@ -67,7 +70,7 @@ class PredicateForm(forms.Form):
 
     def clean_signatures(self) -> tuple[Signature, ...]:
         try:
-            return read_signatures(self.cleaned_data["signatures"])
+            return read_signatures(self.cleaned_data["signatures"], self.classes)
         except LanguageError as error:
             raise forms.ValidationError(sentence_of(error)) from error
 

@@ -49,7 +49,7 @@ def generate_edits(
     edits = chain(
         exchange_entity(read, canonical, facts, random),
         change_politeness(read, canonical),
-        change_article(read, canonical),
+        change_article(read, canonical, facts),
         misspell(read, canonical, facts, random),
         exchange_synonym(read, canonical, facts),
         exchange_recipient(read, canonical, facts, random),

@@ -13,13 +13,11 @@ from annotations.language.grammar import Grammar
 from annotations.language.grounding import Anonymizer
 from annotations.language.ontology import Ontology
 from annotations.language.predicates import Predicate
-from annotations.language.symbols import ENTITY_CLASSES, Nonterminal
+from annotations.language.symbols import Nonterminal
 from parser_service.analysis.edits.edit import substitute
 from parser_service.analysis.edits.mining import mine_pairs, words_of
 
 MOST_PHRASES = 12  # a nonterminal with more of them is no set of synonyms
-_TOKENS = tuple(f"<{name}>" for name in ENTITY_CLASSES)
-_EXCHANGEABLE = frozenset((*_TOKENS, *RECIPIENT_PRONOUNS))
 
 # A phrase, the head predicate of the form, and the word that follows, empty at the end of a command.
 Phrase = tuple[str, str, str]
@@ -83,7 +81,9 @@ def gather_facts(
         LanguageError: a grammar has a cycle or is too large to expand.
     """
     known = {" ".join(words_of(text)): canonicalize(form) for text, form in pairs}
-    return WorldFacts(ontology, predicates, known, _synonyms(grammars, known), _contrasts(known))
+    tokens = (f"<{name}>" for name in ontology.classes.tokens)
+    contrasts = _contrasts(known, frozenset((*tokens, *RECIPIENT_PRONOUNS)))
+    return WorldFacts(ontology, predicates, known, _synonyms(grammars, known), contrasts)
 
 
 def _synonyms(
@@ -128,14 +128,14 @@ def _exchange_in(known: Mapping[str, Form], old: str, new: str) -> Iterator[tupl
                 yield (old, head_predicate(form), following), equivalent(form, other)
 
 
-def _contrasts(known: Mapping[str, Form]) -> Contrasts:
+def _contrasts(known: Mapping[str, Form], exchangeable: frozenset[str]) -> Contrasts:
     """Return what an exchange of recipients or class tokens does to the forms of known commands."""
     texts, forms = list(known), list(known.values())
     pairs = mine_pairs(texts)
     contrasts: dict[tuple[str, str], dict[tuple[Form, Form], None]] = {}
     for number in range(len(pairs)):
         old, new = pairs.changed_words(number)
-        if {old, new} <= _EXCHANGEABLE:
+        if {old, new} <= exchangeable:
             first, second = forms[pairs.first[number]], forms[pairs.second[number]]
             contrasts.setdefault((old, new), {})[first, second] = None
             contrasts.setdefault((new, old), {})[second, first] = None

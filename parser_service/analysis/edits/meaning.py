@@ -26,8 +26,6 @@ _EXCHANGES = {
     ("object", "category"): EditKind.CLASS,
     ("category", "object"): EditKind.CLASS,
 }
-# Classes whose entities are nouns that fit where another one fits; a question or a saying does not.
-_NOUNS = ("object", "category", "name", "location", "room")
 
 
 def exchange_entity(
@@ -35,7 +33,9 @@ def exchange_entity(
 ) -> Iterator[UtteranceEdit]:
     """Name another entity of the same class; a form with class tokens stays as it is."""
     for mention in utterance.mentions:
-        if not mention.is_exact or mention.entity_class not in _NOUNS:
+        # A noun fits where another one fits; a question or a saying does not.
+        known = facts.ontology.classes.get(mention.entity_class)
+        if not mention.is_exact or known is None or known.is_closed:
             continue
         entity = _another(mention.entity_class, utterance, facts, random)
         if entity is None:

@@ -42,10 +42,14 @@ def change_politeness(utterance: TokenizedUtterance, form: Form) -> Iterator[Utt
         yield UtteranceEdit(EditKind.POLITENESS, text, form, "", "please")
 
 
-def change_article(utterance: TokenizedUtterance, form: Form) -> Iterator[UtteranceEdit]:
+def change_article(
+    utterance: TokenizedUtterance, form: Form, facts: WorldFacts
+) -> Iterator[UtteranceEdit]:
     """Exchange “the” and “a” before something that the world has by name or class."""
     for article, noun in zip(utterance.mentions, utterance.mentions[1:], strict=False):
-        if article.text.lower() in ARTICLES and noun.entity_class in ("object", "location", "room"):
+        # A category is a plural, and people go without an article.
+        is_noun = facts.ontology.classes.has_plurals(noun.entity_class)
+        if article.text.lower() in ARTICLES and is_noun and noun.entity_class != "category":
             definite = article.text.lower() == "the"
             vowel = noun.text.lstrip("<")[:1].lower() in tuple("aeiou")
             new = _like(article.text, ("an" if vowel else "a") if definite else "the")

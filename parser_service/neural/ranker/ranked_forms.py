@@ -14,6 +14,7 @@ from annotations.language.predicates import (
     infer_signatures,
     pattern_of_name,
 )
+from annotations.language.symbols import DEFAULT_CLASSES, EntityClasses
 from parser_service.parsers.interface import TRAINING, Check, Knowledge, Pair, keep_going
 from parser_service.parsers.new_forms.generation import generate_candidates
 from parser_service.parsers.spreading import spread
@@ -93,7 +94,8 @@ def collect(
         if command not in said
     ]
     kept = spread(meant, max(MOST_EXAMPLES, len(forms)), lambda each: each[1])
-    anonymizer = Anonymizer(knowledge.ontology or Ontology(()))
+    ontology = knowledge.ontology or Ontology(())
+    anonymizer = Anonymizer(ontology)
     examples = []
     for utterance, form in kept:
         check()
@@ -101,7 +103,7 @@ def collect(
         examples.append(RankedExample(utterance, number[form], pattern))
     ranked = RankedForms(
         forms,
-        tuple(glosses(forms, knowledge.predicates, check)),
+        tuple(glosses(forms, knowledge.predicates, check, ontology.classes)),
         len(generated.training),
         tuple(min(each.support, MOST_SUPPORT) for each in generated.new),
         tuple(each.form for each in examples),
@@ -117,6 +119,7 @@ def glosses(
     forms: Sequence[str],
     predicates: Mapping[str, Predicate] | None,
     check: Check = keep_going,
+    classes: EntityClasses = DEFAULT_CLASSES,
 ) -> list[str]:
     """Return a short English sentence for each form; a text that is not a form is its own gloss.
 
@@ -135,5 +138,5 @@ def glosses(
     texts = []
     for text, form in zip(forms, read, strict=True):
         check()
-        texts.append(text if form is None else gloss(form, known))
+        texts.append(text if form is None else gloss(form, known, classes))
     return texts

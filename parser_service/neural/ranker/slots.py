@@ -15,16 +15,14 @@ from annotations.language.english import ANY_OBJECT, OPEN_CATEGORIES
 from annotations.language.forms import CLASS_TOKEN
 from annotations.language.grounding import QUESTION_WORD, Anonymizer
 from annotations.language.ontology import Ontology
-from annotations.language.symbols import ENTITY_CLASSES
 from parser_service.parsers.remembering import remembered
 
-_PLACE = {name: place for place, name in enumerate(ENTITY_CLASSES)}
 _MOST_READINGS = 8
 # These words mean a category that is left open (``{category?}`` says "objects") or things of no
 # category, so they may count as one or not.
 _OPEN_CATEGORY = re.compile(rf"\b(?:{'|'.join(map(re.escape, OPEN_CATEGORIES))})\b", re.IGNORECASE)
 _OBFUSCATED = 0.15  # share of object slots said by their category, as ``{object?}`` says them
-Counts = tuple[int, ...]  # by ENTITY_CLASSES
+Counts = tuple[int, ...]  # by class, in the order of the ontology
 
 
 class SlotTerm:
@@ -35,7 +33,8 @@ class SlotTerm:
     """
 
     def __init__(self, forms: Sequence[str], ontology: Ontology):
-        counts = torch.tensor([_count_tokens(form) for form in forms])  # [forms, classes]
+        self._classes = ontology.classes
+        counts = torch.tensor([self._count_tokens(form) for form in forms])  # [forms, classes]
         # Many forms have the same slots. [kinds of form, classes] and [forms]
         self._kinds, self._kind_of = torch.unique(counts, dim=0, return_inverse=True)
         self._anonymizer = Anonymizer(ontology)
@@ -52,26 +51,24 @@ class SlotTerm:
     @remembered(100_000)
     def _read(self, utterance: str) -> tuple[Counts, ...]:
         """Count the entities by class, once for each way to understand the words."""
-        readings = [_count_tokens(utterance)]
+        readings = [self._count_tokens(utterance)]
         for span in self._anonymizer.anonymize(utterance).spans:
             entities = (span.entity, *span.others)
             names = dict.fromkeys([span.entity_class, *(each.entity_class for each in entities)])
-            classes = [name for name in names if name in _PLACE]  # that its words may be of
-            grown = [_with_one(counts, name) for counts in readings for name in classes]
+            classes = [name for name in names if name in self._classes]  # that its words may be of
+            grown = [self._with_one(counts, name) for counts in readings for name in classes]
             readings = list(dict.fromkeys(grown))[:_MOST_READINGS]
         for _ in _OPEN_CATEGORY.findall(utterance):
-            readings += [_with_one(each, "category") for each in readings]
+            readings += [self._with_one(each, "category") for each in readings]
         return tuple(dict.fromkeys(readings))[:_MOST_READINGS]
 
+    def _count_tokens(self, text: str) -> Counts:
+        counts = Counter(name.rstrip("0123456789") for name in CLASS_TOKEN.findall(text))
+        return tuple(counts[name] for name in self._classes.tokens)
 
-def _count_tokens(text: str) -> Counts:
-    counts = Counter(name.rstrip("0123456789") for name in CLASS_TOKEN.findall(text))
-    return tuple(counts[name] for name in ENTITY_CLASSES)
-
-
-def _with_one(counts: Counts, name: str) -> Counts:
-    at = _PLACE[name]
-    return (*counts[:at], counts[at] + 1, *counts[at + 1 :])
+    def _with_one(self, counts: Counts, name: str) -> Counts:
+        at = self._classes.place(name)
+        return (*counts[:at], counts[at] + 1, *counts[at + 1 :])
 
 
 class SlotFiller:

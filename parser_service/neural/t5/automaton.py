@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from enum import Enum, auto
 
 from annotations.language.forms import UNKNOWN, Application, Form, Lambda, Variable
-from annotations.language.predicates import ArgumentKind, argument_kind
+from annotations.language.predicates import ArgumentKind, admits, argument_kind
 from parser_service.neural.t5.rules import NESTED, NEVER, Costs, Kinds, Rules, own_length
 from parser_service.neural.t5.spelling import INSIDE, spell
 from parser_service.parsers.new_forms.short import CLOSE
@@ -53,7 +53,7 @@ class OpenPart:
             return False
         return any(len(kinds) == self.filled for kinds in self.signatures)
 
-    def with_part(self, kind: ArgumentKind, may_refuse: bool = False) -> OpenPart | None:
+    def with_part(self, kind: str, may_refuse: bool = False) -> OpenPart | None:
         """Return it with one more part of ``kind``; None where that is not allowed."""
         is_nested = kind in NESTED
         if self.place in (PartKind.ROOT, PartKind.LAMBDA):
@@ -63,7 +63,7 @@ class OpenPart:
                 return None
             return replace(self, filled=self.filled + 1)
         place = self.filled
-        left = tuple(s for s in self.signatures if len(s) > place and s[place].admits(kind))
+        left = tuple(s for s in self.signatures if len(s) > place and admits(s[place], kind))
         has_nested = self.has_nested or is_nested
         return (
             replace(self, signatures=left, filled=place + 1, has_nested=has_nested)

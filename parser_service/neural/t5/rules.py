@@ -23,11 +23,12 @@ from annotations.language.forms import (
 )
 from annotations.language.limits import MAX_INDEXED_BYTES, MAX_NESTING
 from annotations.language.predicates import (
-    ENTITY_KINDS,
     ArgumentKind,
     Predicate,
+    admits,
     argument_kind,
     infer_signatures,
+    is_entity_kind,
 )
 from parser_service.parsers.remembering import remembered
 
@@ -36,7 +37,7 @@ NESTED = (ArgumentKind.LAMBDA, ArgumentKind.FORM)  # also what a λ holds
 DEEPER = 1  # levels that a form may nest deeper than all of training
 LONGER = 1.5  # times the longest form of training
 
-Kinds = tuple[ArgumentKind, ...]
+Kinds = tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +78,7 @@ class Rules:
         constants = {node for node in nodes if isinstance(node, Constant)}
         if predicates:
             kinds = {kind for each in signatures.values() for kinds in each for kind in kinds}
-            constants |= {Constant(f"<{kind}>") for kind in kinds & ENTITY_KINDS}
+            constants |= {Constant(f"<{kind}>") for kind in filter(is_entity_kind, kinds)}
         return cls(
             signatures={name: each for name, each in signatures.items() if each},
             constants=tuple(sorted(constants, key=lambda each: (str(each.value), repr(each)))),
@@ -94,10 +95,7 @@ class Rules:
     @classmethod
     def read(cls, values: Mapping[str, Any]) -> Self:
         """Return what ``to_json`` wrote."""
-        signatures = {
-            name: tuple(tuple(map(ArgumentKind, kinds)) for kinds in each)
-            for name, each in values["signatures"].items()
-        }
+        signatures = {name: tuple(map(tuple, each)) for name, each in values["signatures"].items()}
         constants = tuple(map(Constant, values["constants"]))
         types = tuple(values["types"])
         return cls(**{**values, "signatures": signatures, "constants": constants, "types": types})
@@ -147,22 +145,22 @@ class Costs:
         self.rules = rules
 
     @remembered()
-    def leaf(self, kind: ArgumentKind, bound: int) -> int:
+    def leaf(self, kind: str, bound: int) -> int:
         """Of a leaf that is allowed where ``kind`` is declared."""
-        allowed = (x for x in self.rules.leaves(bound) if kind.admits(argument_kind(x)))
+        allowed = (x for x in self.rules.leaves(bound) if admits(kind, argument_kind(x)))
         return min(map(own_length, allowed), default=NEVER)
 
     @remembered()
-    def nested(self, kind: ArgumentKind, level: int, bound: int) -> int:
+    def nested(self, kind: str, level: int, bound: int) -> int:
         """Of a λ or an application that is allowed where ``kind`` is declared."""
-        is_allowed = any(map(kind.admits, NESTED))
+        is_allowed = any(admits(kind, each) for each in NESTED)
         if not is_allowed or level >= self.rules.deepest:
             return NEVER
         of_lambda = of_form = NEVER
-        if kind.admits(ArgumentKind.LAMBDA) and bound < self.rules.lambdas:
+        if admits(kind, ArgumentKind.LAMBDA) and bound < self.rules.lambdas:
             own = min(own_length(Lambda(bound + 1, each, ())) for each in self.rules.types)
             of_lambda = own + self.body(level + 1, bound + 1)
-        if kind.admits(ArgumentKind.FORM):
+        if admits(kind, ArgumentKind.FORM):
             of_form = min(
                 (
                     own_length(Application(name)) + self.fill(kinds, 0, False, level + 1, bound)

@@ -25,10 +25,10 @@ from annotations.language.forms import (
     to_corpus,
 )
 from annotations.language.predicates import (
-    ENTITY_KINDS,
     ArgumentKind,
     Predicate,
     Signature,
+    is_entity_kind,
     signature_of,
 )
 from parser_service.parsers.interface import Check, keep_going
@@ -186,11 +186,11 @@ def _retype_arguments(
         yield part.arguments[:-1]
 
 
-def constant_of(kind: ArgumentKind) -> Form | None:
+def constant_of(kind: str) -> Form | None:
     """Return what an anonymized form has for an argument of some kind; None where it has no constant."""
-    if kind is ArgumentKind.UNKNOWN:
+    if kind == ArgumentKind.UNKNOWN:
         return UNKNOWN
-    return Constant(f"<{kind}>") if kind in ENTITY_KINDS else None
+    return Constant(f"<{kind}>") if is_entity_kind(kind) else None
 
 
 def read_forms(texts: Iterable[str]) -> Iterator[Form]:
