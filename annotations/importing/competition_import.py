@@ -77,8 +77,8 @@ def import_competition(
 ) -> CompetitionReport:
     """Make the names, rooms, locations and objects of a world those of a folder.
 
-    Grammar, templates and the entities of classes that such a folder does not have stay. A location keeps its room, and an entity the aliases and
-    attributes that people have added. The same folder twice changes nothing.
+    Grammar, templates and the entities of classes that such a folder does not have stay. A location keeps its room,
+    and an entity the aliases and attributes that people have added. The same folder twice changes nothing.
 
     Args:
         world_name: created if it does not exist.

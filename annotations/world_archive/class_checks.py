@@ -29,12 +29,13 @@ def check_classes(
         except LanguageError as error:
             raise LanguageError(error.message, place, error.hint) from error
     elif table == "entities" and values["entity_class"] not in classes:
-        raise LanguageError(f"there is no class {values['entity_class'][:40]}", place)
+        named = values["entity_class"][:40]
+        raise LanguageError(f"entity_class cannot be “{named}”, which is no class here", place)
     elif table == "predicates":
         kinds = known_kinds(classes)
         for kind in (kind for each in values["signatures"] for kind in each):
             if kind not in kinds:
-                raise LanguageError(f"there is no kind of argument {kind[:40]}", place)
+                raise LanguageError(f"signatures cannot have the kind “{kind[:40]}”", place)
     for problem in _unknown_wildcards(table, values, classes):
         raise LanguageError(problem.message, place, problem.hint)
 

@@ -237,17 +237,20 @@ def as_sequence(alternatives: list[Symbols]) -> Symbols:
     return (Choice(tuple(distinct)),)
 
 
-def read_wildcard(text: str, position: Position | None = None) -> Wildcard:
+def read_wildcard(
+    text: str, position: Position | None = None, classes: EntityClasses | None = None
+) -> Wildcard:
     """Read one wildcard with its braces, and nothing else.
 
     Args:
         text: like ``{placement 2 meta: Block access to {placement 2}}``.
         position: the position of its first character; the start of an unnamed text by default.
+        classes: those that it may be of; None for any.
 
     Raises:
         LanguageError: the text is not exactly one well-formed wildcard.
     """
-    reader = SymbolReader(text, position or Position())
+    reader = SymbolReader(text, position or Position(), classes)
     reader.skip_spaces()
     if reader.next != "{":
         raise reader.fail("a wildcard begins with {", "write it like {object 1}")

@@ -26,12 +26,7 @@ from annotations.language.grammar import (
     read_grammar_files,
 )
 from annotations.language.limits import MAX_TASK_CATEGORY, require_name
-from annotations.language.symbols import (
-    DEFAULT_CLASSES,
-    EntityClasses,
-    kinds_in_form,
-    kinds_in_pattern,
-)
+from annotations.language.symbols import DEFAULT_CLASSES, EntityClasses
 from annotations.language.templates.expansion import TaskCategory
 from annotations.language.templates.templates import SemanticTemplate, read_templates
 
@@ -153,8 +148,8 @@ def read_generator_files(
     for name in sorted(filter(is_template_name, contents)):
         try:
             text, changes = read_text(contents[name], name)
-            templates[name], unread = read_templates(text, name)
-            problems.extend((*changes, *unread, *_of_no_class(templates[name], classes)))
+            templates[name], unread = read_templates(text, name, classes)
+            problems.extend((*changes, *unread))
         except EmptyFile as error:
             problems.append(replace(error.problem, severity=Severity.WARNING))
         except LanguageError as error:
@@ -184,15 +179,6 @@ def read_generator_files(
             error_at(Position(min(grammars.files)), "no grammar here defines $Main")
         )
     return GeneratorFolder(grammars, templates, compositions, tuple(sorted(all_problems)))
-
-
-def _of_no_class(
-    templates: Iterable[SemanticTemplate], classes: EntityClasses
-) -> Iterator[Problem]:
-    """Yield an error for each wildcard that is of none of the classes."""
-    for template in templates:
-        yield from kinds_in_pattern(template.pattern_text, classes, template.position)
-        yield from kinds_in_form(template.form_text, classes, template.form_position)
 
 
 def _bad_names(compositions: tuple[Composition, ...]) -> Iterator[Problem]:

@@ -27,10 +27,14 @@ from annotations.language.limits import (
     require_name,
 )
 from annotations.language.symbols import (
+    DEFAULT_CLASSES,
+    EntityClasses,
     Nonterminal,
     SymbolReader,
     Symbols,
     Wildcard,
+    kinds_in_form,
+    kinds_in_pattern,
     print_sequence,
     split_head,
 )
@@ -73,9 +77,14 @@ class SemanticTemplate:
 
 
 def read_templates(
-    text: str, source: str = ""
+    text: str, source: str = "", classes: EntityClasses = DEFAULT_CLASSES
 ) -> tuple[tuple[SemanticTemplate, ...], tuple[Problem, ...]]:
     """Read a template file; ``#`` begins a comment. Errors are returned, not raised.
+
+    Args:
+        text: the file's text.
+        source: the file's name, for positions.
+        classes: those that wildcards may be of.
 
     Returns:
         The templates in order, and the problems of the lines that are not templates.
@@ -88,8 +97,14 @@ def read_templates(
         except LanguageError as error:
             problems.append(error.problem)
             continue
-        if template is not None:
-            templates.append(template)
+        if template is None:
+            continue
+        unknown = (
+            *kinds_in_pattern(template.pattern_text, classes, template.position),
+            *kinds_in_form(template.form_text, classes, template.form_position),
+        )
+        problems.extend(unknown)
+        templates += () if unknown else (template,)
     if not templates and not any(_marks(line)[0] for line in text.split("\n")):
         # One problem for a file without templates, instead of one for each line.
         if problems:

@@ -18,9 +18,10 @@ from annotations.rows.row_kinds import as_text
 from annotations.web.forms import sentence_of
 
 
-def choices_in(world: World) -> list[tuple[str, str]]:
-    """Return the classes that an entity of the world may be of."""
-    return [(name, name) for name in classes_of(world).tokens]
+def class_field(world: World) -> forms.ChoiceField:
+    """Return the field for the class of an entity, with those that the world has."""
+    choices = [(name, name) for name in classes_of(world).tokens]
+    return forms.ChoiceField(label="Class", choices=choices)
 
 
 class LinesField(forms.CharField):

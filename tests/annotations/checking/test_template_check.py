@@ -58,7 +58,8 @@ def test_a_draft_is_opened_without_expanding_it(sample, anna, monkeypatch):
 @pytest.mark.parametrize("path", ["check", "preview", "new"])
 def test_texts_that_nobody_types_are_not_looked_at(field, path, category, anna, monkeypatch):
     monkeypatch.setattr(
-        "annotations.checking.template_check.read_sides", lambda *args: pytest.fail("looked at")
+        "annotations.checking.template_check.read_known_sides",
+        lambda *args: pytest.fail("looked at"),
     )
     sent = {"pattern": "go", "form": "UNKNOWN", "task_category": category.pk, "status": "ready"}
     sent[field] = "a " * MAX_PATTERN

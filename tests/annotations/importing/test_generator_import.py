@@ -104,7 +104,7 @@ def test_a_line_that_a_person_has_corrected_is_not_brought_back(tiny_world, tiny
 
 def test_signatures_are_inferred_from_what_the_forms_become(tiny_world):
     is_a = predicates_of(tiny_world)["is_a"]
-    assert is_a.signatures[0].arguments == (ArgumentKind.VARIABLE, ArgumentKind.OBJECT)
+    assert is_a.signatures[0].arguments == (ArgumentKind.VARIABLE, "object")
 
 
 def test_an_edited_predicate_survives_an_import_and_a_mismatch_is_a_warning(tiny_world, tiny):

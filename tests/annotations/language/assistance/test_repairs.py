@@ -8,10 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from annotations.language.assistance import Sides, usage_of, with_repairs
+from annotations.language.assistance import Sides, read_known_sides, usage_of, with_repairs
 from annotations.language.forms import canonical_text, read_form
 from annotations.language.grammar import Grammar, read_productions
 from annotations.language.predicates import infer_signatures
+from annotations.language.symbols import DEFAULT_CLASSES
 from annotations.language.templates import make_template, read_sides, template_checker
 from tests.annotations.language.assistance.mistakes import mistakes, published_checkers, value_of
 from tests.annotations.language.published import SHARED, needs_corpus
@@ -41,7 +42,7 @@ TEMPLATES = tuple(make_template(*sides) for sides in zip(PATTERNS, FORMS, strict
 
 
 def problems_of(sides: Sides):
-    template, unread = read_sides(sides.pattern, sides.form)
+    template, unread = read_known_sides(sides.pattern, sides.form, DEFAULT_CLASSES)
     return unread if template is None else CHECKER.problems(template)
 
 

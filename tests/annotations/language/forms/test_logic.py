@@ -151,9 +151,9 @@ def test_a_place_inside_a_form_counts_from_where_the_form_begins() -> None:
     assert next_line.value.position == Position("a.txt", 8, 3)
 
 
-def test_an_unknown_wildcard_is_refused_with_its_place() -> None:
+def test_a_wildcard_that_no_world_can_have_is_refused_with_its_place() -> None:
     with pytest.raises(LanguageError) as caught:
-        read_form("(go {kitchn})", Position("a.txt", 2, 11))
+        read_form("(go {küche})", Position("a.txt", 2, 11))
     assert caught.value.position.line == 2
     assert 15 <= caught.value.position.column <= 16
 

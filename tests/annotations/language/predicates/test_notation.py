@@ -8,17 +8,18 @@ from hypothesis import strategies as st
 
 from annotations.language.errors import LanguageError
 from annotations.language.predicates import (
-    ArgumentKind,
     Predicate,
     PredicateKind,
     Signature,
     gloss,
+    known_kinds,
     print_signatures,
     read_signatures,
     sample_forms,
 )
+from annotations.language.symbols import DEFAULT_CLASSES
 
-SIGNATURES = st.lists(st.sampled_from(list(ArgumentKind)), max_size=4).map(
+SIGNATURES = st.lists(st.sampled_from(known_kinds(DEFAULT_CLASSES)), max_size=4).map(
     lambda kinds: Signature(tuple(kinds))
 )
 

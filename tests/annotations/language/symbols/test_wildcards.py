@@ -5,6 +5,7 @@ from hypothesis import given
 
 from annotations.language.errors import LanguageError, Position
 from annotations.language.symbols import (
+    DEFAULT_CLASSES,
     Choice,
     Combination,
     Comparison,
@@ -20,7 +21,7 @@ from tests.annotations.language.random_grammars import SEQUENCES, wildcards
 
 def refusal(text):
     with pytest.raises(LanguageError) as caught:
-        read_wildcard(text, Position("rules.txt", 3, 10))
+        read_wildcard(text, Position("rules.txt", 3, 10), DEFAULT_CLASSES)
     return caught.value
 
 
@@ -54,6 +55,22 @@ def test_an_alias_has_the_kind_and_type_it_stands_for():
     )
     assert read_wildcard("{room}").entity_class == "room"
     assert read_wildcard("{female}").restriction == "female"
+
+
+@pytest.mark.parametrize(
+    ("text", "wildcard"),
+    [
+        ("{pose}", Wildcard("pose")),
+        ("{pose2}", Wildcard("pose", id=2)),
+        ("{hand_side? 1}", Wildcard("hand_side", id=1, obfuscated=True)),
+        ("{Garment 2 where colour = {colour 1}}", None),
+    ],
+)
+def test_a_class_that_no_world_at_hand_has_is_read_and_printed_all_the_same(text, wildcard):
+    read = read_wildcard(text)
+    assert wildcard in (read, None)
+    assert read_wildcard(print_wildcard(read)) == read
+    assert read.token == f"<{read.entity_class}>"
 
 
 def test_the_same_name_and_id_are_one_identity_and_another_alias_is_not():

@@ -23,13 +23,15 @@ from annotations.language.predicates import (
     Signature,
     check_form,
     infer_signatures,
+    known_kinds,
 )
+from annotations.language.symbols import DEFAULT_CLASSES
 from parser_service.neural.t5.automaton import START, Automaton
 from parser_service.neural.t5.rules import Rules, length
 from parser_service.neural.t5.spelling import read, spell
 from tests.parser_service.neural.conftest import toy_pairs
 
-KINDS = st.sampled_from([*ArgumentKind])
+KINDS = st.sampled_from(known_kinds(DEFAULT_CLASSES))
 SIGNATURES = st.dictionaries(
     st.sampled_from(["go", "and", "left_of", "L1", "e"]),
     st.lists(st.lists(KINDS, max_size=3).map(tuple), min_size=1, max_size=3, unique=True),
@@ -149,7 +151,7 @@ def of_lambdas(form):
 
 def test_strict_knows_what_training_shows_and_domain_what_is_declared():
     texts = ['( go " <room> " )']
-    declared = declare({"go": [(ArgumentKind.ROOM,)], "greet": [(ArgumentKind.NAME,)]})
+    declared = declare({"go": [("room",)], "greet": [("name",)]})
     greeting = spell(read_form('( greet " <name> " )'))
     strict, domain = Automaton(rules_of(texts)), Automaton(rules_of(texts, declared))
     assert domain.accepts(greeting) and not strict.accepts(greeting)

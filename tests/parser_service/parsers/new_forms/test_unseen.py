@@ -11,7 +11,7 @@ from parser_service.parsers.new_forms.pool import SURE
 from parser_service.parsers.new_forms.unseen import unseen
 from tests.parser_service.parsers.new_forms.conftest import NAMED, OBJECT, ROOM, bring, find
 
-LAMBDA, LOCATION, VARIABLE = ArgumentKind.LAMBDA, ArgumentKind.LOCATION, ArgumentKind.VARIABLE
+LAMBDA, LOCATION, VARIABLE = ArgumentKind.LAMBDA, "location", ArgumentKind.VARIABLE
 
 
 def declared(name, *signatures, kind=PredicateKind.ACTION):
