@@ -16,6 +16,7 @@ from annotations.web.corpus import (
 )
 from annotations.web.description import (
     check_rest,
+    class_rest,
     coverage_rest,
     entity_rest,
     guidelines_rest,
@@ -40,6 +41,7 @@ from annotations.web.worlds.world_rest import OneWorld, Worlds
 app_name = "api"
 
 of_world = SimpleRouter(use_regex_path=False)
+of_world.register("entity-classes", class_rest.EntityClassViewSet, "entity-class")
 of_world.register("entities", entity_rest.EntityViewSet, "entity")
 of_world.register("predicates", predicate_rest.PredicateViewSet, "predicate")
 of_world.register("productions", production_rest.ProductionViewSet, "production")

@@ -6,6 +6,7 @@ from annotations.web.background import job_pages
 from annotations.web.campaigns import campaign_pages, figure_pages, submission_pages
 from annotations.web.corpus import command_pages, paraphrase_pages, upload_pages, utterance_pages
 from annotations.web.description import (
+    class_pages,
     coverage_pages,
     entity_pages,
     guidelines_pages,
@@ -58,6 +59,10 @@ urlpatterns = [
     path("ontology/paste/", entity_pages.entities_new, name="entities_new"),
     path("ontology/rooms/", room_pages.location_rooms, name="location_rooms"),
     path("ontology/<int:pk>/", entity_pages.entity, name="entity"),
+    path("ontology/classes/", class_pages.entity_classes, name="entity_classes"),
+    path("ontology/classes/new/", class_pages.entity_class_new, name="entity_class_new"),
+    path("ontology/classes/<int:pk>/", class_pages.entity_class, name="entity_class"),
+    path("ontology/classes.css", class_pages.class_colours, name="class_colours"),
     path("predicates/new/", predicate_pages.predicate_new, name="predicate_new"),
     path("predicates/preview/", predicate_pages.predicate_preview, name="predicate_preview"),
     path("predicates/<int:pk>/", predicate_pages.predicate, name="predicate"),

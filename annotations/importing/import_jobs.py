@@ -21,8 +21,11 @@ from annotations.jobs.requesting import keep_question, request_job
 from annotations.jobs.watching import JobProgress
 from annotations.jobs.weight import MOST_BYTES, MOST_COMMANDS
 from annotations.language.errors import LanguageError
+from annotations.language.ontology import CLASSES_FILE, read_ontology
+from annotations.language.symbols import EntityClasses
 from annotations.language.templates import generation_size, read_generator_files
 from annotations.models import Job, JobKind, User, World
+from annotations.rows.from_rows import classes_of
 
 
 def start_generator_import(
@@ -42,7 +45,7 @@ def start_generator_import(
     if unpacked_size(uploads) > MOST_BYTES:
         return request_job(kind, world.name, by, choices, uploads)
     files = files_of(uploads, encoding)
-    if is_heavy_generator(files.files):
+    if is_heavy_generator(files.files, classes_of(world)):
         return request_job(kind, world.name, by, choices, uploads)
     report = import_generator(world.name, files, by, may_remove=False, brings_back=brings_back)
     if report.is_waiting:
@@ -50,11 +53,16 @@ def start_generator_import(
     return report
 
 
-def is_heavy_generator(files: Mapping[str, bytes]) -> bool:
-    """Return whether importing these files takes long: they are large, or their templates make many commands."""
+def is_heavy_generator(files: Mapping[str, bytes], classes: EntityClasses) -> bool:
+    """Return whether importing these files takes long: they are large, or their templates make many commands.
+
+    ``classes`` are those of the world.
+    """
     if sum(map(len, files.values())) > MOST_BYTES:
         return True
-    texts = read_generator_files(files)
+    declared = {name: data for name, data in files.items() if name.lower() == CLASSES_FILE}
+    ontology, _ = read_ontology(declared, classes)
+    texts = read_generator_files(files, ontology.classes)
     if texts.has_errors:
         return False
     try:

@@ -73,6 +73,8 @@ WHAT = {
     **{name: f"change {name}" for name in ("template", "entity", "predicate", "production")},
     **{f"{name}_new": f"new {name}" for name in ("template", "entity", "predicate", "production")},
     "entities_new": "add entities",
+    "entity_class": "change class",
+    "entity_class_new": "new class",
     "offered_entity_decide": "decide about a word from dialogues",
     "robot": "name actions",
     "template_duplicate": "copy a template",

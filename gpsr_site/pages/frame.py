@@ -71,6 +71,7 @@ PLACES = (
         waiting=Waiting(count="ontology_problems", noun="remark", reason="to read"),
         pages_below=(
             *("entity", "entity_new", "entities_new", "location_rooms", "offered_entities"),
+            *("entity_classes", "entity_class", "entity_class_new"),
             *("predicates", "predicate", "predicate_new", "robot"),
         ),
     ),

@@ -15,7 +15,7 @@ from django.db.models import Count, Max, Sum
 
 from annotations.language.errors import Refusal
 from annotations.language.grounding import Anonymized
-from annotations.models import Entity, Predicate, World
+from annotations.models import Entity, EntityClass, Predicate, World
 from parser_service.models import ActionNames, Promotion, TrainingRun
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.interface import Candidate, Parser
@@ -119,13 +119,17 @@ class WantedParser:
 
 
 def read_wanted() -> dict[str, WantedParser]:
-    """Return world name → what is wanted there, in five queries.
+    """Return world name → what is wanted there, in six queries.
 
     Every edit and import of rows adds, deletes or raises a version, so that number, last key and sum of
     the versions together change.
     """
     language: dict[int, list[object]] = defaultdict(list)
-    for model, path in ((Entity, "ontology__world"), (Predicate, "world")):
+    for model, path in (
+        (Entity, "ontology__world"),
+        (EntityClass, "world"),
+        (Predicate, "world"),
+    ):
         totals = model.objects.order_by().values_list(path)
         for world, *of_world in totals.annotate(Count("pk"), Max("pk"), Sum("version")):
             language[world] += [model.__name__, *of_world]

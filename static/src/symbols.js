@@ -1,6 +1,7 @@
 // The symbols of forms and patterns as the eye reads them. For display only: what is right or wrong
 // the checker says.
-const CLASSES = new Set(["object", "category", "name", "location", "room", "gesture", "question", "whattosay"]);
+const NO_ENTITY = new Set(["void", "pron"]);
+// Other names of a class. What classes a world has, its style sheet says: others have no colour.
 const ALIASES = {
   kobject: "object",
   aobject: "object",
@@ -15,8 +16,7 @@ const ALIASES = {
 export function classOf(slot) {
   const [word, type] = slot.replace(/^[{<⟨"\s]+/, "").split(/[\s?:}>⟩\d"]+/);
   if (word === "location" && type === "room") return "room";
-  const name = ALIASES[word] ?? word;
-  return CLASSES.has(name) ? name : "";
+  return NO_ENTITY.has(word) ? "" : (ALIASES[word] ?? word);
 }
 
 // What comes first in this list wins where two could begin at one place.

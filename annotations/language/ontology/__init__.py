@@ -12,6 +12,7 @@ from annotations.language.ontology.competition_folder import (
 from annotations.language.ontology.entities import Entity, Ontology
 from annotations.language.ontology.ontology_checks import ontology_problems
 from annotations.language.ontology.ontology_files import (
+    CLASSES_FILE,
     ONTOLOGY_FILES,
     read_ontology,
     write_ontology,
@@ -23,6 +24,7 @@ from annotations.language.ontology.published_generators import (
 )
 
 __all__ = [
+    "CLASSES_FILE",
     "COMPETITION_CLASSES",
     "COMPETITION_FILES",
     "ONTOLOGY_FILES",

@@ -60,7 +60,7 @@ def read_ontology(
             results, unread = _read(reader, files[name], name)
             rows = [each for each in results if isinstance(each, Entity)]
             classes = classes.with_rows(each for each in results if isinstance(each, EntityClass))
-            if known_name == ENTITIES:
+            if known_name == ENTITIES_FILE:
                 unread += _of_no_class(rows, classes)
             entities += rows
             problems += unread
@@ -213,15 +213,15 @@ def _of_no_class(rows: Iterable[Entity], classes: EntityClasses) -> Iterator[Pro
             yield error_at(
                 each.position,
                 f"there is no class {each.entity_class[:MAX_TOKEN]}",
-                f"declare it in {CLASSES}; there are {', '.join(classes.tokens)}",
+                f"declare it in {CLASSES_FILE}; there are {', '.join(classes.tokens)}",
             )
 
 
-CLASSES, ENTITIES = "classes.xml", "entities.xml"
+CLASSES_FILE, ENTITIES_FILE = "classes.xml", "entities.xml"
 
 # Rows are kept in this order.
 _READERS: dict[str, Callable[[str, str], Found]] = {
-    CLASSES: _read_classes,
+    CLASSES_FILE: _read_classes,
     "objects.xml": partial(_read_nested, root="categories", outer="category", inner="object"),
     "locations.xml": partial(_read_nested, root="rooms", outer="room", inner="location"),
     "names.xml": _read_names,
@@ -229,7 +229,7 @@ _READERS: dict[str, Callable[[str, str], Found]] = {
     "questions.xml": _read_questions,
     "whattosay.txt": _read_sayings,
     "categories.txt": _read_categories,
-    ENTITIES: _read_entities,
+    ENTITIES_FILE: _read_entities,
 }
 
 ONTOLOGY_FILES = tuple(_READERS)
@@ -399,7 +399,9 @@ def write_ontology(ontology: Ontology) -> dict[str, str]:
     head = ["name plural, name singular"] if singulars else []
     own = [each for each in ontology.entities if each.entity_class not in DEFAULT_CLASSES]
     files = {
-        CLASSES: _write_document("classes", map(_write_class, _changed_classes(ontology.classes))),
+        CLASSES_FILE: _write_document(
+            "classes", map(_write_class, _changed_classes(ontology.classes))
+        ),
         "objects.xml": _write_nested(ontology, "categories", "category", "object"),
         "locations.xml": _write_nested(ontology, "rooms", "room", "location"),
         "names.xml": _write_document("names", names),
@@ -407,7 +409,7 @@ def write_ontology(ontology: Ontology) -> dict[str, str]:
         "questions.xml": _write_document("questions", questions),
         "categories.txt": _write_lines([*head, *singulars]),
         "whattosay.txt": _write_lines(each.text for each in ontology.of_class("whattosay")),
-        ENTITIES: _write_document(
+        ENTITIES_FILE: _write_document(
             "entities", (f"    <{each.entity_class}{_write_attributes(each)}/>" for each in own)
         ),
     }

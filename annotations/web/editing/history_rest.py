@@ -32,6 +32,7 @@ SERIALIZERS = {
     "template": "annotations.web.description.template_rest.TemplateSerializer",
     "production": "annotations.web.description.production_rest.ProductionSerializer",
     "entity": "annotations.web.description.entity_rest.EntitySerializer",
+    "entity_class": "annotations.web.description.class_rest.EntityClassSerializer",
     "predicate": "annotations.web.description.predicate_rest.PredicateSerializer",
     "guidelines": "annotations.web.description.guidelines_rest.GuidelinesSerializer",
     "paraphrase": "annotations.web.corpus.paraphrase_rest.ParaphraseSerializer",

@@ -7,7 +7,8 @@ from typing import Any
 
 from django.http import Http404
 
-from annotations.models import Editable, User, Utterance
+from annotations.editing.class_deletion import delete_class
+from annotations.models import Editable, EntityClass, User, Utterance
 from annotations.rows.row_kinds import KINDS, EditableKind
 from annotations.utterances.utterance_deletion import delete_utterance
 from annotations.utterances.utterance_deletion import restore as restore_with_answers
@@ -17,8 +18,9 @@ RESTORING: dict[type[Editable], Callable[[Any, User], Any]] = {
 }  # what more than the row itself is restored with
 
 DELETING: dict[type[Editable], Callable[[Any, User, int], Any]] = {
-    Utterance: delete_utterance
-}  # what keeps more than its history
+    Utterance: delete_utterance,
+    EntityClass: delete_class,
+}  # what keeps more than its history, or may have to stay
 
 
 def kind_named(name: str) -> EditableKind:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import asdict
 from hashlib import sha256
 from typing import Any
 
 from annotations.language.corpus import KNOWN_SHARE, Criterion
+from annotations.language.symbols import DEFAULT_CLASSES
 from annotations.models import Split, World
 from annotations.models.description import TemplateStatus
+from annotations.rows.from_rows import classes_of
 from parser_service.parsers.registry import entry
 
 
@@ -57,6 +60,11 @@ def knowledge_hash(world: World, protocol: str) -> str:
         fields = ("entity_class", "text", "aliases", "attributes")
         entities = ontology.entities.order_by("position").values(*fields) if ontology else ()
         rows["entities"] = list(entities)
+        classes = classes_of(world)
+        if (
+            classes != DEFAULT_CLASSES
+        ):  # worlds as they begin keep the keys of before there were others
+            rows["classes"] = [asdict(each) for each in classes]
     if protocol == "grammar":
         grammar = getattr(world, "grammar", None)
         rows["grammar"] = {}

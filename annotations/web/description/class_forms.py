@@ -1,0 +1,91 @@
+"""The form of a class of entities."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from django import forms
+
+from annotations.editing.once_keys import new_key
+from annotations.language.errors import LanguageError, Position
+from annotations.language.limits import require_writable
+from annotations.language.symbols import (
+    HUES,
+    MAX_CLASS_WORDS,
+    MAX_TOKEN,
+    MOST_CLASSES,
+    require_token,
+)
+from annotations.models import EntityClass, World
+from annotations.web.forms import sentence_of
+
+
+class EntityClassForm(forms.Form):
+    """A class of entities. The token of a stored one does not change: templates, forms and commands have it."""
+
+    token = forms.CharField(
+        max_length=MAX_TOKEN,
+        help_text="The word of its wildcard and its class token: pose for {pose} and <pose>.",
+    )
+    singular = forms.CharField(max_length=MAX_CLASS_WORDS, help_text="One of them: pose.")
+    plural = forms.CharField(max_length=MAX_CLASS_WORDS, help_text="Several: poses.")
+    said = forms.CharField(
+        label="Said",
+        max_length=MAX_CLASS_WORDS,
+        help_text="The noun for one that a form leaves open, without an article.",
+    )
+    hue = forms.IntegerField(
+        min_value=0,
+        max_value=HUES - 1,
+        help_text="The angle of its colour: 30 is orange, 145 green.",
+    )
+    is_closed = forms.BooleanField(
+        label="Closed",
+        required=False,
+        help_text="All members are listed, and each is a description or a sentence, such as “waving”. "
+        "Members of other classes are nouns, which also come in the plural.",
+    )
+    version = forms.IntegerField(widget=forms.HiddenInput, required=False)
+    once = forms.CharField(widget=forms.HiddenInput, required=False, max_length=60, initial=new_key)
+
+    def __init__(self, world: World, row: EntityClass | None, *args: Any, **kwargs: Any):
+        super().__init__(*args, **kwargs)
+        self.world = world
+        self.row = row
+        self.fields["token"].disabled = row is not None
+
+    def clean_token(self) -> str:
+        token = str(self.cleaned_data["token"])
+        if self.row is None:
+            try:
+                require_token(token)
+            except LanguageError as error:
+                raise forms.ValidationError(sentence_of(error)) from error
+            if self.world.entity_classes.count() >= MOST_CLASSES:
+                raise forms.ValidationError(f"A world has at most {MOST_CLASSES} classes.")
+        return token
+
+    def clean(self) -> dict[str, Any]:
+        cleaned = self.cleaned_data
+        for name in ("singular", "plural", "said"):
+            words = " ".join(cleaned.get(name, "").split())
+            try:
+                require_writable(words, Position())
+            except LanguageError as error:
+                self.add_error(name, sentence_of(error))
+            if name in cleaned:
+                cleaned[name] = words
+        return cleaned
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """The values to store beside the token."""
+        return {
+            name: self.cleaned_data[name]
+            for name in ("singular", "plural", "said", "hue", "is_closed")
+        }
+
+
+def initial_values(row: Any) -> dict[str, Any]:
+    """Return what the fields of the form show for ``row``."""
+    return {name: getattr(row, name) for name in (*EntityClass.edited_fields, "version")}
