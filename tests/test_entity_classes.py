@@ -24,7 +24,15 @@ from annotations.language.symbols import DEFAULT_CLASSES
 from annotations.language.symbols.entity_classes import RESERVED
 
 ROOT = Path(__file__).resolve().parent.parent
-ROOMS = ("annotations", "parser_service", "gpsr_site", "static/src", "static/css", "clients", "templates")
+ROOMS = (
+    "annotations",
+    "parser_service",
+    "gpsr_site",
+    "static/src",
+    "static/css",
+    "clients",
+    "templates",
+)
 THE_FILE = ROOT / "annotations/language/symbols/entity_classes.toml"
 # What the files of others, and the commands in them, are made of.
 TEXTS = ("annotations/starter", "annotations/language/english/data/sample_commands.toml")

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from annotations.checking.predicate_check import BrokenTemplates, templates_without
 from annotations.checking.production_check import ProductionEdit, problems_without
+from annotations.editing.class_deletion import why_kept
 from annotations.generation.world_consequences import (
     TemplateChange,
     WorldConsequences,
@@ -14,7 +15,14 @@ from annotations.generation.world_consequences import (
 )
 from annotations.language.errors import Problem
 from annotations.language.ontology import ontology_problems
-from annotations.models import Editable, Entity, Predicate, Production, SemanticTemplate
+from annotations.models import (
+    Editable,
+    Entity,
+    EntityClass,
+    Predicate,
+    Production,
+    SemanticTemplate,
+)
 from annotations.rows.from_rows import lines_of, ontology_of
 from annotations.rows.occurrences import EntityOccurrences, occurrences_of
 
@@ -23,13 +31,15 @@ from annotations.rows.occurrences import EntityOccurrences, occurrences_of
 class DeletionCheck:
     """``expected`` is what becomes of commands and splits, ``problems`` what the checker says then and not now.
 
-    ``templates`` are those with a new problem; ``occurrences`` are where an entity is named.
+    ``templates`` are those with a new problem; ``occurrences`` are where an entity is named. ``refusal`` says why it
+    cannot be deleted, if it cannot.
     """
 
     expected: WorldConsequences = field(default_factory=WorldConsequences)
     problems: tuple[Problem, ...] = ()
     templates: BrokenTemplates = ()
     occurrences: EntityOccurrences | None = None
+    refusal: str = ""
 
 
 def check_deletion(row: Editable) -> DeletionCheck:
@@ -41,6 +51,8 @@ def check_deletion(row: Editable) -> DeletionCheck:
             edit = ProductionEdit.of_stored(row)
             expected = consequences_of_lines(edit.world, edit.delete(lines_of(edit.world)))
             return DeletionCheck(expected, problems_without(edit))
+        case EntityClass():
+            return DeletionCheck(refusal=why_kept(row))
         case Predicate():
             return DeletionCheck(templates=templates_without(row.world, row.name))
         case Entity():

@@ -16,6 +16,14 @@ from annotations.language.symbols import (
 from annotations.models.description import TemplateStatus
 
 
+def check_token(token: str, place: Position) -> None:
+    """Raise LanguageError unless a class can have this token."""
+    try:
+        require_token(token)
+    except LanguageError as error:
+        raise LanguageError(error.message, place, error.hint) from error
+
+
 def check_classes(
     table: str, values: Mapping[str, Any], classes: EntityClasses, place: Position
 ) -> None:
@@ -23,12 +31,7 @@ def check_classes(
 
     A template that is not ready may say anything.
     """
-    if table == "entity_classes":
-        try:
-            require_token(values["token"])
-        except LanguageError as error:
-            raise LanguageError(error.message, place, error.hint) from error
-    elif table == "entities" and values["entity_class"] not in classes:
+    if table == "entities" and values["entity_class"] not in classes:
         named = values["entity_class"][:40]
         raise LanguageError(f"entity_class cannot be “{named}”, which is no class here", place)
     elif table == "predicates":

@@ -27,7 +27,7 @@ from annotations.rows.stored_problems import as_json
 from annotations.rows.synchronise import BATCH, batches
 from annotations.splits.freezing import content_hash_of
 from annotations.world_archive.archive_tables import ArchiveTable, tables
-from annotations.world_archive.class_checks import check_classes
+from annotations.world_archive.class_checks import check_classes, check_token
 from annotations.world_archive.row_checks import check_row, parse_object
 from annotations.world_archive.row_texts import equal_row, normalise_columns
 from annotations.world_archive.world_manifest import WorldManifest, read_manifest
@@ -226,7 +226,10 @@ class _Loader:
             place = Position(table.path, number)
             values = parse_object(line, place)
             check_row(table, values, place)
-            check_classes(table.name, values, self._stored_classes, place)
+            if table.name == "entity_classes":
+                check_token(values["token"], place)
+            else:
+                check_classes(table.name, values, self._stored_classes, place)
             yield self._row(table, self._normalise(table, values, place), place)
 
     def _normalise(

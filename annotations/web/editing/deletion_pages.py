@@ -9,6 +9,7 @@ from django.urls import reverse
 
 from annotations.checking.deletion_check import check_deletion
 from annotations.editing.edits import Overtaken, delete
+from annotations.language.errors import Refusal
 from annotations.lists.paging import number_in
 from annotations.models import Duty, World
 from annotations.people.access import READ_AND_WRITE, WorldRequest, world_view
@@ -40,6 +41,9 @@ def delete_row(request: WorldRequest, world: World, kind: str, pk: int) -> HttpR
     except Overtaken as error:
         messages.error(request, f"Not deleted. {error.sentence} Look at it again.")
         return here
+    except Refusal as error:
+        messages.error(request, f"Not deleted. {error.message}")
+        return redirect(of_kind.page, world=world.name, pk=pk)
     entry = of_kind.entries_of(world).filter(id=pk).first()
     sentence = f"Deleted. “Deleted {of_kind.plural}” below the list brings it back."
     say_with_undo(request, sentence, here.url, entry=entry and entry.history_id)

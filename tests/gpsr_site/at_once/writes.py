@@ -30,6 +30,7 @@ def different(writer: int, turn: int) -> str:
 # Route and method → body. Whatever takes ``If-Match`` stands here.
 CHANGES: dict[tuple[str, str], Body] = {
     ("api:entity-detail", "PATCH"): lambda *each: {"aliases": [different(*each)]},
+    ("api:entity-class-detail", "PATCH"): lambda *each: {"said": different(*each)},
     ("api:predicate-detail", "PATCH"): lambda *each: {"gloss": different(*each)},
     ("api:production-detail", "PATCH"): lambda *each: {"expansion": f"go {different(*each)}"},
     ("api:template-detail", "PATCH"): lambda *each: {"pattern": f"find {different(*each)} $object"},
@@ -54,6 +55,7 @@ CHANGES: dict[tuple[str, str], Body] = {
         for name in (
             *(
                 "entity-detail",
+                "entity-class-detail",
                 "predicate-detail",
                 "production-detail",
                 "template-detail",
@@ -79,6 +81,10 @@ SHOWN_BY = {"api:rename": "api:predicate-detail"}
 # Routes that make something of a name that is there once.
 NAMES: dict[str, dict[str, Any]] = {
     "api:entity-list": {"entity_class": "object", "text": "flurb"},
+    "api:entity-class-list": {
+        **{"token": "garment", "singular": "garment", "plural": "garments"},
+        **{"said": "garment", "hue": 60},
+    },
     "api:predicate-list": {"name": "shines", "kind": "description", "signatures": [["object"]]},
     "api:worlds": {"name": "attic"},
     "api:import-world": {"name": "attic"},

@@ -17,6 +17,7 @@ from tests.gpsr_site.routes.sample_rows import (
     contributor_row,
     decision_of_nobody,
     dialogue,
+    entity_class,
     error_category,
     finding,
     invitation,
@@ -134,6 +135,7 @@ KEYS: dict[str, RouteKeys] = {
         ("entity", "api:entity-detail"),
         pk_of(lambda sample: Entity.objects.filter(ontology__world=sample.world).first()),
     ),
+    **dict.fromkeys(("entity_class", "api:entity-class-detail"), pk_of(entity_class)),
     **dict.fromkeys(("predicate", "api:predicate-detail"), pk_of(predicate)),
     **dict.fromkeys(("rename", "api:rename"), pk_of(predicate, kind="predicate")),
     **dict.fromkeys(

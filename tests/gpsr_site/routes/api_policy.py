@@ -16,6 +16,8 @@ READABLE = (
     *(
         "entity-list",
         "entity-detail",
+        "entity-class-list",
+        "entity-class-detail",
         "predicate-list",
         "predicate-detail",
         "task-categories",
@@ -91,6 +93,7 @@ READABLE = (
 # Lists that annotators add to, and rows that they change and delete.
 ADDED_BY_ANNOTATORS = (
     "entity-list",
+    "entity-class-list",
     "predicate-list",
     "production-list",
     "template-list",
@@ -99,6 +102,7 @@ ADDED_BY_ANNOTATORS = (
 )
 CHANGED_BY_ANNOTATORS = (
     "entity-detail",
+    "entity-class-detail",
     "predicate-detail",
     "production-detail",
     "template-detail",

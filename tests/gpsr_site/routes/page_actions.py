@@ -73,6 +73,8 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "entities_new": "post entity-list",
     "location_rooms": "patch entity-detail",
     "entity": "patch entity-detail",
+    "entity_class_new": "post entity-class-list",
+    "entity_class": "patch entity-class-detail",
     "predicate_new": "post predicate-list",
     "predicate": "patch predicate-detail",
     "predicate_preview": "post check-predicate",
@@ -89,6 +91,7 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "template_consequences": "post check-template",
     "template_suggestions": "post suggestions",
     "delete_row": "delete entity-detail, delete predicate-detail, delete production-detail, "
+    "delete entity-class-detail, "
     "delete template-detail, delete paraphrase-detail, delete utterance-detail",
     "history": "post history",
     "rename": "post rename",
@@ -186,6 +189,8 @@ PAGE_VIEWS: dict[str, str | NoRoute] = {
     "jobs": "get job-list",
     **dict.fromkeys(("job", "job_state"), "get job-detail, get site-job-detail"),
     "ontology": "get entity-list",
+    "entity_classes": "get entity-class-list",
+    "class_colours": NoRoute("The route of classes gives their hues."),
     "predicates": "get predicate-list",
     "grammar": "get production-list",
     "coverage": "get task-categories",

@@ -12,6 +12,7 @@ from annotations.models import (
     AuditDecision,
     AuditFinding,
     Campaign,
+    EntityClass,
     Invitation,
     Job,
     Label,
@@ -171,6 +172,12 @@ def dialogue(sample: SampleWorld) -> Dialogue:
 
 def offered_entity(sample: SampleWorld) -> OfferedEntity:
     return offer(sample.world, Offer("object", "flurb"), "bring me the flurb")
+
+
+def entity_class(sample: SampleWorld) -> EntityClass:
+    """Return a class that not every world has."""
+    words = {"singular": "pose", "plural": "poses", "said": "pose", "hue": 20, "position": 90}
+    return EntityClass.objects.get_or_create(world=sample.world, token="pose", defaults=words)[0]
 
 
 def predicate(sample: SampleWorld) -> Model:

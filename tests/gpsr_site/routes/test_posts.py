@@ -16,6 +16,7 @@ SENT = {
     "token_new": {"name": "robot", "scope": "read", "days": "30"},
     "world_new": {"name": "another"},
     "entity_new": {"entity_class": "object", "text": "kettle"},
+    "entity_class_new": {"token": "pose", "hue": "20"},
     "predicate_new": {"name": "wave", "kind": "action"},
     "utterances_new": {"texts": "wave at the door", "add": "yes"},
     "error_categories": {"code": "odd", "description": "Odd", "slice": ""},

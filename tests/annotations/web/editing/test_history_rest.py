@@ -22,6 +22,11 @@ NOUNS = {
         {"aliases": [], "attributes": {"category": "food", "room": ""}},
         {"aliases": [], "text": "oat milk", "attributes": {"category": "food", "room": ""}},
     ),
+    "entity-classes": (
+        {"token": "pose", "singular": "pose", "plural": "poses", "said": "pose", "hue": 20},
+        {"said": "way to sit", "is_closed": True},
+        {"said": "way to sit", "is_closed": True, "token": "pose", "hue": 20},
+    ),
     "predicates": (
         {"name": "is_hot", "kind": "description", "signatures": [["variable"]]},
         {"signatures": [["variable", "object?"]], "gloss": "hot"},
