@@ -106,6 +106,7 @@ class ParsedUtterance:
                     "token": span.token,
                     "entity_class": span.entity_class,
                     "value": span.value,
+                    "likeness": span.likeness.name.lower(),
                 }
                 for span in self.heard.spans
             ],

@@ -30,7 +30,8 @@ class Span:
     """``original[start:end]`` names an entity and became ``token``.
 
     ``value`` is what a grounded form says: the entity's text, or the word for any object of a
-    category. ``others`` are further rows that match the words equally well.
+    category. ``others`` are further rows that match the words equally well. ``likeness`` says how the
+    words relate to the entity.
     """
 
     start: int
@@ -40,6 +41,7 @@ class Span:
     entity: Entity
     value: str
     others: tuple[Entity, ...] = ()
+    likeness: Likeness = Likeness.EXACT
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,9 +111,8 @@ class Anonymizer:
                 of_class = numbers[best.entity_class]
                 token = f"<{best.entity_class}{of_class.setdefault(best.value, len(of_class))}>"
             others = tuple(each.entity for each in rest)
-            spans.append(
-                Span(start, stop, token, best.entity_class, best.entity, best.value, others)
-            )
+            named = (best.entity_class, best.entity, best.value, others, best.likeness)
+            spans.append(Span(start, stop, token, *named))
             pieces += [text[end:start], token]
             end = stop
         return Anonymized(text, "".join((*pieces, text[end:])), tuple(spans))

@@ -86,7 +86,8 @@ class JobQuery(BatchQuery):
 
 
 class SpanSerializer(serializers.Serializer[Any]):
-    """The characters ``start`` to ``end`` of the utterance name an entity."""
+    """The characters ``start`` to ``end`` of the utterance name an entity: as it is called (``likeness``
+    exact), by an alias, or inflected."""
 
     start = serializers.IntegerField()
     end = serializers.IntegerField()
@@ -94,6 +95,7 @@ class SpanSerializer(serializers.Serializer[Any]):
     token = serializers.CharField()
     entity_class = serializers.CharField()
     value = serializers.CharField()
+    likeness = serializers.ChoiceField(choices=["exact", "alias", "inflected"])
 
 
 class OpenSlotSerializer(serializers.Serializer[Any]):

@@ -50,6 +50,7 @@ def test_the_promoted_parser_answers_with_the_entities_of_the_utterance(split, s
             "token": "<object>",
             "entity_class": "object",
             "value": "red cup",
+            "likeness": "exact",
         }
     ]
     first = answer["candidates"][0]
