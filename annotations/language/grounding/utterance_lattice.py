@@ -83,7 +83,7 @@ class UtteranceReader:
         """Folded words → the entities that they can name: for each class, those that are called most like it."""
         found: defaultdict[tuple[str, ...], list[Reading]] = defaultdict(list)
         for entity in self._ontology.entities:
-            for words, reading in readings_of(entity, ontology.classes):
+            for words, reading in readings_of(entity, self._ontology.classes):
                 if key := tuple(fold(each) for each in _spoken(words)):
                     found[key].append(reading)
         return {key: _closest(readings) for key, readings in found.items()}
@@ -232,7 +232,16 @@ class _Everything:
                 others = tuple(each.entity for each in same[1:])
                 number = len(self.spans)
                 self.spans.append(
-                    Span(first, last, token, entity_class, same[0].entity, value, others)
+                    Span(
+                        first,
+                        last,
+                        token,
+                        entity_class,
+                        same[0].entity,
+                        value,
+                        others,
+                        same[0].likeness,
+                    )
                 )
                 yield Arc(start, end, token, cost, number)
 

@@ -226,14 +226,19 @@ class _Reading:
         row = self.row_of(entity)
         if row is not None and row.beside == _HEAD:
             return "write | Names | above it: the first row that is read is taken for the head"
-        hints = {
-            "name": self._hint_for_name,
-            "room": self._hint_for_room,
-            "location": self._hint_for_location,
-            "object": self._hint_for_object,
-            "category": self._hint_for_class,
-        }
-        return hints[entity.entity_class](entity) or _CLOSE_ALL
+        return self._hint_for(entity) or _CLOSE_ALL
+
+    def _hint_for(self, entity: Entity) -> str:
+        match entity.entity_class:
+            case "name":
+                return self._hint_for_name(entity)
+            case "room":
+                return self._hint_for_room(entity)
+            case "location":
+                return self._hint_for_location(entity)
+            case "object":
+                return self._hint_for_object(entity)
+        return self._hint_for_class(entity)
 
     def _hint_for_name(self, name: Entity) -> str:
         return "" if _ONE_NAME.fullmatch(name.text) else _write_with(_ONE_NAME, name.text)
