@@ -81,7 +81,8 @@ def check_template(
             too_long.append(error.problem)
     if too_long:
         return CheckedTemplate(tuple(too_long))
-    template, unread = read_known_sides(pattern, form, classes_of(world))
+    classes = classes_of(world)
+    template, unread = read_known_sides(pattern, form, classes)
     try:
         declared = predicates_of(world)
         grammar = grammar_of(category) if category else Grammar(())

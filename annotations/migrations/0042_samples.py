@@ -4,7 +4,7 @@ from django.db import migrations, models
 
 
 class Migration(migrations.Migration):
-    dependencies = [("annotations", "0040_balance_of_campaigns")]
+    dependencies = [("annotations", "0041_entity_classes")]
 
     operations = [
         migrations.AddField(

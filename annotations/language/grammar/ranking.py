@@ -67,7 +67,7 @@ class RankedSequence:
                 for other, n_other in rest.items():
                     counts[own | other] = counts.get(own | other, 0) + n_own * n_other
             self._rests.insert(0, dict(sorted(counts.items())))
-        self.counts = self._rests[0]
+        self.counts: Counts = self._rests[0]
 
     def choices(self, atoms: Atoms, rank: int) -> Choices:
         """Return derivation ``rank`` of those with just these ``atoms``; 0 ≤ rank < counts[atoms]."""
@@ -117,7 +117,7 @@ class RankedRule:
         for sequence in self.sequences:
             for atoms, count in sequence.counts.items():
                 counts[atoms] = counts.get(atoms, 0) + count
-        self.counts = {atoms: count for atoms, count in sorted(counts.items()) if count}
+        self.counts: Counts = {atoms: count for atoms, count in sorted(counts.items()) if count}
         self._ends: dict[Atoms, list[int]] = {
             atoms: list(accumulate(each.counts.get(atoms, 0) for each in self.sequences))
             for atoms in self.counts
