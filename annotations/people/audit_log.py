@@ -60,6 +60,7 @@ WHAT = {
     "import_pairs": "import pairs",
     "location_rooms": "choose rooms",
     "generate": "generate commands",
+    "generation": "generate commands",
     "job_answer": "answer a job",
     "job_cancel": "cancel a job",
     "rename": "rename everywhere",

@@ -9,7 +9,7 @@ from rest_framework import serializers
 from annotations.language.templates import Balance
 
 
-class SampleSerializer(serializers.Serializer[Any]):
+class SampleNoteSerializer(serializers.Serializer[Any]):
     """A sample of ``commands`` of a language with ``of`` derivations, which are written as text.
 
     ``size`` commands were asked for. With ``is_all`` the language has no others.

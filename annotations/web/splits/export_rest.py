@@ -20,7 +20,7 @@ from annotations.people.allowances import may_take_long
 from annotations.web.rest.negotiation import CONTENT_TYPES, AnyType
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import WorldRoute
-from annotations.web.rest.samples import SampleSerializer
+from annotations.web.rest.samples import SampleNoteSerializer
 
 FOUND_WRONG = OpenApiParameter(
     "X-Pairs-Found-Wrong",
@@ -82,7 +82,7 @@ class ManifestSerializer(serializers.Serializer[Any]):
     seed = serializers.IntegerField(allow_null=True)
     proportions = serializers.ListField(child=serializers.FloatField())
     tests_on_models = serializers.BooleanField()
-    sample = SampleSerializer(allow_null=True)
+    sample = SampleNoteSerializer(allow_null=True)
     content_hash = serializers.CharField()
     created_at = serializers.DateTimeField()
     chosen = serializers.DictField(child=serializers.CharField())

@@ -26,7 +26,7 @@ from annotations.web.rest.idempotency import once
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import Figures, RowsRoute, RowsViewSet
-from annotations.web.rest.samples import SampleSerializer
+from annotations.web.rest.samples import SampleNoteSerializer
 from annotations.web.splits.split_filters import (
     MOST_CHANGES,
     MOST_SHOWN,
@@ -62,7 +62,7 @@ class SplitSerializer(serializers.ModelSerializer[Split]):
             *("tests_on_models", "sample", "follows", "created_by", "created_at"),
         ]
 
-    @extend_schema_field(SampleSerializer(allow_null=True))
+    @extend_schema_field(SampleNoteSerializer(allow_null=True))
     def get_sample(self, row: Split) -> Any:
         return row.sample or None
 

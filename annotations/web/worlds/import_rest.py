@@ -42,7 +42,7 @@ from annotations.web.rest.parsing import FilesParser
 from annotations.web.rest.permissions import ApiRequest, ForSiteAdmins
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import Route, WorldRoute
-from annotations.web.rest.samples import SampleSerializer
+from annotations.web.rest.samples import SampleNoteSerializer
 from annotations.web.worlds.downloads import archive_of, file_of
 from annotations.web.worlds.import_forms import (
     CompetitionForm,
@@ -250,7 +250,7 @@ class LanguageSerializer(serializers.Serializer[Any]):
     commands; ``sample`` says what sample of them the commands are now, if any."""
 
     derivations = serializers.CharField()
-    sample = SampleSerializer(allow_null=True)
+    sample = SampleNoteSerializer(allow_null=True)
 
 
 @may_take_long

@@ -18,7 +18,7 @@ from annotations.web.rest.idempotency import once
 from annotations.web.rest.permissions import ApiRequest, ChangedBySiteAdmins, ForSiteAdmins
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import ManyRows, RowRoute, Tagged
-from annotations.web.rest.samples import SampleSerializer
+from annotations.web.rest.samples import SampleNoteSerializer
 from annotations.web.worlds.world_forms import WorldForm
 from annotations.worlds.world_deletion import request_deletion, start_deletion
 
@@ -34,7 +34,7 @@ class WorldSerializer(serializers.ModelSerializer[World]):
         model = World
         fields = ["name", "description", "created_at", "commands_are_stale", "sample", "duties"]
 
-    @extend_schema_field(SampleSerializer(allow_null=True))
+    @extend_schema_field(SampleNoteSerializer(allow_null=True))
     def get_sample(self, world: World) -> Any:
         return world.sample or None
 

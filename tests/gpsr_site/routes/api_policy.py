@@ -81,6 +81,7 @@ READABLE = (
     ),
     *(
         "complexity",
+        "generation",
         "uncovered",
         "conflicts",
         "near-duplicates",
@@ -195,7 +196,7 @@ API_POLICY = [
     Rule("api:comment-detail", NO_TOKEN, NOWHERE, NO, NO, NO, method="patch"),
     Rule("api:comment-detail", NO_TOKEN, NOWHERE, NO, NO, NO_VERSION, method="delete"),
     Rule("api:comment-restore", NO_TOKEN, NOWHERE, YES, YES, YES, method="post"),  # it is there
-    Rule("api:generate", *annotators(YES), method="post"),
+    Rule("api:generate", *annotators(NO_JSON), method="post"),
     Rule("api:upload-list", *annotators(400), method="post"),  # neither a file nor a text
     Rule("api:upload-undo", *annotators(NO_JSON), method="post"),
     Rule("api:upload-redo", *annotators(CLASH), method="post"),  # it is not undone

@@ -71,7 +71,7 @@ def test_a_reviewer_neither_sees_the_page_nor_draws(tiny_world, rene):
 def test_pages_of_coverage_splits_and_campaigns_say_that_it_is_a_sample(tiny_world, anna, adam):
     anna.post(PAGE, {"sample": 2})
     said = str(world_now().sample_note)
-    for page in ("commands/", "forms/", "complexity/", "coverage/", "splits/new/"):
+    for page in ("commands/", "forms/", "commands/complexity/", "coverage/", "splits/new/"):
         assert said in anna.get(f"/w/home/{page}").content.decode(), page
     assert said in adam.get("/w/home/campaigns/new/").content.decode()
     anna.post("/w/home/splits/new/", {"name": "one", "criterion": "command", "freeze": 1})
