@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from annotations.checking.class_uses import why_kept
 from annotations.checking.predicate_check import BrokenTemplates, templates_without
 from annotations.checking.production_check import ProductionEdit, problems_without
-from annotations.editing.class_deletion import why_kept
 from annotations.generation.world_consequences import (
     TemplateChange,
     WorldConsequences,

@@ -6,9 +6,9 @@ from random import Random
 
 import pytest
 
+from annotations.checking.class_uses import why_kept
 from annotations.checking.production_check import ProductionEdit, check_production
 from annotations.checking.template_check import check_template
-from annotations.editing.class_deletion import why_kept
 from annotations.exporting.generator_export import generator_files
 from annotations.generation.generating import generate_pairs
 from annotations.importing.generator_import import import_generator

@@ -98,7 +98,7 @@ def test_every_page_of_a_world_belongs_to_one_entry():
         "generate",
         "near_duplicates",
     }
-    parts |= {"production_check", "production_preview", "predicate_preview"}
+    parts |= {"production_check", "production_preview", "predicate_preview", "class_colours"}
     parts |= {"download_part"}
     parts |= {"template_completion", "template_suggestions", "template_repair"}
     parts |= {"template_duplicate", "delete_row"}

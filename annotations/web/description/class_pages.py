@@ -12,7 +12,7 @@ from django.http.response import HttpResponseBase
 from django.shortcuts import redirect, render
 from django.utils.cache import get_conditional_response, patch_cache_control
 
-from annotations.editing.class_deletion import count_uses
+from annotations.checking.class_uses import count_uses
 from annotations.editing.edits import Overtaken, add
 from annotations.models import Duty, Entity, EntityClass, World
 from annotations.people.access import READ_AND_WRITE, WorldRequest, world_view
