@@ -20,6 +20,7 @@ class AnnotationsConfig(AppConfig):
         )
         register_verb(JobKind.IMPORT_PAIRS, "annotations.importing.import_jobs.import_pairs_of")
         register_verb(JobKind.IMPORT_WORLD, "annotations.world_archive.import_job.import_world_of")
+        register_verb(JobKind.LOAD_WORLD, "annotations.worlds.shipped_worlds.load_world_of")
         register_verb(JobKind.IMPORT_RESULTS, "annotations.campaigns.crowd_jobs.import_results_of")
         register_verb(JobKind.GENERATE, "annotations.generation.generating.generate_pairs_of")
         register_verb(JobKind.DELETE_WORLD, "annotations.worlds.world_deletion.delete_world_of")

@@ -30,7 +30,7 @@ WORLD = "scale"
 
 def write_generator(folder: Path, commands: int) -> None:
     """Write a generator whose grammar has ``commands`` expansions, of eight templates."""
-    starter = ROOT / "annotations" / "starter"
+    starter = ROOT / "annotations" / "starter" / "household"
     for path in starter.glob("*.xml"):
         shutil.copy(path, folder / path.name)
     shutil.copy(starter / "predicates.json", folder)

@@ -207,7 +207,7 @@ def main() -> None:
         site = Site(Path(folder))
         site.environment |= {"DJANGO_SUPERUSER_PASSWORD": PASSWORD}
         site.run("createsuperuser", "--no-input", "--username", NAME, "--email", "a@example.org")
-        starter = str(ROOT / "annotations" / "starter")
+        starter = str(ROOT / "annotations" / "starter" / "household")
         site.run("import_generator", starter, "--world", WORLD)
         site.run("generate_pairs", WORLD)
         site.run("collectstatic", "--no-input", "-v0")

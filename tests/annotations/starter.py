@@ -20,7 +20,7 @@ from annotations.language.templates import (
 )
 from tests.annotations.language.ontology_files import read_ontology_folder
 
-STARTER = Path(__file__).parents[2] / "annotations" / "starter"
+STARTER = Path(__file__).parents[2] / "annotations" / "starter" / "household"
 
 
 @cache

@@ -66,7 +66,8 @@ def compose(
         file_names: the names of all its files; template files are picked from them.
 
     A file with ``$Main`` whose stem ends in ``category_N`` is category N; any other one is named after
-    its stem (without ``_grammar``). ``X_grammar.txt`` and ``X.txt`` go with ``X_semantics.txt``.
+    its stem (without ``_grammar``). ``X_grammar.txt`` and ``X.txt`` go with ``X_semantics.txt``. The templates
+    of files that are imported come before those of the file itself.
     """
     templates = {name.lower(): name for name in file_names if is_template_name(name)}
     roots = sorted(name for name, file in grammar_files.items() if file.defines(ROOT))
@@ -74,12 +75,14 @@ def compose(
     matches = {name: _NUMBERED.fullmatch(base) for name, base in bases.items()}
     claims = Counter(match["number"] for match in matches.values() if match)
     compositions: list[Composition] = []
+    folder = GrammarFolder(grammar_files, ())
     for file, base in bases.items():
         match = matches[file]
         inherited = _INHERITED.get(match["number"], ()) if match else ()
-        of_files = (*(re.sub(r"(?<!\d)\d+$", number, base) for number in inherited), base)
-        wanted = (f"{each}{TEMPLATE_SUFFIX}".lower() for each in of_files)
-        own = tuple(templates[name] for name in wanted if name in templates)
+        *imported, _ = (_base(source) for source, _ in folder.sources(file))
+        earlier = (re.sub(r"(?<!\d)\d+$", number, base) for number in inherited)
+        wanted = (f"{each}{TEMPLATE_SUFFIX}".lower() for each in (*imported, *earlier, base))
+        own = tuple(dict.fromkeys(templates[name] for name in wanted if name in templates))
         name = match["number"] if match and claims[match["number"]] == 1 else base
         compositions.append(Composition(name, file, own))
     numbered = [each for each in compositions if each.name.isdecimal()]

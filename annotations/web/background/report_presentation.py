@@ -26,6 +26,7 @@ TEMPLATES = {
     JobKind.IMPORT_COMPETITION: "annotations/background/_competition_result.html",
     JobKind.IMPORT_PAIRS: "annotations/background/_pairs_result.html",
     JobKind.IMPORT_WORLD: "annotations/background/_world_result.html",
+    JobKind.LOAD_WORLD: "annotations/background/_loading_result.html",
     JobKind.IMPORT_RESULTS: "annotations/background/_results_result.html",
     JobKind.GENERATE: "annotations/background/_generation_result.html",
     JobKind.PROPOSE: "annotations/background/_proposals_result.html",

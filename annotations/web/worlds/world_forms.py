@@ -5,11 +5,18 @@ from __future__ import annotations
 from django import forms
 from django.db import IntegrityError, transaction
 
-from annotations.models import World
+from annotations.models import Job, User, World
+from annotations.worlds.shipped_worlds import SHIPPED_WORLDS, request_load
+
+
+def start_choices() -> list[tuple[str, str]]:
+    """Return what a new world may begin with: nothing, or a world that comes with this project."""
+    shipped = ((each.name, f"{each.name}: {each.description}") for each in SHIPPED_WORLDS.values())
+    return [("", "nothing: you import files next"), *shipped]
 
 
 class WorldForm(forms.ModelForm):  # type: ignore[type-arg]  # generic in the stubs alone
-    """A new world. Its name is used in URLs and never changes."""
+    """A world. Its name is used in URLs and never changes."""
 
     class Meta:
         model = World
@@ -29,3 +36,14 @@ class WorldForm(forms.ModelForm):  # type: ignore[type-arg]  # generic in the st
             self.add_error("name", "There is a world of this name already. Choose another name.")
             return None
         return created
+
+
+class NewWorldForm(WorldForm):
+    """A new world, empty or with what a shipped one holds."""
+
+    starts_with = forms.ChoiceField(label="Starts with", choices=start_choices, required=False)
+
+    def load(self, created: World, by: User) -> Job | None:
+        """Queue the loading of what ``created`` starts with; None where that is nothing."""
+        shipped = self.cleaned_data["starts_with"]
+        return request_load(shipped, created, by) if shipped else None

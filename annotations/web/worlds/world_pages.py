@@ -25,7 +25,7 @@ from annotations.web.forms import posted
 from annotations.web.sent_texts import MOST_NAMED
 from annotations.web.worlds.downloads import archive_of, file_of
 from annotations.web.worlds.import_forms import WorldArchiveForm
-from annotations.web.worlds.world_forms import WorldForm
+from annotations.web.worlds.world_forms import NewWorldForm
 from annotations.world_archive.import_job import start_world_import
 from annotations.worlds.world_deletion import count_below, start_deletion
 
@@ -52,9 +52,11 @@ class NameForm(forms.Form):
 
 @site_view(READ_AND_WRITE)
 def world_new(request: PageRequest) -> HttpResponse:
-    """Create an empty world; its files are imported next."""
-    form = WorldForm(posted(request))
+    """Create a world, empty or with what comes with this project; files are imported into an empty one next."""
+    form = NewWorldForm(posted(request))
     if form.is_bound and form.is_valid() and (created := form.create()):
+        if (job := form.load(created, request.user)) is not None:
+            return redirect("job", pk=job.pk)
         return redirect("import", world=created.name)
     return render(request, "annotations/worlds/world_new.html", {"form": form})
 

@@ -19,7 +19,8 @@ from annotations.web.rest.permissions import ApiRequest, ChangedBySiteAdmins, Fo
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import ManyRows, RowRoute, Tagged
 from annotations.web.rest.samples import SampleNoteSerializer
-from annotations.web.worlds.world_forms import WorldForm
+from annotations.web.worlds.world_forms import NewWorldForm, WorldForm
+from annotations.worlds.shipped_worlds import SHIPPED_WORLDS
 from annotations.worlds.world_deletion import request_deletion, start_deletion
 
 
@@ -50,10 +51,13 @@ class WorldChange(Fields):
 
 
 class NewWorld(Fields):
-    """An empty world; its files are imported next."""
+    """A world, empty or with what a shipped one holds (``starts_with``)."""
 
     name = serializers.CharField(max_length=60)
     description = serializers.CharField(max_length=10_000, allow_blank=True, default="")
+    starts_with = serializers.ChoiceField(
+        choices=list(SHIPPED_WORLDS), allow_blank=True, default=""
+    )
 
 
 class WorldShowing(Tagged):
@@ -82,13 +86,17 @@ class Worlds(WorldShowing, ManyRows):
     def rows(self) -> QuerySet[World]:
         return World.objects.visible_to(self.request.user)
 
-    @extend_schema(request=NewWorld, responses={201: WorldSerializer})
+    @extend_schema(request=NewWorld, responses={201: WorldSerializer, 202: JobSerializer})
     @once
     def post(self, request: ApiRequest) -> Response:
-        form = WorldForm(self.read(NewWorld))
+        """Make a world; where it starts with a shipped one, the answer is the job that loads it (202)."""
+        form = NewWorldForm(self.read(NewWorld))
         created = form.create() if form.is_valid() else None
         if created is None:
             raise refusal_of_form(form)
+        if (job := form.load(created, request.user)) is not None:
+            location = {"Location": address_of_job(request, job)}
+            return Response(JobSerializer(job).data, HTTPStatus.ACCEPTED, headers=location)
         response = self.show(created, HTTPStatus.CREATED)
         response["Location"] = request.build_absolute_uri(f"{request.path}{created.name}/")
         return response

@@ -11,7 +11,7 @@ from annotations.models import SemanticTemplate, World
 from annotations.models.description import TemplateStatus
 from tests.annotations.rows_of import contents_of
 
-STARTER = Path(annotations.__file__).parent / "starter"
+STARTER = Path(annotations.__file__).parent / "starter" / "household"
 
 
 def round_trip(source):

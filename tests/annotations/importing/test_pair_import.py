@@ -13,7 +13,7 @@ from annotations.importing.pair_import import import_pairs
 from annotations.models import Paraphrase, Split, World
 from tests.annotations.rows_of import counts
 
-STARTER = Path(annotations.__file__).parent / "starter"
+STARTER = Path(annotations.__file__).parent / "starter" / "household"
 GO = '( go " <room> " )'
 FIND = '( find ( lambda $1 e ( is_a $1 " <object> " ) ) )'
 

@@ -26,7 +26,7 @@ from annotations.background.failures import (
 from annotations.models import Utterance, World
 from gpsr_site.web.error_pages import is_outage, server_error
 
-STARTER = Path(annotations.__file__).parent / "starter"
+STARTER = Path(annotations.__file__).parent / "starter" / "household"
 
 
 @pytest.fixture

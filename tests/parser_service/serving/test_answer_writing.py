@@ -30,7 +30,7 @@ from parser_service.serving.preparing import WorldLanguage
 from tests.annotations.language.ontology_files import read_ontology_folder
 from tests.annotations.language.sample_ontology import HOME
 
-STARTER = Path(__file__).parents[3] / "annotations" / "starter"
+STARTER = Path(__file__).parents[3] / "annotations" / "starter" / "household"
 # Texts that a gloss, a notation, JSON or a pattern might take for something else.
 ODD = (
     "cup of tea", "half_pint", "lost person", "current", "that is it", "is land", "dish", "baby",

@@ -155,6 +155,18 @@ def test_other_files_with_a_main_are_named_by_their_stem_and_files_without_are_n
     ]
 
 
+def test_templates_of_an_imported_file_come_before_the_own_ones():
+    texts = {
+        "words.txt": "$x = a",
+        "kinds.txt": "; import words.txt\n$y = $x",
+        "category_7_grammar.txt": "; import kinds.txt\n$Main = $y",
+    }
+    files = read_grammar_files({name: text.encode() for name, text in texts.items()}).files
+    names = ("kinds_semantics.txt", "category_7_semantics.txt")
+    (composed,) = compose(files, [*texts, *names])
+    assert (composed.name, composed.template_files) == ("7", names)
+
+
 def test_two_families_that_claim_one_number_keep_their_stems():
     composed = compositions("gpsr_category_1_grammar", "eegpsr_category_1_grammar")
     assert [each.name for each in composed] == ["eegpsr_category_1", "gpsr_category_1"]

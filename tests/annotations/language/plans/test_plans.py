@@ -27,7 +27,7 @@ from tests.annotations.language.published import SHARED, needs_corpus
 from tests.annotations.language.random_forms import forms
 from tests.annotations.language.sample_ontology import HOME
 
-STARTER = Path(__file__).parents[4] / "annotations" / "starter"
+STARTER = Path(__file__).parents[4] / "annotations" / "starter" / "household"
 JSON_SCHEMA = jsonschema.Draft202012Validator(plan_schema())
 XML_SCHEMA = xmlschema.XMLSchema(behavior_tree_schema_text())
 
