@@ -16,6 +16,7 @@ from annotations.jobs.requesting import request_job
 from annotations.jobs.watching import JobProgress
 from annotations.language.corpus import Criterion
 from annotations.language.errors import LanguageError
+from annotations.language.templates.sample_notes import EVERYTHING, Balance, SampleRequest
 from annotations.models import (
     Entity,
     Job,
@@ -34,10 +35,11 @@ PARAPHRASES = "published"  # the name of the pairs among the world's sources
 
 @dataclass(frozen=True, slots=True)
 class ShippedWorld:
-    """A world whose files lie in ``annotations/starter/NAME/``."""
+    """A world whose files lie in ``annotations/starter/NAME/``, and the commands that are made of it."""
 
     name: str
     description: str
+    commands: SampleRequest = EVERYTHING
 
     @property
     def folder(self) -> Path:
@@ -53,6 +55,7 @@ SHIPPED_WORLDS: Mapping[str, ShippedWorld] = {
         ShippedWorld(
             "competition",
             "The commands of RoboCup@Home in 2025 and 2026; import a competition's folder into it.",
+            SampleRequest(3_000, balance=Balance.FORMS),
         ),
     )
 }
@@ -105,7 +108,7 @@ def fill_world(
         world.description = shipped.description
         world.save(update_fields=["description"])
     progress.report(0.2, "generating commands")
-    generate_pairs(world)
+    generate_pairs(world, request=shipped.commands)
     progress.report(0.7, "importing paraphrases")
     import_pairs(name, PARAPHRASES, shipped.folder, by)
     progress.report(0.9, "freezing splits")

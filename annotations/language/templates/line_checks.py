@@ -8,7 +8,7 @@ from difflib import get_close_matches
 from annotations.language.english import say_count
 from annotations.language.errors import LanguageError, Offsets, Problem, error_at, warning_at
 from annotations.language.forms import Application, loose_references, read_form, walk
-from annotations.language.grammar import Budget, Grammar, TooManyCombinations
+from annotations.language.grammar import Budget, TooManyCombinations
 from annotations.language.symbols import (
     Choice,
     Nonterminal,
@@ -38,7 +38,7 @@ def composition_problems(
             f"the grammar has no ${name}",
             f"did you mean ${near[0]}?" if near else f"add a production ${name} = …",
         )
-    counts = _Counts(rules.words)
+    counts = _Counts(rules)
     for composed in rules.composed(template):
         if counts.most(template.pattern, composed) > 1:
             places = [
@@ -67,10 +67,13 @@ def composition_problems(
 
 
 class _Counts:
-    """Counts how often a nonterminal can stand in one expansion of a sequence."""
+    """Counts how often a nonterminal can stand in one expansion of a sequence.
 
-    def __init__(self, grammar: Grammar) -> None:
-        self._grammar = grammar
+    What stands in a line for another nonterminal belongs to the form of that line, and is not counted.
+    """
+
+    def __init__(self, rules: SynchronousGrammar) -> None:
+        self._rules = rules
         self._known: dict[tuple[str, str], int] = {}
 
     def most(self, symbols: Symbols, name: str) -> int:
@@ -83,9 +86,11 @@ class _Counts:
             return 0
         if symbol.name == name:
             return 1
+        if symbol.name in self._rules.lines_of:
+            return 0
         key = (symbol.name, name)
         if key not in self._known:
-            alternatives = self._grammar.alternatives(symbol.name)
+            alternatives = self._rules.grammar.alternatives(symbol.name)
             self._known[key] = max((self.most(each, name) for each in alternatives), default=0)
         return self._known[key]
 
