@@ -44,6 +44,7 @@ from annotations.language.templates.expansion import Conflict, Generated, TaskCa
 from annotations.language.templates.filling import bare
 from annotations.language.templates.grammar_expansions import (
     DEFAULT_LIMIT,
+    MOST_ENUMERATED,
     GrammarExpansions,
     too_many_commands,
 )
@@ -57,6 +58,8 @@ from annotations.language.templates.templates import SemanticTemplate
 
 # A template is checked as it is typed, so only this many of its pairs are looked at.
 CHECKED_PAIRS = 2_000
+# Recognising a command takes as long as making many, so few are recognised where the grammar is large.
+MOST_RECOGNISED = 200
 MOST_PREDICATE_PROBLEMS = 50
 # For all templates of a world together. A hundred published templates take 50,000.
 SET_STEPS = 50_000_000
@@ -166,7 +169,10 @@ class TemplateChecker:
         recognizer = Recognizer(self.grammar, name) if name else self.recognizer
         judged: list[tuple[str, bool]] = []  # each command and whether it is in the grammar
         with suppress(TooManyCombinations):  # the others are not judged
-            for command in dict.fromkeys(commands):
+            distinct = tuple(dict.fromkeys(commands))
+            is_large = self.grammar.size() > MOST_ENUMERATED
+            step = max(1, len(distinct) // MOST_RECOGNISED) if is_large else 1
+            for command in distinct[::step]:
                 judged.append((command, recognizer.accepts(command, budget)))
         outside = [command for command, is_inside in judged if not is_inside]
         if not commands:
@@ -188,10 +194,10 @@ class TemplateChecker:
             yield replace(warning, task_category=self.task_category)
         elif outside:
             is_cut = len(commands) == CHECKED_PAIRS or len(judged) < len(set(commands))
-            first = "the first " if is_cut else ""
+            some = " that were looked at" if is_cut else ""
             yield warning_at(
                 template.position,
-                f"{len(outside)} of {first}{len(judged)} commands are outside the grammar, "
+                f"{len(outside)} of {len(judged)} commands{some} are outside the grammar, "
                 f'such as "{outside[0]}"',
                 "they are kept; narrow the pattern if this is not intended",
             )
