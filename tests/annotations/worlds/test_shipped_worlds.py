@@ -46,7 +46,7 @@ def test_what_a_world_holds_is_not_overwritten(tiny_world):
         call_command("load_world", "nothing", world="lab")
 
 
-def test_a_new_world_by_page_starts_with_a_shipped_one(superuser, client):
+def test_a_new_world_by_page_starts_with_a_shipped_one(transactional_db, superuser, client):
     client.force_login(superuser)
     assert all(name in client.get("/worlds/new/").content.decode() for name in SHIPPED_WORLDS)
     answer = client.post("/worlds/new/", {"name": "lab", "starts_with": "household"})
