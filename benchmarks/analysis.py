@@ -49,7 +49,9 @@ class AnalysedData:
     """Predictions of five runs for commands of the starter world."""
 
     def __init__(self, count: int) -> None:
-        self.categories = read_generator_folder(ROOT / "annotations" / "starter" / "household").categories()
+        self.categories = read_generator_folder(
+            ROOT / "annotations" / "starter" / "household"
+        ).categories()
         expansions = generate(self.categories).expansions
         self.commands = [each.command for each in expansions]
         self.forms = [each.form_text for each in expansions]

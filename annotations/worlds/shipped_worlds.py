@@ -49,9 +49,7 @@ class ShippedWorld:
 SHIPPED_WORLDS: Mapping[str, ShippedWorld] = {
     each.name: each
     for each in (
-        ShippedWorld(
-            "household", "A household of seven rooms, to look around in and to train on."
-        ),
+        ShippedWorld("household", "A household of seven rooms, to look around in and to train on."),
         ShippedWorld(
             "competition",
             "The commands of RoboCup@Home in 2025 and 2026; import a competition's folder into it.",

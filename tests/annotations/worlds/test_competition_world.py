@@ -189,7 +189,10 @@ def test_every_kind_is_read(kind):
     [
         ("bring me a quince from the larder", "from the larder, please fetch me the quince"),
         ("find Otto in the lobby", "in the lobby, could you look for Otto"),
-        ("find Otto in the lobby and follow him", "First find Otto in the lobby, then follow them."),
+        (
+            "find Otto in the lobby and follow him",
+            "First find Otto in the lobby, then follow them.",
+        ),
         ("what is the biggest game on the piano", "tell me what is the largest game on the piano"),
     ],
 )
