@@ -225,7 +225,7 @@ def test_what_can_be_written_is_completed(page_of, live_server, annotator):
     page.get_by_role("textbox", name="Pattern").focus()
     complete("$vb", "find | locate")
     page.keyboard.type(" the ")
-    complete("{kob", "the name of an object (known)")
+    complete("{kob", "one of the objects (known)")
     page.get_by_role("textbox", name="Logical form").focus()
     complete("(fi", "(lambda)")
     complete("(lam", "λ$1:e")

@@ -16,7 +16,17 @@ from django.db import connection
 from django.test import Client
 from django.urls import reverse
 
-from annotations.models import ApiToken, Campaign, Editable, Entity, Membership, Split, User, World
+from annotations.models import (
+    ApiToken,
+    Campaign,
+    Editable,
+    Entity,
+    EntityClass,
+    Membership,
+    Split,
+    User,
+    World,
+)
 from annotations.models.worlds import Role
 from parser_service.models import ErrorCategory, Slice
 from tests.at_once import at_once
@@ -130,6 +140,7 @@ def test_every_route_that_is_posted_to_is_known():
 
 MADE = {
     "api:entity-list": lambda: Entity.objects.filter(text="flurb"),
+    "api:entity-class-list": lambda: EntityClass.objects.filter(token="garment"),
     "api:predicate-list": lambda: World.objects.get(name="home").predicates.filter(name="shines"),
     "api:worlds": lambda: World.objects.filter(name="attic"),
     "api:import-world": lambda: World.objects.exclude(name__in=["home", "cellar"]),
@@ -170,6 +181,7 @@ def send_file(key: str, path: str, body: dict[str, Any], archive: bytes) -> Any:
 PAGES = {
     "entity_new": {**NAMES["api:entity-list"], "aliases": "", "attributes": ""},
     "entities_new": {"entity_class": "object", "lines": "flurb", "attributes": "", "add": "yes"},
+    "entity_class_new": NAMES["api:entity-class-list"],
     "predicate_new": {**NAMES["api:predicate-list"], "signatures": "(object)", "gloss": ""},
     "world_new": {"name": "attic", "description": ""},
     "slices": {**NAMES["api:slice-list"], "chosen": "outcome=wrong"},
@@ -190,6 +202,7 @@ PAGES = {
 ROUTE_OF_PAGE = {
     "entity_new": "api:entity-list",
     "entities_new": "api:entity-list",
+    "entity_class_new": "api:entity-class-list",
     "predicate_new": "api:predicate-list",
     "world_new": "api:worlds",
     "slices": "api:slice-list",
