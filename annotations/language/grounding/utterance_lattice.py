@@ -23,6 +23,7 @@ from annotations.language.english import (
     COURTESY_OPENINGS,
     spellings,
 )
+from annotations.language.forms import CLASS_TOKEN
 from annotations.language.grammar import Arc, Lattice
 from annotations.language.grounding.anonymizer import (
     Anonymized,
@@ -37,12 +38,12 @@ from annotations.language.ontology import Ontology
 # A word with the apostrophes inside it, a class token, or a sign.
 _TOKEN = re.compile(r"<\w+>|\w+(?:['’]\w+)*|[^\w\s]")
 _SIGNS_INSIDE = re.compile(r"[^\w]|_")
-_CLASS_TOKEN = re.compile(r"<([^\W\d]\w*?)\d*>")
 _HYPHENS = frozenset("-‐‑–")
 _ARTICLES = {"a": "an", "an": "a"}
 # Costs of reading something otherwise than it is written.
 FOLDED, INFLECTED, SKIPPED = 1, 3, 2
 LONGEST_NAME = 8  # words
+DIGITS = "0123456789"
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,8 +171,8 @@ class _Everything:
     def _word_arcs(self) -> Iterator[Arc]:
         for place, (text, folded) in enumerate(zip(self.texts, self.folded, strict=True)):
             costs: dict[str, int] = {}
-            if match := _CLASS_TOKEN.fullmatch(text):
-                costs[f"<{match[1]}>"] = 0
+            if match := CLASS_TOKEN.fullmatch(text):
+                costs[f"<{match[1].rstrip(DIGITS)}>"] = 0
             if self.reader.has(text):
                 costs[text] = 0
             # A capital at the beginning of a sentence is no other word.
