@@ -61,6 +61,14 @@ class NonterminalRename:
             or rename_nonterminal_in_pattern(line.expansion, new, "") != line.expansion
             for line in lines
         )
+        templates = self.grammar.templates.filter(
+            Q(pattern__contains=f"${new}") | Q(form__contains=f"${new}")
+        )
+        is_taken = is_taken or any(
+            rename_nonterminal_in_pattern(row.pattern, new, "") != row.pattern
+            or rename_nonterminal_in_form(row.form, new, "") != row.form
+            for row in templates
+        )
         if is_taken or any(
             new == split_entry(entry)[1]
             for category in self.grammar.task_categories.all()

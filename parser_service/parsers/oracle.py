@@ -8,10 +8,18 @@ from pathlib import Path
 from typing import Self
 
 from annotations.language.errors import Refusal
-from annotations.language.grammar import Grammar, print_production, read_production
-from annotations.language.grounding import UtteranceReader
+from annotations.language.grammar import (
+    CHECK_STEPS,
+    Budget,
+    Grammar,
+    TooManyCombinations,
+    print_production,
+    read_production,
+)
+from annotations.language.grounding import HeardLattice, UtteranceReader
 from annotations.language.ontology import Ontology, read_ontology, write_ontology
 from annotations.language.templates import (
+    ChartDerivation,
     TaskCategory,
     TemplateChart,
     print_template,
@@ -101,7 +109,7 @@ class GrammarOracle(Parser):
     def _candidates(self, utterance: str) -> list[Candidate]:
         for heard in self._reader.lattices(utterance):
             found: dict[tuple[str, tuple[str | None, ...]], float] = {}
-            for each in self._chart.parse(heard.lattice):
+            for each in self._parse(heard):
                 values = heard.values(each.arcs)
                 key = each.form_text, values if any(values) else ()
                 found.setdefault(key, 0.0 - each.cost)
@@ -111,6 +119,13 @@ class GrammarOracle(Parser):
                     for (form, values), score in found.items()
                 ]
         return []
+
+    def _parse(self, heard: HeardLattice) -> list[ChartDerivation]:
+        """Return the derivations; none where that takes too many steps. A competition's commands take up to 26,000."""
+        try:
+            return self._chart.parse(heard.lattice, Budget(CHECK_STEPS))
+        except TooManyCombinations:
+            return []
 
     def save(self, folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)

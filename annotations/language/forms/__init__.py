@@ -14,11 +14,13 @@ from annotations.language.forms.foreign_forms import read_foreign_form
 from annotations.language.forms.logic import TermSpan, read_form, read_spans, read_template_form
 from annotations.language.forms.notations import to_corpus, to_reading, to_template
 from annotations.language.forms.references import (
+    ANTECEDENTS,
     PERSON,
     PERSON_PREDICATES,
     THING,
-    antecedent_kinds,
+    THINGS,
     described_kind,
+    kind_of_class,
     loose_references,
 )
 from annotations.language.forms.terms import (
@@ -44,12 +46,14 @@ from annotations.language.forms.terms import (
 from annotations.language.forms.tree_distance import FormDistances
 
 __all__ = [
+    "ANTECEDENTS",
     "CLASS_TOKEN",
     "CONJUNCTION",
     "PERSON",
     "PERSON_PREDICATES",
     "SEQUENCE",
     "THING",
+    "THINGS",
     "UNKNOWN",
     "Application",
     "Change",
@@ -63,7 +67,6 @@ __all__ = [
     "TermSpan",
     "Unknown",
     "Variable",
-    "antecedent_kinds",
     "canonical_text",
     "canonicalize",
     "children",
@@ -77,6 +80,7 @@ __all__ = [
     "free_variables",
     "head_of",
     "head_predicate",
+    "kind_of_class",
     "loose_references",
     "order_of",
     "predicates",

@@ -5,33 +5,54 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from annotations.language.forms.terms import (
+    CONJUNCTION,
+    SEQUENCE,
     Application,
     Constant,
     Form,
     Lambda,
     Reference,
+    Variable,
     children,
-    walk,
 )
+from annotations.language.symbols import Wildcard
 
 # A λ of which one of these is said describes a person.
 PERSON_PREDICATES = frozenset(("person", "name", "male", "female", "gesture", "pose", "gender"))
-PERSON, THING = "person", "thing"
+PERSON, THING, THINGS = "person", "thing", "things"
+# What a word can stand for, the likeliest first.
+ANTECEDENTS = {"it": (THING, THINGS), "them": (PERSON, THINGS)}
+_OF_CLASS = {"name": PERSON, "object": THING, "category": THINGS}
 
 
-def antecedent_kinds(word: str) -> tuple[str, ...]:
-    """Return what a reference may stand for, the likeliest first: ``them`` is a person, or else several things."""
-    return (PERSON, THING) if word == "them" else (THING,)
+def kind_of_class(entity_class: str) -> str:
+    """Return what an entity of a class is, for a reference; empty for one that no reference stands for."""
+    return _OF_CLASS.get(entity_class, "")
 
 
 def described_kind(form: Form) -> str:
-    """Return whether an argument describes a person or a thing; empty where it describes neither."""
-    if isinstance(form, Lambda):
-        said = {node.predicate for node in walk(form) if isinstance(node, Application)}
-        return PERSON if said & PERSON_PREDICATES else THING
+    """Return whether an argument describes a person, a thing or several; empty where it describes nothing.
+
+    Several things are those of a category.
+    """
     if isinstance(form, Constant):
-        return {"name": PERSON, "object": THING, "category": THING}.get(form.token_class, "")
-    return ""
+        return kind_of_class(form.token_class)
+    if isinstance(form, Wildcard):
+        return kind_of_class(form.entity_class)
+    if not isinstance(form, Lambda):
+        return ""
+    said = list(_said_of(form, form.variable))
+    if any(each.predicate in PERSON_PREDICATES for each in said):
+        return PERSON
+    kinds = [described_kind(each.arguments[1]) for each in said if len(each.arguments) > 1]
+    tokens = (each for each in kinds if each)
+    is_place = any(
+        isinstance(argument, Constant) and argument.token_class in ("location", "room")
+        for each in said
+        if each.predicate == "is_a"
+        for argument in each.arguments
+    )
+    return "" if is_place else (THINGS if next(tokens, "") == THINGS else THING)
 
 
 def loose_references(form: Form) -> tuple[str, ...]:
@@ -41,15 +62,38 @@ def loose_references(form: Form) -> tuple[str, ...]:
     """
     seen: set[str] = set()
     loose = []
-    for node in _in_order(form):
-        if isinstance(node, Reference):
-            if seen.isdisjoint(antecedent_kinds(node.word)):
-                loose.append(node.word)
-        elif isinstance(node, Constant) and not node.token_class:
-            seen |= {PERSON, THING}
-        else:
-            seen.add(described_kind(node))
+    for action in _actions(form):
+        described: set[str] = set()
+        for node in _in_order(action):
+            if isinstance(node, Reference):
+                if seen.isdisjoint(ANTECEDENTS[node.word]):
+                    loose.append(node.word)
+            elif isinstance(node, Constant) and not node.token_class:
+                described |= {PERSON, THING, THINGS}
+            else:
+                described.add(described_kind(node))
+        seen |= described
     return tuple(dict.fromkeys(loose))
+
+
+def _said_of(form: Form, variable: int) -> Iterator[Application]:
+    """Yield what a λ says of its own variable, not what it says of others inside."""
+    for each in children(form):
+        if isinstance(each, Lambda) or (
+            isinstance(each, Application) and each.predicate == CONJUNCTION
+        ):
+            yield from _said_of(each, variable)
+        elif isinstance(each, Application) and each.arguments[:1] == (Variable(variable),):
+            yield each
+
+
+def _actions(form: Form) -> Iterator[Form]:
+    """Yield the actions of a sequence, or the form: what an action describes, only a later one can refer to."""
+    if isinstance(form, Application) and form.predicate == SEQUENCE:
+        for each in form.arguments:
+            yield from _actions(each)
+    else:
+        yield form
 
 
 def _in_order(form: Form) -> Iterator[Form]:

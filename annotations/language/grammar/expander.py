@@ -39,6 +39,7 @@ class Expander(Generic[Item]):
         leaf: what a word or a wildcard becomes: zero, one or more items.
         tracked: nonterminals whose expansion each result reports as a binding.
         composed: those of them that ``compose`` expands in place of their alternatives.
+        mark: changes the items of the other tracked ones.
     """
 
     def __init__(
@@ -48,12 +49,14 @@ class Expander(Generic[Item]):
         tracked: frozenset[str] = frozenset(),
         composed: frozenset[str] = frozenset(),
         compose: Compose[Item] | None = None,
+        mark: Callable[[str, tuple[Item, ...]], tuple[Item, ...]] | None = None,
     ) -> None:
         self._alternatives = alternatives
         self._leaf = leaf
         self._tracked = tracked
         self._composed = composed
         self._compose = compose
+        self._mark = mark
         self._rules: dict[Nonterminal | Choice, tuple[tuple[Part[Item], ...], ...]] = {}
         self._sizes: dict[Nonterminal | Choice, int] = {}
         self._kept: dict[Nonterminal | Choice, tuple[Derived[Item], ...]] = {}
@@ -156,6 +159,8 @@ class Expander(Generic[Item]):
             for items, bindings in self._combine(parts, budget):
                 budget.spend()
                 if is_tracked and isinstance(symbol, Nonterminal):
+                    if self._mark:
+                        items = self._mark(symbol.name, items)
                     bindings = tuple(sorted((*bindings, (symbol.name, items)), key=_name))
                 yield items, bindings
 

@@ -2,8 +2,9 @@
 
 1. The words as they are: a command of the grammar.
 2. The longest names of entities, left to right, as class tokens: what ``Anonymizer`` makes of it.
-3. Everything: all names of entities, also where they overlap; words without their case, accents, apostrophes
-   and hyphens; "a" for "an", a plural for a singular; and paths that pass over punctuation and courtesy.
+3. Everything: all names of entities, also where they overlap; words and names without their case, accents,
+   signs and spaces; "a" for "an", a plural for a singular; a comma of the grammar that nobody wrote; and paths
+   that pass over punctuation and courtesy.
 
 What the third one reads otherwise than it is written costs something, so that the closest reading is the best.
 """
@@ -43,6 +44,9 @@ _ARTICLES = {"a": "an", "an": "a"}
 # Costs of reading something otherwise than it is written.
 FOLDED, INFLECTED, SKIPPED = 1, 3, 2
 LONGEST_NAME = 8  # words
+MOST_NAMESAKES = 20  # entities that one name is looked for in
+MOST_SIGNS = 2  # next to each other in a name
+MOST_SKIPPED = 24  # signs and words next to each other
 DIGITS = "0123456789"
 
 
@@ -80,14 +84,14 @@ class UtteranceReader:
         yield _Everything(self, utterance).heard()
 
     @cached_property
-    def names(self) -> dict[tuple[str, ...], tuple[Reading, ...]]:
-        """Folded words → the entities that they can name: for each class, those that are called most like it."""
-        found: defaultdict[tuple[str, ...], list[Reading]] = defaultdict(list)
+    def names(self) -> dict[str, tuple[_Name, ...]]:
+        """Folded words, joined → the names that they may be."""
+        found: defaultdict[str, list[_Name]] = defaultdict(list)
         for entity in self._ontology.entities:
             for words, reading in readings_of(entity, self._ontology.classes):
-                if key := tuple(fold(each) for each in _spoken(words)):
-                    found[key].append(reading)
-        return {key: _closest(readings) for key, readings in found.items()}
+                if key := "".join(fold(each) for each in _spoken(words)):
+                    found[key].append(_Name(words.casefold(), reading))
+        return {key: tuple(dict.fromkeys(names))[:MOST_NAMESAKES] for key, names in found.items()}
 
     @cached_property
     def words(self) -> dict[str, tuple[str, ...]]:
@@ -104,7 +108,7 @@ class UtteranceReader:
 
 def fold(word: str) -> str:
     """Return a word without its case, accents, and signs such as apostrophes and hyphens; a lone sign stays."""
-    parts = unicodedata.normalize("NFKD", word.casefold())
+    parts = unicodedata.normalize("NFD", word.casefold())
     letters = "".join(each for each in parts if not unicodedata.combining(each))
     return _SIGNS_INSIDE.sub("", letters) or word
 
@@ -113,18 +117,32 @@ def _words(text: str) -> list[str]:
     return text.replace(",", " , ").split()
 
 
+@dataclass(frozen=True, slots=True)
+class _Name:
+    """How an entity is called, without its case."""
+
+    spelling: str
+    reading: Reading
+
+    def cost(self, said: str) -> int:
+        """Return what it costs to hear the name in ``said``."""
+        is_inflected = self.reading.likeness is Likeness.INFLECTED
+        return (0 if said == self.spelling else FOLDED) + (FOLDED if is_inflected else 0)
+
+
+def _tokens(text: str) -> list[tuple[int, int]]:
+    """Return where the words, class tokens and signs of a text begin and end.
+
+    Vowel signs and accents that are characters of their own belong to their words.
+    """
+    marked = "".join("_" if unicodedata.category(each)[0] == "M" else each for each in text)
+    return [match.span() for match in _TOKEN.finditer(marked)]
+
+
 def _spoken(text: str) -> list[str]:
     """Return the words of a name, without signs between them."""
-    return [token for token in _TOKEN.findall(text) if token[0].isalnum()]
-
-
-def _closest(readings: Sequence[Reading]) -> tuple[Reading, ...]:
-    best: dict[str, list[Reading]] = {}
-    for reading in sorted(readings, key=lambda each: each.likeness):
-        rivals = best.setdefault(reading.entity_class, [])
-        if not rivals or rivals[0].likeness == reading.likeness:
-            rivals.append(reading)
-    return tuple(dict.fromkeys(reading for each in best.values() for reading in each))
+    tokens = (text[start:end] for start, end in _tokens(text))
+    return [token for token in tokens if token[0].isalnum()]
 
 
 def _longest(heard: Anonymized) -> HeardLattice:
@@ -147,19 +165,27 @@ def _longest(heard: Anonymized) -> HeardLattice:
     return HeardLattice(Lattice(arcs, len(arcs)), heard.spans)
 
 
+def _folded(phrases: Sequence[str]) -> list[list[str]]:
+    return [[fold(word) for word in phrase.split()] for phrase in phrases]
+
+
+_OPENINGS, _CLOSINGS = _folded(COURTESY_OPENINGS), _folded(COURTESY_CLOSINGS)
+_ANYWHERE = _folded(COURTESY_ANYWHERE)
+
+
 class _Everything:
     """Collects the arcs of the third lattice. Places are between tokens."""
 
     def __init__(self, reader: UtteranceReader, utterance: str) -> None:
         self.reader = reader
         self.utterance = utterance
-        self.tokens = list(_TOKEN.finditer(utterance))
-        self.texts = [token[0] for token in self.tokens]
+        self.tokens = _tokens(utterance)
+        self.texts = [utterance[start:end] for start, end in self.tokens]
         self.folded = [fold(text) for text in self.texts]
         self.spans: list[Span] = []
 
     def heard(self) -> HeardLattice:
-        arcs = [*self._word_arcs(), *self._entity_arcs()]
+        arcs = [*self._word_arcs(), *self._entity_arcs(), *self._commas()]
         return HeardLattice(
             Lattice(_skipping(arcs, self._skipped(), len(self.tokens)), len(self.tokens)),
             tuple(self.spans),
@@ -204,47 +230,68 @@ class _Everything:
                     if not _HYPHENS.isdisjoint(word):
                         yield Arc(place, end, word, FOLDED)
 
+    def _commas(self) -> Iterator[Arc]:
+        """Yield the commas that may be written nowhere: nobody says them."""
+        if self.reader.has(","):
+            for place in range(1, len(self.tokens)):
+                yield Arc(place, place, ",", FOLDED)
+
     def _entity_arcs(self) -> Iterator[Arc]:
         for start in range(len(self.tokens)):
             if not self._is_word(start):
                 continue
-            key: list[str] = []
+            key, words, signs = "", 0, 0
             for end in range(start, len(self.tokens)):
                 if self._is_word(end):
-                    key.append(self.folded[end])
-                    yield from self._named(tuple(key), start, end + 1)
-                elif self.texts[end] not in _HYPHENS:
+                    key, words, signs = key + self.folded[end], words + 1, 0
+                else:
+                    signs += 1
+                if words > LONGEST_NAME or signs > MOST_SIGNS or self.texts[end].startswith("<"):
                     break
-                if len(key) == LONGEST_NAME:
-                    break
+                # Signs at the end may be part of the name: C++.
+                yield from self._named(key, start, end + 1)
 
-    def _named(self, key: tuple[str, ...], start: int, end: int) -> Iterator[Arc]:
-        by_class: defaultdict[str, list[Reading]] = defaultdict(list)
-        for reading in self.reader.names.get(key, ()):
-            by_class[reading.entity_class].append(reading)
-        first, last = self.tokens[start].start(), self.tokens[end - 1].end()
-        for entity_class, readings in by_class.items():
+    def _named(self, key: str, start: int, end: int) -> Iterator[Arc]:
+        names = self.reader.names.get(key, ())
+        if not names:
+            return
+        first, last = self.tokens[start][0], self.tokens[end - 1][1]
+        said = self.utterance[first:last].casefold()
+        is_word = self._is_word(end - 1)
+        by_class: defaultdict[str, list[_Name]] = defaultdict(list)
+        for name in names:
+            # A sign at the end belongs to a name that is written so, and to no other.
+            if is_word or name.spelling == said:
+                by_class[name.reading.entity_class].append(name)
+        for entity_class, called in by_class.items():
             token = f"<{entity_class}>"
-            if not self.reader.has(token):
-                continue
-            for value in dict.fromkeys(each.value for each in readings):
-                same = [each for each in readings if each.value == value]
-                cost = FOLDED if same[0].likeness is Likeness.INFLECTED else 0
-                others = tuple(each.entity for each in same[1:])
-                number = len(self.spans)
-                self.spans.append(
-                    Span(
-                        first,
-                        last,
-                        token,
-                        entity_class,
-                        same[0].entity,
-                        value,
-                        others,
-                        same[0].likeness,
-                    )
+            if self.reader.has(token):
+                least = min(name.cost(said) for name in called)
+                closest = [name.reading for name in called if name.cost(said) == least]
+                yield from self._arcs_for(closest, token, (start, end), (first, last), least)
+
+    def _arcs_for(
+        self,
+        readings: Sequence[Reading],
+        token: str,
+        places: tuple[int, int],
+        characters: tuple[int, int],
+        cost: int,
+    ) -> Iterator[Arc]:
+        """Yield an arc for each value that the words can mean."""
+        for value in dict.fromkeys(each.value for each in readings):
+            same = [each for each in readings if each.value == value]
+            others = tuple(each.entity for each in same[1:])
+            arc = Arc(*places, token, cost, len(self.spans))
+            first = same[0]
+            self.spans.append(
+                Span(
+                    *(*characters, token, first.entity_class, first.entity, value),
+                    others,
+                    first.likeness,
                 )
-                yield Arc(start, end, token, cost, number)
+            )
+            yield arc
 
     def _skipped(self) -> list[tuple[int, int]]:
         """Return the ranges of tokens that may be passed over, as first and next place."""
@@ -253,20 +300,21 @@ class _Everything:
             for place, text in enumerate(self.texts)
             if not self._is_word(place) and not text.startswith("<")
         ]
-        for phrase in COURTESY_ANYWHERE:
+        for phrase in _ANYWHERE:
             skipped += self._places_of(phrase, range(len(self.texts)))
         # Openings and closings follow one another from the two ends.
-        skipped += self._chain(COURTESY_OPENINGS)
-        skipped += self._chain_back(COURTESY_CLOSINGS)
+        skipped += self._chain(_OPENINGS)
+        skipped += self._chain_back(_CLOSINGS)
         return sorted(set(skipped))
 
-    def _places_of(self, phrase: str, starts: Collection[int]) -> Iterator[tuple[int, int]]:
-        words = [fold(word) for word in phrase.split()]
+    def _places_of(
+        self, words: Sequence[str], starts: Collection[int]
+    ) -> Iterator[tuple[int, int]]:
         for start in starts:
             if self.folded[start : start + len(words)] == words:
                 yield start, start + len(words)
 
-    def _chain(self, phrases: Sequence[str]) -> Iterator[tuple[int, int]]:
+    def _chain(self, phrases: Sequence[list[str]]) -> Iterator[tuple[int, int]]:
         waiting, seen = [0], {0}
         while waiting:
             place = waiting.pop()
@@ -275,34 +323,39 @@ class _Everything:
             after = [end for _, end in ranges]
             if place < len(self.texts) and not self._is_word(place):
                 after.append(place + 1)
-            waiting += [end for end in after if end not in seen and end < len(self.texts)]
+            most = min(len(self.texts), MOST_SKIPPED)
+            waiting += [end for end in after if end not in seen and end < most]
             seen.update(after)
 
-    def _chain_back(self, phrases: Sequence[str]) -> Iterator[tuple[int, int]]:
+    def _chain_back(self, phrases: Sequence[list[str]]) -> Iterator[tuple[int, int]]:
         waiting, seen = [len(self.texts)], {len(self.texts)}
         while waiting:
             end = waiting.pop()
             starts = []
             for phrase in phrases:
-                start = end - len(phrase.split())
+                start = end - len(phrase)
                 if start >= 0 and [*self._places_of(phrase, (start,))]:
                     yield start, end
                     starts.append(start)
             if end and not self._is_word(end - 1):
                 starts.append(end - 1)
-            waiting += [start for start in starts if start not in seen and start > 0]
+            least = max(0, len(self.texts) - MOST_SKIPPED)
+            waiting += [start for start in starts if start not in seen and start > least]
             seen.update(starts)
 
 
 def _skipping(arcs: Sequence[Arc], skipped: Sequence[tuple[int, int]], end: int) -> Iterator[Arc]:
     """Yield the arcs, and for each the arcs that pass over what may be skipped before it, or after it at the end.
 
-    A range counts by its signs and words, so that passing over less is cheaper.
+    A range counts by its signs and words, so that passing over less is cheaper. At most ``MOST_SKIPPED`` of them
+    are passed over together, which keeps the number of arcs in proportion to the utterance.
     """
     before: dict[int, dict[int, int]] = {place: {place: 0} for place in range(end + 1)}
     for start, stop in sorted(skipped, key=lambda each: each[1]):
         for first, cost in list(before[start].items()):
             total = cost + SKIPPED * (stop - start)
+            if stop - first > MOST_SKIPPED:
+                continue
             if total < before[stop].get(first, total + 1):
                 before[stop][first] = total
     for arc in arcs:

@@ -5,7 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from annotations.language.forms import CONJUNCTION, Application, Constant, Form, Lambda, Variable
+from annotations.language.forms import (
+    CONJUNCTION,
+    Application,
+    Constant,
+    Form,
+    Lambda,
+    Reference,
+    Variable,
+)
 from annotations.language.plans.plan import Condition, Described, Number, OpenValue, Value
 from annotations.language.predicates import Predicate, gloss
 from annotations.language.symbols import EntityClasses
@@ -18,11 +26,12 @@ _SUPERLATIVES = ("est", "most")
 class Describer:
     """Makes descriptions; numbers what they describe, so that the same variable is the same thing.
 
-    ``value_of`` turns a constant at a place of a predicate into a value.
+    ``value_of`` turns a constant at a place of a predicate into a value, ``refer`` the word of a reference.
     """
 
     predicates: Mapping[str, Predicate]
     value_of: ValueOf
+    refer: Callable[[str], Value]
     classes: EntityClasses
     _made: int = field(default=0, init=False)
 
@@ -86,6 +95,8 @@ class Describer:
             )
         if isinstance(form, Lambda):
             return self.of_lambda(form)
+        if isinstance(form, Reference):
+            return self.refer(form.word)
         if isinstance(form, Variable) and form.index in ids:
             return Described(ids[form.index], "", ())
         if isinstance(form, Variable):

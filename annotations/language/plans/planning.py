@@ -8,10 +8,13 @@ from itertools import count
 
 from annotations.language.english import ARGUMENT_NAMES, ARGUMENT_QUESTIONS, NEEDED_ARGUMENTS
 from annotations.language.forms import (
+    ANTECEDENTS,
     CONJUNCTION,
     PERSON,
     PERSON_PREDICATES,
     THING,
+    THINGS,
+    UNKNOWN,
     Application,
     Constant,
     Form,
@@ -19,9 +22,9 @@ from annotations.language.forms import (
     Reference,
     Unknown,
     Variable,
-    antecedent_kinds,
     children,
     described_kind,
+    kind_of_class,
     walk,
 )
 from annotations.language.grounding import Slot
@@ -123,7 +126,9 @@ class _Planner:
     last: dict[str, Value] = field(default_factory=dict)  # person or thing → the one described last
 
     def __post_init__(self) -> None:
-        self.describer = Describer(self.predicates, self.text_value, self.lookup.classes)
+        self.describer = Describer(
+            self.predicates, self.text_value, self._referred, self.lookup.classes
+        )
 
     def add(self, form: Form) -> None:
         """Add the steps of a whole form."""
@@ -171,9 +176,10 @@ class _Planner:
         spoken = Lambda(1, "e", (*scope.conjuncts, form)) if scope.conjuncts else form
         text = gloss(spoken, self.predicates, self.lookup.classes)
         arguments: dict[str, Value] = {}
+        said: list[tuple[Form, Value]] = []
         for place, argument in enumerate(self._gather(form, scope)):
             value = self._value(argument, action, place, scope)
-            self._remember(argument, value)
+            said.append((argument, value))
             entity_class = value.entity_class if isinstance(value, Named) else ""
             name = argument_name(action, place, argument, entity_class)
             numbered = (f"{name}_{number}" for number in count(2))
@@ -186,6 +192,11 @@ class _Planner:
         for name in NEEDED_ARGUMENTS.get(action, ()):
             if name not in arguments:
                 arguments[name] = self._asked(OpenValue(""), name, action)
+        for (
+            argument,
+            value,
+        ) in said:  # a reference of this very action stands for something before it
+            self._remember(argument, value)
         # A source says among what something is the largest, as in ``from the table``.
         for value in arguments.values():
             superlative = superlative_without_set(value) if isinstance(value, Described) else ""
@@ -254,28 +265,32 @@ class _Planner:
         return OpenValue("")
 
     def _remember(self, form: Form, value: Value) -> None:
-        """Keep what a later ``it`` or ``them`` can stand for."""
-        kind = described_kind(form)
-        if isinstance(value, Named):
-            kind = {"name": PERSON, "object": THING, "category": THING}.get(value.entity_class, "")
-        elif isinstance(value, Described):
-            predicates = {each.predicate for each in value.conditions}
-            kind = PERSON if kind == PERSON or predicates & PERSON_PREDICATES else THING
-        if kind and not isinstance(value, Referred):
+        """Keep what a later ``it`` or ``them`` can stand for: what is inside a description, then what it describes."""
+        if isinstance(value, Described):
+            if value.of is not None:
+                self._remember(form, value.of)
+                return
+            for condition in value.conditions:
+                for each in condition.values:
+                    self._remember(UNKNOWN, each)
+        if kind := _kind_of(form, value):
+            self.last.pop(kind, None)
             self.last[kind] = value
 
     def _referred(self, word: str) -> Value:
         """Return what a reference stands for; the operator is asked where nothing was described before."""
-        value = next(
-            (self.last[kind] for kind in antecedent_kinds(word) if kind in self.last), None
-        )
+        kinds = ANTECEDENTS[word]
+        # The order in which the kinds were described last is that of ``last``.
+        recent = [kind for kind in reversed(self.last) if kind in kinds]
+        kind = PERSON if PERSON in recent else next(iter(recent), "")
+        value = self.last.get(kind)
         if isinstance(value, Named | Described):
             return Referred(word, value)
         if value is not None:
             return value
         message = f"nothing before “{word}” says what it stands for"
         self.waiting.append((Trouble.NO_ANTECEDENT, message, "name it, or answer the question"))
-        return self.ask(f"What do you mean by “{word}”?", antecedent_kinds(word)[0])
+        return self.ask(f"What do you mean by “{word}”?", kinds[0])
 
     def _asked(self, value: Value, name: str, action: str) -> Value:
         """Return the answer of the operator in place of an open value."""
@@ -297,6 +312,26 @@ class _Planner:
         number = len(self.steps) + 1
         self.steps.append(Step(number, names.name, predicate, renamed, text, gives_result))
         return number
+
+
+def _kind_of(form: Form, value: Value) -> str:
+    """Return what a value is for a reference; empty for a place, and for what is a reference itself."""
+    if isinstance(value, Named):
+        return kind_of_class(value.entity_class)
+    if not isinstance(value, Described):
+        return described_kind(form)
+    if any(each.predicate in PERSON_PREDICATES for each in value.conditions):
+        return PERSON
+    of_kind = [
+        each
+        for condition in value.conditions
+        for each in condition.values
+        if condition.predicate == "is_a" and isinstance(each, Named)
+    ]
+    classes = {each.entity_class for each in of_kind}
+    if classes & _PLACES:
+        return ""
+    return THINGS if "category" in classes else THING
 
 
 def argument_name(action: str, place: int, argument: Form, entity_class: str = "") -> str:

@@ -28,6 +28,7 @@ RESERVED = frozenset(
     (
         *(*ALIASES, *NO_ENTITY, "where", "meta", "plural"),
         *("variable", "lambda", "form", "number", "text", "unknown", "any"),
+        *("it", "them", "sequence", "and", "or", "xor", "not", "null", "true", "false"),
     )
 )
 

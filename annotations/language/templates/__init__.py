@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from annotations.language.templates.bounded_cache import BoundedCache
-from annotations.language.templates.chart import TemplateChart
+from annotations.language.templates.chart import ChartDerivation, TemplateChart
 from annotations.language.templates.consequences import (
     Consequences,
     GeneratedState,
@@ -60,6 +60,7 @@ __all__ = [
     "MOST_SAMPLED",
     "Balance",
     "BoundedCache",
+    "ChartDerivation",
     "Composition",
     "Conflict",
     "Consequences",

@@ -31,6 +31,7 @@ from annotations.language.symbols import Text, Wildcard
 from annotations.language.templates.composition import (
     Leaves,
     SynchronousGrammar,
+    apart,
     lines_of,
     names_in_order,
 )
@@ -53,14 +54,14 @@ STEPS_PER_FORM, STEPS_PER_JOIN = 300, 10
 class ChartDerivation:
     """One way to derive a command: the template of a task category and the form it gives.
 
-    ``arcs`` are the numbers of the arcs that fill the slots of the form, in order (``grounding.slots_of``); None
-    for a slot that no arc with a number fills. ``cost`` is that of the path through the lattice.
+    ``arcs`` are the numbers of the arcs that fill the class tokens of the form, in order; None for one that
+    no arc with a number fills. ``cost`` is that of the path through the lattice.
     """
 
     form_text: str
     task_category: str
     template_index: int
-    arcs: tuple[int | None, ...] = field(default=(), compare=False)
+    arcs: tuple[int | None, ...] = ()
     cost: int = field(default=0, compare=False)
 
 
@@ -102,9 +103,13 @@ class _TemplateSet:
         self.rules = SynchronousGrammar(category.grammar, lines_of(category.templates))
         self.rules.words.require_finite()
         expander = Expander(self.rules.alternatives, intact)
-        patterns = {
-            name: tuple(line.pattern for line in lines)
+        # The numbers of a line are not those of the productions that it uses.
+        lines_of_name = {
+            name: tuple(apart(line, 1) for line in lines)
             for name, lines in self.rules.lines_of.items()
+        }
+        patterns = {
+            name: tuple(line.pattern for line in lines) for name, lines in lines_of_name.items()
         }
         self.book = RuleBook(expander, patterns)
         self.roots = [
@@ -115,7 +120,7 @@ class _TemplateSet:
         self.lines = {
             rule: _Rule(self, line, rule, place)
             for name, rules in self.book.line_rules.items()
-            for place, (rule, line) in enumerate(zip(rules, self.rules.lines_of[name], strict=True))
+            for place, (rule, line) in enumerate(zip(rules, lines_of_name[name], strict=True))
         }
 
     @property
@@ -182,19 +187,20 @@ class _Reading:
     """One way to read what is between two places.
 
     ``bound`` are the values of the nonterminals that the form mentions, by name; ``slots`` the wildcards that
-    stand for arcs, in order, with the numbers of these; ``leaves`` are kept inside a nonterminal whose words are
-    wanted.
+    stand for arcs, in order, with the numbers of these; ``inner`` those inside the nonterminals that are bound;
+    ``leaves`` are kept inside a nonterminal whose words are wanted.
     """
 
     cost: int = 0
     bound: tuple[tuple[str, Value], ...] = ()
     slots: tuple[tuple[Wildcard, int], ...] = ()
+    inner: tuple[tuple[Wildcard, int], ...] = ()
     leaves: Leaves = ()
 
     @property
     def said(self) -> object:
         """All but the cost: of two readings that say the same, the cheaper one counts."""
-        return self.bound, self.slots, self.leaves
+        return self.bound, self.slots, self.inner, self.leaves
 
     def then(self, other: _Reading) -> _Reading | None:
         """Return both, one after the other; None where they disagree about the words of a nonterminal."""
@@ -206,6 +212,7 @@ class _Reading:
             self.cost + other.cost,
             tuple(sorted(bound.items(), key=_name)),
             self.slots + other.slots,
+            self.inner + other.inner,
             self.leaves + other.leaves,
         )
 
@@ -261,14 +268,22 @@ class _Forest:
             ]
         elif rule.name in asker.tracked:
             readings = []
-            for inner in self._of_alternatives(asker, number, start, end, keeps=True):
-                bound = (*inner.bound, (rule.name, inner.leaves))
-                leaves = inner.leaves if keeps else ()
+            for inside in self._of_alternatives(asker, number, start, end, keeps=True):
+                bound = (*inside.bound, (rule.name, inside.leaves))
                 readings.append(
-                    _Reading(inner.cost, tuple(sorted(bound, key=_name)), inner.slots, leaves)
+                    _Reading(
+                        inside.cost,
+                        tuple(sorted(bound, key=_name)),
+                        inner=inside.slots + inside.inner,
+                        leaves=inside.leaves if keeps else (),
+                    )
                 )
         else:
             readings = self._of_alternatives(asker, number, start, end, keeps)
+        # A nonterminal that stands only here, and is not bound here, is bound nowhere.
+        needed = (asker.tracked & rule.names) - asker.repeated
+        if needed:
+            readings = [each for each in readings if needed <= {name for name, _ in each.bound}]
         self._readings[key] = _best(asker, readings)
         return self._readings[key]
 
@@ -317,7 +332,7 @@ class _Forest:
                     leaf = replace(step, id=arc.number)
                     if step.name in asker.wildcards:
                         slots = ((step, arc.number),)
-                yield arc.end, [_Reading(arc.cost, (), slots, (leaf,) if keeps else ())]
+                yield arc.end, [_Reading(arc.cost, slots=slots, leaves=(leaf,) if keeps else ())]
 
 
 def _best(asker: _Rule, readings: Sequence[_Reading]) -> list[_Reading]:
@@ -360,7 +375,7 @@ def _fill(rule: _Rule, reading: _Reading) -> _Filled | None:
     """Return the form of a template for a reading; None where the words for a predicate are no name."""
     values = dict(reading.bound)
     form = rule.template.form
-    slots = _SlotArcs(reading.slots)
+    slots = _SlotArcs(reading)
     try:
         anonymized = fill_anonymized(
             form,
@@ -386,34 +401,44 @@ def _fill(rule: _Rule, reading: _Reading) -> _Filled | None:
 
 
 class _SlotArcs:
-    """Finds the arc of a form's wildcard: that of its number, or that of the next one in the command."""
+    """Finds the arc of a form's wildcard: that of its number, or that of the next one in the command.
 
-    def __init__(self, slots: tuple[tuple[Wildcard, int], ...]) -> None:
+    The nonterminals that the form mentions have theirs for themselves, unless there is no other.
+    """
+
+    def __init__(self, reading: _Reading) -> None:
+        slots = (*reading.slots, *reading.inner)
         self._numbered = {wildcard.identity: arc for wildcard, arc in reversed(slots)}
-        self._others: defaultdict[str, list[int]] = defaultdict(list)
-        for wildcard, arc in slots:
-            if wildcard.id is None:
-                self._others[wildcard.name].append(arc)
+        self._others = _without_number(reading.inner) | _without_number(reading.slots)
         self._turns: Counter[str] = Counter()
 
     def of(self, wildcard: Wildcard) -> Wildcard:
         """Return the wildcard with the number of its arc, or without a number where there is none."""
         if wildcard.id is not None:
             return replace(wildcard, id=self._numbered.get(wildcard.identity))
-        arcs = self._others[wildcard.name]
+        arcs = self._others.get(wildcard.name, [])
         turn = self._turns[wildcard.name]
         self._turns[wildcard.name] += 1
         return replace(wildcard, id=arcs[min(turn, len(arcs) - 1)] if arcs else None)
 
 
+def _without_number(slots: Iterable[tuple[Wildcard, int]]) -> dict[str, list[int]]:
+    arcs: defaultdict[str, list[int]] = defaultdict(list)
+    for wildcard, arc in slots:
+        if wildcard.id is None:
+            arcs[wildcard.name].append(arc)
+    return dict(arcs)
+
+
 def _arcs_of(form: _Filled) -> tuple[int | None, ...]:
-    """Return the arc of each class token of the form, in order."""
+    """Return the arc of each class token of the form, in order; nothing where none has one."""
     pairs = zip(walk(form.anonymized), walk(form.aligned), strict=True)
-    return tuple(
+    arcs = tuple(
         aligned.id if isinstance(aligned, Wildcard) else None
         for token, aligned in pairs
         if isinstance(token, Constant) and token.token_class
     )
+    return () if set(arcs) == {None} else arcs
 
 
 def _repeated(book: RuleBook, rule: int) -> frozenset[str]:

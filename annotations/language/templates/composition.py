@@ -16,6 +16,7 @@ from functools import cached_property
 from typing import TypeAlias
 
 from annotations.language.forms import Form
+from annotations.language.forms import walk as walk_form
 from annotations.language.grammar import Grammar, Production
 from annotations.language.symbols import (
     Choice,
@@ -27,6 +28,7 @@ from annotations.language.symbols import (
     Symbols,
     Text,
     Wildcard,
+    walk,
 )
 from annotations.language.templates.filling import map_slots
 from annotations.language.templates.templates import SemanticTemplate
@@ -34,7 +36,9 @@ from annotations.language.templates.templates import SemanticTemplate
 Leaves: TypeAlias = "tuple[Text | Wildcard, ...]"
 
 # Wildcards of different lines of one command get different numbers: those of a line have so many to themselves.
-_NUMBERS_OF_A_LINE = 100
+_NUMBERS_OF_A_LINE = 1_000
+_WITHOUT_NUMBER = 500  # from here on those that stand in the line itself and have none
+_MARKS, _MARKS_OF_ONE = 600, 10  # and those in nonterminals that the form mentions
 _MOST_COMPOSED = 10  # nonterminals with lines that one form mentions
 
 
@@ -85,11 +89,15 @@ def names_in_order(template: SemanticTemplate) -> tuple[str, ...]:
 
 
 def apart(line: SemanticTemplate, scope: int) -> SemanticTemplate:
-    """Return a line whose numbered wildcards are different from those of lines with another ``scope``."""
+    """Return a line whose numbered wildcards are different from those of lines with another ``scope``.
+
+    A number that only the form has is that of a production, which holds for the whole command.
+    """
+    own = {each.identity for each in walk(line.pattern, notes=True) if isinstance(each, Wildcard)}
 
     def renamed(wildcard: Wildcard) -> Wildcard:
         number = wildcard.id
-        if number is not None:
+        if number is not None and wildcard.identity in own:
             number += scope * _NUMBERS_OF_A_LINE
         return replace(
             wildcard,
@@ -117,7 +125,7 @@ def number_slots(leaves: Leaves, form: Form, scope: int) -> tuple[Leaves, Form]:
             return wildcard
         turn = turns[wildcard.name]
         turns[wildcard.name] += 1
-        first = scope * _NUMBERS_OF_A_LINE + _NUMBERS_OF_A_LINE // 2
+        first = scope * _NUMBERS_OF_A_LINE + _WITHOUT_NUMBER
         return replace(wildcard, id=first + min(turn, most.get(wildcard.name, turn)))
 
     most: dict[str, int] = {}
@@ -125,6 +133,61 @@ def number_slots(leaves: Leaves, form: Form, scope: int) -> tuple[Leaves, Form]:
     most = {name: count - 1 for name, count in turns.items()}
     turns.clear()
     return numbered, map_slots(form, number)
+
+
+def mark_leaves(leaves: Leaves, scope: int, place: int) -> Leaves:
+    """Number the wildcards without a number in what the nonterminal at ``place`` of a form became.
+
+    So the form finds them again, in whatever order it mentions its nonterminals.
+    """
+    turns: Counter[str] = Counter()
+
+    def mark(wildcard: Wildcard) -> Wildcard:
+        if wildcard.id is not None or not wildcard.entity_class:
+            return wildcard
+        turns[wildcard.name] += 1
+        first = scope * _NUMBERS_OF_A_LINE + _MARKS + place * _MARKS_OF_ONE
+        return replace(wildcard, id=first + turns[wildcard.name])
+
+    return tuple(mark(each) if isinstance(each, Wildcard) else each for each in leaves)
+
+
+def take_marks_off(leaves: Leaves, form: Form, scope: int) -> tuple[Leaves, Form]:
+    """Take the numbers of ``mark_leaves`` away where the order of the wildcards says the same.
+
+    Wildcards of one name that have no number are those of the form in its order (``grounding.ground``).
+    """
+    in_command = [each for each in leaves if isinstance(each, Wildcard) and each.entity_class]
+    in_form = [each for each in walk_form(form) if isinstance(each, Wildcard)]
+    first = scope * _NUMBERS_OF_A_LINE + _MARKS
+    after = (scope + 1) * _NUMBERS_OF_A_LINE
+
+    def is_marked(wildcard: Wildcard) -> bool:
+        return wildcard.id is not None and first <= wildcard.id < after
+
+    def is_in_order(name: str) -> bool:
+        said = [each for each in in_command if each.name == name and _is_free(each)]
+        slots = [each for each in in_form if each.name == name and _is_free(each)]
+        unmarked = [number for number, each in enumerate(said) if each.id is None]
+        if not unmarked and any(slot.id is None for slot in slots):
+            return True  # the form means one of those that are marked
+        turns = iter(unmarked)
+        meant = [said[next(turns, unmarked[-1])] if slot.id is None else slot for slot in slots]
+        by_order = [said[min(turn, len(said) - 1)] for turn in range(len(slots))]
+        return [each.id for each in meant] == [each.id for each in by_order]
+
+    def _is_free(wildcard: Wildcard) -> bool:
+        return wildcard.id is None or is_marked(wildcard)
+
+    names = {each.name for each in in_command if is_marked(each)}
+    plain = {name for name in names if is_in_order(name)}
+
+    def unmark(wildcard: Wildcard) -> Wildcard:
+        is_plain = wildcard.name in plain and is_marked(wildcard)
+        return replace(wildcard, id=None) if is_plain else wildcard
+
+    unmarked = tuple(unmark(each) if isinstance(each, Wildcard) else each for each in leaves)
+    return unmarked, map_slots(form, unmark)
 
 
 def scope_below(scope: int, place: int) -> int:

@@ -24,9 +24,11 @@ from annotations.language.templates.bounded_cache import BoundedCache
 from annotations.language.templates.composition import (
     SynchronousGrammar,
     apart,
+    mark_leaves,
     names_in_order,
     number_slots,
     scope_below,
+    take_marks_off,
 )
 from annotations.language.templates.filling import (
     Choices,
@@ -132,7 +134,8 @@ class TemplateExpander:
         forms: dict[object, FilledForm] = {}
         with _place_errors(template):
             for words, bindings in self._anonymizing(tracked).stream(template.pattern, budget):
-                if not words or len(bindings) < len(tracked):
+                # A line may say nothing where another part of the command does.
+                if not (words or template.nonterminal) or len(bindings) < len(tracked):
                     continue
                 if bindings not in forms:
                     values = dict(bindings)
@@ -174,7 +177,8 @@ class TemplateExpander:
         for leaves, bindings in self._keeping(template, scope).stream(template.pattern, budget):
             if len(bindings) == len(tracked):
                 budget.spend(len(template.form_text) + 4 * len(leaves))
-                yield leaves, fill_intact(template.form, dict(bindings))
+                form = fill_intact(template.form, dict(bindings))
+                yield take_marks_off(leaves, form, scope)
 
     def _anonymizing(self, tracked: frozenset[str]) -> Expander[str]:
         composed = tracked & self.rules.lines_of.keys()
@@ -212,10 +216,15 @@ class TemplateExpander:
                     leaves, form = number_slots(leaves, form, inner)
                     yield leaves, Composed(form, (number,))
 
+        names = sorted(tracked)
+
+        def mark(name: str, leaves: Leaves) -> Leaves:
+            return mark_leaves(leaves, scope, names.index(name))
+
         return self._intact.get(
             (tracked, scope),
             lambda: Expander(
-                self.rules.alternatives, intact, tracked, frozenset(composed), compose
+                self.rules.alternatives, intact, tracked, frozenset(composed), compose, mark
             ),
         )
 

@@ -198,3 +198,72 @@ def test_paraphrases_are_mostly_outside_the_grammar(shared_data):
 
 def test_its_forms_are_from_the_grammar(oracle):
     assert [each.origin for each in oracle.predict(["find the <object>"])[0]] == ["grammar"]
+
+
+def oracle_of(*entities, rules="$Main = bring the {kobject} | in the {room} , find the {kobject}"):
+    templates = (
+        "bring the {kobject} = (bring {kobject})",
+        "in the {room} , find the {kobject} = (find {kobject} {room})",
+    )
+    grammar = Grammar(read_productions(rules).productions)
+    one = TaskCategory("1", grammar, tuple(map(read_template, templates)))
+    return GrammarOracle(knowledge=Knowledge(ontology=Ontology(entities), grammar=(one,)))
+
+
+ODD = (
+    "M&M's",
+    "Dr. Pepper",
+    "salt & pepper",
+    "7-up",
+    "C++",
+    "C#",
+    "C",
+    "trashbin",
+    "Jose",
+    "José",
+    "½ apple",
+    "shelf -1",
+    "shelf 1",
+    "हिन्दी",
+    "side table",
+    "Strauß",
+)
+
+
+@pytest.mark.parametrize("name", ODD)
+@pytest.mark.parametrize("said", ["bring the {}", "Please bring the {}.", "Bring the {} please!"])
+def test_odd_names_are_heard_as_they_are_written(name, said):
+    oracle = oracle_of(*(Entity("object", each) for each in ODD))
+    best, *_ = oracle.predict([said.format(name)], 5)[0]
+    assert best.values == (name,)
+
+
+@pytest.mark.parametrize(
+    ("said", "name"),
+    [
+        ("trash bin", "trashbin"),
+        ("7up", "7-up"),
+        ("Sidetable", "side table"),
+        ("dr pepper", "Dr. Pepper"),
+        ("m&ms", "M&M's"),
+        ("salt and", None),
+        ("JOSE", "Jose"),
+        ("Strauss", "Strauß"),
+    ],
+)
+def test_names_are_heard_without_their_signs_and_spaces(said, name):
+    oracle = oracle_of(*(Entity("object", each) for each in ODD))
+    answers = oracle.predict([f"Bring the {said}."], 5)[0]
+    assert [each.values for each in answers[:1]] == ([(name,)] if name else [])
+
+
+def test_a_name_that_may_be_two_is_answered_twice():
+    oracle = oracle_of(Entity("object", "Zoë"), Entity("object", "Zoé"))
+    answers = oracle.predict(["please bring the Zoe"], 5)[0]
+    assert {each.values for each in answers} == {("Zoë",), ("Zoé",)}
+
+
+def test_a_comma_of_the_grammar_need_not_be_said():
+    oracle = oracle_of(Entity("object", "tea"), Entity("room", "kitchen"))
+    for said in ("in the kitchen find the tea", "In the kitchen, find the tea."):
+        assert oracle.predict([said], 5)[0][0].values == ("tea", "kitchen")

@@ -258,3 +258,61 @@ def test_the_starter_world_gives_a_robot_something_to_do() -> None:
     require_valid(plan)
     assert plan.is_executable
     assert plan.steps[0].text == "bring me the apple juice that is at the kitchen table"
+
+
+def said_in(plan: Plan, step: int, argument: str) -> dict[str, Any]:
+    value: dict[str, Any] = plan.as_json()["steps"][step]["arguments"][argument]
+    return value
+
+
+CUP = '(λ$1:e (is_a $1 "tea"))'
+ANN = "(λ$1:e (person $1))"
+
+
+@pytest.mark.parametrize(
+    ("actions", "argument", "stands_for"),
+    [
+        (f"(find {CUP}) (take it)", "thing", "x1"),
+        (f"(find {ANN}) (follow them)", "person", "x1"),
+        (f"(find {CUP}) (find {ANN}) (bring it)", "thing", "x1"),
+        (f"(find {CUP}) (find {ANN}) (follow them)", "person", "x2"),
+        (f'(take {CUP}) (go (λ$1:e (is_a $1 "stool"))) (bring it)', "thing", "x1"),
+        (
+            f'(find (λ$1:e (is_a $1 "tea") (near $1 {ANN.replace("1", "2")}))) (take it)',
+            "thing",
+            "x1",
+        ),
+        (f"(find (λ$1:e (person $1) (holds $1 {CUP.replace('1', '2')}))) (take it)", "thing", "x2"),
+    ],
+)
+def test_a_reference_is_what_was_described_before(
+    actions: str, argument: str, stands_for: str
+) -> None:
+    plan = plan_of(f"(sequence {actions})")
+    value = said_in(plan, -1, argument)
+    assert value["id"] == stands_for and value["said"] in ("it", "them")
+    assert "no_antecedent" not in troubles(plan)
+
+
+@pytest.mark.parametrize(
+    "form",
+    [
+        '(put it "stool")',
+        f'(sequence (find {CUP}) (say "hello" them))',
+        f"(sequence (find {ANN}) (take it))",
+        '(sequence (go (λ$1:e (is_a $1 "stool"))) (bring it))',
+        "(bring it (λ$1:e (person $1) (holds $1 it)))",
+    ],
+)
+def test_a_reference_that_stands_for_nothing_is_asked_for(form: str) -> None:
+    plan = plan_of(form)
+    assert "no_antecedent" in troubles(plan)
+    assert not plan.is_executable
+    assert any(step.predicate == ASK for step in plan.steps)
+
+
+def test_after_a_question_about_somebody_they_are_meant() -> None:
+    plan = plan_of(
+        '(sequence (say (λ$1:e (λ$2:e (person $2) (name $2 $1) (at $2 "stool")))) (follow them))'
+    )
+    assert said_in(plan, -1, "person")["conditions"][0]["predicate"] == "person"

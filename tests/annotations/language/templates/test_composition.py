@@ -1,14 +1,30 @@
 """Lines for nonterminals: their forms compose along the derivation, in generation and in parsing alike."""
 
+from random import Random
+
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from annotations.language.assistance.sides import format_form, format_pattern
 from annotations.language.errors import LanguageError
-from annotations.language.forms import loose_references, read_form, to_corpus, to_template
+from annotations.language.forms import (
+    canonical_text,
+    loose_references,
+    read_form,
+    to_corpus,
+    to_template,
+)
 from annotations.language.grammar import Budget, Grammar, read_productions
+from annotations.language.grounding import (
+    FormSlots,
+    UtteranceReader,
+    fill_all,
+    ground,
+    with_values,
+)
 from annotations.language.names import rename_nonterminal_in_pattern
+from annotations.language.ontology import Entity, Ontology
 from annotations.language.predicates import infer_signatures
 from annotations.language.symbols import places_in_pattern
 from annotations.language.templates import (
@@ -179,11 +195,16 @@ def test_the_form_of_a_line_in_the_place_of_another_kind_is_a_misuse():
     ("text", "loose"),
     [
         ("(put it {room})", ("it",)),
-        ("(sequence (find {kobject}) (put it {room}))", ("it",)),
+        ("(sequence (find {kobject}) (put it {room}))", ()),
         ('(sequence (find "<object>") (put it))', ()),
+        ("(sequence (find (λ$1:e (near $1 (λ$2:e (person $2))))) (put it))", ()),
         ("(sequence (find (λ$1:e (person $1))) (follow them))", ()),
         ("(sequence (find (λ$1:e (person $1))) (put it))", ("it",)),
-        ("(sequence (find (λ$1:e (is_a $1 {kobject}))) (put it) (follow them))", ()),
+        ("(sequence (find (λ$1:e (is_a $1 {kobject}))) (put it) (follow them))", ("them",)),
+        ('(sequence (find (λ$1:e (is_a $1 "<category>"))) (bring them))', ()),
+        ('(sequence (go (λ$1:e (is_a $1 "<location>"))) (bring it))', ("it",)),
+        ("(sequence (find (λ$1:e (person $1) (holds $1 {kobject}))) (take it))", ()),
+        ("(bring {kobject} it)", ("it",)),
         ('(follow them "<room>")', ("them",)),
     ],
 )
@@ -251,3 +272,86 @@ def test_a_line_is_laid_out_and_renamed_with_its_nonterminal():
         renamed = rename_nonterminal_in_pattern(text, "do", "act")
         assert renamed == text.replace("$do", "$act")
     assert [place.start for place in places_in_pattern("$do -> $place it")] == [7]
+
+
+ROOMS = Ontology(tuple(Entity("room", f"r{number}") for number in range(8)))
+
+
+@pytest.mark.parametrize(
+    ("rules", "lines"),
+    [
+        (
+            "$x = go $p\n$y = walk $p\n$p = {room 1}",
+            (
+                "$x and $y = (sequence $x $y)",
+                "$x -> go $p = (go {room 1})",
+                "$y -> walk $p = (walk {room 1})",
+            ),
+        ),
+        ("$p = {room 1}", ("$x = $x", "$x -> go $p from {room 1} = (go $p {room 1})")),
+        ("$a = {room}\n$b = {room}", ("go from $a to $b = (go $b $a)",)),
+        (
+            "$a = {room}\n$b = {room}",
+            ("$x = $x", "$x -> from $a to $b via {room} = (go $b {room} $a)"),
+        ),
+        ("$a = the {room}", ("go from $a to {room} = (go {room} {room} $a)",)),
+        (
+            "$a = {room 1}",
+            (
+                "$x to $y = (go $y $x)",
+                "$x -> {room 1} or {room} = (or {room} {room 1})",
+                "$y -> {room 1} or {room} = (or {room 1} {room})",
+            ),
+        ),
+        ("$a = {room?} of {room 2}", ("go $a = (go {room 2})",)),
+    ],
+)
+def test_generation_and_parsing_put_the_same_entities_into_the_same_slots(rules, lines):
+    one = category(*lines, grammar=Grammar(read_productions(f"$Main = x\n{rules}").productions))
+    chart = TemplateChart([one])
+    reader = UtteranceReader(ROOMS, chart.vocabulary)
+    for template in one.templates:
+        for derivation in TemplateExpander(one.grammar, one.lines).derivations(template):
+            if template.nonterminal:
+                continue
+            grounded = ground(derivation.symbols, derivation.form, ROOMS, Random(3))
+            found = [
+                filled_with(each, heard)
+                for heard in reader.lattices(grounded.text)
+                for each in chart.parse(heard.lattice)
+            ]
+            assert canonical_text(grounded.form) in found
+
+
+def filled_with(derivation, heard):
+    form = read_form(derivation.form_text)
+    slots = with_values(FormSlots.of(form).slots, heard.values(derivation.arcs))
+    return canonical_text(fill_all(form, slots).form).replace("the <room>", "the r0")
+
+
+def test_optional_nonterminals_of_a_form_cost_no_more_than_others():
+    def spent(count):
+        names = [f"b{number}" for number in range(count)]
+        rules = "$Main = x\n" + "\n".join(f"${name} = x" for name in names)
+        pattern = " ".join(f"(${name} | x)" for name in names)
+        template = read_template(f"go {pattern} = (go {' '.join(f'${name}' for name in names)})")
+        budget = Budget()
+        grammar = Grammar(read_productions(rules).productions)
+        command = f"go {' '.join('x' * count)}"
+        assert TemplateChart([TaskCategory("1", grammar, (template,))]).parse(command, budget)
+        return budget.spent
+
+    assert spent(24) <= 32 * spent(12)
+
+
+@pytest.mark.parametrize(
+    "utterance",
+    [",", "-", "ok,", "please ", "please,", "go,", "a-b ", "\u0301", "<x>", "é’"],
+)
+def test_the_lattice_of_a_long_utterance_stays_in_proportion(utterance):
+    reader = UtteranceReader(ROOMS, {"go", "to", "please", "ok", "ab", "<room>"})
+    arcs = [
+        sum(heard.lattice.n_arcs for heard in reader.lattices(utterance * count))
+        for count in (400, 800)
+    ]
+    assert arcs[1] <= 3 * arcs[0] + 10
