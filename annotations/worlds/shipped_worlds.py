@@ -7,6 +7,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from django.db.models import QuerySet
+
 from annotations.background.progress import UNWATCHED, Progress
 from annotations.generation.generating import generate_pairs
 from annotations.importing.generator_import import import_generator
@@ -16,7 +18,7 @@ from annotations.jobs.requesting import request_job
 from annotations.jobs.watching import JobProgress
 from annotations.language.corpus import Criterion
 from annotations.language.errors import LanguageError
-from annotations.language.templates.sample_notes import EVERYTHING, Balance, SampleRequest
+from annotations.language.templates import EVERYTHING, Balance, SampleRequest
 from annotations.models import (
     Entity,
     Job,
@@ -121,13 +123,13 @@ def is_empty(world: World) -> bool:
 
 
 def _count_rows(world: World) -> dict[str, int]:
-    rows = {
+    rows: dict[str, QuerySet[Any]] = {
         "entities": Entity.objects.filter(ontology__world=world),
         "productions": Production.objects.filter(grammar__world=world),
         "templates": SemanticTemplate.objects.filter(grammar__world=world),
-        "predicates": world.predicates,
-        "commands": world.commands,
-        "paraphrases": world.paraphrases,
+        "predicates": world.predicates.all(),
+        "commands": world.commands.all(),
+        "paraphrases": world.paraphrases.all(),
     }
     return {name: each.count() for name, each in rows.items()}
 
