@@ -9,6 +9,7 @@ from annotations.generation.generating import generate_pairs
 from annotations.importing.generator_import import import_generator
 from annotations.models import (
     Comment,
+    EntityClass,
     Example,
     Guidelines,
     LogicalForm,
@@ -111,6 +112,12 @@ def paraphrase_in(world: World) -> Paraphrase:
 def guidelines_in(world: World) -> Guidelines:
     """Return the guidelines of ``world``, made where there are none: a sample world brings none."""
     return Guidelines.objects.get_or_create(world=world, defaults={"text": "Say bring."})[0]
+
+
+def own_class_in(world: World) -> EntityClass:
+    """Return a class of ``world`` that not every world has, made where there is none."""
+    words = {"singular": "pose", "plural": "poses", "said": "pose", "hue": 20, "position": 90}
+    return EntityClass.objects.get_or_create(world=world, token="pose", defaults=words)[0]
 
 
 def comment_in(world: World) -> Comment:

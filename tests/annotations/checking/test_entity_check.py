@@ -23,7 +23,7 @@ HOME = Ontology(
 IS_A = Predicate(
     "is_a",
     PredicateKind.DESCRIPTION,
-    (Signature((ArgumentKind.VARIABLE, ArgumentKind.OBJECT)),),
+    (Signature((ArgumentKind.VARIABLE, "object")),),
 )
 
 

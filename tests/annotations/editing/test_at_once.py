@@ -94,7 +94,9 @@ def test_of_those_who_change_one_row_at_once_one_is_first(kind, sample, world):
     Utterance.objects.create(world=world, text="go", anonymized_text="go")
     row = kind.rows_of(world).first()
     field = next(
-        name for name in ("pattern", "text", "name", "expansion", "utterance") if hasattr(row, name)
+        name
+        for name in ("pattern", "text", "name", "said", "expansion", "utterance")
+        if hasattr(row, name)
     )
     people = [member(world, f"anna{number}", "annotator") for number in range(4)]
 

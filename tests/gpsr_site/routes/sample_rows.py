@@ -28,7 +28,7 @@ from annotations.models.worlds import Role
 from parser_service.dialogues.entity_offers import offer
 from parser_service.models import Dialogue, OfferedEntity, Promotion, PromotionState, Slice
 from parser_service.reviews.world_categories import ensure_categories
-from tests.sample_world import SampleWorld, paraphrase_in
+from tests.sample_world import SampleWorld, own_class_in, paraphrase_in
 
 
 def waiting_job(sample: SampleWorld) -> Job:
@@ -176,8 +176,7 @@ def offered_entity(sample: SampleWorld) -> OfferedEntity:
 
 def entity_class(sample: SampleWorld) -> EntityClass:
     """Return a class that not every world has."""
-    words = {"singular": "pose", "plural": "poses", "said": "pose", "hue": 20, "position": 90}
-    return EntityClass.objects.get_or_create(world=sample.world, token="pose", defaults=words)[0]
+    return own_class_in(sample.world)
 
 
 def predicate(sample: SampleWorld) -> Model:

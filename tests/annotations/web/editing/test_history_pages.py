@@ -10,7 +10,7 @@ from annotations.labelling.collecting import collect
 from annotations.models import Entity, Predicate, Production, SemanticTemplate
 from annotations.rows.row_kinds import KINDS
 from tests.notices import levels
-from tests.sample_world import guidelines_in, paraphrase_in
+from tests.sample_world import guidelines_in, own_class_in, paraphrase_in
 
 
 def address(row, kind="template"):
@@ -54,7 +54,8 @@ KEPT = [kind for kind in KINDS.values() if not kind.is_deletable]
 def test_what_was_deleted_is_listed_and_restored(kind, sample, anna, admin):
     paraphrase_in(sample.world)
     collect(sample.world, ["find the tea"])
-    row = kind.rows_of(sample.world).first()
+    own_class_in(sample.world)
+    row = kind.rows_of(sample.world).last()
     listed = f"/w/home/history/{kind.name}/deleted/"
     assert not anna.get(listed).context["entries"]
     assert listed in anna.get(f"/w/home/{LISTS[kind.name]}/").content.decode()
@@ -72,6 +73,7 @@ LISTS = {
     "template": "templates",
     "production": "grammar",
     "entity": "ontology",
+    "entity_class": "ontology/classes",
     "predicate": "predicates",
     "paraphrase": "paraphrases",
     "utterance": "utterances",
