@@ -328,9 +328,10 @@ class _Forest:
             if arc.end <= end:
                 leaf: Text | Wildcard = step
                 slots: tuple[tuple[Wildcard, int], ...] = ()
-                if isinstance(step, Wildcard) and arc.number >= 0:
-                    leaf = replace(step, id=arc.number)
-                    if step.name in asker.wildcards:
+                if isinstance(step, Wildcard):
+                    # Its number in the grammar is none of an arc.
+                    leaf = replace(step, id=arc.number if arc.number >= 0 else None)
+                    if arc.number >= 0 and step.name in asker.wildcards:
                         slots = ((step, arc.number),)
                 yield arc.end, [_Reading(arc.cost, slots=slots, leaves=(leaf,) if keeps else ())]
 

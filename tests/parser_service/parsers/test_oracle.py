@@ -54,6 +54,19 @@ def test_a_command_with_entities_is_read_with_their_classes(oracle, tmp_path):
         assert forms(parser, "walk to the Pantry, please") == ['( go " <room> " )']
 
 
+def test_numbers_of_the_grammar_are_none_of_the_entities_heard():
+    grammar = Grammar(read_productions("$Main = find the $thing\n$thing = {object 1}").productions)
+    found = TaskCategory("1", grammar, (read_template("find the $thing = (find $thing)"),))
+    soup = Ontology((Entity("object", "tin of soup"),))
+    parser = GrammarOracle(knowledge=Knowledge(ontology=soup, grammar=(found,)))
+    for utterance, values in (
+        ("find the <object>", ()),
+        ("find the tin of soup", ("tin of soup",)),
+    ):
+        (candidate,) = parser.predict([utterance])[0]
+        assert (candidate.form, candidate.values) == ('( find " <object> " )', values)
+
+
 def test_a_comma_may_stand_at_its_word(oracle):
     for command in ("walk to the <room>, please", "go to the <room> , please"):
         assert forms(oracle, command) == ['( go " <room> " )']
