@@ -42,3 +42,25 @@ class Unwatched:
 
 
 UNWATCHED = Unwatched()
+
+
+class PartOfProgress:
+    """The progress of a verb that another one calls, between two fractions of the other's. What comes of the
+    part concludes nothing."""
+
+    def __init__(self, whole: Progress, start: float, end: float) -> None:
+        self._whole = whole
+        self._start = start
+        self._end = end
+
+    def report(self, fraction: float, message: str) -> None:
+        self._whole.report(self._start + fraction * (self._end - self._start), message)
+
+    def check(self) -> None:
+        self._whole.check()
+
+    def writing(self) -> AbstractContextManager[Any]:
+        return self._whole.writing()
+
+    def conclude(self, report: Mapping[str, Any]) -> None:
+        pass

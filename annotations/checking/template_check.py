@@ -89,7 +89,8 @@ def check_template(
         lines = composition_of(category) if category else ()
         if template is not None and template.nonterminal:
             lines = (*lines, template)  # it may close a cycle
-        checker = checker_of(grammar, declared, category.name if category else "", lines)
+        name = category.name if category else ""
+        checker = checker_of(grammar, declared, name, lines, world.most_of_a_template)
     except LanguageError as error:
         return CheckedTemplate((error.problem,))
     if template is None:

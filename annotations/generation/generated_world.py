@@ -15,10 +15,16 @@ from django.db.models import OuterRef, Subquery
 from annotations import models
 from annotations.background.progress import UNWATCHED, Progress
 from annotations.generation.coverage import count_coverage, store_coverage
-from annotations.generation.template_problems import store_template_problems
+from annotations.generation.template_problems import remarks_on_templates, store_remarks
 from annotations.language.errors import Problem, warning_at
 from annotations.language.forms import depth, head_predicate, read_form
-from annotations.language.templates import BoundedCache, Expansion, Generated, SampleNote
+from annotations.language.templates import (
+    DEFAULT_LIMIT,
+    BoundedCache,
+    Expansion,
+    Generated,
+    SampleNote,
+)
 from annotations.models.description import ProblemSubject
 from annotations.rows.from_rows import AnnotatedCategory
 from annotations.rows.staging import Staging
@@ -144,6 +150,7 @@ class GeneratedWorld:
         self._categories = categories
         self._generated = generated
         self._sample = sample
+        self._progress = progress
         rows = {category.value.name: category.template_rows for category in categories}
         self.commands = CommandRows(world, generated.expansions, rows, progress)
 
@@ -170,6 +177,9 @@ class GeneratedWorld:
         # Commands outside a sample are not without a form, so nothing is counted.
         is_sample = self._sample is not None and not self._sample.is_all
         self._coverage = count_coverage(values, None if is_sample else commands)
+        self._progress.report(0.7, "checking the templates")
+        limit = None if self._sample else DEFAULT_LIMIT
+        self._remarks = remarks_on_templates(self._world, self._categories, self._generated, limit)
         return self
 
     def __exit__(self, *raised: Any) -> None:
@@ -190,7 +200,7 @@ class GeneratedWorld:
             unused.delete()
         changes += Changes(removed=removed)
         store_problems(self._world, ProblemSubject.COMMANDS, list(self._problems()))
-        store_template_problems(self._world, self._categories, self._generated)
+        store_remarks(self._remarks)
         store_coverage(self._world, self._coverage)
         revision, generations = counters
         models.World.objects.filter(pk=self._world.pk).update(

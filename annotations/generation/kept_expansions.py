@@ -9,6 +9,7 @@ from annotations.language.errors import LanguageError, Problem
 from annotations.language.grammar import Budget, Grammar, readable
 from annotations.language.predicates import Predicate
 from annotations.language.templates import (
+    DEFAULT_LIMIT,
     BoundedCache,
     Generated,
     GrammarExpansions,
@@ -89,10 +90,14 @@ def checker_of(
     predicates: Mapping[str, Predicate],
     task_category: str,
     lines: Lines = (),
+    limit: int | None = DEFAULT_LIMIT,
 ) -> TemplateChecker:
-    """Return a checker of ``grammar`` with ``lines``, whose rules are compiled once. Raises as ``template_checker``."""
+    """Return a checker of ``grammar`` with ``lines``, whose rules are compiled once.
+
+    ``limit`` is as in ``TemplateChecker``. Raises as ``template_checker``.
+    """
     checker = _checks_of(grammar, lines).checker
-    return replace(checker, predicates=predicates, task_category=task_category)
+    return replace(checker, predicates=predicates, task_category=task_category, limit=limit)
 
 
 def problems_of(
@@ -104,7 +109,7 @@ def problems_of(
         LanguageError: the grammar has a cycle.
     """
     predicates = tuple((checker.predicates or {}).values())
-    key = (predicates, checker.task_category, _texts(template))
+    key = (predicates, checker.task_category, checker.limit, _texts(template))
     kept = _checks_of(checker.grammar, checker.expander.rules.lines).problems
     return kept.get(key, lambda: checker.problems(template, budget))
 

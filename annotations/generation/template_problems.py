@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TypeAlias
 
 from annotations import models
 from annotations.generation.kept_expansions import checker_of, problems_of
@@ -26,19 +27,27 @@ BATCH = 500
 MOST_STEPS = 5 * CHECK_STEPS  # for all templates that are not ready: a second of processor time
 
 
-def store_template_problems(
-    world: models.World, categories: Sequence[AnnotatedCategory], generated: Generated
-) -> None:
-    """Write what the checker says now of each template that is ready, and what it has with others.
+# What is said of each row.
+Remarks: TypeAlias = "Mapping[models.SemanticTemplate, Sequence[StoredRemark]]"
 
-    A row of which the same is said keeps its remarks as they are, with their places.
+
+def remarks_on_templates(
+    world: models.World,
+    categories: Sequence[AnnotatedCategory],
+    generated: Generated,
+    limit: int | None,
+) -> Remarks:
+    """Return what the checker says now of each template that is ready, and what it has with others.
+
+    ``limit`` is as in ``TemplateChecker``. It takes seconds of processor time for a large grammar, and writes
+    nothing.
     """
     declared, classes = predicates_of(world), classes_of(world)
     remarks: dict[models.SemanticTemplate, list[StoredRemark]] = defaultdict(list)
     for category in categories:
         value = category.value
         try:
-            checker = checker_of(value.grammar, declared, value.name, value.lines)
+            checker = checker_of(value.grammar, declared, value.name, value.lines, limit)
         except LanguageError:
             continue
         for row in category.template_rows:
@@ -49,10 +58,15 @@ def store_template_problems(
             of_row = remarks[category.template_rows[index]]
             if remark not in of_row:
                 of_row.append(remark)
+    return remarks
+
+
+def store_remarks(remarks: Remarks) -> None:
+    """Write remarks. A row of which the same is said keeps those it has, with their places."""
     changed = []
     for row, of_row in remarks.items():
         if _texts_of(row.problems) != _texts_of(of_row):
-            row.problems = of_row
+            row.problems = list(of_row)
             changed.append(row)
     models.SemanticTemplate.objects.bulk_update(changed, ["problems"], batch_size=BATCH)
 
@@ -69,7 +83,11 @@ def check_unready_templates(world: models.World) -> None:
     for category in models.TaskCategory.objects.filter(grammar__world=world) if rows else ():
         try:
             checker = checker_of(
-                grammar_of(category), declared, category.name, composition_of(category)
+                grammar_of(category),
+                declared,
+                category.name,
+                composition_of(category),
+                world.most_of_a_template,
             )
         except LanguageError:
             continue

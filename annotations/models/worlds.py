@@ -13,7 +13,7 @@ from django.core.validators import RegexValidator
 from django.db import models
 from django.utils import timezone
 
-from annotations.language.templates import EVERYTHING, SampleNote, SampleRequest
+from annotations.language.templates import DEFAULT_LIMIT, EVERYTHING, SampleNote, SampleRequest
 from annotations.models.people import User, digest_of
 
 if TYPE_CHECKING:
@@ -143,6 +143,11 @@ class World(models.Model):
         """What somebody asked for when the commands were last made."""
         note = SampleNote.from_json(self.sample)
         return EVERYTHING if note is None else note.request
+
+    @property
+    def most_of_a_template(self) -> int | None:
+        """How many commands a template may make before it is left out; None where a sample is drawn."""
+        return None if self.sample_request.size else DEFAULT_LIMIT
 
     @property
     def awaits_first_commands(self) -> bool:

@@ -9,7 +9,7 @@ from typing import Any
 
 from django.db.models import QuerySet
 
-from annotations.background.progress import UNWATCHED, Progress
+from annotations.background.progress import UNWATCHED, PartOfProgress, Progress
 from annotations.generation.generating import generate_pairs
 from annotations.importing.generator_import import import_generator
 from annotations.importing.pair_import import import_pairs
@@ -99,18 +99,15 @@ def fill_world(
     shipped: ShippedWorld, name: str, by: User | None = None, progress: Progress = UNWATCHED
 ) -> LoadedWorld:
     """Make the world ``name`` the shipped one, whatever it holds. Raises as ``load_world``."""
-    progress.report(0, "importing the files")
-    report = import_generator(name, shipped.folder, by)
+    report = import_generator(name, shipped.folder, by, PartOfProgress(progress, 0, 0.2))
     if report.is_refused:
         raise LanguageError(f"the files of “{shipped.name}” are damaged: {report.errors[0]}")
     world = World.objects.get(name=name)
     if not world.description:
         world.description = shipped.description
         world.save(update_fields=["description"])
-    progress.report(0.2, "generating commands")
-    generate_pairs(world, request=shipped.commands)
-    progress.report(0.7, "importing paraphrases")
-    import_pairs(name, PARAPHRASES, shipped.folder, by)
+    generate_pairs(world, progress=PartOfProgress(progress, 0.2, 0.7), request=shipped.commands)
+    import_pairs(name, PARAPHRASES, shipped.folder, by, PartOfProgress(progress, 0.7, 0.9))
     progress.report(0.9, "freezing splits")
     for criterion, split in SPLITS.items():
         freeze_split(world, split, criterion, by=by)

@@ -158,5 +158,5 @@ def too_many_commands(template: SemanticTemplate, size: int, limit: int | None) 
         template.position,
         f"the pattern makes up to {readable(size)} commands, more than the limit of {limit:,}; "
         "the template is left out",
-        "narrow the pattern",
+        "narrow the pattern, or draw a sample of the commands",
     )

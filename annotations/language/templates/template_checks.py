@@ -69,7 +69,8 @@ SET_STEPS = 50_000_000
 class TemplateChecker:
     """Checks templates against one grammar and, if they are known, declared predicates.
 
-    Use ``template_checker`` to make one.
+    Use ``template_checker`` to make one. ``limit`` is how many commands a template may make by itself; None
+    where the commands are a sample, which leaves no template out.
     """
 
     grammar: Grammar
@@ -77,6 +78,7 @@ class TemplateChecker:
     recognizer: Recognizer | GrammarExpansions
     predicates: Mapping[str, Predicate] | None = None
     task_category: str = ""
+    limit: int | None = DEFAULT_LIMIT
 
     def problems(
         self, template: SemanticTemplate, budget: Budget | None = None
@@ -92,7 +94,7 @@ class TemplateChecker:
             return tuple(problems)
         budget = budget or Budget(CHECK_STEPS)
         try:
-            too_many = too_many_commands(template, self.expander.size(template), DEFAULT_LIMIT)
+            too_many = too_many_commands(template, self.expander.size(template), self.limit)
             if too_many is not None:
                 problems.append(too_many)
             commands, texts, forms = self._expand(template, budget)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from annotations.campaigns.launching import PromptChoice, draw_prompts
+from annotations.checking.template_check import check_template
 from annotations.exporting.split_manifest import manifest_of
 from annotations.generation.coverage import coverage_of
 from annotations.generation.generating import generate_pairs, start_generation
@@ -12,7 +13,7 @@ from annotations.generation.grounded_pairs import grounded_pairs
 from annotations.generation.language_size import MOST_SAMPLED_AT_ONCE, language_size
 from annotations.generation.uncovered import uncovered_of
 from annotations.generation.up_to_date import bring_up_to_date
-from annotations.language.templates import EVERYTHING, Balance, SampleRequest
+from annotations.language.templates import DEFAULT_LIMIT, EVERYTHING, Balance, SampleRequest
 from annotations.models import Job, TaskCategory, World
 from annotations.splits.freezing import freeze_split
 
@@ -49,6 +50,30 @@ def large(tiny_world) -> World:
     tiny_world.mark_changed()
     generate_pairs(again(tiny_world), request=SampleRequest(40))
     return again(tiny_world)
+
+
+def too_large(world):
+    """What is said of templates that make too many commands."""
+    said = (each["message"] for row in world.grammar.templates.all() for each in row.problems)
+    return [message for message in said if f"{DEFAULT_LIMIT:,}" in message]
+
+
+def test_a_template_of_many_commands_is_left_out_of_all_of_them_and_not_of_a_sample(large):
+    assert too_large(large) == []
+    generate_pairs(large, request=EVERYTHING)
+    assert len(too_large(large)) == 1
+    generate_pairs(large, request=TWO)
+    assert too_large(large) == []
+
+
+def test_what_a_template_makes_is_counted_as_it_is_typed_unless_commands_are_drawn(large):
+    row = large.grammar.templates.get(pattern__startswith="go")
+    category = TaskCategory.objects.get(name=row.task_category)
+    drawn = check_template(large, category, row.pattern, row.form).problems
+    large.sample = {}
+    problems = check_template(large, category, row.pattern, row.form).problems
+    (problem,) = set(problems) - set(drawn)
+    assert f"{DEFAULT_LIMIT:,}" in problem.message
 
 
 def test_a_world_remembers_what_sample_it_has(sampled):

@@ -9,9 +9,10 @@ import pytest
 from django.core.management import CommandError, call_command
 
 from annotations import background
+from annotations.background.progress import Unwatched
 from annotations.jobs.carrying_out import carry_out
 from annotations.models import Job, JobKind, World
-from annotations.worlds.shipped_worlds import SHIPPED_FOLDER, SHIPPED_WORLDS
+from annotations.worlds.shipped_worlds import SHIPPED_FOLDER, SHIPPED_WORLDS, load_world
 
 
 @pytest.fixture(autouse=True)
@@ -35,6 +36,24 @@ def test_the_household_is_loaded_under_any_name_with_its_splits(db):
     loaded = load("household", "lab")
     assert (loaded["rows"]["commands"], loaded["rows"]["paraphrases"]) == (828, 787)
     assert set(loaded["splits"]) == {each.name for each in World.objects.get().splits.all()}
+
+
+class Watching(Unwatched):
+    """Keeps the fractions that it is told."""
+
+    def __init__(self) -> None:
+        self.fractions: list[float] = []
+
+    def report(self, fraction: float, message: str) -> None:
+        self.fractions.append(fraction)
+
+
+def test_loading_tells_how_far_it_is(db):
+    progress = Watching()
+    load_world(SHIPPED_WORLDS["household"], "lab", progress=progress)
+    assert progress.fractions == sorted(progress.fractions)
+    assert progress.fractions[0] < 0.1 and progress.fractions[-1] >= 0.9
+    assert len({round(each, 1) for each in progress.fractions}) > 5
 
 
 def test_what_a_world_holds_is_not_overwritten(tiny_world):
