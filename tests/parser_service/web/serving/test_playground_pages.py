@@ -7,6 +7,8 @@ from dataclasses import replace
 import pytest
 
 from annotations.background.progress import UNWATCHED
+from annotations.language.forms import read_form
+from annotations.language.plans import make_plan
 from annotations.models import Proposal, Utterance, WorkItem
 from parser_service.labelling.label_candidates import PERSON, candidates_for
 from parser_service.labelling.parser_proposals import propose
@@ -14,6 +16,8 @@ from parser_service.parsers.knn import NearestNeighbour
 from parser_service.promotions.promoting import promote
 from parser_service.serving.parser_client import AWAY
 from parser_service.templatetags.provenance import cut_in_words
+from parser_service.templatetags.steps import referents
+from tests.annotations.language.sample_ontology import HOME
 from tests.parser_service.live_server import parse_server  # noqa: F401
 from tests.parser_service.served import make_home, trained_run
 
@@ -47,6 +51,13 @@ def test_spans_candidates_english_and_plan_are_shown(answering, anna):
     assert "bring me the red cup" in page and "<meter" in page
     assert 'class="plan-' in page and "data-tree" in page
     assert f"run {answering.pk}" in page
+
+
+def test_what_a_reference_in_a_plan_stands_for_is_said():
+    text = '(sequence (find (λ$1:e (is_a $1 "tea") (at $1 "stool"))) (bring it (λ$1:e (person $1) (at $1 "stool"))))'
+    found, brought = make_plan(read_form(text), HOME).as_json()["steps"]
+    assert referents(found) == []
+    assert referents(brought) == [("it", "the tea that is at the stool")]
 
 
 def test_that_the_parser_read_only_the_beginning_is_said(
