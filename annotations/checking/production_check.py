@@ -12,9 +12,17 @@ from annotations.generation.world_consequences import WorldConsequences, consequ
 from annotations.language.errors import LanguageError, Position, Problem
 from annotations.language.grammar import CHECK_STEPS, Budget, Grammar, readable
 from annotations.language.symbols import SymbolReader
+from annotations.language.templates import SynchronousGrammar
 from annotations.models import Production, TaskCategory, World
 from annotations.rows.composition import split_entry
-from annotations.rows.from_rows import Line, Lines, classes_of, grammar_from, lines_of
+from annotations.rows.from_rows import (
+    Line,
+    Lines,
+    classes_of,
+    composition_of,
+    grammar_from,
+    lines_of,
+)
 
 MOST_EXPANSIONS = 500  # looked at for samples
 SHOWN_EXPANSIONS = 12
@@ -122,8 +130,19 @@ def _compare(
             continue
         known = {each.message for each in before.problems()}
         problems |= {each for each in after.problems() if each.message not in known}
+        problems |= set(_cycles_through_lines(category, after))
         grammars.append((category.name, before, after))
     return tuple(sorted(problems)), grammars
+
+
+def _cycles_through_lines(category: TaskCategory, grammar: Grammar) -> Iterator[Problem]:
+    """Yield the error of a grammar that is finite alone, but not with the lines of its nonterminals."""
+    if any(problem.is_error for problem in grammar.problems()):
+        return
+    try:
+        SynchronousGrammar(grammar, composition_of(category)).words.require_finite()
+    except LanguageError as error:
+        yield error.problem
 
 
 def consequences_of_production(edit: ProductionEdit) -> WorldConsequences:

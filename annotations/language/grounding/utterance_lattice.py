@@ -98,6 +98,8 @@ class UtteranceReader:
         """Folded word → the words of the grammar that it may be."""
         found: defaultdict[str, list[str]] = defaultdict(list)
         for word in sorted(self._vocabulary):
+            if word.startswith("<"):
+                continue  # people say no class tokens
             found[fold(word)].append(word)
         return {folded: tuple(each) for folded, each in found.items()}
 

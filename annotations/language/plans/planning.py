@@ -12,6 +12,7 @@ from annotations.language.forms import (
     CONJUNCTION,
     PERSON,
     PERSON_PREDICATES,
+    SEQUENCE,
     THING,
     THINGS,
     UNKNOWN,
@@ -158,11 +159,17 @@ class _Planner:
         elif isinstance(form, Application):
             declared = self.predicates.get(str(form.predicate))
             is_sequence = declared is not None and declared.kind is PredicateKind.SEQUENCE
-            if is_sequence or form.predicate == CONJUNCTION:
+            if is_sequence or form.predicate in (CONJUNCTION, SEQUENCE):
                 for argument in form.arguments:
                     self._add(argument, scope)
             else:
                 self.step(form, scope)
+        else:
+            message = "a part of the command has no form that the robot knows"
+            self.report(
+                Trouble.NOT_UNDERSTOOD, message, "ask the operator to say it another way", step=0
+            )
+            self.ask(NOT_UNDERSTOOD, "command")
 
     def step(self, form: Application, scope: _ActionScope) -> int:
         """Add the step of one action, after the steps whose results it needs; return its number."""

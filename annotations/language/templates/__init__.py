@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from annotations.language.templates.bounded_cache import BoundedCache
 from annotations.language.templates.chart import ChartDerivation, TemplateChart
+from annotations.language.templates.composition import SynchronousGrammar
 from annotations.language.templates.consequences import (
     Consequences,
     GeneratedState,
@@ -77,6 +78,7 @@ __all__ = [
     "SampleNote",
     "SampleRequest",
     "SemanticTemplate",
+    "SynchronousGrammar",
     "TaskCategory",
     "TemplateChart",
     "TemplateChecker",

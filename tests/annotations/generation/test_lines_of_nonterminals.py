@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from django.urls import reverse
 
+from annotations.checking.production_check import ProductionEdit, check_production
 from annotations.checking.template_check import check_template
 from annotations.editing.edits import change
 from annotations.exporting.generator_export import generator_files
@@ -82,3 +83,11 @@ def test_the_page_of_a_template_shows_a_line(composed, anna):
     row = line_of(composed, "$do ->")
     page = anna.get(reverse("template", args=[composed, row.pk]))
     assert page.status_code == 200 and "$do" in page.content.decode()
+
+
+def test_a_production_that_closes_a_cycle_through_a_line_is_an_error(composed):
+    line = line_of(composed, "$do ->")
+    edit = ProductionEdit(composed, "g_grammar.txt", "more", "it")
+    assert not check_production(edit).has_errors
+    SemanticTemplate.objects.filter(pk=line.pk).update(pattern="$do -> then $more")
+    assert check_production(ProductionEdit(composed, "g_grammar.txt", "more", "$do")).has_errors

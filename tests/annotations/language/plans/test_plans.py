@@ -316,3 +316,17 @@ def test_after_a_question_about_somebody_they_are_meant() -> None:
         '(sequence (say (λ$1:e (λ$2:e (person $2) (name $2 $1) (at $2 "stool")))) (follow them))'
     )
     assert said_in(plan, -1, "person")["conditions"][0]["predicate"] == "person"
+
+
+@pytest.mark.parametrize(
+    "form",
+    [
+        '(sequence (go "attic") UNKNOWN)',
+        '(sequence (go "attic") "do it")',
+        '(sequence (go "attic") it)',
+        '(and (go "attic") UNKNOWN)',
+    ],
+)
+def test_a_part_of_a_command_that_is_no_action_is_asked_for(form: str) -> None:
+    plan = plan_of(form)
+    assert troubles(plan) == ["not_understood"] and not plan.is_executable

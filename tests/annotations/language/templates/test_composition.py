@@ -303,7 +303,6 @@ ROOMS = Ontology(tuple(Entity("room", f"r{number}") for number in range(8)))
                 "$y -> {room 1} or {room} = (or {room 1} {room})",
             ),
         ),
-        ("$a = {room?} of {room 2}", ("go $a = (go {room 2})",)),
     ],
 )
 def test_generation_and_parsing_put_the_same_entities_into_the_same_slots(rules, lines):
