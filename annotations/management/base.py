@@ -82,7 +82,9 @@ class ReportingCommand(BaseCommand):
 
     def describe(self, report: Mapping[str, Any]) -> str:
         """Return the report for a person: one figure a line, then the problems, one a line."""
-        figures = [f"{key}: {_in_words(value)}" for key, value in report.items()]
+        figures = [
+            f"{key}: {_in_words(value)}" for key, value in report.items() if value is not None
+        ]
         problems = report.get("problems", ())
         return "\n".join([*figures, *(f"  {from_json(problem)}" for problem in problems)])
 

@@ -1,16 +1,21 @@
+from random import Random
+
 import pytest
 
 from annotations.language.errors import Refusal
 from annotations.language.grammar import Grammar, read_productions
+from annotations.language.grounding import ground
 from annotations.language.ontology import Entity, Ontology
 from annotations.language.templates import (
     TaskCategory,
+    TemplateExpander,
     generate,
     read_generator_folder,
     read_template,
 )
 from parser_service.parsers.interface import Cancelled, Knowledge
 from parser_service.parsers.oracle import GRAMMAR, GrammarOracle
+from tests.annotations import starter
 from tests.parser_service.parsers.pair_files import read_pairs
 
 RULES = """
@@ -280,3 +285,23 @@ def test_a_comma_of_the_grammar_need_not_be_said():
     oracle = oracle_of(Entity("object", "tea"), Entity("room", "kitchen"))
     for said in ("in the kitchen find the tea", "In the kitchen, find the tea."):
         assert oracle.predict([said], 5)[0][0].values == ("tea", "kitchen")
+
+
+def test_two_hundred_commands_are_understood_with_a_capital_and_a_full_stop():
+    categories, ontology, random = starter.categories(), starter.ontology(), Random(7)
+    oracle = GrammarOracle(knowledge=Knowledge(ontology=ontology, grammar=categories))
+    derivations = [
+        derivation
+        for category in categories
+        for template in category.templates
+        for derivation in TemplateExpander(category.grammar).derivations(template)
+    ]
+    texts = [
+        ground(each.symbols, each.form, ontology, random).text
+        for each in random.sample(derivations, 200)
+    ]
+    plain = oracle.predict(texts)
+    written = oracle.predict([f"{text[0].upper()}{text[1:]}." for text in texts])
+    assert all(plain)
+    assert [each[0].form for each in written] == [each[0].form for each in plain]
+    assert [each[0].values for each in written] == [each[0].values for each in plain]
