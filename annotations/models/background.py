@@ -133,7 +133,7 @@ class JobKind(models.TextChoices):
     IMPORT_COMPETITION = "import_competition", "Import of a competition folder"
     IMPORT_PAIRS = "import_pairs", "Import of published pairs"
     IMPORT_WORLD = "import_world", "Import of a world"
-    LOAD_WORLD = "load_world", "Loading of a shipped world"
+    LOAD_WORLD = "load_world", "Loading of a world"
     GENERATE = "generate", "Generation of commands"
     PROPOSE = "propose", "Forms proposed by a parser"
     AUDIT = "audit", "Label audit"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import asdict
 from typing import Any
 
@@ -275,10 +276,17 @@ def template_status_choices() -> list[tuple[str, str]]:
     return TemplateStatus.choices
 
 
+_LINE = re.compile(r"\s*[$](?P<name>\w+)\s*->")
+
+
 class SemanticTemplateQuerySet(models.QuerySet["SemanticTemplate"]):
     def with_problems(self) -> SemanticTemplateQuerySet:
         """Return the templates that the checker had something to say about when they were last stored."""
         return self.exclude(problems=[])
+
+    def for_nonterminal(self, name: str) -> SemanticTemplateQuerySet:
+        """Return the lines that say what ``$name`` may become and mean."""
+        return self.filter(pattern__regex=rf"^\s*[$]{re.escape(name)}\s*->")
 
 
 class SemanticTemplate(Editable):
@@ -342,6 +350,12 @@ class SemanticTemplate(Editable):
     @property
     def makes_commands(self) -> bool:
         return self.status == TemplateStatus.READY
+
+    @property
+    def nonterminal(self) -> str:
+        """What a line ``$name -> pattern`` is for; empty for a template of commands."""
+        line = _LINE.match(self.pattern)
+        return line["name"] if line else ""
 
     def note_editor(self, by: User) -> None:
         self.author = by

@@ -86,7 +86,7 @@ BESIDE = """async () => {
 }"""
 
 # What holds more than it has room for.
-CUT = """() => [...document.querySelectorAll(".card, .parser-option, .flow-noun")]
+CUT = """() => [...document.querySelectorAll(".card, .option-card, .flow-noun")]
   .filter((element) => element.scrollWidth > element.clientWidth + 1)
   .map((element) => element.outerHTML.slice(0, 80))"""
 

@@ -12,6 +12,7 @@ from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.views.decorators.cache import never_cache
 from django.views.decorators.http import require_http_methods
+from django_htmx.http import HttpResponseClientRefresh
 
 from annotations.jobs import answer_job, cancel_job
 from annotations.language.errors import Refusal
@@ -62,7 +63,10 @@ def job(request: WorldRequest, job: Job) -> HttpResponse:
 @never_cache
 @job_view()
 def job_state(request: WorldRequest, job: Job) -> HttpResponse:
-    """Show what changes on the page of a job while it works."""
+    """Show what changes on the page of a job while it works; once it has ended the page is loaded anew, since its
+    frame counts what the world holds."""
+    if job.is_ended and request.htmx:
+        return HttpResponseClientRefresh()
     return render(request, "annotations/background/_job_state.html", _state_of(request, job))
 
 

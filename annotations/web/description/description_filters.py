@@ -90,7 +90,13 @@ class TemplateFilters(PageFilters):
         choices=[("yes", "with problems"), ("no", "without")],
         method="by_problems",
     )
+    nonterminal = django_filters.CharFilter(
+        label="Lines for", widget=forms.HiddenInput, method="by_nonterminal"
+    )
     world_choices = {"task_category": grammar_category_choices, "source": template_file_choices}
+
+    def by_nonterminal(self, rows: Any, name: str, value: str) -> Any:
+        return rows.for_nonterminal(value.removeprefix("$"))
 
     def by_problems(self, rows: Any, name: str, value: str) -> Any:
         return rows.with_problems() if value == "yes" else rows.filter(problems=[])

@@ -19,7 +19,7 @@ from annotations.editing.edits import Overtaken, add
 from annotations.language.limits import MAX_PATTERN
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.lists.paging import number_in
-from annotations.models import Duty, Production, World
+from annotations.models import Duty, Production, SemanticTemplate, World
 from annotations.models.description import ProblemSubject
 from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
 from annotations.rows.row_kinds import KINDS
@@ -79,6 +79,9 @@ def production(request: WorldRequest, world: World, pk: int) -> HttpResponse:
         "form": form,
         "checked": form.checked or check_production(ProductionEdit.of_stored(row)),
         "lines": lines.exclude(pk=row.pk),
+        "meanings": SemanticTemplate.objects.filter(grammar__world=world).for_nonterminal(
+            row.nonterminal
+        ),
         "query": f"?production={row.pk}",
         **_completion(world, row.source),
     }

@@ -15,9 +15,9 @@ from annotations.language.templates import (
 )
 
 BALANCES = {
-    Balance.NONE: "every derivation is as likely as any other",
-    Balance.LINES: "equally many commands of each line of the templates",
-    Balance.FORMS: "equally many commands of each logical form",
+    Balance.NONE: "none",
+    Balance.LINES: "by lines of the templates",
+    Balance.FORMS: "by logical forms",
 }
 
 
@@ -42,7 +42,8 @@ class GenerationForm(forms.Form):
         label="Balance",
         required=False,
         choices=list(BALANCES.items()),
-        help_text="Lines or forms that have too few commands give all that they have.",
+        help_text="None: every derivation is as likely as any other. By lines or forms: equally many commands "
+        "of each; those that have too few give all.",
     )
 
     @staticmethod

@@ -10,9 +10,9 @@ from annotations.worlds.shipped_worlds import SHIPPED_WORLDS, request_load
 
 
 def start_choices() -> list[tuple[str, str]]:
-    """Return what a new world may begin with: nothing, or a world that comes with this project."""
-    shipped = ((each.name, f"{each.name}: {each.description}") for each in SHIPPED_WORLDS.values())
-    return [("", "nothing: you import files next"), *shipped]
+    """Return what a new world may begin with, and what that is: nothing, or a world that comes with this project."""
+    shipped = ((each.name, each.description) for each in SHIPPED_WORLDS.values())
+    return [("", "You import the files of a command generator next."), *shipped]
 
 
 class WorldForm(forms.ModelForm):  # type: ignore[type-arg]  # generic in the stubs alone
@@ -41,7 +41,13 @@ class WorldForm(forms.ModelForm):  # type: ignore[type-arg]  # generic in the st
 class NewWorldForm(WorldForm):
     """A new world, empty or with what a shipped one holds."""
 
-    starts_with = forms.ChoiceField(label="Starts with", choices=start_choices, required=False)
+    starts_with = forms.ChoiceField(
+        label="Starts with",
+        choices=start_choices,
+        required=False,
+        widget=forms.RadioSelect,
+        initial="",
+    )
 
     def load(self, created: World, by: User) -> Job | None:
         """Queue the loading of what ``created`` starts with; None where that is nothing."""

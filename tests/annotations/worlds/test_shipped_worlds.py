@@ -76,6 +76,8 @@ def test_a_new_world_by_page_starts_with_a_shipped_one(transactional_db, superus
     job.refresh_from_db()
     assert job.report["rows"]["commands"] == World.objects.get(name="lab").commands.count() == 828
     assert "828" in client.get(answer.url).content.decode()
+    state = client.get(f"{answer.url}state/", headers={"HX-Request": "true"})
+    assert state["HX-Refresh"] == "true"  # the rail counts what the world holds now
 
 
 def test_a_new_world_by_rest_starts_with_a_shipped_one(call_as, superuser):

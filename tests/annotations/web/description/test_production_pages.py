@@ -28,6 +28,23 @@ def test_a_saved_production_brings_the_commands_up_to_date(find, anna, world):
     assert (find.expansion, find.version) == ("find | locate | seek", 2)
 
 
+def test_lines_of_templates_stand_with_the_nonterminal_that_they_are_for(sample, find, anna):
+    templates = sample.world.grammar.templates
+    first = templates.get(pk=sample.template.pk)
+    lines = [
+        templates.create(source=first.source, pattern=text, form="(find)", position=position)
+        for position, text in enumerate(
+            ("$vbfind -> seek", " $vbfind->hunt", "$vbfind2 -> x"), start=80
+        )
+    ]
+    assert [each.nonterminal for each in lines] == ["vbfind", "vbfind", "vbfind2"]
+    page = anna.get(f"/w/home/grammar/{find.pk}/")
+    assert list(page.context["meanings"]) == lines[:2]
+    listed = anna.get("/w/home/templates/?nonterminal=vbfind").context["listing"]
+    assert list(listed.rows) == lines[:2]
+    assert first.nonterminal == ""
+
+
 def test_consequences_are_shown_before_saving(find, anna, world):
     before = commands(world)
     sent = {"expansion": "find | seek"}

@@ -1,0 +1,254 @@
+"""A team's evening before a competition: a world, its folder, its rooms, a sample, a split, two parsers."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+from zipfile import ZipFile
+
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+from annotations.models import Entity, World
+from parser_service.models import TrainingRun
+from tests.browser.arriving import arrive, arrive_at, wait_for_swap
+from tests.browser.faults import OF_STRUCTURE, SETTLED, look_for, only_faults
+from tests.browser.screenshots import log_in
+from tests.browser.variants import NARROW_DARK, WIDE_LIGHT
+from tests.parser_service.live_server import parse_server  # noqa: F401
+from tests.parser_service.worker_process import RunningWorker
+from tests.waiting import PATIENCE_SECONDS
+
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.processes,
+    pytest.mark.django_db(transaction=True),
+]
+
+FOLDER = Path("competition-real/Incheon2026")
+ROOMS = {"laundry table": "laundry", "bed": "bedroom", "sofa": "living room", "sink": "kitchen"}
+COMMANDS = 600
+# A whole world is imported, sampled and frozen by one worker.
+JOB_SECONDS = 240
+
+
+@pytest.fixture
+def folder(shared_data) -> bytes:
+    """The folder of the world cup in 2026, as a zip archive."""
+    files = [each for each in (shared_data / FOLDER).rglob("*") if each.is_file()]
+    if not files:
+        pytest.skip(f"needs {FOLDER} in GPSR_SHARED_DATA")
+    packed = BytesIO()
+    with ZipFile(packed, "w") as archive:
+        for each in files:
+            archive.write(each, each.relative_to(shared_data / FOLDER.parent))
+    return packed.getvalue()
+
+
+@pytest.fixture
+def worker(transactional_db, tmp_path) -> Iterator[RunningWorker]:
+    started = RunningWorker(tmp_path / "worker.log")
+    yield started
+    started.remove()
+    print(started.log.read_text(encoding="utf-8"))
+
+
+class Evening:
+    """One page of a browser; each step leaves pictures in ``folder``, and its faults in ``reports``."""
+
+    def __init__(self, page: Page, url: str, folder: Path) -> None:
+        self.page = page
+        self.url = url
+        self.folder = folder
+        self.reports: dict[str, Any] = {}
+
+    def go(self, path: str, title: str) -> None:
+        self.page.goto(f"{self.url}{path}")
+        arrive(self.page, title)
+
+    def look(self, name: str) -> None:
+        """Take a picture, wide and light and then narrow and dark, and look for faults in both."""
+        for variant in (NARROW_DARK, WIDE_LIGHT):
+            self.page.set_viewport_size(variant.size)
+            self.page.emulate_media(color_scheme=variant.theme, reduced_motion="reduce")
+            self.page.evaluate(SETTLED)
+            self.page.screenshot(path=self.folder / f"{name}-{variant}.png", full_page=True)
+            self.reports[f"{name}-{variant}"] = look_for(self.page, OF_STRUCTURE)
+
+    def wait_for_job(self) -> Locator:
+        """Wait for the job of this page; return its report."""
+        state = self.page.locator("#job-state .status")
+        expect(state).to_have_text(re.compile("succeeded|failed"), timeout=1000 * JOB_SECONDS)
+        expect(state).to_have_text("succeeded")
+        return self.page.locator("#job-state")
+
+
+def load_world(evening: Evening) -> None:
+    page = evening.page
+    evening.go("/", "Worlds")
+    evening.look("01-worlds")
+    page.click("text=Create a world")
+    arrive(page, "New world")
+    page.fill("#id_name", "robocup")
+    page.check("text=competition")
+    evening.look("02-new-world")
+    page.click("button:has-text('Create world')")
+    arrive_at(page, page.locator("#job-state"))
+    progress = page.locator("#job-state progress")
+    expect(progress).not_to_have_attribute("value", "0", timeout=1000 * JOB_SECONDS)
+    evening.look("03-loading")
+    expect(evening.wait_for_job()).to_contain_text("3,000")
+    evening.look("04-loaded")
+    # The rail counts what has come.
+    expect(page.locator("#rail a", has_text="Commands")).to_contain_text("3,000")
+
+
+def import_folder(evening: Evening, folder: bytes) -> None:
+    page = evening.page
+    evening.go("/w/robocup/import/competition/", "Import files")
+    upload = {"name": "Incheon2026.zip", "mimeType": "application/zip", "buffer": folder}
+    page.set_input_files("#id_files", upload)
+    evening.look("05-import")
+    page.click("button:has-text('Import') >> nth=-1")
+    arrive_at(page, page.locator("#job-state"))
+    evening.wait_for_job()
+    warnings = page.locator(".problem--warning")
+    expect(warnings).not_to_have_count(0)
+    expect(page.locator(".problem--error")).to_have_count(0)
+    evening.look("06-warnings")
+    page.click("text=Choose rooms")
+    arrive(page, "Rooms of locations")
+
+
+def choose_rooms(evening: Evening) -> None:
+    page = evening.page
+    for location, room in ROOMS.items():
+        page.get_by_label(location, exact=True).select_option(room)
+    evening.look("07-rooms")
+    page.click("button:has-text('Save')")
+    arrive(page, "Ontology")
+    evening.look("08-ontology")
+    stored = Entity.objects.filter(ontology__world__name="robocup", text__in=ROOMS)
+    rooms = {row.text: row.attributes.get("room") for row in stored.filter(entity_class="location")}
+    assert rooms == ROOMS
+
+
+def look_around(evening: Evening) -> None:
+    """Through the pages on which the world is described."""
+    page = evening.page
+    for path, title, name in (
+        ("ontology/classes/", "Ontology", "09-classes"),
+        ("templates/", "Templates", "10-templates"),
+        ("templates/?nonterminal=person", "Templates", "11-lines"),
+        ("grammar/?nonterminal=person", "Grammar", "12-grammar"),
+    ):
+        evening.go(f"/w/robocup/{path}", title)
+        evening.look(name)
+    page.locator("#list a.row-link").last.click()
+    arrive(page, "Production")
+    evening.look("13-production")
+    expect(page.locator("main")).to_contain_text("$person -> ")
+
+
+def sample(evening: Evening) -> None:
+    page = evening.page
+    evening.go("/w/robocup/generation/", "Generate commands")
+    page.fill("#id_sample", str(COMMANDS))
+    page.fill("#id_seed", "7")
+    evening.look("14-generation")
+    page.click("button:has-text('Generate commands')")
+    arrive_at(page, page.locator("#job-state"))
+    expect(evening.wait_for_job()).to_contain_text(f"{COMMANDS:,}")
+    evening.look("15-generated")
+    assert World.objects.get(name="robocup").commands.count() == COMMANDS
+    page.goto(f"{evening.url}/w/robocup/templates/?problems=yes")
+    expect(page.locator(".remark")).to_have_count(0)
+
+
+def freeze(evening: Evening) -> None:
+    page = evening.page
+    evening.go("/w/robocup/splits/new/", "Freeze a split")
+    page.fill("#id_name", "evening")
+    evening.look("16-split-new")
+    page.click("button:has-text('Freeze')")
+    arrive(page, "evening")
+    evening.look("17-split")
+
+
+def train(evening: Evening, parser: str) -> None:
+    """Start a run and wait for its figures."""
+    page = evening.page
+    evening.go(f"/w/robocup/runs/new/?parser={parser}", "Start a run")
+    wait_for_swap(page)
+    page.select_option("#id_split", label="evening")
+    evening.look(f"18-run-new-{parser}")
+    page.click("button:has-text('Start the run')")
+    status = page.locator("#run-state .status").first
+    expect(status).to_have_text(re.compile("succeeded|failed"), timeout=1000 * JOB_SECONDS)
+    expect(status).to_have_text("succeeded")
+    evening.look(f"19-run-{parser}")
+
+
+def promote(evening: Evening, parser: str) -> None:
+    page, run = evening.page, TrainingRun.objects.get(parser=parser)
+    evening.go(f"/w/robocup/promotion/?run={run.pk}", "Promotion")
+    page.click(f"button:has-text('Promote run {run.pk}')")
+    expect(page.locator(".message")).to_be_visible()
+    evening.look("20-promoted")
+
+
+def parse(evening: Evening, name: str, text: str) -> Locator:
+    """Ask for ``text`` on the page Parse; return the answer."""
+    page = evening.page
+    evening.go("/w/robocup/parse/", "Parse")
+    page.fill("#playground-text", text)
+    answer = page.locator("#playground-answer")
+    expect(answer.locator(".playground-heard")).to_be_visible()
+    wait_for_swap(page)
+    evening.look(name)
+    return answer
+
+
+def steps_of(answer: Locator) -> list[str]:
+    return answer.locator(".plan-steps code").all_inner_texts()
+
+
+def test_an_evening_of_a_team(
+    page: Page,
+    live_server,
+    superuser,
+    worker,
+    parse_server,  # noqa: F811
+    folder,
+    tmp_path,
+):
+    page.set_default_timeout(1000 * PATIENCE_SECONDS)
+    log_in(page, live_server.url, superuser.username, "correct horse")
+    evening = Evening(page, live_server.url, tmp_path)
+    load_world(evening)
+    import_folder(evening, folder)
+    choose_rooms(evening)
+    look_around(evening)
+    sample(evening)
+    freeze(evening)
+
+    train(evening, "knn")
+    parse_server.update()
+    answer = parse(evening, "21-parse-knn", "please go to the sofa")
+    assert steps_of(answer) == ["go"]
+    expect(answer.locator(".playground-heard .value")).to_have_text("sofa")
+
+    train(evening, "grammar-oracle")
+    promote(evening, "grammar-oracle")
+    parse_server.update()
+    answer = parse(evening, "22-parse-capital", "Bring me the hand towel from the laundry table.")
+    assert steps_of(answer) == ["bring"]
+    text = "please find Jane at the sofa and follow them to the kitchen"
+    answer = parse(evening, "23-parse-them", text)
+    assert steps_of(answer) == ["find", "follow"]
+    expect(answer.locator(".plan-referent")).to_contain_text(re.compile("them.*Jane"))
+
+    assert only_faults(evening.reports) == {}
