@@ -10,7 +10,7 @@ from typing import Any
 from django.core.exceptions import ValidationError
 from django.db import models
 
-from annotations.language.errors import LanguageError, Position
+from annotations.language.errors import LanguageError, Position, Refusal
 from annotations.language.forms import read_template_form
 from annotations.language.predicates import is_entity_kind
 from annotations.language.symbols import is_token
@@ -204,7 +204,7 @@ def _is_sample(value: Any) -> bool:
     """Return whether this is a note about a sample, or nothing."""
     try:
         SampleNote.from_json(value)
-    except ValueError:
+    except Refusal:
         return False
     return isinstance(value, dict)
 

@@ -3,7 +3,7 @@
 1. The words as they are: a command of the grammar.
 2. The longest names of entities, left to right, as class tokens: what ``Anonymizer`` makes of it.
 3. Everything: all names of entities, also where they overlap; words and names without their case, accents,
-   signs and spaces; "a" for "an", a plural for a singular; a comma of the grammar that nobody wrote; and paths
+   signs and spaces, and names in the plural; "a" for "an"; a comma of the grammar that nobody wrote; and paths
    that pass over punctuation and courtesy.
 
 What the third one reads otherwise than it is written costs something, so that the closest reading is the best.
@@ -22,7 +22,6 @@ from annotations.language.english import (
     COURTESY_ANYWHERE,
     COURTESY_CLOSINGS,
     COURTESY_OPENINGS,
-    spellings,
 )
 from annotations.language.forms import CLASS_TOKEN
 from annotations.language.grammar import Arc, Lattice
@@ -42,7 +41,7 @@ _SIGNS_INSIDE = re.compile(r"[^\w]|_")
 _HYPHENS = frozenset("-‐‑–")
 _ARTICLES = {"a": "an", "an": "a"}
 # Costs of reading something otherwise than it is written.
-FOLDED, INFLECTED, SKIPPED = 1, 3, 2
+FOLDED, SKIPPED = 1, 2
 LONGEST_NAME = 8  # words
 MOST_NAMESAKES = 20  # entities that one name is looked for in
 MOST_SIGNS = 2  # next to each other in a name
@@ -209,10 +208,6 @@ class _Everything:
             if folded in _ARTICLES:
                 for word in self.reader.words.get(_ARTICLES[folded], ()):
                     costs.setdefault(word, FOLDED)
-            if not costs:
-                for spelling in spellings(folded):
-                    for word in self.reader.words.get(spelling, ()):
-                        costs.setdefault(word, INFLECTED)
             for word, cost in costs.items():
                 if self.reader.has(word):
                     yield Arc(place, place + 1, word, cost)

@@ -65,6 +65,9 @@ from annotations.language.predicates import (
 MOST_STEPS = 50
 NOT_UNDERSTOOD = "I did not understand that. What shall I do?"
 _PLACES = frozenset(("location", "room"))
+_PLACE_ARGUMENTS = frozenset(
+    ("destination", "source", "where")
+)  # what they describe is no antecedent
 
 
 def make_plan(
@@ -148,28 +151,36 @@ class _Planner:
             self.report(Trouble.NO_ACTION, message, "put an action around it, such as find", step=0)
             self.ask(NOT_UNDERSTOOD, "command")
 
-    def _add(self, form: Form, scope: _ActionScope) -> None:
+    def _add(self, form: Form, scope: _ActionScope, is_part: bool = False) -> None:
         if isinstance(form, Lambda):
             bodies = tuple(open_lambdas(form))
             about = tuple(each for each in bodies if is_description(each, self.predicates))
             inner = replace(scope, conjuncts=(*scope.conjuncts, *about))
-            for body in bodies:
-                if body not in about:
-                    self._add(body, inner)
+            actions = [body for body in bodies if body not in about]
+            for body in actions:
+                self._add(body, inner)
+            if is_part and not actions:
+                self._miss_action()
         elif isinstance(form, Application):
             declared = self.predicates.get(str(form.predicate))
             is_sequence = declared is not None and declared.kind is PredicateKind.SEQUENCE
             if is_sequence or form.predicate in (CONJUNCTION, SEQUENCE):
                 for argument in form.arguments:
-                    self._add(argument, scope)
+                    self._add(argument, scope, is_part=True)
+                if not form.arguments:
+                    self._miss_action()
             else:
                 self.step(form, scope)
         else:
-            message = "a part of the command has no form that the robot knows"
-            self.report(
-                Trouble.NOT_UNDERSTOOD, message, "ask the operator to say it another way", step=0
-            )
-            self.ask(NOT_UNDERSTOOD, "command")
+            self._miss_action()
+
+    def _miss_action(self) -> None:
+        """Ask about a part of the command that says nothing to do."""
+        message = "a part of the command has no form that the robot knows"
+        self.report(
+            Trouble.NOT_UNDERSTOOD, message, "ask the operator to say it another way", step=0
+        )
+        self.ask(NOT_UNDERSTOOD, "command")
 
     def step(self, form: Application, scope: _ActionScope) -> int:
         """Add the step of one action, after the steps whose results it needs; return its number."""
@@ -186,9 +197,10 @@ class _Planner:
         said: list[tuple[Form, Value]] = []
         for place, argument in enumerate(self._gather(form, scope)):
             value = self._value(argument, action, place, scope)
-            said.append((argument, value))
             entity_class = value.entity_class if isinstance(value, Named) else ""
             name = argument_name(action, place, argument, entity_class)
+            if name not in _PLACE_ARGUMENTS:
+                said.append((argument, value))
             numbered = (f"{name}_{number}" for number in count(2))
             free = (
                 name
@@ -273,6 +285,9 @@ class _Planner:
 
     def _remember(self, form: Form, value: Value) -> None:
         """Keep what a later ``it`` or ``them`` can stand for: what is inside a description, then what it describes."""
+        if isinstance(value, Referred):
+            self._remember(UNKNOWN, value.value)
+            return
         if isinstance(value, Described):
             if value.of is not None:
                 self._remember(form, value.of)

@@ -31,7 +31,6 @@ from annotations.language.symbols import Text, Wildcard
 from annotations.language.templates.composition import (
     Leaves,
     SynchronousGrammar,
-    apart,
     lines_of,
     names_in_order,
 )
@@ -47,7 +46,7 @@ from annotations.language.templates.templates import SemanticTemplate
 
 MOST_READINGS = 2  # of one rule between two places: two show an ambiguity
 # What work costs in steps of a budget: filling a form and printing it; joining two readings.
-STEPS_PER_FORM, STEPS_PER_JOIN = 300, 10
+STEPS_PER_FORM, STEPS_PER_JOIN = 300, 50
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,13 +102,9 @@ class _TemplateSet:
         self.rules = SynchronousGrammar(category.grammar, lines_of(category.templates))
         self.rules.words.require_finite()
         expander = Expander(self.rules.alternatives, intact)
-        # The numbers of a line are not those of the productions that it uses.
-        lines_of_name = {
-            name: tuple(apart(line, 1) for line in lines)
-            for name, lines in self.rules.lines_of.items()
-        }
         patterns = {
-            name: tuple(line.pattern for line in lines) for name, lines in lines_of_name.items()
+            name: tuple(line.pattern for line in lines)
+            for name, lines in self.rules.lines_of.items()
         }
         self.book = RuleBook(expander, patterns)
         self.roots = [
@@ -120,7 +115,7 @@ class _TemplateSet:
         self.lines = {
             rule: _Rule(self, line, rule, place)
             for name, rules in self.book.line_rules.items()
-            for place, (rule, line) in enumerate(zip(rules, lines_of_name[name], strict=True))
+            for place, (rule, line) in enumerate(zip(rules, self.rules.lines_of[name], strict=True))
         }
 
     @property

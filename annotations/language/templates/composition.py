@@ -9,13 +9,14 @@ it, it takes the form of the line.
 
 from __future__ import annotations
 
+import re
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeAlias
 
-from annotations.language.forms import Form
+from annotations.language.forms import Application, Constant, Form, Lambda
 from annotations.language.forms import walk as walk_form
 from annotations.language.grammar import Grammar, Production
 from annotations.language.symbols import (
@@ -28,7 +29,8 @@ from annotations.language.symbols import (
     Symbols,
     Text,
     Wildcard,
-    walk,
+    print_symbol,
+    read_wildcard,
 )
 from annotations.language.templates.filling import map_slots
 from annotations.language.templates.templates import SemanticTemplate
@@ -38,6 +40,7 @@ Leaves: TypeAlias = "tuple[Text | Wildcard, ...]"
 # Wildcards of different lines of one command get different numbers: those of a line have so many to themselves.
 _NUMBERS_OF_A_LINE = 1_000
 _WITHOUT_NUMBER = 500  # from here on those that stand in the line itself and have none
+_IN_BRACES = re.compile(r"\{[^{}]*\}")
 _MARKS, _MARKS_OF_ONE = 600, 10  # and those in nonterminals that the form mentions
 _MOST_COMPOSED = 10  # nonterminals with lines that one form mentions
 
@@ -88,16 +91,16 @@ def names_in_order(template: SemanticTemplate) -> tuple[str, ...]:
     return tuple(dict.fromkeys(slot.name for slot in slots))
 
 
-def apart(line: SemanticTemplate, scope: int) -> SemanticTemplate:
-    """Return a line whose numbered wildcards are different from those of lines with another ``scope``.
+def apart(leaves: Leaves, form: Form, scope: int) -> tuple[Leaves, Form]:
+    """Return what a line became with other numbers than lines with another ``scope`` have.
 
-    A number that only the form has is that of a production, which holds for the whole command.
+    A number holds within a line, together with the productions that it uses. What the lines inside became has
+    numbers of its own already.
     """
-    own = {each.identity for each in walk(line.pattern, notes=True) if isinstance(each, Wildcard)}
 
     def renamed(wildcard: Wildcard) -> Wildcard:
         number = wildcard.id
-        if number is not None and wildcard.identity in own:
+        if number is not None and number < _NUMBERS_OF_A_LINE:
             number += scope * _NUMBERS_OF_A_LINE
         return replace(
             wildcard,
@@ -106,10 +109,8 @@ def apart(line: SemanticTemplate, scope: int) -> SemanticTemplate:
             meta=_in_symbols(wildcard.meta, renamed),
         )
 
-    if not scope:
-        return line
-    form = map_slots(line.form, renamed)
-    return replace(line, pattern=_in_symbols(line.pattern, renamed), form=form)
+    said = tuple(renamed(each) if isinstance(each, Wildcard) else each for each in leaves)
+    return said, _in_texts(map_slots(form, renamed), renamed)
 
 
 def number_slots(leaves: Leaves, form: Form, scope: int) -> tuple[Leaves, Form]:
@@ -202,6 +203,20 @@ def _in_symbols(symbols: Symbols, change: Callable[[Wildcard], Wildcard]) -> Sym
         return change(symbol) if isinstance(symbol, Wildcard) else symbol
 
     return tuple(map(changed, symbols))
+
+
+def _in_texts(form: Form, change: Callable[[Wildcard], Wildcard]) -> Form:
+    """Return the form with ``change`` of the wildcards inside its texts, such as "big {object 1}"."""
+    match form:
+        case Lambda(variable, type_, bodies):
+            return Lambda(variable, type_, tuple(_in_texts(each, change) for each in bodies))
+        case Application(predicate, arguments):
+            return Application(predicate, tuple(_in_texts(each, change) for each in arguments))
+        case Constant(value=str() as text) if "{" in text:
+            return Constant(
+                _IN_BRACES.sub(lambda match: print_symbol(change(read_wildcard(match[0]))), text)
+            )
+    return form
 
 
 def _in_condition(condition: Condition, change: Callable[[Wildcard], Wildcard]) -> Condition:

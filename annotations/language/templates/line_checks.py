@@ -38,7 +38,7 @@ def composition_problems(
             f"the grammar has no ${name}",
             f"did you mean ${near[0]}?" if near else f"add a production ${name} = …",
         )
-    counts = _Counts(rules)
+    counts = _Counts(rules, frozenset(rules.composed(template)))
     for composed in rules.composed(template):
         if counts.most(template.pattern, composed) > 1:
             places = [
@@ -72,8 +72,9 @@ class _Counts:
     What stands in a line for another nonterminal belongs to the form of that line, and is not counted.
     """
 
-    def __init__(self, rules: SynchronousGrammar) -> None:
+    def __init__(self, rules: SynchronousGrammar, composed: frozenset[str]) -> None:
         self._rules = rules
+        self._composed = composed
         self._known: dict[tuple[str, str], int] = {}
 
     def most(self, symbols: Symbols, name: str) -> int:
@@ -86,11 +87,11 @@ class _Counts:
             return 0
         if symbol.name == name:
             return 1
-        if symbol.name in self._rules.lines_of:
+        if symbol.name in self._composed:
             return 0
         key = (symbol.name, name)
         if key not in self._known:
-            alternatives = self._rules.grammar.alternatives(symbol.name)
+            alternatives = self._rules.alternatives(symbol.name)
             self._known[key] = max((self.most(each, name) for each in alternatives), default=0)
         return self._known[key]
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any, Self
 
+from annotations.language.errors import Refusal
 from annotations.language.grammar import readable
 
 # Python refuses to print numbers that are longer. A language of more derivations is said to have so many.
@@ -76,22 +77,25 @@ class SampleNote:
         """Return the note that ``as_json`` gave; None where nothing is stored.
 
         Raises:
-            ValueError: this is no note.
+            Refusal: this is no note.
         """
         if stored in (None, {}):
             return None
         if not isinstance(stored, dict) or set(stored) != _KEYS:
-            raise ValueError("a note about a sample has other keys")
+            raise Refusal("a note about a sample has other keys", NO_NOTE)
         numbers = [stored[name] for name in ("commands", "size", "seed")]
         if not all(type(each) is int and 0 <= each <= LARGEST_SEED for each in numbers):
-            raise ValueError("a number in a note about a sample is not one")
+            raise Refusal("a number in a note about a sample is not one", NO_NOTE)
         of = stored["of"]
         if not isinstance(of, str) or not of.isascii() or not of.isdigit() or len(of) > 4_001:
-            raise ValueError("the size of the language of a sample is not one")
+            raise Refusal("the size of the language of a sample is not one", NO_NOTE)
         if type(stored["is_all"]) is not bool:
-            raise ValueError("is_all is neither true nor false")
+            raise Refusal("is_all is neither true nor false", NO_NOTE)
+        if stored["balanced"] not in list(Balance):
+            raise Refusal("a sample is balanced in no such way", NO_NOTE)
         request = SampleRequest(stored["size"], stored["seed"], Balance(stored["balanced"]))
         return cls(request, stored["commands"], int(of), stored["is_all"])
 
 
+NO_NOTE = "no_sample_note"
 _KEYS = {"commands", "of", "is_all", "size", "seed", "balanced"}

@@ -212,8 +212,8 @@ class TemplateExpander:
         def compose(name: str, budget: Budget) -> Iterator[tuple[Leaves, Composed]]:
             inner = scope_below(scope, composed.index(name))
             for number, line in enumerate(self.rules.lines_of[name]):
-                for leaves, form in self._with_forms(apart(line, inner), inner, budget):
-                    leaves, form = number_slots(leaves, form, inner)
+                for leaves, form in self._with_forms(line, inner, budget):
+                    leaves, form = apart(*number_slots(leaves, form, inner), inner)
                     yield leaves, Composed(form, (number,))
 
         names = sorted(tracked)

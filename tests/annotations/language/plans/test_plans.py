@@ -278,6 +278,12 @@ ANN = "(λ$1:e (person $1))"
         (f"(find {CUP}) (find {ANN}) (follow them)", "person", "x2"),
         (f'(take {CUP}) (go (λ$1:e (is_a $1 "stool"))) (bring it)', "thing", "x1"),
         (
+            f"(find {ANN}) (guide them (λ$1:e (near $1 {ANN.replace('1', '2')}))) (follow them)",
+            "person",
+            "x1",
+        ),
+        (f"(take {CUP}) (go (λ$1:e (near $1 {CUP.replace('1', '2')}))) (bring it)", "thing", "x1"),
+        (
             f'(find (λ$1:e (is_a $1 "tea") (near $1 {ANN.replace("1", "2")}))) (take it)',
             "thing",
             "x1",
@@ -325,6 +331,8 @@ def test_after_a_question_about_somebody_they_are_meant() -> None:
         '(sequence (go "attic") "do it")',
         '(sequence (go "attic") it)',
         '(and (go "attic") UNKNOWN)',
+        '(sequence (go "attic") (λ$1:e (is_a $1 "tea")))',
+        '(sequence (go "attic") (sequence))',
     ],
 )
 def test_a_part_of_a_command_that_is_no_action_is_asked_for(form: str) -> None:
