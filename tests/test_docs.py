@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+import shlex
 from pathlib import Path
 
 import pytest
+from django.core.management import get_commands, load_command_class
 
 from parser_service.results.published import PUBLISHED, published_accuracy
 
@@ -54,6 +56,15 @@ def test_variables_of_the_tests_are_documented():
 def test_the_commands_of_the_readme_exist_in_the_makefile(target):
     assert f"make {target}" in README
     assert re.search(rf"^{target}:", (ROOT / "Makefile").read_text(), re.MULTILINE)
+
+
+@pytest.mark.parametrize(
+    "line", re.findall(r"^\.venv/bin/python manage\.py (.*)$", README, re.MULTILINE)
+)
+def test_the_commands_of_the_readme_are_understood(line):
+    name, *arguments = shlex.split(line)
+    command = load_command_class(get_commands()[name], name)
+    command.create_parser("manage.py", name).parse_args(arguments)
 
 
 def test_every_target_of_the_makefile_is_documented():
