@@ -30,7 +30,7 @@ pytestmark = [
 
 FOLDER = Path("competition-real/Incheon2026")
 ROOMS = {"laundry table": "laundry", "bed": "bedroom", "sofa": "living room", "sink": "kitchen"}
-COMMANDS = 600
+COMMANDS = 1_200  # above MOST_SAMPLED_AT_ONCE, so that a worker draws them
 # A whole world is imported, sampled and frozen by one worker.
 JOB_SECONDS = 240
 
@@ -196,7 +196,7 @@ def promote(evening: Evening, parser: str) -> None:
     page, run = evening.page, TrainingRun.objects.get(parser=parser)
     evening.go(f"/w/robocup/promotion/?run={run.pk}", "Promotion")
     page.click(f"button:has-text('Promote run {run.pk}')")
-    expect(page.locator(".message")).to_be_visible()
+    expect(page.locator("#present-title")).to_contain_text(parser)
     evening.look("20-promoted")
 
 
