@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from typing import Any
@@ -12,14 +12,14 @@ from annotations.generation.world_consequences import WorldConsequences, consequ
 from annotations.language.errors import LanguageError, Position, Problem
 from annotations.language.grammar import CHECK_STEPS, Budget, Grammar, readable
 from annotations.language.symbols import SymbolReader
-from annotations.language.templates import SynchronousGrammar
+from annotations.language.templates import SemanticTemplate, SynchronousGrammar
 from annotations.models import Production, TaskCategory, World
 from annotations.rows.composition import split_entry
 from annotations.rows.from_rows import (
     Line,
     Lines,
     classes_of,
-    composition_of,
+    composition_by_source,
     grammar_from,
     lines_of,
 )
@@ -122,6 +122,10 @@ def _compare(
     changed = change(lines)
     problems: set[Problem] = set()
     grammars: list[tuple[str, Grammar, Grammar]] = []
+    try:
+        composition = composition_by_source(edit.world)
+    except LanguageError:  # the line that cannot be read has its own problem
+        composition = {}
     for category in edit.categories():
         try:
             before, after = grammar_from(category, lines), grammar_from(category, changed)
@@ -130,17 +134,22 @@ def _compare(
             continue
         known = {each.message for each in before.problems()}
         problems |= {each for each in after.problems() if each.message not in known}
-        problems |= set(_cycles_through_lines(category, after))
+        problems |= set(_cycles_through_lines(category, after, composition))
         grammars.append((category.name, before, after))
     return tuple(sorted(problems)), grammars
 
 
-def _cycles_through_lines(category: TaskCategory, grammar: Grammar) -> Iterator[Problem]:
+def _cycles_through_lines(
+    category: TaskCategory, grammar: Grammar, composition: Mapping[str, Sequence[SemanticTemplate]]
+) -> Iterator[Problem]:
     """Yield the error of a grammar that is finite alone, but not with the lines of its nonterminals."""
     if any(problem.is_error for problem in grammar.problems()):
         return
+    lines = tuple(
+        line for source in category.template_sources for line in composition.get(source, ())
+    )
     try:
-        SynchronousGrammar(grammar, composition_of(category)).words.require_finite()
+        SynchronousGrammar(grammar, lines).words.require_finite()
     except LanguageError as error:
         yield error.problem
 

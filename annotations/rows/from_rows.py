@@ -104,19 +104,23 @@ def composition_of(category: models.TaskCategory) -> tuple[SemanticTemplate, ...
     Raises:
         LanguageError: one of them cannot be read.
     """
-    rows = ready_templates_of(category).filter(pattern__startswith="$", pattern__contains="->")
-    sources = category.template_sources
-    ordered = sorted(rows, key=lambda row: sources.index(row.source))
-    return tuple(each for each in map(template_of, ordered) if each.nonterminal)
+    rows = models.SemanticTemplate.objects.filter(grammar=category.grammar_id)
+    by_source = _lines_in(rows.filter(status=TemplateStatus.READY))
+    return tuple(line for source in category.template_sources for line in by_source.get(source, ()))
 
 
-def ready_templates_of(category: models.TaskCategory) -> QuerySet[models.SemanticTemplate]:
-    """Return the templates that make the commands of a task category."""
-    return models.SemanticTemplate.objects.filter(
-        grammar=category.grammar_id,
-        source__in=category.template_sources,
-        status=TemplateStatus.READY,
-    )
+def composition_by_source(world: models.World) -> dict[str, list[SemanticTemplate]]:
+    """Return file → the templates in it that are ready and lines for a nonterminal. Raises as ``composition_of``."""
+    return _lines_in(ready_templates(world))
+
+
+def _lines_in(rows: QuerySet[models.SemanticTemplate]) -> dict[str, list[SemanticTemplate]]:
+    by_source: dict[str, list[SemanticTemplate]] = defaultdict(list)
+    for row in rows.filter(pattern__startswith="$", pattern__contains="->"):
+        line = template_of(row)
+        if line.nonterminal:
+            by_source[row.source].append(line)
+    return by_source
 
 
 def template_of(row: models.SemanticTemplate) -> SemanticTemplate:

@@ -44,7 +44,7 @@ NOTICED = 0.005
 NOISE = 0.02  # seconds of processor time below which nothing is said of growth
 LIMIT = 1.0  # seconds of processor time after which one text is given up
 GROWTH = 2.5
-LOOKS = (3, 10)  # calls at first, and again before a text is called slow; the fastest counts
+LOOKS = (3, 30)  # calls at first, and again before a text is called slow; the fastest counts
 OFTEN = "a1 \n\t(){}<>\"'$@,=?:|\\/*#;%-_.λ⟨é"
 FAILING = ("", "\0", "!", "(", "\n\0")
 

@@ -29,7 +29,7 @@ GO = '( go " <room> " )'
 
 @pytest.fixture
 def said(sample):
-    collect(sample.world, ["please find the tea", "go to the kitchen"])
+    collect(sample.world, ["would you find me the tea", "go to the kitchen"])
     return list(sample.world.utterances.order_by("pk"))
 
 
