@@ -22,8 +22,9 @@ def ensure_categories(world: World) -> dict[str, ErrorCategory]:
     A world without any gets those of ``analysis.categories``. Categories that an admin has deleted do not
     come back while there are others.
     """
-    rows = world.error_categories
-    if not rows.exists():
+    rows = world.error_categories.select_related("slice")
+    found = {row.code: row for row in rows}
+    if not found:
         made = [
             ErrorCategory(
                 world=world,
@@ -36,7 +37,8 @@ def ensure_categories(world: World) -> dict[str, ErrorCategory]:
         ]
         # Whoever does the same at this moment makes the same rows.
         ErrorCategory.objects.bulk_create(made, ignore_conflicts=True)
-    return {row.code: row for row in rows.select_related("slice")}
+        found = {row.code: row for row in rows.all()}
+    return found
 
 
 def add_category(
