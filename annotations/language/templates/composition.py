@@ -9,15 +9,13 @@ it, it takes the form of the line.
 
 from __future__ import annotations
 
-import re
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeAlias
 
-from annotations.language.forms import Application, Constant, Form, Lambda
-from annotations.language.forms import walk as walk_form
+from annotations.language.forms import Form
 from annotations.language.grammar import Grammar, Production
 from annotations.language.symbols import (
     Choice,
@@ -29,8 +27,6 @@ from annotations.language.symbols import (
     Symbols,
     Text,
     Wildcard,
-    print_symbol,
-    read_wildcard,
 )
 from annotations.language.templates.filling import map_slots
 from annotations.language.templates.templates import SemanticTemplate
@@ -40,7 +36,6 @@ Leaves: TypeAlias = "tuple[Text | Wildcard, ...]"
 # Wildcards of different lines of one command get different numbers: those of a line have so many to themselves.
 _NUMBERS_OF_A_LINE = 1_000
 _WITHOUT_NUMBER = 500  # from here on those that stand in the line itself and have none
-_IN_BRACES = re.compile(r"\{[^{}]*\}")
 _MARKS, _MARKS_OF_ONE = 600, 10  # and those in nonterminals that the form mentions
 _MOST_COMPOSED = 10  # nonterminals with lines that one form mentions
 
@@ -110,7 +105,7 @@ def apart(leaves: Leaves, form: Form, scope: int) -> tuple[Leaves, Form]:
         )
 
     said = tuple(renamed(each) if isinstance(each, Wildcard) else each for each in leaves)
-    return said, _in_texts(map_slots(form, renamed), renamed)
+    return said, map_slots(form, renamed)
 
 
 def number_slots(leaves: Leaves, form: Form, scope: int) -> tuple[Leaves, Form]:
@@ -159,7 +154,13 @@ def take_marks_off(leaves: Leaves, form: Form, scope: int) -> tuple[Leaves, Form
     Wildcards of one name that have no number are those of the form in its order (``grounding.ground``).
     """
     in_command = [each for each in leaves if isinstance(each, Wildcard) and each.entity_class]
-    in_form = [each for each in walk_form(form) if isinstance(each, Wildcard)]
+    in_form: list[Wildcard] = []
+
+    def note(wildcard: Wildcard) -> Wildcard:
+        in_form.append(wildcard)
+        return wildcard
+
+    map_slots(form, note)
     first = scope * _NUMBERS_OF_A_LINE + _MARKS
     after = (scope + 1) * _NUMBERS_OF_A_LINE
 
@@ -203,20 +204,6 @@ def _in_symbols(symbols: Symbols, change: Callable[[Wildcard], Wildcard]) -> Sym
         return change(symbol) if isinstance(symbol, Wildcard) else symbol
 
     return tuple(map(changed, symbols))
-
-
-def _in_texts(form: Form, change: Callable[[Wildcard], Wildcard]) -> Form:
-    """Return the form with ``change`` of the wildcards inside its texts, such as "big {object 1}"."""
-    match form:
-        case Lambda(variable, type_, bodies):
-            return Lambda(variable, type_, tuple(_in_texts(each, change) for each in bodies))
-        case Application(predicate, arguments):
-            return Application(predicate, tuple(_in_texts(each, change) for each in arguments))
-        case Constant(value=str() as text) if "{" in text:
-            return Constant(
-                _IN_BRACES.sub(lambda match: print_symbol(change(read_wildcard(match[0]))), text)
-            )
-    return form
 
 
 def _in_condition(condition: Condition, change: Callable[[Wildcard], Wildcard]) -> Condition:

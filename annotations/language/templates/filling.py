@@ -17,10 +17,11 @@ from annotations.language.forms import (
     Lambda,
 )
 from annotations.language.limits import MAX_PREDICATE
-from annotations.language.symbols import Nonterminal, Text, Wildcard, print_symbol
+from annotations.language.symbols import Nonterminal, Text, Wildcard, print_symbol, read_wildcard
 
 # Anonymized words, or the leaves with their wildcards.
 Filler: TypeAlias = "tuple[str | Text | Wildcard, ...]"
+_IN_BRACES = re.compile(r"\{[^{}]*\}")
 _PREDICATE = re.compile(r"[^\W\d][\w-]*")
 
 # The number of a line and what its own nonterminals became, in the order of its form. Of two forms for the same
@@ -55,8 +56,8 @@ def fill_intact(form: Form, bindings: Mapping[str, tuple[Text | Wildcard, ...] |
     return _fill(form, {name: _argument(each) for name, each in bindings.items()}, False)
 
 
-def map_slots(form: Form, change: Callable[[Wildcard], Form]) -> Form:
-    """Return the form with ``change`` of each of its wildcards, in order."""
+def map_slots(form: Form, change: Callable[[Wildcard], Wildcard]) -> Form:
+    """Return the form with ``change`` of its wildcards, in order, also of those inside texts: "big {object 1}"."""
     match form:
         case Lambda(variable, type_, bodies):
             return Lambda(variable, type_, tuple(map_slots(body, change) for body in bodies))
@@ -64,8 +65,12 @@ def map_slots(form: Form, change: Callable[[Wildcard], Form]) -> Form:
             return Application(predicate, tuple(map_slots(each, change) for each in arguments))
         case Wildcard():
             return change(form)
-        case _:
-            return form
+        case Constant(value=str() as text) if "{" in text:
+            changed = _IN_BRACES.sub(
+                lambda match: print_symbol(change(read_wildcard(match[0]))), text
+            )
+            return Constant(changed)
+    return form
 
 
 def bare(wildcard: Wildcard) -> Wildcard:

@@ -354,3 +354,29 @@ def test_the_lattice_of_a_long_utterance_stays_in_proportion(utterance):
         for count in (400, 800)
     ]
     assert arcs[1] <= 3 * arcs[0] + 10
+
+
+@pytest.mark.parametrize(
+    ("rules", "lines"),
+    [
+        ("$thing = the big {room}", ("get $thing = (bring $thing)",)),
+        ("$thing = the big {room 1}", ("$x = $x", "$x -> get $thing = (bring $thing)")),
+        ("$thing = the big {room}", ("$x = $x", "$x -> get $thing = (bring $thing)")),
+        (
+            "$thing = the big {room}\n$b = {room}",
+            ("get $thing from $b = (bring $b $thing)",),
+        ),
+        ("$thing = {room} by {room}", ("get $thing = (bring $thing)",)),
+    ],
+)
+def test_a_text_of_a_form_has_the_entities_of_the_command(rules, lines):
+    one = category(*lines, grammar=Grammar(read_productions(f"$Main = x\n{rules}").productions))
+    template = one.templates[0]
+    for derivation in TemplateExpander(one.grammar, one.lines).derivations(template):
+        grounded = ground(derivation.symbols, derivation.form, ROOMS, Random(3))
+        said = [
+            word for word in grounded.text.split() if word.startswith("r") and word[1:].isdigit()
+        ]
+        written = canonical_text(grounded.form)
+        assert "<" not in written
+        assert sorted(each for each in written.split() if each in said) == sorted(said)
