@@ -17,6 +17,7 @@ from annotations.language.symbols import (
     MAX_CLASS_WORDS,
     MAX_TOKEN,
     EntityClasses,
+    split_head,
 )
 from annotations.language.symbols import EntityClass as ClassValue
 from annotations.models.editing import Editable
@@ -276,9 +277,6 @@ def template_status_choices() -> list[tuple[str, str]]:
     return TemplateStatus.choices
 
 
-_LINE = re.compile(r"\s*[$](?P<name>\w+)\s*->")
-
-
 class SemanticTemplateQuerySet(models.QuerySet["SemanticTemplate"]):
     def with_problems(self) -> SemanticTemplateQuerySet:
         """Return the templates that the checker had something to say about when they were last stored."""
@@ -354,8 +352,7 @@ class SemanticTemplate(Editable):
     @property
     def nonterminal(self) -> str:
         """What a line ``$name -> pattern`` is for; empty for a template of commands."""
-        line = _LINE.match(self.pattern)
-        return line["name"] if line else ""
+        return split_head(self.pattern)[0]
 
     def note_editor(self, by: User) -> None:
         self.author = by
