@@ -36,8 +36,8 @@ from annotations.language.templates.composition import (
 )
 from annotations.language.templates.expansion import TaskCategory
 from annotations.language.templates.filling import (
-    Choices,
     Composed,
+    Precedence,
     fill_anonymized,
     fill_intact,
     map_slots,
@@ -169,7 +169,7 @@ class _Filled:
 
     anonymized: Form
     aligned: Form
-    choices: Choices
+    precedence: Precedence
     cost: int
 
 
@@ -350,20 +350,20 @@ def _best(asker: _Rule, readings: Sequence[_Reading]) -> list[_Reading]:
 
 
 def _ranked(asker: _Rule, readings: Iterable[_Reading]) -> list[_Reading]:
-    """Return the readings with the cheapest first and, among equals, those with the greatest choices."""
+    """Return the readings with the cheapest first and, among equals, those with the greatest precedence."""
 
     def rank(reading: _Reading) -> tuple[object, ...]:
         values = dict(reading.bound)
-        choices = tuple((name, _words(values[name])) for name in asker.names if name in values)
-        return -reading.cost, choices
+        precedence = tuple((name, _words(values[name])) for name in asker.names if name in values)
+        return -reading.cost, precedence
 
     return sorted(readings, key=rank, reverse=True)
 
 
-def _words(value: Value) -> Choices:
-    """Return what tells two values of a nonterminal apart: the choices of a form, or the words."""
+def _words(value: Value) -> Precedence:
+    """Return what tells two values of a nonterminal apart: the precedence of a form, or the words."""
     if isinstance(value, _Filled):
-        return value.choices
+        return value.precedence
     return tuple(leaf.value if isinstance(leaf, Text) else leaf.token for leaf in value)
 
 
@@ -392,8 +392,8 @@ def _fill(rule: _Rule, reading: _Reading) -> _Filled | None:
     except LanguageError:
         return None
     inner = tuple(_words(values[name]) for name in rule.names)
-    choices: Choices = inner if rule.line is None else (rule.line, *inner)
-    return _Filled(anonymized, aligned, choices, reading.cost)
+    precedence: Precedence = inner if rule.line is None else (rule.line, *inner)
+    return _Filled(anonymized, aligned, precedence, reading.cost)
 
 
 class _SlotArcs:

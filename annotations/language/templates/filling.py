@@ -25,8 +25,8 @@ _IN_BRACES = re.compile(r"\{[^{}]*\}")
 _PREDICATE = re.compile(r"[^\W\d][\w-]*")
 
 # The number of a line and what its own nonterminals became, in the order of its form. Of two forms for the same
-# words the one with the greater choices is kept, so that later lines win.
-Choices: TypeAlias = "tuple[Any, ...]"
+# words the one with the greater precedence is kept, so that later lines win.
+Precedence: TypeAlias = "tuple[Any, ...]"
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,12 @@ class Composed:
     """What a nonterminal with lines became: the form of the line that was taken, with its slots filled."""
 
     form: Form
-    choices: Choices
+    precedence: Precedence
+
+
+def precedence_of(value: tuple[str, ...] | Composed) -> Precedence:
+    """Return what decides between two values of a nonterminal: lines, or the words."""
+    return value.precedence if isinstance(value, Composed) else value
 
 
 def fill_anonymized(form: Form, bindings: Mapping[str, tuple[str, ...] | Composed]) -> Form:

@@ -11,7 +11,7 @@ from annotations.language.errors import LanguageError, Problem, warning_at
 from annotations.language.forms import Form
 from annotations.language.grammar import Budget, Grammar, Recognizer, readable
 from annotations.language.templates.bounded_cache import BoundedCache
-from annotations.language.templates.filling import Choices
+from annotations.language.templates.filling import Precedence
 from annotations.language.templates.synchronous import TemplateExpander
 from annotations.language.templates.templates import SemanticTemplate
 
@@ -137,11 +137,11 @@ def _collect(
     expander: TemplateExpander, template: SemanticTemplate, budget: Budget
 ) -> TemplatePairs:
     before, count = budget.spent, 0
-    commands: dict[str, dict[str, Choices]] = {}
+    commands: dict[str, dict[str, Precedence]] = {}
     forms: dict[Form, None] = {}
     for words, filled in expander.filled_pairs(template, budget):
         found = commands.setdefault(" ".join(words), {})
-        found[filled.text] = max(filled.choices, found.get(filled.text, filled.choices))
+        found[filled.text] = max(filled.precedence, found.get(filled.text, filled.precedence))
         forms[filled.own] = None
         count += 1
     pairs = {

@@ -33,7 +33,7 @@ from annotations.language.grammar import (
 from annotations.language.limits import MAX_INDEXED_BYTES
 from annotations.language.symbols import Choice, Symbols
 from annotations.language.templates.composition import SynchronousGrammar, names_in_order
-from annotations.language.templates.filling import Composed, fill_anonymized
+from annotations.language.templates.filling import Composed, fill_anonymized, precedence_of
 from annotations.language.templates.synchronous import Derivation, TemplateExpander
 from annotations.language.templates.templates import SemanticTemplate
 
@@ -294,7 +294,7 @@ class RankedTemplate:
                 line = self._grammar.lines(name)[value.number]
                 words, filled = line._read(value.derivation)
                 words_of[name] = words
-                bound[name] = Composed(filled.form, (value.number, *filled.choices))
+                bound[name] = Composed(filled.form, (value.number, *filled.precedence))
             else:
                 words_of[name] = spell(self._ranking.body(name).spell(Cursor(value)))
                 bound[name] = words_of[name]
@@ -303,7 +303,7 @@ class RankedTemplate:
             form = fill_anonymized(self.template.form, bound)
         except LanguageError as error:
             raise LanguageError(error.message, self.template.form_position, error.hint) from None
-        return words, Composed(form, tuple(map(_choice, map(bound.__getitem__, self._names))))
+        return words, Composed(form, tuple(map(precedence_of, map(bound.__getitem__, self._names))))
 
     def _line_derivation(self, name: str, rank: int) -> LineDerivation:
         lines = self._grammar.lines(name)
@@ -492,10 +492,6 @@ class _Matcher:
             if not reached:
                 break
         return reached
-
-
-def _choice(value: tuple[str, ...] | Composed) -> tuple[object, ...]:
-    return value.choices if isinstance(value, Composed) else value
 
 
 def _pick(counts: Mapping[int, int], rank: int) -> tuple[int, int]:

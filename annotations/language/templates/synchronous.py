@@ -31,10 +31,11 @@ from annotations.language.templates.composition import (
     take_marks_off,
 )
 from annotations.language.templates.filling import (
-    Choices,
     Composed,
+    Precedence,
     fill_anonymized,
     fill_intact,
+    precedence_of,
 )
 from annotations.language.templates.templates import SemanticTemplate
 
@@ -68,13 +69,13 @@ class Derivation:
 class FilledForm:
     """The form of a command with class tokens for its slots, and its canonical text.
 
-    ``choices`` say what its nonterminals became: of several forms of a command the greatest is kept. In ``own``
+    ``precedence`` says what its nonterminals became: of several forms of a command the greatest is kept. In ``own``
     one term stands in for each form of a line, so that its terms are those of the template.
     """
 
     form: Form
     text: str
-    choices: Choices
+    precedence: Precedence
     own: Form
 
 
@@ -140,9 +141,9 @@ class TemplateExpander:
                 if bindings not in forms:
                     values = dict(bindings)
                     form = _filled(template, values)
-                    choices = tuple(_choice(values[name]) for name in names)
+                    precedence = tuple(precedence_of(values[name]) for name in names)
                     own = _filled(template, _stand_ins(values)) if composed else form
-                    forms[bindings] = FilledForm(form, canonical_text(form), choices, own)
+                    forms[bindings] = FilledForm(form, canonical_text(form), precedence, own)
                     budget.spend(len(forms[bindings].text))
                     _require_indexable(forms[bindings].text, "form", template)
                 _require_indexable(" ".join(words), "command", template)
@@ -200,8 +201,8 @@ class TemplateExpander:
                     continue
                 if bindings not in forms:
                     values = dict(bindings)
-                    choices = (number, *(_choice(values[each]) for each in names))
-                    forms[bindings] = Composed(_filled(line, values), choices)
+                    precedence = (number, *(precedence_of(values[each]) for each in names))
+                    forms[bindings] = Composed(_filled(line, values), precedence)
                 yield words, forms[bindings]
 
     def _keeping(self, template: SemanticTemplate, scope: int) -> Expander[Text | Wildcard]:
@@ -260,10 +261,6 @@ def _stand_in(form: Form) -> Form:
     if isinstance(form, Lambda):
         return Lambda(form.variable, form.type, ())
     return Application(STAND_IN) if isinstance(form, Application) else form
-
-
-def _choice(value: tuple[str, ...] | Composed) -> Choices:
-    return value.choices if isinstance(value, Composed) else value
 
 
 @contextmanager
