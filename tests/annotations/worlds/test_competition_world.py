@@ -6,12 +6,14 @@ import json
 import re
 from dataclasses import replace
 from functools import cache
+from random import Random
 
 import pytest
 
+from annotations.generation.grounded_pairs import GroundedCommands
 from annotations.importing.predicates_file import read_predicates
 from annotations.language.decoding import read_folder
-from annotations.language.forms import read_form
+from annotations.language.forms import canonical_text, read_form
 from annotations.language.grammar import read_production
 from annotations.language.ontology import (
     COMPETITION_FILES,
@@ -41,6 +43,7 @@ from tests.annotations.language.published import SHARED
 
 FOLDER = SHIPPED_WORLDS["competition"].folder
 COMPETITION = SHARED / "competition-2025"
+PLACES = ("location", "room")
 NAMED = ("object", "category", "name", "location", "room")
 # Kind → a command with entities of this world, and the heads of the actions that it asks for.
 KINDS = {
@@ -167,6 +170,20 @@ def test_commands_of_a_sample_have_one_form_each_and_are_in_the_grammar():
     assert sample().conflicts == ()
     assert sample().outside_grammar == ()
     assert {each.task_category for each in sample().expansions} == {"2025", "2026"}
+
+
+def test_what_is_generated_is_understood_with_and_without_its_entities():
+    """The class tokens of stored commands are no entities, and each entity fills the slot that it was drawn for."""
+    random = Random(11)
+    sources = {category.name: GroundedCommands(category) for category in categories()}
+    two_places = 0
+    for expansion in random.sample(sample().expansions, 60):
+        assert oracle().predict([expansion.command])[0][0].form == expansion.form_text
+        drawn = sources[expansion.task_category].draw(expansion, ontology(), random)
+        assert canonical_text(drawn.form) in grounded(oracle(), drawn.text)
+        places = [each.text for slot, each in drawn.values if slot.entity_class in PLACES]
+        two_places += len(set(places)) > 1
+    assert two_places  # lines of one command name places of their own
 
 
 def test_there_are_some_hundreds_of_forms_and_they_fit_the_predicates():
