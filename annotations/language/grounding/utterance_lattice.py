@@ -130,6 +130,10 @@ class _Name:
         is_inflected = self.reading.likeness is Likeness.INFLECTED
         return (0 if said == self.spelling else FOLDED) + (FOLDED if is_inflected else 0)
 
+    def rank(self, said: str) -> tuple[int, Likeness]:
+        """The names of the lowest rank are meant: at equal cost, that of an entity itself before an alias."""
+        return self.cost(said), self.reading.likeness
+
 
 def _tokens(text: str) -> list[tuple[int, int]]:
     """Return where the words, class tokens and signs of a text begin and end.
@@ -263,9 +267,9 @@ class _Everything:
         for entity_class, called in by_class.items():
             token = f"<{entity_class}>"
             if self.reader.has(token):
-                least = min(name.cost(said) for name in called)
-                closest = [name.reading for name in called if name.cost(said) == least]
-                yield from self._arcs_for(closest, token, (start, end), (first, last), least)
+                least = min(name.rank(said) for name in called)
+                closest = [name.reading for name in called if name.rank(said) == least]
+                yield from self._arcs_for(closest, token, (start, end), (first, last), least[0])
 
     def _arcs_for(
         self,

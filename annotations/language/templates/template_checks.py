@@ -301,9 +301,9 @@ def set_problems(
 def shared_problems(category: TaskCategory, generated: Generated) -> Iterator[tuple[int, Problem]]:
     """Yield (template index, problem) of what a template has with others: duplicates, conflicts, unused lines."""
     yield from line_problems(category)
-    first: dict[tuple[Symbols, str], SemanticTemplate] = {}
+    first: dict[tuple[str, Symbols, str], SemanticTemplate] = {}
     for index, template in enumerate(category.templates):
-        key = (template.pattern, template.form_text)
+        key = (template.nonterminal, template.pattern, template.form_text)
         earlier = first.setdefault(key, template)
         if earlier is not template:
             yield (

@@ -281,6 +281,12 @@ def test_a_name_that_may_be_two_is_answered_twice():
     assert {each.values for each in answers} == {("Zoë",), ("Zoé",)}
 
 
+def test_a_name_beats_an_alias_of_the_same_spelling():
+    oracle = oracle_of(Entity("object", "tin", ("can",)), Entity("object", "can"))
+    answers = oracle.predict(["please bring the can"], 5)[0]
+    assert [each.values for each in answers] == [("can",)]
+
+
 def test_a_comma_of_the_grammar_need_not_be_said():
     oracle = oracle_of(Entity("object", "tea"), Entity("room", "kitchen"))
     for said in ("in the kitchen find the tea", "In the kitchen, find the tea."):

@@ -37,6 +37,7 @@ from annotations.language.templates import (
     read_sides,
     read_template,
     set_problems,
+    shared_problems,
     template_checker,
 )
 from annotations.language.templates.line_checks import line_problems
@@ -380,3 +381,12 @@ def test_a_text_of_a_form_has_the_entities_of_the_command(rules, lines):
         written = canonical_text(grounded.form)
         assert "<" not in written
         assert sorted(each for each in written.split() if each in said) == sorted(said)
+
+
+def test_lines_of_two_nonterminals_that_say_the_same_are_no_duplicates():
+    one = category(
+        "$goto $next = (sequence $goto $next)", "$goto -> go = (go)", "$next -> go = (go)"
+    )
+    assert not list(shared_problems(one, generate([one])))
+    again = category("$goto = $goto", "$goto -> go = (go)", "$goto -> go = (go)")
+    assert [index for index, _ in shared_problems(again, generate([again]))] == [2]
