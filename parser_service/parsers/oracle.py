@@ -61,8 +61,8 @@ class GrammarOracle(Parser):
     """
 
     name = "grammar-oracle"
-    version = 3
-    reads = (2,)
+    version = 4
+    reads = (2, 3)
     protocols = (Protocol.GRAMMAR,)
     Config = OracleConfig
 

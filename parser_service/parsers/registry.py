@@ -64,9 +64,9 @@ PARSERS: dict[str, RegistryEntry] = {
         title="Grammar oracle",
         description="Chart-parses with the annotated grammar and returns the template's form. "
         "Learns nothing; has no answer outside the grammar.",
-        version=3,
+        version=4,
         protocols=(Protocol.GRAMMAR,),
-        in_short="Reads a command with the annotated grammar; knows no other way to say it.",
+        in_short="Reads a command of the annotated grammar as people write it; knows no other command.",
         needs=Needs.NOTHING,
         queue="quick",
         learns=False,
