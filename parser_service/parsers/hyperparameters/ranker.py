@@ -67,6 +67,13 @@ class RankerConfig:
         minimum=0.0,
         maximum=1.0,
     )
+    rewordings: int = hyperparameter(
+        20,
+        "Other ways to say each form that nobody has paraphrased, to learn from, where glosses are declared "
+        "(domain, grammar).",
+        0,
+        1_000,
+    )
     forms: str = hyperparameter(
         "open",
         "Forms to choose from: those of the training pairs and new ones that fit much better (open), or "
