@@ -92,7 +92,8 @@ class _Applier:
         return TaskPlan(steps, (*of_plan, *self._world.problems))
 
     def _best_fit(self, step: Step) -> _Fit | None:
-        fits = [fit for each in self._book.recipes if (fit := self._fit(step, each))]
+        recipes = self._book.recipes_of(step.predicate)
+        fits = [fit for each in recipes if (fit := self._fit(step, each))]
         return max(fits, key=lambda fit: fit.recipe.pattern.restrictions, default=None)
 
     def _fit(self, step: Step, recipe: Recipe) -> _Fit | None:
@@ -100,8 +101,7 @@ class _Applier:
         absorbed: set[int] = set()
         if not self._match(step, recipe.pattern, values, absorbed):
             return None
-        primitives = (self._book.primitive(call.primitive) for call in recipe.calls)
-        return _Fit(recipe, values, frozenset(absorbed)) if all(primitives) else None
+        return _Fit(recipe, values, frozenset(absorbed))
 
     def _match(
         self, step: Step, pattern: ActionPattern, values: dict[str, Value], absorbed: set[int]
