@@ -620,7 +620,8 @@ def _place(step: TaskStep, before: Place) -> Place:
 def _name(place: Place) -> str:
     if isinstance(place, Operator):
         return OPERATOR_WORD
-    return "" if isinstance(place, Somewhere) else str(place.as_json().get("text", ""))
+    text = "" if isinstance(place, Somewhere) else str(place.as_json().get("text", ""))
+    return text.removeprefix("the ")
 
 
 def _room(place: Place) -> str:

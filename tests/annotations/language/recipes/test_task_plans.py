@@ -205,6 +205,7 @@ def test_questions_come_first_while_the_robot_is_with_the_operator():
     [
         ('(bring (λ$1:e (is_a $1 "tea")))', ["shelf", "operator"]),
         ('(bring (λ$1:e (is_a $1 "drinks")))', ["shelf", "operator"]),
+        ('(bring "tea")', ["shelf", "operator"]),
         ('(bring (λ$1:e (is_a $1 "knife")))', []),
         (f"(bring {TEA})", ["attic", "operator"]),
         (
