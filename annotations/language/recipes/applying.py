@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from annotations.language.plans import (
     ASK,
@@ -89,7 +89,11 @@ class _Applier:
         of_plan = (
             TaskProblem.of_plan(each, first.get(each.step, 0)) for each in self._plan.problems
         )
-        return TaskPlan(steps, (*of_plan, *self._world.problems))
+        own = (  # one that is about a step which was left out is about the whole plan
+            each if each.step <= len(steps) else replace(each, step=0)
+            for each in self._world.problems
+        )
+        return TaskPlan(steps, (*of_plan, *own))
 
     def _best_fit(self, step: Step) -> _Fit | None:
         recipes = self._book.recipes_of(step.predicate)
@@ -107,9 +111,8 @@ class _Applier:
         self, step: Step, pattern: ActionPattern, values: dict[str, Value], absorbed: set[int]
     ) -> bool:
         arguments = dict(step.arguments)
-        if step.predicate != pattern.action or {p.name for p in pattern.parameters} != set(
-            arguments
-        ):
+        names = {each.name for each in pattern.parameters}
+        if step.predicate != pattern.action or names != arguments.keys():
             return False
         return all(
             self._match_argument(arguments[each.name], each, values, absorbed)

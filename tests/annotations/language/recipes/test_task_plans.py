@@ -294,7 +294,7 @@ def plans_of(world: str) -> tuple[tuple[str, Plan], ...]:
     ontology, _ = read_ontology_folder(folder)
     categories = read_generator_files(read_folder(folder, "*.txt"), ontology.classes).categories()
     if world == "competition":
-        request = SampleRequest(2_000, balance=Balance.FORMS)
+        request = SampleRequest(1_000, balance=Balance.FORMS)
         generated = Language(categories).sample(request).generated
     else:
         generated = generate(categories)
@@ -368,6 +368,7 @@ def test_any_book_makes_task_plans(book, texts):
     plans = [task_plan(text, book) for text in texts]
     for plan in plans:
         JSON_SCHEMA.validate(plan.as_json())
+        assert all(each.step <= len(plan.steps) for each in plan.problems)
         spoken(plan)
     joint = join(plans, book)
     assert len(joint.serves) == len(joint.plan.steps)
