@@ -566,9 +566,11 @@ class _Writer:
         arrival, place = stay[0].arrival, stay[0].place
         if not arrival or isinstance(place, Somewhere):
             return
-        commands = {each.command for each in stay}
-        if isinstance(place, Operator):
-            commands = self._serves[arrival - 1]  # those that have to come back
+        commands = self._serves[arrival - 1]
+        if not isinstance(
+            place, Operator
+        ):  # where commands that merely begin have nothing to share
+            commands = commands | {each.command for each in stay}
         if len(commands) < 2:
             return
         numbers = tuple(sorted(commands))

@@ -87,6 +87,13 @@ def test_the_robot_comes_back_once_to_tell_two_results():
     assert spoken(joint.plan).count("the number of the drinks in the attic") == 1
 
 
+def test_who_is_guided_somewhere_shares_the_way_there():
+    joint = joined(f"(bring {TEA})", f'(guide {ADA} "attic")')
+    assert joint.plan.steps[2].action == "guide" and joint.serves[2] == (1, 2)
+    reasons = [(each.reason, each.commands) for each in joint.interleavings]
+    assert reasons[0] == (Reason.SHARED_VISIT, (1, 2))
+
+
 def test_one_thing_is_carried_at_a_time():
     joint = joined(f"(bring {TEA})", f"(bring {KNIFE})")
     assert joint.length == joint.length_before == 8
