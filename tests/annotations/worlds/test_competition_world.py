@@ -20,7 +20,9 @@ from annotations.language.ontology import (
     Ontology,
     read_competition,
 )
+from annotations.language.plans import make_plan
 from annotations.language.predicates import Predicate, check_form, infer_signatures
+from annotations.language.recipes import apply_recipes, default_book, same_plan, usual_places
 from annotations.language.templates import (
     DEFAULT_LIMIT,
     Balance,
@@ -215,6 +217,34 @@ def test_every_kind_is_read(kind):
 )
 def test_other_wordings_have_the_same_form(one, other):
     assert grounded(oracle(), one) == grounded(oracle(), other) != set()
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        # The rulebook's own example of a rephrasing, with things of this house.
+        (
+            "bring me a quince from the larder",
+            "go to the larder, find a quince, and bring it to me",
+        ),
+        (
+            "take the quince from the larder and put it on the workbench",
+            "go to the larder, find a quince, take it and put it on the workbench",
+        ),
+        (
+            "follow the person waving at the piano",
+            "find the person waving at the piano and follow them",
+        ),
+    ],
+)
+def test_other_actions_for_the_same_errand_are_the_same_plan(one, other):
+    def plan(command):
+        (form,) = grounded(oracle(), command)
+        plan_of_form = make_plan(read_form(form), ontology(), predicates())
+        return form, apply_recipes(plan_of_form, default_book(), usual_places(ontology()))
+
+    (form, task_plan), (other_form, other_task_plan) = plan(one), plan(other)
+    assert form != other_form and same_plan(task_plan, other_task_plan)
 
 
 def test_questions_are_of_2025_and_the_trash_is_of_2026():
