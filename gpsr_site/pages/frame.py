@@ -155,6 +155,11 @@ PLACES = (
         waiting=Waiting(count="promotions_proposed", noun="run", reason="proposed for promotion"),
         pages_below=("promotions", "dialogues", "dialogue"),
     ),
+    Place(
+        label="Recipes",
+        page="recipes",
+        pages_below=("recipe", "recipe_new", "primitive", "primitive_new"),
+    ),
 )
 
 
