@@ -20,7 +20,7 @@ class BookRowForm(forms.Form):
 
     text = forms.CharField(
         max_length=MAX_ROW,
-        widget=forms.Textarea(attrs={"rows": 4, "class": "mono", "spellcheck": "false"}),
+        widget=forms.Textarea(attrs={"rows": 5, "class": "mono", "spellcheck": "false"}),
     )
     version = forms.IntegerField(widget=forms.HiddenInput, required=False)
     once = forms.CharField(widget=forms.HiddenInput, required=False, max_length=60, initial=new_key)
