@@ -59,6 +59,7 @@ of_world = [
     path(f"{ANSWER}/doubt/", review_rest.DoubtLabel.as_view(), name="answer-doubt"),
     path("results/", result_rest.Results.as_view(), name="results"),
     path("plan/", robot_rest.PlanRoute.as_view(), name="plan"),
+    path("task-plan/", robot_rest.TaskPlanRoute.as_view(), name="task-plan"),
     path("robot/action-names/", robot_rest.ActionNamesRoute.as_view(), name="action-names"),
 ]
 

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from hashlib import sha256
+from http import HTTPStatus
 from typing import Any
 
 from django.db import transaction
+from django.db.models import QuerySet
 
-from annotations.editing.edits import add, change, delete
+from annotations.checking.recipe_check import RowModel
 from annotations.language.errors import Refusal
 from annotations.language.recipes import DEFAULT_BOOK, RecipeBook, ShippedBook, shipped_books
 from annotations.models import Primitive, Recipe, User, World
+from annotations.rows.history import ADDED, CHANGED, DELETED, keep, keep_first
 
 
 def version_of(world: World) -> str:
@@ -49,45 +52,53 @@ def replace_book(world: World, book: RecipeBook, by: User, version: str = "") ->
     Primitives are known by their names and recipes by their left sides, so that each keeps its history.
 
     Args:
+        book: one without errors.
         version: what ``version_of`` said when ``by`` read the book; empty for any.
 
     Raises:
         Refusal: the book has changed since.
         LanguageError: a row of the book cannot be stored.
-        ValidationError: two rows of the book are the same.
     """
+    primitives = [Primitive.columns_of(str(each)) for each in book.primitives]
+    recipes = [Recipe.columns_of(str(each)) for each in book.recipes]
     with transaction.atomic():
         world = World.objects.select_for_update().get(pk=world.pk)
         if version and version != version_of(world):
             raise Refusal(
                 "Somebody has changed the recipes meanwhile. Look at them again.",
                 "recipes_changed_meanwhile",
-                409,
+                HTTPStatus.CONFLICT,
             )
-        primitives = [Primitive.columns_of(str(each)) for each in book.primitives]
-        recipes = [Recipe.columns_of(str(each)) for each in book.recipes]
         _replace(world, Primitive, "name", primitives, by)
         _replace(world, Recipe, "left", recipes, by)
 
 
 def _replace(
-    world: World,
-    model: type[Primitive | Recipe],
-    key: str,
-    wanted: Sequence[Mapping[str, Any]],
-    by: User,
+    world: World, model: RowModel, key: str, wanted: Sequence[Mapping[str, Any]], by: User
 ) -> None:
-    stored = {getattr(row, key): row for row in model.objects.filter(world=world)}
+    """Make the rows of a kind those that are wanted; ``key`` is the column that says which is which."""
+    rows: QuerySet[Any] = model._default_manager.filter(world=world)
+    stored = {getattr(row, key): row for row in rows}
     names = {values[key] for values in wanted}
-    for name, old in stored.items():
-        if name not in names:
-            delete(old, by, old.version)
+    gone = [row for name, row in stored.items() if name not in names]
+    keep_first(model, [row.pk for row in gone])
+    keep(gone, DELETED, by)
+    rows.filter(pk__in=[row.pk for row in gone]).delete()
+    added: list[Any] = []
+    changed: list[Any] = []
+    kept: list[Any] = []
     for position, values in enumerate(wanted):
         row = stored.get(values[key])
         if row is None:
-            add(model(world=world, position=position, **values), by)
-        elif row.text != values["text"]:
-            change(row, values, by, row.version)
-    # Where a row stands is no part of its versions.
-    for position, values in enumerate(wanted):
-        model.objects.filter(world=world, **{key: values[key]}).update(position=position)
+            added.append(model(world=world, position=position, **values))
+            continue
+        row.position = position
+        kept.append(row)
+        if row.text != values["text"]:
+            row.text = values["text"]
+            row.version += 1
+            changed.append(row)
+    keep_first(model, [row.pk for row in changed])
+    model._default_manager.bulk_update(kept, ["text", "position", "version"])
+    keep(changed, CHANGED, by)
+    keep(model._default_manager.bulk_create(added), ADDED, by)

@@ -17,7 +17,7 @@ from annotations.editing.recipe_books import replace_book, shipped_book_of
 from annotations.editing.recipe_deletion import delete_primitive
 from annotations.language.errors import Problem
 from annotations.language.recipes import MAX_ROW, RecipeBook, shipped_books
-from annotations.models import Duty, Primitive, Recipe
+from annotations.models import Duty, Primitive, Recipe, World
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.rows.from_rows import recipe_book_of
 from annotations.rows.stored_problems import as_json
@@ -195,7 +195,7 @@ class RecipeBookSerializer(serializers.Serializer[Any]):
 class OneRecipeBook(WorldRoute):
     """Shows the recipe book of the world as a whole, and replaces it."""
 
-    model = Recipe
+    model = World
     serializer_class = RecipeBookSerializer
     filter_backends = []
     pagination_class = None
