@@ -28,7 +28,7 @@ MOST_SUBJECT_CHARACTERS = 200
 # a pseudonym alone also where they are logged in.
 UNRECORDED = re.compile(
     r"_(check|preview|suggestions|completion|consequences)$"
-    r"|^(draft|inbox|notice_open|notice-read-all|notice-read|queue_next|work-item-next|tryout_ask|playground_ask)$"
+    r"|^(draft|inbox|notice_open|notice-read-all|notice-read|queue_next|work-item-next|tryout_ask|playground_ask|joint_plan_ask)$"
     r"|^(campaign|campaign_place|campaign_done)$"
 )
 VERBS = {"POST": "create", "PUT": "change", "PATCH": "change", "DELETE": "delete"}

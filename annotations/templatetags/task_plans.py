@@ -20,6 +20,16 @@ def call(step: Mapping[str, Any]) -> str:
 
 
 @register.filter
+def facts(step: Mapping[str, Any]) -> list[str]:
+    """Say where a step happens, what the robot holds and releases, and which steps have to come before it."""
+    said = [f"at {value_text(step['place'])}" if step["place"] else "somewhere"]
+    said += [f"{name} {value_text(step[name])}" for name in ("holds", "releases") if step[name]]
+    if step["requires"]:
+        said.append(f"after {', '.join(map(str, step['requires']))}")
+    return said
+
+
+@register.filter
 def value_text(value: Mapping[str, Any] | None) -> str:
     """Write a value of a plan in a few words; empty for none."""
     if not value:
