@@ -34,6 +34,7 @@ from annotations.language.recipes.task_plan import (
     task_plan_schema,
     task_plan_schema_text,
 )
+from annotations.language.recipes.usual_places import UsualPlaces, usual_places
 
 __all__ = [
     "DEFAULT_BOOK",
@@ -55,6 +56,7 @@ __all__ = [
     "TaskProblem",
     "TaskStep",
     "TooManyCommands",
+    "UsualPlaces",
     "apply_recipes",
     "default_book",
     "join",
@@ -69,4 +71,5 @@ __all__ = [
     "spoken",
     "task_plan_schema",
     "task_plan_schema_text",
+    "usual_places",
 ]
