@@ -12,6 +12,7 @@ from annotations.language.recipes.book import (
     shipped_books,
 )
 from annotations.language.recipes.comparing import plan_key, same_plan
+from annotations.language.recipes.habitual_places import UsualPlaces, usual_places
 from annotations.language.recipes.joint_plans import (
     MOST_COMMANDS,
     Distances,
@@ -34,7 +35,6 @@ from annotations.language.recipes.task_plan import (
     task_plan_schema,
     task_plan_schema_text,
 )
-from annotations.language.recipes.usual_places import UsualPlaces, usual_places
 
 __all__ = [
     "DEFAULT_BOOK",
