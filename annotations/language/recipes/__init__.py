@@ -12,6 +12,7 @@ from annotations.language.recipes.book import (
     shipped_books,
 )
 from annotations.language.recipes.comparing import plan_key, same_plan
+from annotations.language.recipes.habitual_places import UsualPlaces, usual_places
 from annotations.language.recipes.joint_plans import (
     MOST_COMMANDS,
     Distances,
@@ -25,7 +26,7 @@ from annotations.language.recipes.joint_plans import (
     joint_plan_schema_text,
 )
 from annotations.language.recipes.reading import MAX_ROW, read_primitive, read_recipe
-from annotations.language.recipes.rows import Effect, EffectKind, Primitive, Recipe
+from annotations.language.recipes.rows import ActionPattern, Effect, EffectKind, Primitive, Recipe
 from annotations.language.recipes.speaking import spoken
 from annotations.language.recipes.task_plan import (
     RecipeTrouble,
@@ -35,12 +36,12 @@ from annotations.language.recipes.task_plan import (
     task_plan_schema,
     task_plan_schema_text,
 )
-from annotations.language.recipes.usual_places import UsualPlaces, usual_places
 
 __all__ = [
     "DEFAULT_BOOK",
     "MAX_ROW",
     "MOST_COMMANDS",
+    "ActionPattern",
     "Distances",
     "Effect",
     "EffectKind",

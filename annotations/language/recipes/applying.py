@@ -18,6 +18,7 @@ from annotations.language.plans import (
     Words,
 )
 from annotations.language.recipes.book import RecipeBook
+from annotations.language.recipes.habitual_places import UsualPlaces
 from annotations.language.recipes.rows import (
     ActionPattern,
     Argument,
@@ -37,7 +38,6 @@ from annotations.language.recipes.task_plan import (
     TaskPlan,
     TaskProblem,
 )
-from annotations.language.recipes.usual_places import UsualPlaces
 from annotations.language.recipes.values import TaskValue, kinds_of, with_results
 from annotations.language.recipes.world import HERE, Place, Somewhere, World, with_texts
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 from annotations.language.plans import AT, Described, Operator, StepResult, Words
+from annotations.language.recipes.habitual_places import UsualPlaces, usual_place
 from annotations.language.recipes.rows import LASTING, EffectKind, Primitive
 from annotations.language.recipes.task_plan import RecipeTrouble, TaskProblem, TaskStep
-from annotations.language.recipes.usual_places import UsualPlaces, usual_place
 from annotations.language.recipes.values import (
     TaskValue,
     content,
