@@ -23,6 +23,7 @@ from annotations.web.description import (
     predicate_rest,
     production_rest,
     template_rest,
+    vocabulary_rest,
 )
 from annotations.web.editing import comment_rest, history_rest, notice_rest
 from annotations.web.people import account_rest, member_rest, token_rest
@@ -78,6 +79,7 @@ description = [
     path("check/production/", check_rest.CheckProduction.as_view(), name="check-production"),
     path("check/predicate/", check_rest.CheckPredicate.as_view(), name="check-predicate"),
     path("check/form/", check_rest.CheckForm.as_view(), name="check-form"),
+    path("vocabulary/", vocabulary_rest.Vocabulary.as_view(), name="vocabulary"),
     path("guidelines/", guidelines_rest.OneGuidelines.as_view(), name="guidelines"),
     path("history/<slug:kind>/<int:pk>/", history_rest.HistoryOfRow.as_view(), name="history"),
     path("deleted/<slug:kind>/", history_rest.Deleted.as_view(), name="deleted"),
