@@ -21,13 +21,15 @@ MOST_SPLITS = 4  # side by side without a choice
 MEASURES = {
     "exact": (Measure.EXACT,),
     "equivalent": (Measure.EQUIVALENT,),
-    "both": (Measure.EXACT, Measure.EQUIVALENT),
+    "same_plan": (Measure.SAME_PLAN,),
+    "all": (Measure.EXACT, Measure.EQUIVALENT, Measure.SAME_PLAN),
     "well_formed": (Measure.WELL_FORMED,),
 }
 MEASURE_LABELS = {
     "exact": "exact match",
     "equivalent": "equivalence",
-    "both": "both",
+    "same_plan": "same plan",
+    "all": "all three",
     "well_formed": "well-formed",
 }
 
