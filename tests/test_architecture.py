@@ -49,7 +49,7 @@ ROOMS = {
     ),
     "annotations/language": (
         "errors", "limits", "text", "decoding", "english", "symbols", "forms", "grammar", "ontology", "predicates",
-        "templates", "assistance", "suggestions", "grounding", "dialogue", "plans", "names", "corpus",
+        "templates", "assistance", "suggestions", "grounding", "dialogue", "plans", "recipes", "names", "corpus",
         "paraphrases", "agreement", "label_errors",
     ),
     "parser_service/neural": (

@@ -1,0 +1,192 @@
+"""Say a task plan in English: each step, and all of it as one sentence that a robot can speak."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from annotations.language.forms import PERSON, THING, kind_of_class
+from annotations.language.grounding import QUESTION_WORD
+from annotations.language.plans import (
+    Described,
+    Named,
+    Number,
+    Operator,
+    Referred,
+    StepResult,
+    Words,
+)
+from annotations.language.recipes.rows import EffectKind, Primitive
+from annotations.language.recipes.task_plan import TaskPlan, TaskStep
+from annotations.language.recipes.values import PLACE, TaskValue, content, kinds_of
+
+YOU = "you"
+COME_BACK = "come back to you"
+NOTHING = "I have nothing to do."
+_PRONOUNS = {PERSON: "them", THING: "it"}
+_OWNERS = {"them": "their", "it": "its"}
+_PLACEHOLDER = re.compile(r"\{([^{}]*)\}")
+_OF_PRONOUN = re.compile(r"\bthe (?P<what>[\w ]+?) of (?P<owner>them|it)\b")
+_CAPITAL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
+# What a person says about the robot, as the robot says it.
+_TURNED = {"yourself": "myself", "your": "my", "you": "me"}
+_TO_TURN = re.compile(rf"\b({'|'.join(_TURNED)})\b")
+
+
+def spoken(plan: TaskPlan) -> str:
+    """Return one sentence for the robot to speak.
+
+    >>> spoken(plan)
+    'I will go to the kitchen, find a coke, and bring it to you.'
+    """
+    clauses = _Clauses(plan.steps).all()
+    if not clauses:
+        return NOTHING
+    if len(clauses) > 2:
+        clauses = [", ".join(clauses[:-1]) + ",", clauses[-1]]
+    return f"I will {' and '.join(clauses)}."
+
+
+def step_texts(steps: Sequence[TaskStep]) -> list[str]:
+    """Return each step in English, to be read on its own."""
+    clauses = _Clauses(steps)
+    return [clauses.say(step, {}) for step in steps]
+
+
+@dataclass
+class _Clauses:
+    """Says steps one after another; what was mentioned last is ``it`` or ``them``."""
+
+    steps: Sequence[TaskStep]
+    _last: dict[str, object] = field(
+        default_factory=dict
+    )  # person or thing → the one mentioned last
+
+    def all(self) -> list[str]:
+        clauses = []
+        at = 0
+        while at < len(self.steps):
+            step = self.steps[at]
+            delivery = self._delivery(at)
+            if delivery:
+                step = self.steps[at + delivery]
+                effect = step.primitive.effect(EffectKind.RELEASES)
+                assert effect is not None
+                is_to_you = isinstance(_value(step, effect.target), Operator)
+                pattern = f"bring {{{effect.subject}}} to {YOU}" if is_to_you else ""
+                clauses.append(self.say(step, self._last, pattern))
+            else:
+                clauses.append(self.say(step, self._last))
+            at += 1 + delivery
+            self._remember(step)
+        return clauses
+
+    def _delivery(self, at: int) -> int:
+        """Return how many steps further on a thing that is taken is put down or handed over, if in one go.
+
+        Then the robot has moved in between to where the thing is left, and done nothing else.
+        """
+        if at + 2 >= len(self.steps):
+            return 0
+        take, move, release = self.steps[at : at + 3]
+        taken = take.primitive.effect(EffectKind.TAKES)
+        moved = move.primitive.effect(EffectKind.MOVES)
+        released = release.primitive.effect(EffectKind.RELEASES)
+        if not (taken and moved and released):
+            return 0
+        place, target = _value(move, moved.subject), _value(release, released.target)
+        is_there = place is not None and target is not None and content(place) == content(target)
+        return 2 if is_there and release.releases == take.holds else 0
+
+    def say(self, step: TaskStep, last: Mapping[str, object], pattern: str = "") -> str:
+        """Return a step in English, with pronouns for what was mentioned last."""
+        moves = step.primitive.effect(EffectKind.MOVES)
+        if moves and isinstance(_value(step, moves.subject), Operator):
+            return COME_BACK
+        values = dict(step.arguments)
+        found = step.primitive.effect(EffectKind.FINDS)
+        new = found.subject if found else ""
+        words = {
+            name: self._words(value, last, is_new=name == new) for name, value in values.items()
+        }
+        text = _fill(pattern or _pattern(step.primitive, values), words)
+        return _OF_PRONOUN.sub(lambda match: f"{_OWNERS[match['owner']]} {match['what']}", text)
+
+    def _words(self, value: TaskValue, last: Mapping[str, object], is_new: bool = False) -> str:
+        for kind in kinds_of(value) & _PRONOUNS.keys():
+            if kind in last and last[kind] == _identity(value):
+                return _PRONOUNS[kind]
+        if isinstance(value, StepResult):
+            return self._result(value.step)
+        return _noun_phrase(value, is_new)
+
+    def _result(self, number: int) -> str:
+        step = next((each for each in self.steps if each.number == number), None)
+        effect = step.primitive.effect(EffectKind.LEARNS) if step else None
+        if step is None or effect is None or not effect.noun:
+            return f"the result of step {number}"
+        return _fill(effect.noun, {name: self._words(each, {}) for name, each in step.arguments})
+
+    def _remember(self, step: TaskStep) -> None:
+        for _, value in step.arguments:
+            for kind in kinds_of(value) & _PRONOUNS.keys():
+                self._last[kind] = _identity(value)
+
+
+def _pattern(primitive: Primitive, values: Mapping[str, TaskValue]) -> str:
+    """Return the fullest pattern whose parameters all have a value."""
+    fitting = [each for each in primitive.said if set(_PLACEHOLDER.findall(each)) <= values.keys()]
+    if fitting:
+        return max(fitting, key=lambda each: len(_PLACEHOLDER.findall(each)))
+    name = _CAPITAL.sub(" ", primitive.name.replace("_", " ")).lower()
+    return " ".join((name, *(f"{{{each}}}" for each in values)))
+
+
+def _fill(pattern: str, words: Mapping[str, str]) -> str:
+    return _PLACEHOLDER.sub(lambda match: words.get(match[1], "something"), pattern)
+
+
+def _noun_phrase(value: TaskValue, is_new: bool) -> str:
+    if isinstance(value, Referred):
+        return _noun_phrase(value.value, is_new)
+    if isinstance(value, Operator):
+        return YOU
+    if isinstance(value, Number):
+        return str(value.value)
+    if isinstance(value, Words):
+        if value.text == QUESTION_WORD:
+            return f"the {value.text}"
+        return _TO_TURN.sub(lambda match: _TURNED[match[0]], value.text)
+    if isinstance(value, Named):
+        if kind_of_class(value.entity_class) not in ("", PERSON) or PLACE in kinds_of(value):
+            return f"the {value.text}"
+        return _TO_TURN.sub(lambda match: _TURNED[match[0]], value.text)
+    if not isinstance(value, Described):
+        return "something"
+    name = _only(value, "name", PERSON)
+    if name:
+        return name
+    thing = _only(value, "is_a", THING) if is_new else ""
+    if thing and not thing.endswith("s"):
+        return f"{'an' if thing[0] in 'aeiouAEIOU' else 'a'} {thing}"
+    return value.text or "it"
+
+
+def _only(value: Described, predicate: str, kind: str) -> str:
+    """Return the one entity that describes a value; empty where more is said of it."""
+    conditions = [each for each in value.conditions if each.values]
+    others = [each for each in value.conditions if not each.values and each.predicate != kind]
+    if others or len(conditions) != 1 or conditions[0].predicate != predicate:
+        return ""
+    (entity, *_) = conditions[0].values
+    is_entity = isinstance(entity, Named) and kind_of_class(entity.entity_class) == kind
+    return entity.text if is_entity and isinstance(entity, Named) else ""
+
+
+def _identity(value: TaskValue) -> object:
+    return value.id if isinstance(value, Described) else content(value)
+
+
+def _value(step: TaskStep, parameter: str) -> TaskValue | None:
+    return dict(step.arguments).get(parameter)
