@@ -29,7 +29,9 @@ from parser_service.runs.training.split_pairs import cluster_of
 
 TEXTS = ".values"  # ends the name of the array with the texts that codes stand for
 Column = "NDArray[Any] | EncodedLabels[str]"
-UNKNOWN_COUNT = -1  # where it is not known how often training had a label, or whether plans are the same
+UNKNOWN_COUNT = (
+    -1
+)  # where it is not known how often training had a label, or whether plans are the same
 AT_ONCE = 20_000  # rows read from the database
 
 
@@ -82,9 +84,7 @@ def answers_of(run: TrainingRun, part: str, examples: ExampleArrays) -> dict[str
         return _with_emptiness(columns)
     arrays = _read_answers(run, part, examples.keys)
     if run.status == Status.SUCCEEDED:
-        AnswerColumns.objects.update_or_create(
-            run=run, part=part, defaults={"data": _pack(arrays)}
-        )
+        AnswerColumns.objects.update_or_create(run=run, part=part, defaults={"data": _pack(arrays)})
     return _with_emptiness(arrays)
 
 
@@ -145,7 +145,8 @@ def _read_columns(
     texts: Sequence[str],
     flags: Sequence[str] = (),
 ) -> list[Any]:
-    """Return whole numbers (``UNKNOWN_COUNT`` for None, 1 for what is true) as arrays, then texts as labels, then truths as arrays.
+    """Return whole numbers (``UNKNOWN_COUNT`` for None, 1 for what is true) as arrays, then texts as labels, then
+    truths as arrays.
 
     A million rows are never in memory at once as Python objects, only the distinct texts.
     """

@@ -50,7 +50,7 @@ def test_no_cell_of_the_download_is_taken_for_a_formula(sample, anna):
     assert "'-1-1" in anna.get("/w/home/results.csv").content.decode()
 
 
-@pytest.mark.parametrize("measure", ["exact", "equivalent", "both", "well_formed"])
+@pytest.mark.parametrize("measure", ["exact", "equivalent", "same_plan", "all", "well_formed"])
 @pytest.mark.parametrize("beside", ["yes", ""])
 def test_every_download_holds_what_the_page_shows(measure, beside, sample, anna, published):
     equivalents(sample, 5 / 12)

@@ -68,13 +68,13 @@ def test_without_outcomes_by_cluster_the_interval_is_wilsons_and_nothing_is_best
 
 @pytest.mark.parametrize(
     ("measure", "shown"),
-    [("exact", "25.0"), ("equivalent", "50.0"), ("both", "25.0"), ("well_formed", "100.0")],
+    [("exact", "25.0"), ("equivalent", "50.0"), ("all", "25.0"), ("well_formed", "100.0")],
 )
 def test_a_switch_says_what_counts_as_right(measure, shown, sample, anna):
     equivalents(sample)
     page = anna.get("/w/home/results/", {"measure": measure}).content.decode()
     assert f"<b>{shown}</b>" in page
-    assert ("<b>50.0</b>" in page) == (measure in ("equivalent", "both"))
+    assert ("<b>50.0</b>" in page) == (measure in ("equivalent", "all"))
 
 
 def test_what_is_misspelled_is_the_default(sample, anna):
