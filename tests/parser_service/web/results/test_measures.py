@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from annotations.models import Example, Split
+from parser_service.results.accuracy_cells import PLANS_NOT_COMPARED
 from parser_service.results.accuracy_tables import accuracy_tables
 from parser_service.results.measures import Measure
 from parser_service.results.published import SIZES, published_accuracy, published_criteria
@@ -52,6 +53,32 @@ def test_equivalence_has_its_own_figure_interval_and_best(sample):
     best, same = table.rows[1].cells[0].figures
     assert (best.is_best, same.is_best) == (True, True)
     assert "6 of 12 equivalent" in equivalent.note
+
+
+def test_the_same_plan_has_its_own_figure_and_interval(sample):
+    sample.run.evaluations.update(same_plan=0.25)
+    every = (Measure.EXACT, Measure.EQUIVALENT, Measure.SAME_PLAN)
+    (table,) = accuracy_tables(sample.world, "validation", [sample.split], every)
+    *_, figure = table.rows[0].cells[0].figures
+    assert (figure.percent, figure.measure) == (25.0, Measure.SAME_PLAN)
+    assert figure.low < 25 < figure.high
+    assert "3 of 12 same plan" in figure.note
+
+
+def test_a_column_with_a_plan_that_was_not_compared_has_no_best(sample):
+    scored_run(sample.world, sample.split, "seq2seq", right=12)
+    every = (Measure.EXACT, Measure.SAME_PLAN)
+    (table,) = accuracy_tables(sample.world, "validation", [sample.split], every)
+    assert [figure.is_best for figure in table.rows[1].cells[0].figures] == [True, True]
+    sample.run.evaluations.update(same_plan=None)
+    (table,) = accuracy_tables(sample.world, "validation", [sample.split], every)
+    unknown, known = (row.cells[0].figures for row in table.rows)
+    assert unknown[1] is None
+    assert [figure.is_best for figure in known] == [True, False]
+    (table,) = accuracy_tables(sample.world, "validation", [sample.split], (Measure.SAME_PLAN,))
+    cell = table.rows[0].cells[0]
+    assert (cell.percent, cell.is_best) == (None, False)
+    assert PLANS_NOT_COMPARED in cell.note
 
 
 def test_without_outcomes_by_cluster_the_interval_is_wilsons_and_nothing_is_best(sample):
