@@ -21,7 +21,7 @@ from parser_service.models import Evaluation, TrainingRun
 from parser_service.parsers.conditions import PAPERS_SETTINGS, SETTINGS, Protocol, only_source
 from parser_service.parsers.registry import PARSERS
 from parser_service.results.accuracy_cells import Cell, newest_of_each_seed
-from parser_service.results.measures import Measure, is_known
+from parser_service.results.measures import Measure, count_of, is_known
 from parser_service.results.published import published_accuracy, published_criteria
 from parser_service.results.seed_figures import AccuracyFigure, figure_of
 from parser_service.results.table_parts import (
@@ -178,9 +178,13 @@ class TableMaker:
         if not counted:
             return self.url("run", among[0].pk)
         score = self.scores[among[0].pk, column.test_source]
-        return self.predictions_url(
-            among[0], column, "wrong" if score.correct < score.count else ""
-        )
+        return self.predictions_url(among[0], column, self.wrong_outcome(score))
+
+    def wrong_outcome(self, score: Evaluation) -> str:
+        """Return what the answers that the first figure counts as wrong are called; empty where there are none."""
+        by_plan = self.measures[0] is Measure.SAME_PLAN and is_known(score, Measure.SAME_PLAN)
+        measure = Measure.SAME_PLAN if by_plan else Measure.EXACT
+        return measure.outcomes[1] if count_of(score, measure) < score.count else ""
 
     def published_figure(self, parser: str, column: TableColumn) -> float | None:
         criterion = self.published.get(column.split.pk, "")

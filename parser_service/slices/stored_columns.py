@@ -83,8 +83,10 @@ def answers_of(run: TrainingRun, part: str, examples: ExampleArrays) -> dict[str
     if "is_same_plan" in columns:  # not in those that were stored before plans were compared
         return _with_emptiness(columns)
     arrays = _read_answers(run, part, examples.keys)
-    if run.status == Status.SUCCEEDED:
-        AnswerColumns.objects.update_or_create(run=run, part=part, defaults={"data": _pack(arrays)})
+    if stored is not None:
+        AnswerColumns.objects.filter(pk=stored.pk).update(data=_pack(arrays))
+    elif run.status == Status.SUCCEEDED:
+        AnswerColumns.objects.get_or_create(run=run, part=part, defaults={"data": _pack(arrays)})
     return _with_emptiness(arrays)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from annotations.models import Example, Split
+from parser_service.models import Prediction
 from parser_service.results.accuracy_cells import PLANS_NOT_COMPARED
 from parser_service.results.accuracy_tables import accuracy_tables
 from parser_service.results.measures import Measure
@@ -63,6 +64,19 @@ def test_the_same_plan_has_its_own_figure_and_interval(sample):
     assert (figure.percent, figure.measure) == (25.0, Measure.SAME_PLAN)
     assert figure.low < 25 < figure.high
     assert "3 of 12 same plan" in figure.note
+
+
+def test_a_figure_by_plan_leads_to_the_answers_with_another_plan(sample, anna):
+    wrong = sample.run.predictions.filter(is_exact_match=False).first()
+    Prediction.objects.filter(pk=wrong.pk).update(is_same_plan=True)
+    sample.run.evaluations.update(same_plan=4 / 12)
+    (table,) = accuracy_tables(sample.world, "validation", [sample.split], (Measure.SAME_PLAN,))
+    page = anna.get(table.rows[0].cells[0].url)
+    others = sample.run.predictions.filter(is_same_plan=False, example__source="generated")
+    assert page.context["listing"].total == others.count() > 0
+    sample.run.evaluations.update(same_plan=1)
+    (table,) = accuracy_tables(sample.world, "validation", [sample.split], (Measure.SAME_PLAN,))
+    assert "outcome=" not in table.rows[0].cells[0].url
 
 
 def test_a_column_with_a_plan_that_was_not_compared_has_no_best(sample):
