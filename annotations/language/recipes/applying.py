@@ -40,6 +40,8 @@ from annotations.language.recipes.task_plan import (
 from annotations.language.recipes.values import TaskValue, kinds_of, with_results
 from annotations.language.recipes.world import HERE, Place, Somewhere, World, with_texts
 
+_CURRENT = Words("current")
+
 
 def apply_recipes(plan: Plan, book: RecipeBook) -> TaskPlan:
     """Return the primitives that do what a plan says, in order.
@@ -171,20 +173,28 @@ class _Applier:
 
     def _named(self, place: Place, primitive: Primitive, parameter: str) -> TaskValue:
         """Return a place as an argument: nobody has named the one to which somebody leads."""
+        moves = primitive.effect(EffectKind.MOVES)
+        is_goal = moves is not None and moves.subject == parameter
+        if isinstance(place, Operator) and self._world.is_here(place) and not is_goal:
+            return HERE
         if not isinstance(place, Somewhere):
             return place
-        moves = primitive.effect(EffectKind.MOVES)
         if self._world.is_here(place):
             return HERE
-        number = len(self._world.steps) + 1
-        if moves is not None and moves.subject == parameter:
+        if is_goal:
             message = "Nobody has said where this place is."
             hint = "do what has to be done there before the robot leaves it"
+            number = len(self._world.steps) + 1
             self._world.report(RecipeTrouble.UNKNOWN_PLACE, number, message, hint)
         return OpenValue("")
 
     def _resolved(self, value: Value) -> TaskValue:
-        """Return what a value stands for, with results of steps of the task plan."""
+        """Return what a value stands for, with results of steps of the task plan.
+
+        The place where the robot is when it hears the command is that of the operator.
+        """
+        if value == _CURRENT:
+            return Operator()
         plain = value.value if isinstance(value, Referred) else value
         for number in self._missing(plain):
             message = f"Nothing gives the result of “{self._steps[number].text}”."

@@ -21,6 +21,7 @@ from annotations.language.limits import (
 )
 from annotations.language.recipes.rows import (
     OPERATOR_WORD,
+    PLACEHOLDER,
     ActionPattern,
     Argument,
     Call,
@@ -44,7 +45,6 @@ ARROW = "->"
 _TOKEN = re.compile(
     r'\s*+(?:(?P<name>[^\W\d]\w*+(?:-\w++)*+)|(?P<text>"(?:[^"\\]|\\.)*+")|(?P<sign>->|[(),:=?|]))'
 )
-_PLACEHOLDER = re.compile(r"\{([^{}]*)\}")
 # Words between the verb of an effect and its parameter, and those before its target.
 _BEFORE_SUBJECT = {EffectKind.MOVES: "to", EffectKind.SPEAKS: "to", EffectKind.ACTS: "on"}
 _BEFORE_TARGET = {EffectKind.RELEASES: ("at", "to"), EffectKind.ACCOMPANIES: ("to",)}
@@ -221,7 +221,7 @@ class _Row:
         self, pattern: str, parameters: tuple[PrimitiveParameter, ...], position: Position
     ) -> None:
         names = [each.name for each in parameters]
-        for match in _PLACEHOLDER.finditer(pattern):
+        for match in PLACEHOLDER.finditer(pattern):
             if match[1] not in names:
                 hint = f"it has {', '.join(names)}" if names else "write it without braces"
                 raise LanguageError(f"there is no parameter {match[1]}", position, hint)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TypeAlias
@@ -24,6 +25,8 @@ class EffectKind(StrEnum):
     ACTS = "acts"  # a thing that is here is not as it was: open, clean
 
 
+# ``{thing}`` in a pattern, and ``{things:plural}``.
+PLACEHOLDER = re.compile(r"\{(?P<name>[^{}:]*)(?P<is_plural>:plural)?\}")
 # Effects that last: a primitive that has no others is left out where they hold already.
 LASTING = frozenset((EffectKind.MOVES, EffectKind.FINDS, EffectKind.TAKES))
 
@@ -34,7 +37,7 @@ class Effect:
 
     ``subject`` is the parameter that it is about; empty for what a robot says to nobody and for what it
     learns. ``target`` is the parameter that says where or to whom, after ``preposition``. ``noun`` says in
-    English what is learnt: ``the number of {things}``.
+    English what is learnt: ``the number of {things:plural}``.
     """
 
     kind: EffectKind

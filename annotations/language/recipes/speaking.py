@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from annotations.language.english import plural
 from annotations.language.forms import PERSON, THING, kind_of_class
 from annotations.language.grounding import QUESTION_WORD
 from annotations.language.plans import (
@@ -17,7 +18,7 @@ from annotations.language.plans import (
     StepResult,
     Words,
 )
-from annotations.language.recipes.rows import EffectKind, Primitive
+from annotations.language.recipes.rows import PLACEHOLDER, EffectKind, Primitive
 from annotations.language.recipes.task_plan import TaskPlan, TaskStep
 from annotations.language.recipes.values import PLACE, TaskValue, content, kinds_of
 
@@ -26,8 +27,9 @@ COME_BACK = "come back to you"
 NOTHING = "I have nothing to do."
 _PRONOUNS = {PERSON: "them", THING: "it"}
 _OWNERS = {"them": "their", "it": "its"}
-_PLACEHOLDER = re.compile(r"\{([^{}]*)\}")
-_OF_PRONOUN = re.compile(r"\bthe (?P<what>[\w ]+?) of (?P<owner>them|it)\b")
+_OF_PRONOUN = re.compile(r"\bthe (?P<what>[\w ]+?(?: “[^”]*”)?) of (?P<owner>them|it)\b")
+_AT_HERE = re.compile(r" (?:on|to|at|in) here\b")
+_CLAUSE = re.compile(r" (who|that) is ")
 _CAPITAL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 # What a person says about the robot, as the robot says it.
 _TURNED = {"yourself": "myself", "your": "my", "you": "me"}
@@ -83,21 +85,24 @@ class _Clauses:
         return clauses
 
     def _delivery(self, at: int) -> int:
-        """Return how many steps further on a thing that is taken is put down or handed over, if in one go.
+        """Return how many steps further on the thing that is taken now is left, if nothing but a move comes between.
 
-        Then the robot has moved in between to where the thing is left, and done nothing else.
+        It is left at the place, or with the operator, where the robot is then; 0 if it is not.
         """
-        if at + 2 >= len(self.steps):
+        take, *after = self.steps[at : at + 3]
+        if not take.primitive.effect(EffectKind.TAKES):
             return 0
-        take, move, release = self.steps[at : at + 3]
-        taken = take.primitive.effect(EffectKind.TAKES)
-        moved = move.primitive.effect(EffectKind.MOVES)
-        released = release.primitive.effect(EffectKind.RELEASES)
-        if not (taken and moved and released):
-            return 0
-        place, target = _value(move, moved.subject), _value(release, released.target)
-        is_there = place is not None and target is not None and content(place) == content(target)
-        return 2 if is_there and release.releases == take.holds else 0
+        place = take.place
+        for distance, step in enumerate(after, start=1):
+            released = step.primitive.effect(EffectKind.RELEASES)
+            if released is None and not step.primitive.effect(EffectKind.MOVES):
+                return 0
+            if released is not None:
+                target = _value(step, released.target)
+                is_there = place and target and content(place) == content(target)
+                return distance if is_there and step.releases == take.holds else 0
+            place = step.place
+        return 0
 
     def say(self, step: TaskStep, last: Mapping[str, object], pattern: str = "") -> str:
         """Return a step in English, with pronouns for what was mentioned last."""
@@ -107,26 +112,29 @@ class _Clauses:
         values = dict(step.arguments)
         found = step.primitive.effect(EffectKind.FINDS)
         new = found.subject if found else ""
-        words = {
-            name: self._words(value, last, is_new=name == new) for name, value in values.items()
-        }
-        text = _fill(pattern or _pattern(step.primitive, values), words)
+        is_heard = any(PERSON in kinds_of(each) for each in values.values())
+
+        def words(name: str, is_plural: bool) -> str:
+            value = values.get(name)
+            if isinstance(value, StepResult):
+                return self._result(value.step, {} if is_heard else last)
+            return _say_value(value, {} if is_plural else last, name == new, is_plural)
+
+        text = _AT_HERE.sub(" here", _fill(pattern or _pattern(step.primitive, values), words))
         return _OF_PRONOUN.sub(lambda match: f"{_OWNERS[match['owner']]} {match['what']}", text)
 
-    def _words(self, value: TaskValue, last: Mapping[str, object], is_new: bool = False) -> str:
-        for kind in kinds_of(value) & _PRONOUNS.keys():
-            if kind in last and last[kind] == _identity(value):
-                return _PRONOUNS[kind]
-        if isinstance(value, StepResult):
-            return self._result(value.step)
-        return _noun_phrase(value, is_new)
-
-    def _result(self, number: int) -> str:
+    def _result(self, number: int, last: Mapping[str, object]) -> str:
         step = next((each for each in self.steps if each.number == number), None)
         effect = step.primitive.effect(EffectKind.LEARNS) if step else None
         if step is None or effect is None or not effect.noun:
             return f"the result of step {number}"
-        return _fill(effect.noun, {name: self._words(each, {}) for name, each in step.arguments})
+        values = dict(step.arguments)
+        return _fill(
+            effect.noun,
+            lambda name, is_plural: _say_value(
+                values.get(name), {} if is_plural else last, False, is_plural
+            ),
+        )
 
     def _remember(self, step: TaskStep) -> None:
         for _, value in step.arguments:
@@ -136,20 +144,37 @@ class _Clauses:
 
 def _pattern(primitive: Primitive, values: Mapping[str, TaskValue]) -> str:
     """Return the fullest pattern whose parameters all have a value."""
-    fitting = [each for each in primitive.said if set(_PLACEHOLDER.findall(each)) <= values.keys()]
+    names = {
+        each: {match["name"] for match in PLACEHOLDER.finditer(each)} for each in primitive.said
+    }
+    fitting = [each for each in primitive.said if names[each] <= values.keys()]
     if fitting:
-        return max(fitting, key=lambda each: len(_PLACEHOLDER.findall(each)))
+        return max(fitting, key=lambda each: len(names[each]))
     name = _CAPITAL.sub(" ", primitive.name.replace("_", " ")).lower()
     return " ".join((name, *(f"{{{each}}}" for each in values)))
 
 
-def _fill(pattern: str, words: Mapping[str, str]) -> str:
-    return _PLACEHOLDER.sub(lambda match: words.get(match[1], "something"), pattern)
+def _fill(pattern: str, words: Callable[[str, bool], str]) -> str:
+    return PLACEHOLDER.sub(lambda match: words(match["name"], bool(match["is_plural"])), pattern)
 
 
-def _noun_phrase(value: TaskValue, is_new: bool) -> str:
+def _say_value(
+    value: TaskValue | None, last: Mapping[str, object], is_new: bool, is_plural: bool
+) -> str:
+    return _mention(value, last) or _noun_phrase(value, is_new, is_plural)
+
+
+def _mention(value: TaskValue | None, last: Mapping[str, object]) -> str:
+    """Return the pronoun for what was mentioned last; empty for anything else."""
+    if value is None:
+        return ""
+    kinds = sorted(kinds_of(value) & _PRONOUNS.keys())
+    return next((_PRONOUNS[each] for each in kinds if last.get(each) == _identity(value)), "")
+
+
+def _noun_phrase(value: TaskValue | None, is_new: bool, is_plural: bool) -> str:
     if isinstance(value, Referred):
-        return _noun_phrase(value.value, is_new)
+        return _noun_phrase(value.value, is_new, is_plural)
     if isinstance(value, Operator):
         return YOU
     if isinstance(value, Number):
@@ -161,9 +186,15 @@ def _noun_phrase(value: TaskValue, is_new: bool) -> str:
     if isinstance(value, Named):
         if kind_of_class(value.entity_class) not in ("", PERSON) or PLACE in kinds_of(value):
             return f"the {value.text}"
+        if value.text.endswith("?"):
+            return f"the question “{value.text}”"
         return _TO_TURN.sub(lambda match: _TURNED[match[0]], value.text)
     if not isinstance(value, Described):
         return "something"
+    if is_plural:
+        head, *clause = _CLAUSE.split(value.text.removeprefix("the "), maxsplit=1)
+        nouns = f"the {plural(head)}"
+        return f"{nouns} {clause[0]} are {clause[1]}" if clause else nouns
     name = _only(value, "name", PERSON)
     if name:
         return name

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 from annotations.language.plans import AT, Described, Operator, StepResult, Words
 from annotations.language.recipes.rows import LASTING, EffectKind, Primitive
@@ -37,39 +37,60 @@ class World:
     place: Place = field(default_factory=Operator)
     held: TaskValue | None = None
     _taken_by: int = 0
+    _taken_at: Place = field(default_factory=Operator)
     _moved_by: int = 0
-    _found: dict[Any, tuple[TaskValue, int]] = field(default_factory=dict)
+    _found: list[tuple[TaskValue, int]] = field(default_factory=list)  # here, and by which step
     _whereabouts: dict[str, Place] = field(default_factory=dict)  # id → where it was left
     _located: set[str] = field(default_factory=set)  # ids of what the robot has been where it is
+    _met: set[str] = field(default_factory=set)  # ids of what the robot has found or taken
     _same: dict[str, Described] = field(default_factory=dict)  # id → the earlier description of it
     _last_here: set[int] = field(default_factory=set)  # steps here that no other step here requires
 
     def place_of(self, value: TaskValue) -> Place:
         """Return where something is: in the gripper, where it was left, where it is said to be, or here."""
         value = self.known(value)
-        if self.is_held(value) or self._key(value) in self._found:
+        owner = _owner(value)
+        if self.is_held(owner) or self._step_that_found(owner):
             return self.place
-        identity = _identity(value)
+        identity = _identity(owner)
         if identity in self._whereabouts:
             return self._whereabouts[identity]
         said = said_place(value)
         if isinstance(said, Described) and said is not value:
             return self.known(said)
-        return self.place if said is None else said
+        return HERE if said is None else said
 
     def known(self, value: TaskValue) -> TaskValue:
         """Return the description under which something is known already."""
         return self._same.get(value.id, value) if isinstance(value, Described) else value
 
     def is_held(self, value: TaskValue) -> bool:
-        return self.held is not None and self._key(self.held) == self._key(value)
+        return self.held is not None and self._is_same(value, self.held, self._taken_at)
+
+    def _step_that_found(self, value: TaskValue) -> int:
+        """Return the step that found something here; 0 if none has."""
+        return next(
+            (number for each, number in self._found if self._is_same(value, each, self.place)), 0
+        )
+
+    def _is_same(self, value: TaskValue, earlier: TaskValue, place: Place) -> bool:
+        """Return whether a value is what the robot came upon at a place.
+
+        What is described in the same words is, when it is mentioned for the first time and not said to be
+        elsewhere; later it is known by its id.
+        """
+        if not isinstance(value, Described) or not isinstance(earlier, Described):
+            return content(value) == content(earlier)
+        if value.id == earlier.id or value.id in self._met:
+            return value.id == earlier.id
+        said = _at(value)
+        is_there = said is None or _are_equal(said, place)
+        return is_there and content(without_place(value)) == content(without_place(earlier))
 
     def is_here(self, place: Place) -> bool:
         if place == HERE:
             return True
-        if isinstance(place, Somewhere) or isinstance(self.place, Somewhere):
-            return place == self.place
-        return content(place) == content(self.place)
+        return _are_equal(place, self.place)
 
     def add(self, primitive: Primitive, arguments: Arguments, source: int) -> TaskStep | None:
         """Do one primitive.
@@ -118,7 +139,7 @@ class World:
                 return False
             holds = {
                 EffectKind.MOVES: self.is_here(value),
-                EffectKind.FINDS: self.is_held(value) or self._key(value) in self._found,
+                EffectKind.FINDS: self.is_held(value) or bool(self._step_that_found(value)),
                 EffectKind.TAKES: self.is_held(value),
             }
             if not holds[each.kind]:
@@ -132,7 +153,8 @@ class World:
             value = values.get(effect.subject) if effect else None
             if not isinstance(value, Described):
                 continue
-            earlier = self.held if self.is_held(value) else self._found[self._key(value)][0]
+            here = (each for each, _ in self._found if self._is_same(value, each, self.place))
+            earlier = self.held if self.is_held(value) else next(here, None)
             if isinstance(earlier, Described) and earlier.id != value.id:
                 self._same[value.id] = earlier
 
@@ -140,10 +162,8 @@ class World:
         requires: set[int] = set()
         for value in values.values():
             requires |= results_in(value)
-            if self.is_held(value):
-                requires.add(self._taken_by)
-            elif self._key(value) in self._found:
-                requires.add(self._found[self._key(value)][1])
+            is_held = self.is_held(_owner(value))
+            requires.add(self._taken_by if is_held else self._step_that_found(_owner(value)))
         is_move = primitive.effect(EffectKind.MOVES) is not None
         if is_move or primitive.effect(EffectKind.ACCOMPANIES):
             requires |= self._last_here  # leaving undoes what they need
@@ -164,14 +184,14 @@ class World:
             if effect.kind is EffectKind.MOVES:
                 self._move(value, number)
             elif effect.kind is EffectKind.FINDS:
-                self._found[self._key(value)] = (value, number)
+                self._find(value, number)
             elif effect.kind is EffectKind.TAKES:
                 self._take(value, number)
             elif effect.kind is EffectKind.RELEASES:
                 releases = self._release(value, values.get(effect.target), number)
             elif effect.kind is EffectKind.ACCOMPANIES:
                 self._move(values.get(effect.target, Somewhere(number)), number)
-                self._found[self._key(value)] = (value, number)
+                self._find(value, number)
                 self._whereabouts[_identity(value)] = self.place
         return releases
 
@@ -181,6 +201,10 @@ class World:
         self._found.clear()
         self._last_here = {number}
 
+    def _find(self, value: TaskValue, number: int) -> None:
+        self._found.append((value, number))
+        self._met.add(_identity(value))
+
     def _take(self, value: TaskValue, number: int) -> None:
         if self.held is not None:
             message = "The robot takes something while it holds something else."
@@ -189,7 +213,11 @@ class World:
             )
         self.held = value
         self._taken_by = number
-        self._found.pop(self._key(value), None)
+        self._taken_at = self.place
+        self._found = [
+            each for each in self._found if not self._is_same(value, each[0], self.place)
+        ]
+        self._met.add(_identity(value))
 
     def _release(self, value: TaskValue, target: TaskValue | None, number: int) -> TaskValue:
         if not self.is_held(value):
@@ -204,18 +232,15 @@ class World:
         """Return a value without its place, where the robot is there or has been."""
         if not isinstance(value, Described):
             return value
-        owner = value.of or value
-        at = next((each for each in owner.conditions if each.predicate == AT and each.values), None)
+        at = _at(value)
+        identity = _identity(value)
         if at is None:
             return value
-        if owner.id not in self._located:
-            if not self.is_here(at.values[0]):
+        if identity not in self._located:
+            if not self.is_here(at):
                 return value
-            self._located.add(owner.id)
+            self._located.add(identity)
         return without_place(value)
-
-    def _key(self, value: TaskValue) -> tuple[Any, ...]:
-        return content(without_place(value) if isinstance(value, Described) else value)
 
 
 def results_in(value: TaskValue) -> set[int]:
@@ -229,10 +254,29 @@ def results_in(value: TaskValue) -> set[int]:
     return numbers | results_in(value.of) if value.of else numbers
 
 
+def _owner(value: TaskValue) -> TaskValue:
+    """Return the person of whom a value is an attribute, else the value."""
+    return value.of if isinstance(value, Described) and value.of is not None else value
+
+
 def _identity(value: TaskValue) -> str:
-    if isinstance(value, Described):
-        return _identity(value.of) if value.of is not None else value.id
-    return repr(content(value))
+    owner = _owner(value)
+    return owner.id if isinstance(owner, Described) else repr(content(owner))
+
+
+def _at(value: TaskValue) -> TaskValue | None:
+    """Return what something is said to be at; None if that is not said."""
+    owner = _owner(value)
+    conditions = owner.conditions if isinstance(owner, Described) else ()
+    return next(
+        (each.values[0] for each in conditions if each.predicate == AT and each.values), None
+    )
+
+
+def _are_equal(one: Place, other: Place) -> bool:
+    if isinstance(one, Somewhere) or isinstance(other, Somewhere):
+        return one == other
+    return content(one) == content(other)
 
 
 def with_texts(steps: Sequence[TaskStep], texts: Sequence[str]) -> tuple[TaskStep, ...]:
