@@ -99,7 +99,7 @@ def test_every_page_of_a_world_belongs_to_one_entry():
         "near_duplicates",
     }
     parts |= {"production_check", "production_preview", "predicate_preview", "class_colours"}
-    parts |= {"download_part"}
+    parts |= {"download_part", "recipe_book", "recipe_preview", "primitive_preview"}
     parts |= {"template_completion", "template_suggestions", "template_repair"}
     parts |= {"template_duplicate", "delete_row"}
     parts |= {"runs_table", "run_state", "run_charts", "run_curves", "run_cancel", "results_table"}

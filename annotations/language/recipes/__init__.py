@@ -13,7 +13,7 @@ from annotations.language.recipes.book import (
 )
 from annotations.language.recipes.comparing import plan_key, same_plan
 from annotations.language.recipes.reading import MAX_ROW, read_primitive, read_recipe
-from annotations.language.recipes.rows import Effect, EffectKind, Primitive, Recipe
+from annotations.language.recipes.rows import ActionPattern, Effect, EffectKind, Primitive, Recipe
 from annotations.language.recipes.speaking import spoken
 from annotations.language.recipes.task_plan import (
     RecipeTrouble,
@@ -27,6 +27,7 @@ from annotations.language.recipes.task_plan import (
 __all__ = [
     "DEFAULT_BOOK",
     "MAX_ROW",
+    "ActionPattern",
     "Effect",
     "EffectKind",
     "Primitive",

@@ -124,22 +124,39 @@ class _Clauses:
         return _OF_PRONOUN.sub(lambda match: f"{_OWNERS[match['owner']]} {match['what']}", text)
 
     def _result(self, number: int, last: Mapping[str, object]) -> str:
+        """Return what a step has learnt; with its place where another step learns what has the same words."""
         step = next((each for each in self.steps if each.number == number), None)
-        effect = step.primitive.effect(EffectKind.LEARNS) if step else None
-        if step is None or effect is None or not effect.noun:
+        if step is None or not _learnt(step, {}):
             return f"the result of step {number}"
-        values = dict(step.arguments)
-        return _fill(
-            effect.noun,
-            lambda name, is_plural: _say_value(
-                values.get(name), {} if is_plural else last, False, is_plural
-            ),
-        )
+        words = _learnt(step, {})
+        is_one_of_many = sum(_learnt(each, {}) == words for each in self.steps) > 1
+        if is_one_of_many and step.place is not None:
+            return f"{words} {_preposition(step.place)} {_noun_phrase(step.place, False, False)}"
+        return _learnt(step, last)
 
     def _remember(self, step: TaskStep) -> None:
         for _, value in step.arguments:
             for kind in kinds_of(value) & _PRONOUNS.keys():
                 self._last[kind] = _identity(value)
+
+
+def _learnt(step: TaskStep, last: Mapping[str, object]) -> str:
+    """Return the result of a step in English; empty if it has no words for it."""
+    effect = step.primitive.effect(EffectKind.LEARNS)
+    values = dict(step.arguments)
+    return _fill(
+        effect.noun if effect else "",
+        lambda name, is_plural: _say_value(
+            values.get(name), {} if is_plural else last, False, is_plural
+        ),
+    )
+
+
+def _preposition(place: TaskValue) -> str:
+    """Return "in" for a room, "with" for the operator and "at" for any other place."""
+    if isinstance(place, Operator):
+        return "with"
+    return "in" if isinstance(place, Named) and place.entity_class == "room" else "at"
 
 
 def _pattern(primitive: Primitive, values: Mapping[str, TaskValue]) -> str:

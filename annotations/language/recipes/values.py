@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, TypeAlias
 
 from annotations.language.forms import PERSON, PERSON_PREDICATES, THING, kind_of_class
@@ -124,24 +124,48 @@ def _condition(condition: Condition, inside: tuple[str, ...]) -> tuple[Any, ...]
     return (condition.predicate, *(content(each, inside) for each in condition.values))
 
 
-def with_results(value: TaskValue, numbers: Mapping[int, int]) -> TaskValue:
-    """Return a value with the number of the step of the task plan for that of the form's plan."""
+def with_results(
+    value: TaskValue, numbers: Mapping[int, int], ids: Mapping[str, str] | None = None
+) -> TaskValue:
+    """Return a value with other numbers for the steps whose results it uses, and other ids.
+
+    A step that is not in ``numbers`` gives no result; an id that is not in ``ids`` stays. References stand
+    for what they refer to.
+    """
     if isinstance(value, StepResult):
         number = numbers.get(value.step)
         return OpenValue("") if number is None else StepResult(number)
     if isinstance(value, Referred):
-        return with_results(value.value, numbers)
+        return with_results(value.value, numbers, ids)
     if not isinstance(value, Described):
         return value
-    if value.of is not None:
-        owner = with_results(value.of, numbers)
-        assert isinstance(owner, Described)
-        return Described(value.id, value.text, (), value.attribute, owner, value.short_text)
     conditions = tuple(
-        Condition(each.predicate, tuple(_plain(with_results(v, numbers)) for v in each.values))
+        Condition(each.predicate, tuple(_plain(with_results(v, numbers, ids)) for v in each.values))
         for each in value.conditions
     )
-    return Described(value.id, value.text, conditions, short_text=value.short_text)
+    owner = value.of and with_results(value.of, numbers, ids)
+    assert owner is None or isinstance(owner, Described)
+    new_id = (ids or {}).get(value.id, value.id)
+    return Described(new_id, value.text, conditions, value.attribute, owner, value.short_text)
+
+
+def ids_in(value: TaskValue) -> Iterator[str]:
+    """Yield the ids of what a value describes, itself first."""
+    if isinstance(value, Described):
+        yield value.id
+        for condition in value.conditions:
+            for each in condition.values:
+                yield from ids_in(each)
+        if value.of is not None:
+            yield from ids_in(value.of)
+
+
+def is_named_person(value: TaskValue) -> bool:
+    """Return whether a value describes somebody by a name, so that the same words mean the same person."""
+    return isinstance(value, Described) and any(
+        each.predicate == "name" and any(isinstance(name, Named) for name in each.values)
+        for each in value.conditions
+    )
 
 
 def _plain(value: TaskValue) -> Value:

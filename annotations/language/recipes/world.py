@@ -9,7 +9,13 @@ from typing import TypeAlias
 from annotations.language.plans import AT, Described, Operator, StepResult, Words
 from annotations.language.recipes.rows import LASTING, EffectKind, Primitive
 from annotations.language.recipes.task_plan import RecipeTrouble, TaskProblem, TaskStep
-from annotations.language.recipes.values import TaskValue, content, said_place, without_place
+from annotations.language.recipes.values import (
+    TaskValue,
+    content,
+    is_named_person,
+    said_place,
+    without_place,
+)
 
 HERE = Words("here")
 
@@ -36,9 +42,12 @@ class World:
     problems: list[TaskProblem] = field(default_factory=list)
     place: Place = field(default_factory=Operator)
     held: TaskValue | None = None
+    # id → the command that describes it, where several commands share the world: equal words of two
+    # commands mean the same person if they name one, and two things.
+    commands: Mapping[str, int] = field(default_factory=dict)
+    moved_by: int = 0  # the step that has led the robot to its place; 0 where it began
     _taken_by: int = 0
     _taken_at: Place = field(default_factory=Operator)
-    _moved_by: int = 0
     _found: list[tuple[TaskValue, int]] = field(default_factory=list)  # here, and by which step
     _whereabouts: dict[str, Place] = field(default_factory=dict)  # id → where it was left
     _located: set[str] = field(default_factory=set)  # ids of what the robot has been where it is
@@ -50,7 +59,7 @@ class World:
         """Return where something is: in the gripper, where it was left, where it is said to be, or here."""
         value = self.known(value)
         owner = _owner(value)
-        if self.is_held(owner) or self._step_that_found(owner):
+        if self.is_held(owner) or self.step_that_found(owner):
             return self.place
         identity = _identity(owner)
         if identity in self._whereabouts:
@@ -67,7 +76,7 @@ class World:
     def is_held(self, value: TaskValue) -> bool:
         return self.held is not None and self._is_same(value, self.held, self._taken_at)
 
-    def _step_that_found(self, value: TaskValue) -> int:
+    def step_that_found(self, value: TaskValue) -> int:
         """Return the step that found something here; 0 if none has."""
         return next(
             (number for each, number in self._found if self._is_same(value, each, self.place)), 0
@@ -83,14 +92,17 @@ class World:
             return content(value) == content(earlier)
         if value.id == earlier.id or value.id in self._met:
             return value.id == earlier.id
+        is_of_other = self.commands.get(value.id) != self.commands.get(earlier.id)
+        if is_of_other and not is_named_person(value):
+            return False
         said = _at(value)
-        is_there = said is None or _are_equal(said, place)
+        is_there = said is None or are_equal(said, place)
         return is_there and content(without_place(value)) == content(without_place(earlier))
 
     def is_here(self, place: Place) -> bool:
         if place == HERE:
             return True
-        return _are_equal(place, self.place)
+        return are_equal(place, self.place)
 
     def add(self, primitive: Primitive, arguments: Arguments, source: int) -> TaskStep | None:
         """Do one primitive.
@@ -139,7 +151,7 @@ class World:
                 return False
             holds = {
                 EffectKind.MOVES: self.is_here(value),
-                EffectKind.FINDS: self.is_held(value) or bool(self._step_that_found(value)),
+                EffectKind.FINDS: self.is_held(value) or bool(self.step_that_found(value)),
                 EffectKind.TAKES: self.is_held(value),
             }
             if not holds[each.kind]:
@@ -163,12 +175,12 @@ class World:
         for value in values.values():
             requires |= results_in(value)
             is_held = self.is_held(_owner(value))
-            requires.add(self._taken_by if is_held else self._step_that_found(_owner(value)))
+            requires.add(self._taken_by if is_held else self.step_that_found(_owner(value)))
         is_move = primitive.effect(EffectKind.MOVES) is not None
         if is_move or primitive.effect(EffectKind.ACCOMPANIES):
             requires |= self._last_here  # leaving undoes what they need
         if not is_move:
-            requires.add(self._moved_by)
+            requires.add(self.moved_by)
         return requires - {0}
 
     def _change(
@@ -197,7 +209,7 @@ class World:
 
     def _move(self, place: Place, number: int) -> None:
         self.place = place
-        self._moved_by = number
+        self.moved_by = number
         self._found.clear()
         self._last_here = {number}
 
@@ -273,7 +285,8 @@ def _at(value: TaskValue) -> TaskValue | None:
     )
 
 
-def _are_equal(one: Place, other: Place) -> bool:
+def are_equal(one: Place, other: Place) -> bool:
+    """Return whether two places are the same."""
     if isinstance(one, Somewhere) or isinstance(other, Somewhere):
         return one == other
     return content(one) == content(other)

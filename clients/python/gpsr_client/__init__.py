@@ -5,7 +5,16 @@ from __future__ import annotations
 from gpsr_client.client import Workbench
 from gpsr_client.dialogue import Dialogue, SlotQuestion
 from gpsr_client.errors import Away, Refused, WorkbenchError
-from gpsr_client.responses import Candidate, OpenSlot, Parse, Plan, PlanProblem, Step
+from gpsr_client.responses import (
+    Candidate,
+    OpenSlot,
+    Parse,
+    Plan,
+    PlanProblem,
+    Step,
+    TaskPlan,
+    TaskStep,
+)
 
 __all__ = [
     "Away",
@@ -18,6 +27,8 @@ __all__ = [
     "Refused",
     "SlotQuestion",
     "Step",
+    "TaskPlan",
+    "TaskStep",
     "Workbench",
     "WorkbenchError",
 ]

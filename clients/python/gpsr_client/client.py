@@ -12,7 +12,7 @@ from uuid import uuid4
 
 from gpsr_client.dialogue import Dialogue
 from gpsr_client.errors import Away, Refused, WorkbenchError
-from gpsr_client.responses import Parse, Plan
+from gpsr_client.responses import Parse, Plan, TaskPlan
 from gpsr_client.transport import Transport
 
 
@@ -72,11 +72,17 @@ class Workbench:
         """Return the plan of a form with entities, such as ``grounded`` of a candidate."""
         return Plan.from_json(self._transport.post(f"{self._path}plan/", {"form": form}))
 
-    def behavior_tree(self, form: str) -> str:
-        """Return the plan of a form as XML for BehaviorTree.CPP 4."""
+    def task_plan(self, form: str) -> TaskPlan:
+        """Return the plan of a form in the primitives of the robot."""
+        value = self._transport.post(f"{self._path}task-plan/", {"form": form})
+        return TaskPlan.from_json(value["task_plan"])
+
+    def behavior_tree(self, form: str, in_primitives: bool = False) -> str:
+        """Return the plan of a form as XML for BehaviorTree.CPP 4; of its actions, or in the robot's primitives."""
         body = json.dumps({"form": form, "as": "xml"}).encode()
+        path = f"{self._path}task-plan/" if in_primitives else f"{self._path}plan/"
         try:
-            with self._transport.open("POST", f"{self._path}plan/", body) as answer:
+            with self._transport.open("POST", path, body) as answer:
                 return answer.read().decode("utf-8")
         except (HTTPException, OSError) as error:
             raise Away(f"The answer broke off: {error}") from error

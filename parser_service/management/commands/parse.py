@@ -117,6 +117,8 @@ class Command(ReportingCommand):
             shown = candidate["reading"] or f"{candidate['form']}   (no well-formed form)"
             lines.append(f"{candidate['score']:8.3f}  {shown}")
         best = report["candidates"][0]["remarks"] if report["candidates"] else ["no answer"]
+        if report["candidates"] and report["candidates"][0]["spoken"]:
+            lines.append(report["candidates"][0]["spoken"])
         if report["is_cut"]:
             lines.append("The text is longer than the parser reads: it read only the beginning.")
         return "\n".join([*lines, *report["remarks"], *best])

@@ -75,6 +75,13 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "entity": "patch entity-detail",
     "entity_class_new": "post entity-class-list",
     "entity_class": "patch entity-class-detail",
+    "recipe_new": "post recipe-list",
+    "recipe": "patch recipe-detail",
+    "recipe_preview": "post check-recipe",
+    "primitive_new": "post primitive-list",
+    "primitive": "patch primitive-detail",
+    "primitive_preview": "post check-primitive",
+    "recipe_book": "patch recipe-book",
     "predicate_new": "post predicate-list",
     "predicate": "patch predicate-detail",
     "predicate_preview": "post check-predicate",
@@ -91,7 +98,7 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "template_consequences": "post check-template",
     "template_suggestions": "post suggestions",
     "delete_row": "delete entity-detail, delete predicate-detail, delete production-detail, "
-    "delete entity-class-detail, "
+    "delete entity-class-detail, delete recipe-detail, delete primitive-detail, "
     "delete template-detail, delete paraphrase-detail, delete utterance-detail",
     "history": "post history",
     "rename": "post rename",
@@ -191,6 +198,7 @@ PAGE_VIEWS: dict[str, str | NoRoute] = {
     "ontology": "get entity-list",
     "entity_classes": "get entity-class-list",
     "class_colours": NoRoute("The route of classes gives their hues."),
+    "recipes": "get recipe-list, get primitive-list, get recipe-book, get shipped-books",
     "predicates": "get predicate-list",
     "grammar": "get production-list",
     "coverage": "get task-categories",

@@ -87,6 +87,7 @@ POLICY = [
             "entity",
             "entity_classes",
             "class_colours",
+            "recipes",
             "predicates",
             "grammar",
             "coverage",
@@ -179,6 +180,14 @@ POLICY = [
     Rule("entity_class", *ANNOTATORS, method="post"),
     Rule("entity_class_new", *ANNOTATORS),
     Rule("entity_class_new", *ANNOTATORS, method="post"),
+    *(Rule(name, *MEMBERS) for name in ("recipe", "primitive")),
+    *(
+        Rule(name, *ANNOTATORS, method="post")
+        for name in ("recipe", "primitive", "recipe_preview", "primitive_preview")
+    ),
+    *(Rule(name, *ANNOTATORS) for name in ("recipe_new", "primitive_new")),
+    *(Rule(name, *ANNOTATORS, method="post") for name in ("recipe_new", "primitive_new")),
+    Rule("recipe_book", LOG_IN, NOWHERE, GONE_ON, NO, GONE_ON, method="post"),
     Rule("predicate", *MEMBERS),
     Rule("predicate", *ANNOTATORS, method="post"),
     Rule("predicate_new", *ANNOTATORS),

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 from functools import cache
 from itertools import pairwise
+from pathlib import Path
 
 import jsonschema
 import pytest
@@ -39,7 +40,6 @@ from annotations.language.templates import (
     generate,
     read_generator_files,
 )
-from annotations.worlds.shipped_worlds import SHIPPED_WORLDS
 from tests.annotations.language.ontology_files import read_ontology_folder
 from tests.annotations.language.published import SHARED
 from tests.annotations.language.random_commands import commands
@@ -49,8 +49,12 @@ from tests.annotations.language.sample_ontology import HOME
 
 JSON_SCHEMA = jsonschema.Draft202012Validator(task_plan_schema())
 XML_SCHEMA = xmlschema.XMLSchema(behavior_tree_schema_text())
-WORLDS = {name: SHIPPED_WORLDS[name].folder for name in ("household", "competition")}
-WORLDS["generator-2018"] = SHARED / "generator-2018"
+STARTER = Path(__file__).parents[4] / "annotations" / "starter"
+WORLDS = {
+    "household": STARTER / "household",
+    "competition": STARTER / "competition",
+    "generator-2018": SHARED / "generator-2018",
+}
 
 TEA = '(λ$1:e (is_a $1 "tea") (at $1 "attic"))'
 ADA = '(λ$1:e (person $1) (name $1 "Ada") (at $1 "stool"))'
