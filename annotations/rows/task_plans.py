@@ -10,9 +10,9 @@ from annotations.language.forms import Form
 from annotations.language.ontology import Ontology
 from annotations.language.plans import Lookup, make_plan
 from annotations.language.predicates import Predicate
-from annotations.language.recipes import RecipeBook, TaskPlan, apply_recipes, default_book
+from annotations.language.recipes import RecipeBook, TaskPlan, apply_recipes
 from annotations.models import World
-from annotations.rows.from_rows import ontology_of, predicates_of
+from annotations.rows.from_rows import ontology_of, predicates_of, recipe_book_of
 
 
 @dataclass(frozen=True)
@@ -36,8 +36,3 @@ class TaskPlanner:
         """Return the team's primitives that do what a form with entities says."""
         plan = make_plan(form, self.ontology, self.predicates, lookup=self.lookup)
         return apply_recipes(plan, self.book)
-
-
-def recipe_book_of(world: World) -> RecipeBook:
-    """Return the recipe book of ``world``: the one that a new world starts with."""
-    return default_book()

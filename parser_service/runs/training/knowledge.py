@@ -6,8 +6,12 @@ from collections.abc import Callable
 
 from annotations.language.grounding import Anonymizer
 from annotations.models import World
-from annotations.rows.from_rows import ontology_of, predicates_of, task_categories
-from annotations.rows.task_plans import recipe_book_of
+from annotations.rows.from_rows import (
+    ontology_of,
+    predicates_of,
+    recipe_book_of,
+    task_categories,
+)
 from parser_service.analysis.plan_agreement import PlanAgreement
 from parser_service.parsers.interface import Knowledge
 
