@@ -22,7 +22,8 @@ def call(step: Mapping[str, Any]) -> str:
 @register.filter
 def facts(step: Mapping[str, Any]) -> list[str]:
     """Say where a step happens, what the robot holds and releases, and which steps have to come before it."""
-    said = [f"at {value_text(step['place'])}" if step["place"] else "somewhere"]
+    place = step["place"]
+    said = ["somewhere" if place is None else f"at {_place_text(place)}"]
     said += [f"{name} {value_text(step[name])}" for name in ("holds", "releases") if step[name]]
     if step["requires"]:
         said.append(f"after {', '.join(map(str, step['requires']))}")
@@ -44,6 +45,10 @@ def value_text(value: Mapping[str, Any] | None) -> str:
         case "open":
             return f"which {value['entity_class']}".strip()
     return str(value["text"])
+
+
+def _place_text(place: Mapping[str, Any]) -> str:
+    return "the operator" if place["kind"] == "operator" else value_text(place)
 
 
 @register.filter

@@ -10,13 +10,20 @@ from typing import Any
 from annotations.language.errors import Refusal
 from annotations.language.forms import UNKNOWN, Form, read_form
 from annotations.language.plans import PlanProblem, Trouble
-from annotations.language.recipes import Distances, JointPlan, TaskPlan, join, spoken
+from annotations.language.recipes import (
+    MOST_COMMANDS,
+    Distances,
+    JointPlan,
+    TaskPlan,
+    TooManyCommands,
+    join,
+    spoken,
+)
 from annotations.models import World
 from parser_service.serving.parse_answers import task_plan_of
 from parser_service.serving.parser_client import client
 from parser_service.serving.preparing import WorldLanguage, require_utterance
 
-MOST_COMMANDS = 3
 _ENDS = re.compile(r"[.;!?]\s+|\n+")  # of a command that others follow in one utterance
 
 
@@ -65,7 +72,7 @@ def commands_in(utterance: str) -> tuple[str, ...]:
     """Return the commands of one utterance, which its sentences, its lines or semicolons tell apart.
 
     Raises:
-        Refusal: there are more than ``MOST_COMMANDS``.
+        TooManyCommands: there are more than ``MOST_COMMANDS``.
     """
     commands = tuple(each.strip(" .;") for each in _ENDS.split(utterance) if each.strip(" .;"))
     _require_few(commands)
@@ -123,7 +130,6 @@ def _understood(
 
 def _require_few(commands: Sequence[str]) -> None:
     if len(commands) > MOST_COMMANDS:
-        raise Refusal(
-            f"These are {len(commands)} commands; a robot takes at most {MOST_COMMANDS} at once.",
-            "too_many_commands",
+        raise TooManyCommands(
+            f"These are {len(commands)} commands; a robot takes at most {MOST_COMMANDS} at once."
         )

@@ -12,6 +12,17 @@ from annotations.language.recipes.book import (
     shipped_books,
 )
 from annotations.language.recipes.comparing import plan_key, same_plan
+from annotations.language.recipes.joint_plans import (
+    MOST_COMMANDS,
+    Distances,
+    Interleaving,
+    JointPlan,
+    Reason,
+    TooManyCommands,
+    join,
+    joint_plan_schema,
+    joint_plan_schema_text,
+)
 from annotations.language.recipes.reading import MAX_ROW, read_primitive, read_recipe
 from annotations.language.recipes.rows import ActionPattern, Effect, EffectKind, Primitive, Recipe
 from annotations.language.recipes.speaking import spoken
@@ -27,10 +38,15 @@ from annotations.language.recipes.task_plan import (
 __all__ = [
     "DEFAULT_BOOK",
     "MAX_ROW",
+    "MOST_COMMANDS",
     "ActionPattern",
+    "Distances",
     "Effect",
     "EffectKind",
+    "Interleaving",
+    "JointPlan",
     "Primitive",
+    "Reason",
     "Recipe",
     "RecipeBook",
     "RecipeTrouble",
@@ -38,8 +54,12 @@ __all__ = [
     "TaskPlan",
     "TaskProblem",
     "TaskStep",
+    "TooManyCommands",
     "apply_recipes",
     "default_book",
+    "join",
+    "joint_plan_schema",
+    "joint_plan_schema_text",
     "plan_key",
     "read_book",
     "read_primitive",

@@ -7,6 +7,8 @@ from gpsr_client.dialogue import Dialogue, SlotQuestion
 from gpsr_client.errors import Away, Refused, WorkbenchError
 from gpsr_client.responses import (
     Candidate,
+    Interleaving,
+    JointPlan,
     OpenSlot,
     Parse,
     Plan,
@@ -20,6 +22,8 @@ __all__ = [
     "Away",
     "Candidate",
     "Dialogue",
+    "Interleaving",
+    "JointPlan",
     "OpenSlot",
     "Parse",
     "Plan",

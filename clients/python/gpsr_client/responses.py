@@ -99,6 +99,51 @@ class TaskPlan:
 
 
 @dataclass(frozen=True)
+class Interleaving:
+    """Steps of several commands that are done together, and why."""
+
+    reason: str
+    commands: tuple[int, ...]
+    steps: tuple[int, ...]
+    message: str
+
+
+@dataclass(frozen=True)
+class JointPlan:
+    """One plan of several commands, which count from 1.
+
+    ``serves`` has the commands of each step. ``length_before`` is the walk of one command after the other,
+    ``length`` that of this plan.
+    """
+
+    plan: TaskPlan
+    serves: tuple[tuple[int, ...], ...]
+    interleavings: tuple[Interleaving, ...]
+    length_before: float
+    length: float
+    spoken: str
+    raw: dict[str, Any] = field(repr=False, compare=False)
+
+    @classmethod
+    def from_json(cls, value: dict[str, Any]) -> JointPlan:
+        joint = value["joint_plan"]
+        return cls(
+            TaskPlan.from_json(joint),
+            tuple(tuple(step["commands"]) for step in joint["steps"]),
+            tuple(
+                Interleaving(
+                    each["reason"], tuple(each["commands"]), tuple(each["steps"]), each["message"]
+                )
+                for each in joint["interleavings"]
+            ),
+            joint["length_before"],
+            joint["length"],
+            value["spoken"],
+            value,
+        )
+
+
+@dataclass(frozen=True)
 class OpenSlot:
     """Something that the utterance leaves open: the question, and what there is to choose from."""
 

@@ -12,10 +12,11 @@ from django.views.decorators.cache import never_cache
 from django_htmx.http import replace_url
 
 from annotations.language.errors import Refusal
+from annotations.language.recipes import MOST_COMMANDS
 from annotations.models import Duty, World
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.people.access import WRITE, WorldRequest, world_view
-from parser_service.serving.joint_answers import MOST_COMMANDS, commands_in, plan_together
+from parser_service.serving.joint_answers import commands_in, plan_together
 from parser_service.serving.parser_client import ParserAway
 
 FIELDS = [f"command{number}" for number in range(1, MOST_COMMANDS + 1)]

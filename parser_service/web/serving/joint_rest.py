@@ -12,13 +12,13 @@ from rest_framework.response import Response
 
 from annotations.language.limits import MAX_ENTITY
 from annotations.language.plans import to_behavior_tree
-from annotations.language.recipes import Distances
+from annotations.language.recipes import MOST_COMMANDS, Distances
 from annotations.models import Scope
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import WorldRoute
-from parser_service.serving.joint_answers import MOST_COMMANDS, commands_in, plan_together
+from parser_service.serving.joint_answers import commands_in, plan_together
 from parser_service.web.serving.parsing_rest import MOST_KEY
 
 MOST_DISTANCES = 10_000
@@ -40,13 +40,17 @@ class JointQuery(Fields):
     """
 
     utterances = serializers.ListField(
-        child=serializers.CharField(max_length=MOST_CHARACTERS), max_length=MOST_COMMANDS, default=()
+        child=serializers.CharField(max_length=MOST_CHARACTERS),
+        max_length=MOST_COMMANDS,
+        default=list,
     )
     utterance = serializers.CharField(
         max_length=MOST_COMMANDS * MOST_CHARACTERS, default="", allow_blank=True
     )
     run = serializers.IntegerField(default=None, min_value=1, max_value=MOST_KEY, allow_null=True)
-    distances = DistanceSerializer(many=True, max_length=MOST_DISTANCES, default=())
+    distances = serializers.ListField(
+        child=DistanceSerializer(), max_length=MOST_DISTANCES, default=list
+    )
 
     def get_fields(self) -> dict[str, Any]:
         as_ = serializers.ChoiceField(choices=["json", "xml"], default="json")

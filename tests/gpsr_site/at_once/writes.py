@@ -144,7 +144,7 @@ NAMELESS = {
         "job-cancel",
         "site-job-cancel",
     ),
-    *("check-recipe", "check-primitive", "task-plan"),
+    *("check-recipe", "check-primitive", "task-plan", "joint-plan"),
     *("check-form", "check-predicate", "check-production", "check-template", "suggestions"),
     *("parse", "parse-wrong", "plan", "action-names", "dialogue-answer", "dialogue-keep"),
     *("offered-entity-decide", "answer-doubt", "example-send", "predictions-send"),

@@ -312,7 +312,10 @@ API_POLICY = [
     Rule("api:dialogue-detail", *READ),
     Rule("api:dialogue-list", NO_TOKEN, NOWHERE, *[NO_JSON] * 3, method="post"),
     Rule("api:dialogue-answer", NO_TOKEN, NOWHERE, *[NO_JSON] * 3, method="post"),
-    *(Rule(f"api:{name}", *members(NO_JSON), method="post") for name in ("plan", "task-plan")),
+    *(
+        Rule(f"api:{name}", *members(NO_JSON), method="post")
+        for name in ("plan", "task-plan", "joint-plan")
+    ),
     Rule("api:action-names", *READ),
     Rule("api:action-names", *annotators(NO_JSON), method="post"),
     Rule("api:offered-entity-list", *READ),

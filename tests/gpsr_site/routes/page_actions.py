@@ -162,6 +162,7 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "tryout_ask": "post parse",
     # Parsing
     "playground_ask": "post parse",
+    "joint_plan_ask": "post joint-plan",
     "playground_wrong": "post parse-wrong",
     "promotion_promote": "post promotion-list",
     "promotion_roll_back": "post promotion-roll-back",
@@ -248,7 +249,7 @@ PAGE_VIEWS: dict[str, str | NoRoute] = {
     "probes": "get run-probes",
     "predictions": "get predictions, get candidates",
     "review": "get predictions, get answer-review",
-    **dict.fromkeys(("playground", "tryout"), CHOICES),
+    **dict.fromkeys(("playground", "tryout", "joint_plan"), CHOICES),
     **dict.fromkeys(("promotions", "parser_state"), "get promotion-list"),
     "offered_entities": "get offered-entity-list",
     "plan_schema": NoRoute("The page is the file itself, for programs."),

@@ -128,6 +128,7 @@ POLICY = [
             "probes",
             "tryout",
             "playground",
+            "joint_plan",
             "parser_state",
             "promotions",
             "predictions",
@@ -158,6 +159,7 @@ POLICY = [
             "progress",
         )
     ),
+    Rule("joint_plan_ask", *MEMBERS, method="post"),
     # Who may see a world may talk about its commands
     Rule("dialogues", LOG_IN, NOWHERE, 422, 422, 422, method="post"),
     Rule("dialogue", LOG_IN, NOWHERE, 422, 422, 422, method="post"),
