@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -16,15 +17,16 @@ from annotations.language.recipes import RecipeBook, apply_recipes, plan_key
 MOST_KEPT = 50_000  # plans; the forms of a run come again and again
 # The plan of a form that says nothing to do is the same as no other.
 _NOTHING_TO_DO = frozenset(map(str, (Trouble.NOT_UNDERSTOOD, Trouble.NO_ACTION)))
-_STAND_IN = re.compile(r"⟨(\w*?)\d*⟩")
+_STAND_IN = re.compile(r"⟨(\w*?)[\d.]*⟩")
 
 
 @dataclass(frozen=True)
 class PlanAgreement:
     """Says of two forms whether their task plans are the same, by one ontology and one recipe book.
 
-    A class token is taken for one entity of its class: else both plans would only ask for it. So forms with the
-    same tokens in other places have other plans.
+    A class token is taken for an entity of its class: else both plans would only ask for it. The tokens of a class are
+    taken for different entities, in the order in which a form has them: two rooms of a command need not be one, and
+    whoever takes them for one would find a robot there already.
     """
 
     ontology: Ontology
@@ -46,9 +48,8 @@ class PlanAgreement:
         if form not in self._keys:
             if len(self._keys) >= MOST_KEPT:
                 self._keys.clear()
-            plan = make_plan(
-                _with_stand_ins(form), self.ontology, self.predicates, lookup=self._lookup
-            )
+            filled = _with_stand_ins(form, Counter())
+            plan = make_plan(filled, self.ontology, self.predicates, lookup=self._lookup)
             task_plan = apply_recipes(plan, self.book)
             is_void = any(each.code in _NOTHING_TO_DO for each in task_plan.problems)
             self._keys[form] = None if is_void else plan_key(task_plan)
@@ -64,12 +65,22 @@ class _LookupOfStandIns(Lookup):
         return super().value(text, predicate, place)
 
 
-def _with_stand_ins(form: Form) -> Form:
-    """Return the form with an entity in place of each class token; a number keeps the tokens of a class apart."""
-    if isinstance(form, Constant) and form.token_class:
-        return Constant(f"⟨{str(form.value).strip('<>')}⟩")
+def _with_stand_ins(form: Form, seen: Counter[str]) -> Form:
+    """Return the form with an entity in place of each class token.
+
+    Args:
+        form: a form or a part of one.
+        seen: class → how many tokens without a number came before; those in ``form`` are added.
+    """
+    if isinstance(form, Constant) and (token_class := form.token_class):
+        token = str(form.value).strip("<>")
+        if token != token_class:  # a number says which one is meant
+            return Constant(f"⟨{token}⟩")
+        seen[token_class] += 1
+        return Constant(f"⟨{token_class}.{seen[token_class]}⟩")
     if isinstance(form, Application):
-        return replace(form, arguments=tuple(map(_with_stand_ins, form.arguments)))
+        parts = tuple(_with_stand_ins(each, seen) for each in form.arguments)
+        return replace(form, arguments=parts)
     if isinstance(form, Lambda):
-        return replace(form, bodies=tuple(map(_with_stand_ins, form.bodies)))
+        return replace(form, bodies=tuple(_with_stand_ins(each, seen) for each in form.bodies))
     return form

@@ -45,6 +45,16 @@ def test_other_things_to_do_are_other_plans(agree, other):
     assert not agree(BRING, other)
 
 
+def test_two_tokens_of_a_class_are_two_entities(agree):
+    """A thing is found in one room, and somebody in another: the robot is not there already."""
+    found = '( find ( lambda $1 e ( is_a $1 " <object> " ) ( at $1 " <room> " ) ) )'
+    there = '( bring it ( lambda $1 e ( person $1 ) ( at $1 " <room> " ) ) )'
+    anywhere = "( bring it ( lambda $1 e ( person $1 ) ) )"
+    assert not agree(f"( sequence {found} {there} )", f"( sequence {found} {anywhere} )")
+    in_steps = '( sequence ( go " <room> " ) ( find ( lambda $1 e ( is_a $1 " <object> " ) ) ) '
+    assert agree(f"( sequence {found} {there} )", f"{in_steps}{there} )")
+
+
 def test_numbers_keep_the_tokens_of_a_class_apart(agree):
     there = '( sequence ( go " <room0> " ) ( go " <room1> " ) )'
     assert agree(there, there)
