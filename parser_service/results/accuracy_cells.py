@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from annotations.models.background import Status
 from parser_service.analysis.scores import OverSeeds, over_seeds
 from parser_service.models import Evaluation, TrainingRun
+from parser_service.results.measures import Measure
 from parser_service.results.seed_figures import AccuracyFigure
 
 PLANS_NOT_COMPARED = "The plans of these answers were not compared: analyse the run again"
@@ -17,7 +18,7 @@ PLANS_NOT_COMPARED = "The plans of these answers were not compared: analyse the 
 class Cell:
     """A parser in a column: its scores, one per seed, newest first, or the runs that will have some.
 
-    ``figures`` are by the measures that the table shows; none before there is a score, and None by a measure
+    ``figures`` are by the ``measures`` that the table shows; none before there is a score, and None by a measure
     that is not known of each score. ``published`` is
     the paper's figure in percent, whether it is shown or not. ``answered_by`` names the models behind the
     scores, as their servers report them.
@@ -29,6 +30,7 @@ class Cell:
     url: str
     figures: tuple[AccuracyFigure | None, ...] = ()
     answered_by: str = ""
+    measures: tuple[Measure, ...] = ()
 
     @property
     def score(self) -> Evaluation | None:
@@ -43,6 +45,11 @@ class Cell:
     @property
     def n_seeds(self) -> int:
         return len(self.scores)
+
+    @property
+    def by_measure(self) -> list[tuple[Measure, AccuracyFigure | None]]:
+        """Each measure with its figure; none before there is a score."""
+        return list(zip(self.measures, self.figures, strict=False))
 
     @property
     def first(self) -> AccuracyFigure | None:

@@ -141,7 +141,8 @@ class TableMaker:
         figures = self.figures(scores, published, known) if scores else ()
         names = dict.fromkeys(run.answered_by for run in counted if run.answered_by)
         address = self.cell_url(counted, active, column)
-        return Cell(scores, active, published, address, figures, ", ".join(names))
+        by = ", ".join(names)
+        return Cell(scores, active, published, address, figures, by, self.measures)
 
     def known_scores(
         self, counted: list[TrainingRun], column: TableColumn

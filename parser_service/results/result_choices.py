@@ -57,6 +57,14 @@ class ResultsChoices:
         return MEASURES[self.measure]
 
     @property
+    def measures_in_words(self) -> str:
+        """The measures, each with its sign where there are several: ``exact match (✓) and same plan (→)``."""
+        if len(self.measures) == 1:
+            return self.measures[0].in_words
+        *others, last = (f"{each.in_words} ({each.sign})" for each in self.measures)
+        return f"{', '.join(others)} and {last}"
+
+    @property
     def query(self) -> str:
         """The address that makes these choices."""
         chosen = [("part", self.part), *(("split", split.name) for split in self.splits)]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from annotations.models import Example, Split
@@ -116,6 +118,15 @@ def test_a_switch_says_what_counts_as_right(measure, shown, sample, anna):
     page = anna.get("/w/home/results/", {"measure": measure}).content.decode()
     assert f"<b>{shown}</b>" in page
     assert ("<b>50.0</b>" in page) == (measure in ("equivalent", "all"))
+
+
+def test_several_measures_are_told_with_their_signs(sample, anna):
+    page = anna.get("/w/home/results/", {"measure": "all"}).content.decode()
+    assert "Exact match (✓), equivalent (≈) and same plan (→)" in page
+    sample.run.evaluations.update(same_plan=None)
+    page = anna.get("/w/home/results/", {"measure": "all"}).content.decode()
+    unknown = page[page.index('aria-hidden="true">→</span>') :]
+    assert re.match(r".*?same plan</span>\s*–", unknown, re.DOTALL)
 
 
 def test_what_is_misspelled_is_the_default(sample, anna):
