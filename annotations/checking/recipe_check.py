@@ -22,6 +22,7 @@ from annotations.language.recipes import (
     read_primitive,
     read_recipe,
     spoken,
+    usual_places,
 )
 from annotations.models import Primitive, Recipe, World
 from annotations.rows.from_rows import classes_of, ontology_of, predicates_of
@@ -185,22 +186,26 @@ class _Examples:
         self._predicates = predicates_of(world)
         self._lookup = Lookup(self._ontology, self._predicates)
         self._anonymizer = Anonymizer(self._ontology)
+        self._usual = usual_places(self._ontology, self._lookup)
 
     def using(self, other: RecipeBook) -> Iterator[tuple[str, str, bool]]:
         """Yield the commands whose task plans are others with the book ``other``, with their forms, and whether a
         robot can do them."""
         for command, form in self._commands(self._actions(other)):
             _, plan, _ = self._grounded(command, form)
-            task_plan = apply_recipes(plan, self.book)
-            if plan_key(task_plan) != plan_key(apply_recipes(plan, other)):
+            task_plan = self._apply(plan, self.book)
+            if plan_key(task_plan) != plan_key(self._apply(plan, other)):
                 yield command, form, task_plan.is_executable
 
     def of(self, command: str, form: str) -> RecipeExample:
         """Return the example of a command, which has this form."""
         said, plan, grounded = self._grounded(command, form)
-        task_plan = apply_recipes(plan, self.book)
+        task_plan = self._apply(plan, self.book)
         english = gloss(read_form(grounded), self._predicates, self._ontology.classes)
         return RecipeExample(said, english, grounded, task_plan, spoken(task_plan))
+
+    def _apply(self, plan: Plan, book: RecipeBook) -> TaskPlan:
+        return apply_recipes(plan, book, self._usual)
 
     def _actions(self, other: RecipeBook) -> set[str]:
         """Return the actions whose recipes can be done otherwise with the book ``other``."""

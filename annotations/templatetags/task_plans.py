@@ -8,6 +8,7 @@ from typing import Any
 from django import template
 
 from annotations.language.errors import Problem
+from annotations.language.recipes import Primitive
 
 register = template.Library()
 
@@ -17,6 +18,12 @@ def call(step: Mapping[str, Any]) -> str:
     """Write the primitive of a step with its arguments: ``give(coke, operator)``."""
     values = ", ".join(value_text(each) for each in step["arguments"].values())
     return f"{step['primitive']}({values})"
+
+
+@register.filter
+def signature(primitive: Primitive) -> str:
+    """Write a primitive with its parameters: ``give(thing, person)``."""
+    return f"{primitive.name}({', '.join(map(str, primitive.parameters))})"
 
 
 @register.filter

@@ -278,7 +278,7 @@ def task_plan_of(
     # Recipes know the arguments by the names that the language gives them, whatever the robot calls them.
     plan = make_plan(form, language.ontology, language.predicates, lookup=lookup or language.lookup)
     plan = replace(plan, problems=(*doubts, *plan.problems))
-    return apply_recipes(plan, language.recipes)
+    return apply_recipes(plan, language.recipes, language.usual)
 
 
 def as_json(value: object) -> str:

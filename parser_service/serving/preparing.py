@@ -15,7 +15,7 @@ from annotations.language.grounding import Anonymizer, Evidence
 from annotations.language.ontology import Ontology
 from annotations.language.plans import ActionName, Lookup
 from annotations.language.predicates import Predicate
-from annotations.language.recipes import RecipeBook, default_book
+from annotations.language.recipes import RecipeBook, UsualPlaces, default_book, usual_places
 from annotations.language.symbols import Symbols
 from annotations.language.templates import TemplateExpander
 from annotations.language.text import has_half_character, normalise
@@ -43,19 +43,22 @@ class WorldLanguage:
     evidence: Evidence
     action_names: Mapping[str, ActionName]
     recipes: RecipeBook = field(default_factory=default_book)
+    usual: UsualPlaces = field(default_factory=dict)  # where things are of which nobody says it
 
     @classmethod
     def of(cls, world: World) -> Self:
         """Read the language of ``world`` from the database."""
         ontology, predicates = ontology_of(world), predicates_of(world)
+        lookup = Lookup(ontology, predicates)
         return cls(
             ontology,
             predicates,
             Anonymizer(ontology),
-            Lookup(ontology, predicates),
+            lookup,
             evidence_of(world),
             names_of(world),
             recipe_book_of(world),
+            usual_places(ontology, lookup),
         )
 
 

@@ -12,6 +12,7 @@ from annotations.language.recipes.book import (
     shipped_books,
 )
 from annotations.language.recipes.comparing import plan_key, same_plan
+from annotations.language.recipes.habitual_places import UsualPlaces, usual_places
 from annotations.language.recipes.joint_plans import (
     MOST_COMMANDS,
     Distances,
@@ -55,6 +56,7 @@ __all__ = [
     "TaskProblem",
     "TaskStep",
     "TooManyCommands",
+    "UsualPlaces",
     "apply_recipes",
     "default_book",
     "join",
@@ -69,4 +71,5 @@ __all__ = [
     "spoken",
     "task_plan_schema",
     "task_plan_schema_text",
+    "usual_places",
 ]

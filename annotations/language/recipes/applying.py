@@ -18,6 +18,7 @@ from annotations.language.plans import (
     Words,
 )
 from annotations.language.recipes.book import RecipeBook
+from annotations.language.recipes.habitual_places import UsualPlaces
 from annotations.language.recipes.rows import (
     ActionPattern,
     Argument,
@@ -43,7 +44,7 @@ from annotations.language.recipes.world import HERE, Place, Somewhere, World, wi
 _CURRENT = Words("current")
 
 
-def apply_recipes(plan: Plan, book: RecipeBook) -> TaskPlan:
+def apply_recipes(plan: Plan, book: RecipeBook, usual: UsualPlaces | None = None) -> TaskPlan:
     """Return the primitives that do what a plan says, in order.
 
     The most specific recipe that fits is used for each action. Questions to the operator come first, while
@@ -54,8 +55,10 @@ def apply_recipes(plan: Plan, book: RecipeBook) -> TaskPlan:
     Args:
         plan: the plan of a form, with the argument names of the language (no names of a robot).
         book: primitives and recipes; rows with errors are not used.
+        usual: where the things of a category are, if the command does not say where to look; without it
+            they are where the robot is.
     """
-    return _Applier(plan, book).task_plan()
+    return _Applier(plan, book, usual or {}).task_plan()
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,11 +71,11 @@ class _Fit:
 
 
 class _Applier:
-    def __init__(self, plan: Plan, book: RecipeBook) -> None:
+    def __init__(self, plan: Plan, book: RecipeBook, usual: UsualPlaces) -> None:
         self._plan = plan
         self._book = book
         self._steps = {step.number: step for step in plan.steps}
-        self._world = World()
+        self._world = World(usual=usual)
         self._numbers: dict[int, int] = {}  # step with a result → the step of the task plan
 
     def task_plan(self) -> TaskPlan:
@@ -146,10 +149,18 @@ class _Applier:
         for parameter, argument in zip(primitive.parameters, call.arguments, strict=False):
             values[parameter.name] = self._value(argument, names, primitive, parameter.name)
         done = self._world.add(primitive, values, step.number)
+        self._note_sending(call, primitive)
         if done is not None and primitive.gives_result:
             self._numbers[step.number] = done.number
             if call.result:
                 names[call.result] = StepResult(done.number)
+
+    def _note_sending(self, call: Call, primitive: Primitive) -> None:
+        """Remember whether the command itself names the place to which the robot has moved."""
+        moves = primitive.effect(EffectKind.MOVES)
+        for parameter, argument in zip(primitive.parameters, call.arguments, strict=False):
+            if moves is not None and moves.subject == parameter.name:
+                self._world.is_sent |= isinstance(argument, Name) and argument.part is None
 
     def _value(
         self,

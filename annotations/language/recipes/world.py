@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 from annotations.language.plans import AT, Described, Operator, StepResult, Words
+from annotations.language.recipes.habitual_places import UsualPlaces, usual_place
 from annotations.language.recipes.rows import LASTING, EffectKind, Primitive
 from annotations.language.recipes.task_plan import RecipeTrouble, TaskProblem, TaskStep
 from annotations.language.recipes.values import (
@@ -45,6 +46,8 @@ class World:
     # id → the command that describes it, where several commands share the world: equal words of two
     # commands mean the same person if they name one, and two things.
     commands: Mapping[str, int] = field(default_factory=dict)
+    usual: UsualPlaces = field(default_factory=dict)
+    is_sent: bool = False  # whether the command has said where the robot is to look
     moved_by: int = 0  # the step that has led the robot to its place; 0 where it began
     _taken_by: int = 0
     _taken_at: Place = field(default_factory=Operator)
@@ -56,7 +59,11 @@ class World:
     _last_here: set[int] = field(default_factory=set)  # steps here that no other step here requires
 
     def place_of(self, value: TaskValue) -> Place:
-        """Return where something is: in the gripper, where it was left, where it is said to be, or here."""
+        """Return where something is.
+
+        That is in the gripper, where it was left, or where it is said to be. Else it is here, or where it
+        usually is, unless the command has sent the robot here.
+        """
         value = self.known(value)
         owner = _owner(value)
         if self.is_held(owner) or self.step_that_found(owner):
@@ -67,7 +74,7 @@ class World:
         said = said_place(value)
         if isinstance(said, Described) and said is not value:
             return self.known(said)
-        return HERE if said is None else said
+        return said or (None if self.is_sent else usual_place(value, self.usual)) or HERE
 
     def known(self, value: TaskValue) -> TaskValue:
         """Return the description under which something is known already."""
@@ -209,6 +216,7 @@ class World:
 
     def _move(self, place: Place, number: int) -> None:
         self.place = place
+        self.is_sent = False
         self.moved_by = number
         self._found.clear()
         self._last_here = {number}

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import time
 from collections import Counter
+from collections.abc import Sequence
 from functools import cache
 from itertools import groupby, pairwise, starmap
 
@@ -13,21 +14,19 @@ from hypothesis import strategies as st
 
 from annotations.language.plans import behavior_tree_schema_text, to_behavior_tree
 from annotations.language.recipes import (
+    Distances,
     EffectKind,
+    JointPlan,
+    Reason,
     RecipeTrouble,
     TaskPlan,
     TaskStep,
-    default_book,
-    spoken,
-)
-from annotations.language.recipes.joint_plans import (
-    Distances,
-    JointPlan,
-    Reason,
     TooManyCommands,
+    default_book,
     join,
     joint_plan_schema,
     joint_plan_schema_text,
+    spoken,
 )
 from annotations.language.recipes.world import Place, Somewhere
 from tests.annotations.language.random_commands import commands
@@ -167,6 +166,21 @@ def summary(step: TaskStep) -> tuple[object, ...]:
     return (step.action, kinds, texts)
 
 
+def acts_of(plan: TaskPlan) -> list[TaskStep]:
+    kinds = (EffectKind.MOVES, EffectKind.FINDS)
+    return [step for step in plan.steps if not has(step, *kinds)]
+
+
+def found_in(plan: TaskPlan, *kinds: EffectKind) -> list[str]:
+    steps = (step for step in plan.steps if has(step, *kinds))
+    return [str(step.arguments[0][1].as_json().get("text", "")) for step in steps]
+
+
+def is_subsequence(part: Sequence[object], whole: Sequence[object]) -> bool:
+    rest = iter(whole)
+    return all(each in rest for each in part)
+
+
 several = st.lists(commands(most=3), min_size=1, max_size=3)
 
 
@@ -182,20 +196,16 @@ def test_the_order_inside_each_command_is_kept_and_nothing_is_lost(forms):
                 if number in commands
             )
         )
-        for is_find in (False, True):
-            before, after = (
-                [
-                    step
-                    for step in each.steps
-                    if has(step, EffectKind.FINDS) == is_find and not has(step, EffectKind.MOVES)
-                ]
-                for each in (plan, own)
-            )
-            # Who goes to a place is there as well if another command follows somebody to it.
-            extra = Counter(map(summary, after)) - Counter(map(summary, before))
-            assert all(action in ("follow", "guide") for action, *_ in extra)
-            rest = iter(map(summary, after))
-            assert all(each in rest for each in map(summary, before))
+        before, after = ([summary(step) for step in acts_of(each)] for each in (plan, own))
+        extra = Counter(after) - Counter(before)
+        # Who goes to a place is there as well if another command follows somebody to it.
+        assert all(action in ("follow", "guide") for action, *_ in extra)
+        assert is_subsequence(before, after)
+        # Whom another command has followed is found.
+        assert is_subsequence(
+            found_in(plan, EffectKind.FINDS),
+            found_in(own, EffectKind.FINDS, EffectKind.ACCOMPANIES),
+        )
     assert Counter(codes(joint.plan)) >= Counter(code for each in plans for code in codes(each))
 
 

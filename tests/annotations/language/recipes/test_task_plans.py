@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -31,6 +32,7 @@ from annotations.language.recipes import (
     shipped_books,
     spoken,
     task_plan_schema,
+    usual_places,
 )
 from annotations.language.recipes.world import World
 from annotations.language.templates import (
@@ -192,6 +194,36 @@ def test_questions_come_first_while_the_robot_is_with_the_operator():
     assert [each.step for each in plan.problems] == [4, 9]
     asked = [each for step in plan.as_json()["steps"] for each in step["arguments"].values()]
     assert [each["step"] for each in asked if each["kind"] == "result"] == [1, 1, 1, 2]
+
+
+@pytest.mark.parametrize(
+    ("form", "places"),
+    [
+        ('(bring (λ$1:e (is_a $1 "tea")))', ["shelf", "operator"]),
+        ('(bring (λ$1:e (is_a $1 "drinks")))', ["shelf", "operator"]),
+        ('(bring (λ$1:e (is_a $1 "knife")))', []),
+        (f"(bring {TEA})", ["attic", "operator"]),
+        (
+            '(sequence (go "stool") (find (λ$1:e (is_a $1 "tea"))) (bring it))',
+            ["stool", "operator"],
+        ),
+        (
+            f'(sequence (find {ADA}) (bring (λ$1:e (is_a $1 "tea")) them))',
+            ["stool", "shelf", "stool"],
+        ),
+    ],
+)
+def test_what_has_no_place_is_looked_for_where_the_robot_is_sent_or_where_it_usually_is(
+    form, places
+):
+    entities = [
+        replace(each, attributes={"defaultLocation": "shelf"}) if each.text == "drinks" else each
+        for each in HOME.entities
+    ]
+    usual = usual_places(replace(HOME, entities=tuple(entities)))
+    assert list(usual) == ["drinks"]
+    plan = apply_recipes(make_plan(read_form(form), HOME), default_book(), usual)
+    assert [call[6:-1] for call in calls(plan) if call.startswith("go_to")] == places
 
 
 @given(commands())

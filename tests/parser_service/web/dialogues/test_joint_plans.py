@@ -6,6 +6,7 @@ import jsonschema
 import pytest
 
 from annotations.language.recipes import TooManyCommands, joint_plan_schema
+from parser_service.promotions.promoting import promote
 from parser_service.serving.joint_answers import commands_in
 from tests.parser_service.served import trained_run
 
@@ -65,9 +66,10 @@ def test_a_joint_plan_is_a_behaviour_tree_too(browse):
     assert b'ID="go_to"' in tree.content and b'ID="find_object"' in tree.content
 
 
-def test_what_is_not_understood_is_said(browse, world):
-    run = trained_run(world.splits.get(), seed=1, config={"least_overlap": 0.9})
-    answer = browse.post(API, {"utterances": [TWO[0], "xyzzy"], "run": run.pk}, JSON).json()
+def test_what_is_not_understood_is_said(browse, parse_server, world):
+    promote(trained_run(world.splits.get(), config={"least_overlap": 0.1}), None)
+    parse_server.update()
+    answer = browse.post(API, {"utterances": [TWO[0], "xyzzy"]}, JSON).json()
     assert [each["is_unknown"] for each in answer["commands"]] == [False, True]
     assert not answer["joint_plan"]["is_executable"]
     assert browse.post(API, {}, JSON).status_code == 400
