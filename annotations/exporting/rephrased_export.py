@@ -12,7 +12,7 @@ from django.db import models
 from django.db.models import QuerySet
 
 from annotations.language.corpus import Part
-from annotations.language.errors import Refusal
+from annotations.language.errors import LanguageError, Refusal
 from annotations.language.forms import read_form
 from annotations.language.paraphrases import folded_words
 from annotations.language.plans import (
@@ -32,7 +32,6 @@ from annotations.rows.synchronise import batches
 from annotations.rows.task_plans import TaskPlanner
 
 CHUNK = 500  # rows fetched, and sent, at once
-# A plan with one of these is no target: recipes do not say how to do all of it.
 UNDONE = frozenset(map(str, RecipeTrouble))
 OPERATOR = "operator"
 INSTRUCTIONS = (
@@ -57,8 +56,8 @@ class RephrasedExport:
 
     ``as_`` is a ``RephrasedFormat``. With ``split`` those alone whose utterance is in its ``part``, by default the
     training part, where none of them is left that is in another part in other letters or punctuation. ``cases`` and
-    ``left_out`` count, while ``pieces`` is read, what was written and for what recipes have no plan; ``tests`` leave
-    nothing out.
+    ``left_out`` count, while ``pieces`` is read, what was written, and what was not: texts that are no form, and plans
+    that recipes do not say all of. The latter are in ``tests`` all the same.
 
     Raises Refusal for a part without a split.
     """
@@ -87,7 +86,7 @@ class RephrasedExport:
         return f"{'-'.join(map(str, (self.world.name, self.as_, *of_split)))}.jsonl"
 
     def pieces(self) -> Iterator[bytes]:
-        """Yield the file in pieces, none of them large. Raises LanguageError for a form that cannot be read."""
+        """Yield the file in pieces, none of them large."""
         lines = (f"{json.dumps(case, ensure_ascii=False)}\n" for case in self._cases())
         return ("".join(some).encode() for some in batches(lines, CHUNK))
 
@@ -99,10 +98,8 @@ class RephrasedExport:
         for row in rows.iterator(chunk_size=CHUNK):
             if chosen is not None and row.utterance not in chosen:
                 continue
-            plan = planner.plan(read_form(row.grounded_form))
-            if self.as_ != RephrasedFormat.TESTS and any(
-                each.code in UNDONE for each in plan.problems
-            ):
+            plan = _plan(planner, row.grounded_form)
+            if plan is None or (self.as_ != RephrasedFormat.TESTS and _is_undone(plan)):
                 self.left_out += 1
                 continue
             self.cases += 1
@@ -125,6 +122,19 @@ class RephrasedExport:
             "form": row.grounded_form,
             "expected": plan.as_json(),
         }
+
+
+def _plan(planner: TaskPlanner, text: str) -> TaskPlan | None:
+    """Return the plan of a stored form; None for a text that is no form."""
+    try:
+        return planner.plan(read_form(text))
+    except LanguageError:
+        return None
+
+
+def _is_undone(plan: TaskPlan) -> bool:
+    """Return whether recipes do not say how to do all of it, so that it is no target."""
+    return any(each.code in UNDONE for each in plan.problems)
 
 
 class _UtterancesOfPart:

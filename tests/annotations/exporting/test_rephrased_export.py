@@ -102,6 +102,14 @@ def test_what_recipes_do_not_say_is_no_target_but_a_test(rephrased):
         assert (len(lines), export.cases, export.left_out) == (count, count, 3 - count)
 
 
+@pytest.mark.parametrize("as_", ["chat", "pairs", "tests"])
+def test_a_text_that_is_no_form_breaks_nothing_off(rephrased, as_):
+    rephrased.paraphrases.filter(utterance="off to the bath").update(grounded_form="go")
+    export = RephrasedExport(rephrased, rephrased.paraphrases.all(), as_)
+    assert len(b"".join(export.pieces()).splitlines()) == export.cases == 1
+    assert export.left_out == 1
+
+
 def test_it_takes_as_many_queries_for_many_paraphrases(rephrased, django_assert_max_num_queries):
     for number in range(20):
         make_paraphrase(rephrased, "go", f"go {number}", grounded_form=GO, logical_form=GO)
