@@ -24,6 +24,7 @@ from annotations.web.description import (
     production_rest,
     recipe_rest,
     template_rest,
+    vocabulary_rest,
 )
 from annotations.web.editing import comment_rest, history_rest, notice_rest
 from annotations.web.people import account_rest, member_rest, token_rest
@@ -85,6 +86,7 @@ description = [
     path("recipe-book/", recipe_rest.OneRecipeBook.as_view(), name="recipe-book"),
     path("recipe-book/shipped/", recipe_rest.ShippedBooks.as_view(), name="shipped-books"),
     path("check/form/", check_rest.CheckForm.as_view(), name="check-form"),
+    path("vocabulary/", vocabulary_rest.Vocabulary.as_view(), name="vocabulary"),
     path("guidelines/", guidelines_rest.OneGuidelines.as_view(), name="guidelines"),
     path("history/<slug:kind>/<int:pk>/", history_rest.HistoryOfRow.as_view(), name="history"),
     path("deleted/<slug:kind>/", history_rest.Deleted.as_view(), name="deleted"),

@@ -96,6 +96,7 @@ READABLE = (
         "guidelines",
     ),
     *("split-changes", "upload-list", "upload-detail", "utterance-export"),
+    *("vocabulary", "paraphrase-export"),
 )
 # Lists that annotators add to, and rows that they change and delete.
 ADDED_BY_ANNOTATORS = (
