@@ -107,7 +107,7 @@ class Asker:
 
     def _send(self, question: Question, crew: Crew[Any]) -> Reply:
         """Send a question, in other words where the server does not understand the first ones."""
-        sent = self.dialect.write(question)
+        sent, untried = self.dialect.write(question), self.dialect.other_styles()
         reply = crew.send("POST", CHAT, sent)
         if reply.status not in NOT_UNDERSTOOD:
             return reply
@@ -115,15 +115,17 @@ class Asker:
         self.dialect.learn(detail)
         if (again := self.dialect.write(question)) != sent:
             reply = crew.send("POST", CHAT, again)
-        if reply.status in NOT_UNDERSTOOD and question.schema is not None:
-            plainly = replace(self.dialect, takes_schema=False)
-            without = crew.send("POST", CHAT, plainly.write(question))
-            if without.status == HTTPStatus.OK:
+        if reply.status not in NOT_UNDERSTOOD or question.schema is None:
+            return reply
+        for style in untried:
+            otherwise = replace(self.dialect, schema_style=style)
+            answer = crew.send("POST", CHAT, otherwise.write(question))
+            if answer.status == HTTPStatus.OK:
                 known = len(self.dialect.learned)
-                self.dialect.forget_schema(detail)
+                self.dialect.settle_on(style, detail)
                 for sentence in self.dialect.learned[known:]:
                     logger.warning("%s", sentence)
-                return without
+                return answer
         return reply
 
     def _require_model(self, name: str, check: Check) -> None:
