@@ -17,7 +17,7 @@ from parser_service.parsers.written_forms import actions_of, read_or_none, writt
 UNKNOWN = "UNKNOWN"
 # The names under which a listed form is answered, and the listed actions of a composed one.
 FORM, ACTIONS = "form", "actions"
-MOST_PREDICATES = 200  # declared ones that are told; those of the forms at hand come first
+MOST_PREDICATES = 200  # declared ones that are told; those of the forms at hand before others
 MOST_ACTIONS = 50  # that are read of an answer
 MOST_TEXT = 2000  # characters of an answer that is no form
 NAME = re.compile(r"[A-Za-z_][\w-]*")
@@ -175,13 +175,16 @@ def _bare(text: str) -> str:
 def _declarations(
     predicates: Mapping[str, Predicate] | None, forms: Iterable[str]
 ) -> Iterator[str]:
-    """Yield what the declared predicates take and mean, those of ``forms`` first."""
+    """Yield what the declared predicates take and mean, those of ``forms`` where there are too many.
+
+    Their order is that of their names: servers need not read again what all questions begin with.
+    """
     if not predicates:
         return
     used = {name for form in forms for name in NAME.findall(form)}
     ordered = sorted(predicates.values(), key=lambda each: (each.name not in used, each.name))
     yield "Predicates, what they take, and what they say:"
-    for predicate in ordered[:MOST_PREDICATES]:
+    for predicate in sorted(ordered[:MOST_PREDICATES], key=lambda each: each.name):
         takes = " or ".join(print_signatures(predicate.signatures).split("\n"))
         yield f"{predicate.name} {takes}{predicate.gloss and f': {predicate.gloss}'}"
 

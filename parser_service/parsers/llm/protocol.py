@@ -1,7 +1,7 @@
 """How OpenAI's chat protocol is written and read, and where servers of it differ.
 
-Sources: the API references of OpenAI, of llama.cpp's server, of llama-cpp-python, of Ollama and of vLLM
-(docs/guides/llm.md says what each of them does with a JSON schema, a seed and the limit of tokens).
+Sources: the API references of OpenAI, of llama.cpp's server, of Ollama and of vLLM (docs/guides/llm.md says what
+each of them does with a JSON schema, a seed and the limit of tokens).
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ import json
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from enum import StrEnum
 from typing import Any
 
 from parser_service.parsers.llm.exchange import NoAnswer, NoReply, Reply
@@ -18,6 +17,7 @@ from parser_service.parsers.llm.exchange import NoAnswer, NoReply, Reply
 Message = dict[str, str]
 
 CHAT, MODELS = "/chat/completions", "/models"
+SCHEMA_FIELD = "response_format"
 MOST_DETAIL = 200  # characters of a server's own words
 MOST_NAME = 200
 THOUGHTS = re.compile(r"\A\s*<think>.*?</think>", re.DOTALL)
@@ -44,22 +44,11 @@ class ModelAnswer:
     model: str
 
 
-class SchemaStyle(StrEnum):
-    """How a server is given the JSON schema of an answer, the usual way first."""
-
-    OPENAI = "json_schema"
-    LLAMA_CPP_PYTHON = "json_object"
-    NONE = "none"
-
-
-STYLES = tuple(SchemaStyle)
-
-
 @dataclass(slots=True)
 class Dialect:
     """What a server turned out not to understand; shared by all questions to it."""
 
-    schema_style: SchemaStyle = SchemaStyle.OPENAI
+    takes_schema: bool = True
     takes_system: bool = True
     limit: str = "max_tokens"
     learned: list[str] = field(default_factory=list)  # sentences about it, for the log
@@ -82,17 +71,12 @@ class Dialect:
             self.limit: question.max_tokens,
             "stream": False,
         }
-        style = self.schema_style
-        if question.schema is not None and style is not SchemaStyle.NONE:
-            named = {"name": "answer", "strict": True, "schema": question.schema}
-            is_usual = style is SchemaStyle.OPENAI
-            how = {"json_schema": named} if is_usual else {"schema": question.schema}
-            body["response_format"] = {"type": str(style), **how}
+        if question.schema is not None and self.takes_schema:
+            body[SCHEMA_FIELD] = {
+                "type": "json_schema",
+                "json_schema": {"name": "answer", "strict": True, "schema": question.schema},
+            }
         return json.dumps(body).encode()
-
-    def other_styles(self) -> tuple[SchemaStyle, ...]:
-        """Return the ways to give a schema that were not tried on the server yet."""
-        return STYLES[STYLES.index(self.schema_style) + 1 :]
 
     def learn(self, detail: str) -> None:
         """Follow what the server says about a refusal: that it calls the limit of tokens otherwise, or that
@@ -102,12 +86,10 @@ class Dialect:
         if "system role" in detail.lower():
             self.takes_system = False
 
-    def settle_on(self, style: SchemaStyle, detail: str) -> None:
-        """Give schemas in another ``style`` from now on, or none: the server answers so only."""
-        if self.schema_style is style:
-            return
-        self.schema_style = style
-        if style is SchemaStyle.NONE:
+    def forget_schema(self, detail: str) -> None:
+        """Send no schema any more: the server answers without one only."""
+        if self.takes_schema:
+            self.takes_schema = False
             self.learned.append(
                 "The server does not take the JSON schema of the listed forms"
                 f"{f' ({detail})' if detail else ''}. It is asked without; each answer is still checked "
