@@ -127,7 +127,7 @@ class Mender:
                 del work.values[before:]
                 arguments.append(UNKNOWN)
         mended = Application(predicate.name, tuple(arguments))
-        if UNKNOWN not in arguments and not _is_declared(mended, fitting):
+        if not _is_declared(mended, fitting):
             raise _Lost
         return mended
 
@@ -238,8 +238,12 @@ def without_loose(form: Form) -> Form:
 
 
 def _is_declared(form: Application, signatures: Iterable[Signature]) -> bool:
+    """Return whether one of the signatures allows all arguments that are not open."""
     given = signature_of(form)
-    return any(not each.mismatches(given) for each in signatures)
+    return any(
+        all(form.arguments[place] == UNKNOWN for place in each.mismatches(given))
+        for each in signatures
+    )
 
 
 def _without(form: Form, references: Collection[str]) -> Form:
