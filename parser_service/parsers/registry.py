@@ -197,8 +197,9 @@ PARSERS: dict[str, RegistryEntry] = {
         config="parser_service.parsers.llm.config.LanguageModelConfig",
         title="Language model",
         description="Asks a language model over HTTP, with the nearest training pairs as examples. It "
-        "chooses among their forms, or writes one; it learns nothing here.",
-        version=1,
+        "chooses among their forms, action by action where these are sequences, or writes one; it learns "
+        "nothing here.",
+        version=2,
         protocols=(Protocol.STRICT, Protocol.DOMAIN),
         in_short="Shows the most similar training utterances to a language model on a server of yours.",
         needs=Needs.SERVER,

@@ -114,7 +114,7 @@ class Fitting:
         self.observe.log(collected[-1][2])
         config = self.config
         pretrained = load_encoder(config.encoder, encoders_folder())
-        encoder = SentenceEncoder.of(pretrained, config.dropout)
+        encoder = SentenceEncoder.of(pretrained, config.dropout, config.frozen_layers)
         models = [make_model(encoder, ranked, self.knowledge) for ranked in self._sets]
         is_strict = self.knowledge.predicates is None
         share = config.pretrained_share if is_strict else config.pretrained_share_domain

@@ -18,6 +18,12 @@ class RankerConfig:
         DEFAULT_ENCODER,
         "Pretrained sentence encoder: its name in GPSR_ENCODERS_DIR, or a package.",
     )
+    frozen_layers: int = hyperparameter(
+        0,
+        "Lowest layers of the encoder that keep their pretrained values: a large encoder then trains faster.",
+        minimum=0,
+        maximum=100,
+    )
     steps: int = hyperparameter(400, "Optimisation steps, rounded up to whole epochs.", 1, 100_000)
     minutes: float = hyperparameter(
         15.0,
