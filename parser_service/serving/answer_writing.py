@@ -13,11 +13,12 @@ from annotations.language.grounding import (
     Slot,
     UtteranceMentions,
     fill_all,
+    named_entities,
     resolve_slots,
-    say_with_blank,
     with_values,
 )
 from annotations.language.plans import doubts_about
+from annotations.language.predicates import ask_for
 from parser_service.parsers.interface import Candidate
 from parser_service.serving.outlines import (
     Outline,
@@ -145,20 +146,34 @@ class AnswerWriter:
             for sign, text in zip(signs, (each.text, each.plural), strict=True)
         }
 
-        def sentence_of(slot: Slot) -> str:
-            sentence = self._outlines.sentence(candidate.form, paths, slot.path)
-            if sentence is not None:
-                return sentence.fill(plain)
+        named = named_entities(slots)
+
+        def asked_for(slot: Slot) -> str:
+            is_sure = all(
+                put_in.filler in named
+                for put_in in slots
+                if put_in.filler is not None and put_in.entity_class
+            )
+            asked = self._outlines.question(candidate.form, paths, slot.path)
+            if asked is not None and is_sure:
+                return asked.fill(plain)
             language = self.language
             filled = fill_all(form, slots).form
-            return say_with_blank(slot.path, filled, language.predicates, language.ontology.classes)
+            return ask_for(
+                filled,
+                slot.path,
+                slot.entity_class,
+                language.predicates,
+                language.ontology.classes,
+                named,
+            )
 
         given = Deanonymized(form, slots)
         doubts = [each.as_json() for each in doubts_about(slots)]
         return {
             "score": as_json(score_of(candidate)),
             "values": as_json(list(candidate.values)),
-            "open_slots": as_json(list(questions_of(given, self.language, sentence_of))),
+            "open_slots": as_json(list(questions_of(given, self.language, asked_for))),
             "remarks": as_json(remarks_on(given, self.language.ontology)),
             "is_executable": as_json(outline.is_executable and not doubts),
             "problems": as_json([*doubts, *outline.problems]),

@@ -15,11 +15,10 @@ from annotations.language.forms import (
     Variable,
 )
 from annotations.language.plans.plan import Condition, Described, Number, OpenValue, Value
-from annotations.language.predicates import Predicate, gloss
+from annotations.language.predicates import SUPERLATIVES, Predicate, gloss
 from annotations.language.symbols import EntityClasses
 
 ValueOf = Callable[[Constant, str, int], Value]
-_SUPERLATIVES = ("est", "most")
 
 
 @dataclass
@@ -106,7 +105,7 @@ class Describer:
 
 def superlative_without_set(described: Described) -> str:
     """Return the superlative of a description that does not say among what; empty if there is none."""
-    superlatives = [each for each in described.conditions if each.predicate.endswith(_SUPERLATIVES)]
+    superlatives = [each for each in described.conditions if each.predicate.endswith(SUPERLATIVES)]
     others = [each for each in described.conditions if each not in superlatives]
     has_set = others or any(not isinstance(v, Number) for each in superlatives for v in each.values)
     return "" if has_set or not superlatives else superlatives[0].predicate

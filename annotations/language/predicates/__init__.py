@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from annotations.language.predicates.gloss_patterns import pattern_of_name
+from annotations.language.predicates.gloss_patterns import SUPERLATIVES, pattern_of_name
 from annotations.language.predicates.predicates import (
     Misuse,
     Predicate,
     PredicateKind,
+    ask_for,
     check_form,
     declared_or_inferred,
     find_misuses,
@@ -32,6 +33,7 @@ from annotations.language.predicates.standing_in import (
 )
 
 __all__ = [
+    "SUPERLATIVES",
     "ArgumentKind",
     "Misuse",
     "Predicate",
@@ -39,6 +41,7 @@ __all__ = [
     "Signature",
     "admits",
     "argument_kind",
+    "ask_for",
     "can_stand_in",
     "check_form",
     "declared_or_inferred",
