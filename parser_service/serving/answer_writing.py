@@ -147,15 +147,13 @@ class AnswerWriter:
         }
 
         named = named_entities(slots)
+        is_of_one_class = all(
+            each.filler in named for each in slots if each.filler is not None and each.entity_class
+        )
 
         def asked_for(slot: Slot) -> str:
-            is_sure = all(
-                put_in.filler in named
-                for put_in in slots
-                if put_in.filler is not None and put_in.entity_class
-            )
             asked = self._outlines.question(candidate.form, paths, slot.path)
-            if asked is not None and is_sure:
+            if asked is not None and is_of_one_class:
                 return asked.fill(plain)
             language = self.language
             filled = fill_all(form, slots).form

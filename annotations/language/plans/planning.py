@@ -131,11 +131,13 @@ class _Acting:
 
     @classmethod
     def of(
-        cls, form: Application, gathered: tuple[Form, ...], conjuncts: tuple[Form, ...]
+        cls, form: Application, conjuncts: tuple[Form, ...], predicates: Mapping[str, Predicate]
     ) -> _Acting:
-        about = (each for each in form.arguments if each not in gathered)
-        action = Application(form.predicate, gathered)
-        return cls(str(form.predicate), Lambda(1, "e", (*conjuncts, *about, action)))
+        about = tuple(each for each in form.arguments if is_description(each, predicates))
+        if about:  # ``(follow (person $1) (at $1 …))``
+            others = (each for each in form.arguments if each not in about)
+            form = replace(form, arguments=(children(about[0])[0], *others))
+        return cls(str(form.predicate), Lambda(1, "e", (*conjuncts, *about, form)))
 
     def constants(self) -> Iterator[tuple[Constant, str, int, tuple[int, ...]]]:
         """Yield the texts with the predicates and the places that take them, and the ways to them."""
@@ -177,7 +179,7 @@ class _Planner:
     steps: list[Step] = field(default_factory=list)
     problems: list[PlanProblem] = field(default_factory=list)
     describer: Describer = field(init=False)
-    acting: _Acting = field(init=False)
+    acting: _Acting = field(default_factory=lambda: _Acting("", Lambda(1, "e", ())))
     waiting: list[tuple[Trouble, str, str]] = field(default_factory=list)
     last: dict[str, Value] = field(default_factory=dict)  # person or thing → the one described last
 
@@ -247,8 +249,8 @@ class _Planner:
         text = gloss(spoken, self.predicates, self.lookup.classes)
         arguments: dict[str, Value] = {}
         said: list[tuple[Form, Value]] = []
+        around, self.acting = self.acting, _Acting.of(form, scope.conjuncts, self.predicates)
         gathered = self._gather(form, scope)
-        around, self.acting = self.acting, _Acting.of(form, gathered, scope.conjuncts)
         for place, argument in enumerate(gathered):
             value = self._value(argument, action, place, scope)
             entity_class = value.entity_class if isinstance(value, Named) else ""

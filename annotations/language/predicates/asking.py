@@ -61,6 +61,7 @@ from annotations.language.predicates.glossing import (
 )
 from annotations.language.predicates.signatures import ArgumentKind, argument_kind
 
+QUESTION_WORD = "{}"  # in a whole question
 WHAT, WHERE, WHO = "what", "where", "who"
 # The classes of entities that a predicate takes at a place.
 KindsOf: TypeAlias = "Callable[[str, int], Collection[str]]"
@@ -212,10 +213,14 @@ def _ask_about(description: Application, place: int, gap: _Gap, entity_class: st
     is_or_are = "are" if is_plural else "is"
     if own := DESCRIPTION_QUESTIONS.get(name, {}).get(str(place + 1)):
         chosen = choose(description, scope, takes=_is_known(description), pattern=own)
-        asked = _fold(_say(chosen, description, scope, owner))
+        word = _word(entity_class, scope)
+        asked = _fold(_say(chosen, description, scope, owner)).replace(QUESTION_WORD, word)
         return _capital(_IS.sub(is_or_are, asked, count=1) if is_plural else asked)
     chosen = choose(description, scope, takes=_has_slot(place))
-    before, after = _around(chosen, description, place, scope)
+    around = _around(chosen, description, place, scope)
+    if around is None:
+        return _which_one(entity_class, scope)
+    before, after = around
     if possessive := _POSSESSIVE_CLAUSE.fullmatch(f"{before} "):
         return f"What is the {possessive['what']} of {owner}?"
     clause = _RELATIVE_CLAUSE.fullmatch(before)
@@ -231,9 +236,10 @@ def _ask_for_argument(gap: _Gap, entity_class: str) -> str:
     if whole is not None:
         return _capital(_fold(_say(read_pattern(whole)[0], gap.action, gap.scope)))
     chosen = _alternative(gap)
-    if not _has_slot(gap.place)(chosen):
+    around = _around(chosen, gap.action, gap.place, gap.scope)
+    if around is None:
         return _which_one(entity_class, gap.scope)
-    before, after = _around(chosen, gap.action, gap.place, gap.scope)
+    before, after = around
     word = _word_of_argument(gap, entity_class)
     if gap.variable is not None:
         known = noun_phrase(gap.scope.about(gap.variable), gap.scope)
@@ -276,13 +282,16 @@ def _is_known(description: Application) -> Callable[[GlossAlternative], bool]:
 
 def _around(
     alternative: GlossAlternative, form: Application, place: int, scope: Scope
-) -> tuple[str, str]:
-    """Return what is said before and after the argument at ``place``, said to whom gives the command."""
-    number = next(
-        number
-        for number, piece in enumerate(alternative.pieces)
-        if isinstance(piece, PatternSlot) and piece.place == place and not piece.value
-    )
+) -> tuple[str, str] | None:
+    """Return what is said before and after the argument at ``place``, to whom gives the command; None if that is
+    not said."""
+    places = [
+        piece.place if isinstance(piece, PatternSlot) and not piece.value else None
+        for piece in alternative.pieces
+    ]
+    if place not in places:
+        return None
+    number = places.index(place)
     before = GlossAlternative(alternative.pieces[:number])
     # "take {1} and put it on {2}": what the question begins with needs no pronoun.
     after = GlossAlternative(
@@ -323,7 +332,7 @@ def _say(
             if leaves_out and last in PREPOSITIONS_LEFT_OUT:
                 said[-1:] = [f"{' '.join(others)} "]
             else:
-                said.append(_pronoun(form.arguments[piece.place], piece, scope))
+                said.append(_pronoun(form, piece, scope))
         else:
             said.append(say_slot(piece, form.arguments, scope))
     return "".join(said)
@@ -336,7 +345,8 @@ def _is_nameless(argument: Form, scope: Scope) -> bool:
         return isinstance(argument, Constant | Unknown) and is_open(argument)
     said = noun_phrase(about, scope)
     everything = _about(argument, replace(scope, is_spoken=False)) or ()
-    return said.is_bare and said.noun in ("", PERSON) and any(map(is_open, everything))
+    is_all_open = not everything or any(map(is_open, everything))
+    return said.is_bare and said.noun in ("", PERSON) and is_all_open
 
 
 def _about(argument: Form, scope: Scope) -> tuple[Application, ...] | None:
@@ -347,9 +357,16 @@ def _about(argument: Form, scope: Scope) -> tuple[Application, ...] | None:
     return scope.about(argument.index) if isinstance(argument, Variable) else None
 
 
-def _pronoun(argument: Form, slot: PatternSlot, scope: Scope) -> str:
+def _pronoun(form: Application, slot: PatternSlot, scope: Scope) -> str:
+    assert slot.place is not None
+    argument = form.arguments[slot.place]
     about = _about(argument, replace(scope, is_spoken=False)) or ()
-    is_person = _is_person(about) or argument_kind(argument) in _classes_of(WHO)
+    name = _argument_name(str(form.predicate), slot.place)
+    is_person = (
+        _is_person(about)
+        or QUESTION_WORDS.get(argument_kind(argument)) == WHO
+        or (not about and ARGUMENT_QUESTION_WORDS.get(name) == WHO)
+    )
     return "them" if is_person or slot.kind == "plural" else "it"
 
 
@@ -370,11 +387,16 @@ def _is_person(about: Sequence[Application]) -> bool:
 
 def _word_of_argument(gap: _Gap, entity_class: str) -> str:
     """Return the question word for the argument of an action."""
-    names = ARGUMENT_NAMES.get(gap.name, ())[gap.place : gap.place + 1]
-    name = next((each if isinstance(each, str) else each.get("", "") for each in names), "")
+    name = _argument_name(gap.name, gap.place)
     of_name = ARGUMENT_QUESTION_WORDS.get(name, WHAT)
-    is_of_class = entity_class and not (name == ArgumentKind.TEXT)
+    is_of_class = entity_class and name != ArgumentKind.TEXT
     return _word(entity_class, gap.scope) if is_of_class else of_name
+
+
+def _argument_name(action: str, place: int) -> str:
+    """Return what plans call an argument of which nothing is known."""
+    names = ARGUMENT_NAMES.get(action, ())[place : place + 1]
+    return next((each if isinstance(each, str) else each.get("", "") for each in names), "")
 
 
 def _word(entity_class: str, scope: Scope) -> str:
@@ -402,10 +424,6 @@ def _word_before(word: str, before: str, entity_class: str, scope: Scope) -> tup
     if last in PREPOSITIONS_LEFT_OUT:
         return word, before
     return f"which {_noun(entity_class, scope)}" if entity_class else WHAT, before
-
-
-def _classes_of(word: str) -> frozenset[str]:
-    return frozenset(each for each, own in QUESTION_WORDS.items() if own == word)
 
 
 def _capital(text: str) -> str:

@@ -38,8 +38,9 @@ NOT_UNDERSTOOD = "a command that the robot does not understand"
 class Scope:
     """How to say predicates and classes, the conjuncts that hold here, the variables that are being described.
 
-    ``patterns`` say predicates, ``actions`` names those that are actions, and ``classes`` say class tokens. What is spoken is brief: it leaves out what is open, calls people by their names, and says "the tea in the
-    kitchen" for "the tea that is in the kitchen".
+    ``patterns`` say predicates, ``actions`` names those that are actions, and ``classes`` say class tokens.
+    ``named`` gives texts that name entities, with their classes. What is spoken is brief: it leaves out what is
+    open, calls people by their names, and says "the tea in the kitchen" for "the tea that is in the kitchen".
     """
 
     patterns: Mapping[str, str]
@@ -68,6 +69,7 @@ class Scope:
             each
             for each in self.conjuncts
             if each.arguments[:1] == (Variable(variable),)
+            and str(each.predicate) not in self.actions
             and described.isdisjoint(each.arguments[1:])
             and not (self.is_spoken and self._leaves_open(each))
         )

@@ -67,7 +67,7 @@ def test_things_joined_with_or_are_asked_about_and_an_unknown_one_once(ask, pars
     assert after["prompt"] == "Shall I bring you the lemonade?" and after["offers"] == []
 
     row = ask("dialogues/", {"utterance": "bring me the flurb"})
-    assert row["prompt"].startswith("Which object is “flurb”?")
+    assert row["prompt"].startswith("Which object do you mean by “flurb”?")
     after = ask(f"dialogues/{row['id']}/answer/", {"answer": "new"})
     assert after["prompt"] == "Shall I bring you the flurb?"
     (offer,) = ask("offered-entities/")["results"]

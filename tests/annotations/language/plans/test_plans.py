@@ -140,12 +140,21 @@ def test_unknown_asks_the_operator() -> None:
         (
             '(guide (λ$1:e (person $1) (name $1 "Ada")) UNKNOWN)',
             "Guide has no destination.",
-            "Where to?",
+            "Where shall I guide Ada?",
         ),
-        ('(guide (λ$1:e (person $1) (name $1 "Ada")))', "Guide has no destination.", "Where to?"),
-        ("(go UNKNOWN)", "Go has no destination.", "Where to?"),
-        ('(put (λ$1:e (is_a $1 "tea")) UNKNOWN)', "Put has no destination.", "Where to?"),
-        ("(bring UNKNOWN)", "Bring has no thing.", "Which thing?"),
+        (
+            '(guide (λ$1:e (person $1) (name $1 "Ada")))',
+            "Guide has no destination.",
+            "Where shall I guide Ada?",
+        ),
+        ("(go UNKNOWN)", "Go has no destination.", "Where shall I go?"),
+        ("(go)", "Go has no destination.", "Where shall I go?"),
+        (
+            '(put (λ$1:e (is_a $1 "tea")) UNKNOWN)',
+            "Put has no destination.",
+            "Where shall I put the tea?",
+        ),
+        ("(bring UNKNOWN)", "Bring has no thing.", "What shall I bring you?"),
     ],
 )
 def test_a_missing_argument_is_named_and_asked_for_before_the_action(
@@ -162,6 +171,36 @@ def test_a_class_token_is_asked_for() -> None:
     plan = plan_of('(bring (λ$1:e (is_a $1 "<object>")))')
     assert [step.predicate for step in plan.steps] == [ASK, "bring"]
     assert troubles(plan) == [Trouble.OPEN_SLOT]
+
+
+@pytest.mark.parametrize(
+    ("text", "questions"),
+    [
+        (
+            '(put (λ$1:e (is_a $1 "<object>") (at $1 "<location>")) "<location>")',
+            ["What shall I put?", "Where is it?", "Where shall I put it?"],
+        ),
+        (
+            '(put (λ$1:e (is_a $1 "tea") (at $1 "<location>")) "<location>")',
+            ["Where is the tea?", "Where shall I put the tea?"],
+        ),
+        (
+            '(say (count (λ$1:e (is_a $1 "<category>") (at $1 "attic"))))',
+            ["Which kind of thing in the attic shall I count?"],
+        ),
+        (
+            '(sequence (bring (λ$1:e (is_a $1 "<object>"))) (go "<room>"))',
+            ["What shall I bring you?", "Which room shall I go to?"],
+        ),
+        (
+            '(λ$1:e (sequence (follow (person $1) (name $1 "<name>")) (guide $1 "<room>")))',
+            ["Who shall I follow?", "Which room shall I guide them to?"],
+        ),
+    ],
+)
+def test_a_plan_asks_as_a_person_would(text: str, questions: list[str]) -> None:
+    asked = [step for step in plan_of(text).steps if step.predicate == ASK]
+    assert [dict(step.arguments)["question"].as_json()["text"] for step in asked] == questions
 
 
 def test_an_entity_that_the_ontology_does_not_have_is_named() -> None:
