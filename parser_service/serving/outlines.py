@@ -176,6 +176,9 @@ class _AwaitingLookup(Lookup):
         awaited = _AwaitedNamed(entity_class, name) if entity_class else _AwaitedWords(name)
         return awaited, False
 
+    def places_called(self, text: str) -> tuple[Named, ...]:
+        return self._lookup.places_called(text)
+
 
 class _AwaitedNamed(Named):
     """Stands for an entity whose text is the name of its place."""

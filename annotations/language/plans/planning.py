@@ -304,6 +304,12 @@ class _Planner:
             )
             return self.ask(question, constant.token_class)
         value, is_missing = self.lookup.value(str(constant.value), predicate, place)
+        if is_missing and (places := self.lookup.places_called(str(constant.value))):
+            message = f"“{constant.value}” can be several places"
+            *others, last = (f"the {each.text}" for each in places)
+            choices = f"{', '.join(others)} or {last}"
+            self.waiting.append((Trouble.AMBIGUOUS, message, "name one, or answer the question"))
+            return self.ask(f"Which one do you mean: {choices}?", places[0].entity_class)
         if is_missing:
             message = f"the ontology has no “{constant.value}”"
             hint = "add it to the ontology, or name something that is there"

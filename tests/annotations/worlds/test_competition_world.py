@@ -20,6 +20,7 @@ from annotations.language.ontology import (
     Ontology,
     read_competition,
 )
+from annotations.language.plans import make_plan
 from annotations.language.predicates import Predicate, check_form, infer_signatures
 from annotations.language.templates import (
     DEFAULT_LIMIT,
@@ -235,6 +236,13 @@ def test_paraphrases_rewrite_commands_of_every_kind_of_action_with_their_forms()
         assert grounded(oracle(), prompt) == {form}
         said |= {" ".join(heads(form))}
     assert {wanted for _, wanted in KINDS.values()} <= said
+
+
+def test_the_trash_is_the_garbage_pail():
+    (form,) = grounded(oracle(), KINDS["putObjInTrash"][0])
+    plan = make_plan(read_form(form), ontology(), predicates())
+    assert plan.is_executable
+    assert dict(plan.steps[-1].arguments)["destination"].text == "garbage pail"
 
 
 def test_the_kind_of_the_documents_is_added_by_two_rows():

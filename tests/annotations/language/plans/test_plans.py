@@ -11,7 +11,7 @@ from hypothesis import given
 
 from annotations.language.forms import read_form
 from annotations.language.grounding import Anonymizer, deanonymize
-from annotations.language.ontology import Entity
+from annotations.language.ontology import Entity, Ontology
 from annotations.language.plans import (
     ASK,
     ActionName,
@@ -209,6 +209,44 @@ def test_an_entity_that_the_ontology_does_not_have_is_named() -> None:
     assert troubles(plan_of('(go "moon")')) == [Trouble.UNKNOWN_ENTITY]
     for known in ("TEA", "cuppa", "drink", "drinks", "objects"):
         assert plan_of(f'(bring (λ$1:e (is_a $1 "{known}")))').is_executable, known
+
+
+@pytest.mark.parametrize(
+    ("locations", "meant", "question"),
+    [
+        (["sofa", "garbage pail"], "garbage pail", None),
+        (["cabinet", "Trash Bin"], "Trash Bin", None),
+        (["sink", "trash"], "trash", None),
+        (["cabin", "binder shelf"], None, None),
+        (
+            ["trash bin", "sofa", "waste basket"],
+            None,
+            "Which one do you mean: the trash bin or the waste basket?",
+        ),
+    ],
+)
+def test_the_trash_is_the_place_with_a_word_for_it_in_its_name(
+    locations: list[str], meant: str | None, question: str | None
+) -> None:
+    rooms = ({"room": "kitchen"}, {"room": "hall"}, {"room": "attic"})
+    rows = (Entity("location", *each) for each in zip(locations, [()] * 3, rooms, strict=False))
+    plan = make_plan(
+        read_form('(sequence (take (λ$1:e (largest $1 2))) (put it "trash"))'),
+        Ontology(tuple(rows)),
+    )
+    require_valid(plan)
+    destination = said_in(plan, -1, "destination")
+    asked = [
+        dict(step.arguments)["question"].as_json()["text"]
+        for step in plan.steps
+        if step.predicate == ASK
+    ]
+    assert asked == [question] * (question is not None)
+    if meant:
+        room = rooms[locations.index(meant)]["room"]
+        assert destination == entity("location", meant, room=room)
+    else:
+        assert (Trouble.AMBIGUOUS if question else Trouble.UNKNOWN_ENTITY) in troubles(plan)
 
 
 def test_a_superlative_needs_a_set() -> None:
