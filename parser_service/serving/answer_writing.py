@@ -104,6 +104,8 @@ class AnswerWriter:
     def _fill(self, candidate: Candidate, form: Form, slots: Slots) -> str | None:
         """Return the outline with its entities; None where it would say something else."""
         put_in = [(slot.path, value) for slot in slots if (value := slot.filler) is not None]
+        if len({value.casefold() for _, value in put_in}) < len(put_in):
+            return None  # who is named twice is one person
         paths = tuple(path for path, _ in put_in)
         texts = [text for _, value in put_in if (text := self._outlines.text(value))]
         asked = self._outlines.asked(candidate.form, paths)
@@ -147,13 +149,10 @@ class AnswerWriter:
         }
 
         named = named_entities(slots)
-        is_of_one_class = all(
-            each.filler in named for each in slots if each.filler is not None and each.entity_class
-        )
 
         def asked_for(slot: Slot) -> str:
             asked = self._outlines.question(candidate.form, paths, slot.path)
-            if asked is not None and is_of_one_class:
+            if asked is not None:
                 return asked.fill(plain)
             language = self.language
             filled = fill_all(form, slots).form

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from annotations.language.predicates.gloss_patterns import SUPERLATIVES, pattern_of_name
+from annotations.language.predicates.glossing import NAMING
 from annotations.language.predicates.predicates import (
     Misuse,
     Predicate,
@@ -33,6 +34,7 @@ from annotations.language.predicates.standing_in import (
 )
 
 __all__ = [
+    "NAMING",
     "SUPERLATIVES",
     "ArgumentKind",
     "Misuse",

@@ -218,6 +218,46 @@ def test_other_wordings_have_the_same_form(one, other):
     assert grounded(oracle(), one) == grounded(oracle(), other) != set()
 
 
+@pytest.mark.parametrize(
+    ("said", "like"),
+    [
+        ("find Otto in the lobby and follow Otto", "find Otto in the lobby and follow him"),
+        (
+            "find Otto in the lobby and tell this person the time",
+            "find Otto in the lobby and tell him the time",
+        ),
+        ("find Otto in the lobby and follow that one", "find Otto in the lobby and follow him"),
+        (
+            "meet Bea at the piano then find Bea in the lobby",
+            "meet Bea at the piano then find her in the lobby",
+        ),
+        (
+            "find a quince in the galley, take that one and bring it to me",
+            "find a quince in the galley, take it and bring it to me",
+        ),
+        (
+            "take a quince from the larder and bring the quince to Bea",
+            "take a quince from the larder and bring it to Bea",
+        ),
+    ],
+)
+def test_who_or_what_is_said_again_is_referred_to(said, like):
+    assert grounded(oracle(), said) == grounded(oracle(), like) != set()
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "find Otto in the lobby and follow Bea",
+        "take a quince from the larder and bring the papaya to Bea",
+        "follow Otto",
+        "follow this person",
+    ],
+)
+def test_nothing_is_referred_to_that_was_not_said(said):
+    assert not any("them" in form or "it )" in form for form in grounded(oracle(), said))
+
+
 def test_questions_are_of_2025_and_the_trash_is_of_2026():
     of_2025, of_2026 = (Knowledge(ontology=ontology(), grammar=(each,)) for each in categories())
     question, trash = KINDS["answerQuestion"][0], KINDS["putObjInTrash"][0]

@@ -15,6 +15,7 @@ from annotations.language.ontology import Entity, Ontology
 from annotations.language.plans import (
     ASK,
     ActionName,
+    Described,
     Plan,
     Trouble,
     behavior_tree_schema_text,
@@ -375,6 +376,31 @@ def test_a_reference_is_what_was_described_before(
     value = said_in(plan, -1, argument)
     assert value["id"] == stands_for and value["said"] in ("it", "them")
     assert "no_antecedent" not in troubles(plan)
+
+
+def test_who_is_called_by_the_same_name_again_is_the_same_person() -> None:
+    ada, bo = (f'(λ$1:e (person $1) (name $1 "{name}"))' for name in ("Ada", "Bo"))
+    at = ada.replace("(person $1)", '(person $1) (at $1 "stool")')
+    plan = plan_of(f'(sequence (find {at}) (follow {bo}) (say "hello" {ada}) (bring {CUP} {ada}))')
+    people = [
+        said_in(plan, *each)
+        for each in ((0, "target"), (1, "person"), (2, "listener"), (3, "recipient"))
+    ]
+    assert [each["id"] for each in people] == ["x1", "x2", "x1", "x1"]
+    assert [len(each["conditions"]) for each in people] == [3, 2, 2, 2]
+
+
+def test_those_of_no_name_are_others_each() -> None:
+    plan = plan_of(
+        f'(sequence (find {ANN}) (follow {ANN}) (greet (λ$1:e (person $1) (name $1 "<name>"))))'
+    )
+    people = [
+        value.id
+        for step in plan.steps
+        for _, value in step.arguments
+        if isinstance(value, Described)
+    ]
+    assert people == ["x1", "x2", "x3"]
 
 
 @pytest.mark.parametrize(
