@@ -21,7 +21,7 @@ from annotations.language.ontology import (
     read_competition,
 )
 from annotations.language.plans import make_plan
-from annotations.language.predicates import Predicate, check_form, infer_signatures
+from annotations.language.predicates import Predicate, check_form, gloss, infer_signatures
 from annotations.language.templates import (
     DEFAULT_LIMIT,
     Balance,
@@ -276,6 +276,37 @@ def test_paraphrases_rewrite_commands_of_every_kind_of_action_with_their_forms()
         assert grounded(oracle(), prompt) == {form}
         said |= {" ".join(heads(form))}
     assert {wanted for _, wanted in KINDS.values()} <= said
+
+
+@pytest.mark.parametrize(
+    ("said", "wanted"),
+    [
+        ("find a person in the galley and follow them", "find follow"),
+        ("go to the lobby, find someone and tell them the time", "go find say"),
+        ("in the lobby, greet the person", "greet"),
+        ("follow the person at the piano", "follow"),
+        ("guide the person from the piano to the lobby", "guide"),
+        ("please tell me what day it is", "say"),
+        ("could you say something about yourself", "say"),
+    ],
+)
+def test_nobody_in_particular_is_found_and_whoever_asks_is_told(said, wanted):
+    (form,) = grounded(oracle(), said)
+    assert " ".join(heads(form)) == wanted
+    assert make_plan(read_form(form), ontology(), predicates()).is_executable
+
+
+@pytest.mark.parametrize(
+    ("form", "said"),
+    [
+        ('(find (λ$1:e (person $1) (pose $1 "<pose>")))', "find the person who is in the pose"),
+        ('(find (λ$1:e (person $1) (pose $1 "sitting")))', "find the person who is sitting"),
+        ('(say "the time")', "tell me the time"),
+        ('(say "<topic>")', "tell me the topic"),
+    ],
+)
+def test_forms_with_open_places_read_well(form, said):
+    assert gloss(read_form(form), predicates(), ontology().classes) == said
 
 
 def test_the_trash_is_the_garbage_pail():
