@@ -64,7 +64,7 @@ PARSERS: dict[str, RegistryEntry] = {
         title="Grammar oracle",
         description="Chart-parses with the annotated grammar and returns the template's form. "
         "Learns nothing; has no answer outside the grammar.",
-        version=4,
+        version=5,
         protocols=(Protocol.GRAMMAR,),
         in_short="Reads a command of the annotated grammar as people write it; knows no other command.",
         needs=Needs.NOTHING,

@@ -142,6 +142,8 @@ THING_WORDS = frozenset(_nouns.words("things"))
 RECIPIENT_PRONOUNS = _nouns.words("recipients")
 ANY_OBJECT = _nouns.text("any_object")
 OPEN_CATEGORIES = _nouns.words("open_categories")
+REFERENCES = _nouns.words_by_name("references")
+KINDS_OF_PLACES = tuple(map(frozenset, _nouns.groups("kinds_of_places")))
 PLURALS = _nouns.texts_by_name("plurals")
 OBFUSCATED = _nouns.texts_by_name("obfuscated")
 PRONOUNS = _nouns.tables_by_name("pronouns")
@@ -167,7 +169,21 @@ NEAR_SYNONYMS = _contrasts.groups("near_synonyms")
 _arguments = WordFile("arguments")
 ARGUMENT_NAMES = _arguments.choices_by_name("names")
 NEEDED_ARGUMENTS = _arguments.words_by_name("needed")
-ARGUMENT_QUESTIONS = _arguments.texts_by_name("questions")
+
+_questions = WordFile("questions")
+QUESTION_WORDS = {
+    entity_class: word
+    for word, classes in _questions.words_by_name("words").items()
+    for entity_class in classes
+}
+QUESTION_NOUNS = _questions.texts_by_name("nouns")
+ARGUMENT_QUESTION_WORDS = _questions.texts_by_name("arguments")
+PREPOSITIONS_OF_WHERE = frozenset(_questions.words("prepositions_of_where"))
+PREPOSITIONS_LEFT_OUT = frozenset(_questions.words("prepositions_left_out"))
+ACTION_QUESTION_PATTERNS = _questions.texts_by_name("actions")
+AMONG_WHAT = _questions.text("superlative")
+WHOLE_QUESTIONS = _questions.tables_by_name("whole")
+DESCRIPTION_QUESTIONS = _questions.tables_by_name("descriptions")
 
 _paraphrases = WordFile("paraphrases")
 COURTESY_WORDS = frozenset(_paraphrases.words("courtesy"))

@@ -60,5 +60,7 @@ def test_fewer_commands_count_more_and_better_ones_among_as_many():
 @given(st.text(alphabet="ab .,;1)", max_size=60) | st.lists(st.sampled_from(JOINTS)).map(" ".join))
 def test_any_text_is_cut_or_comes_back(text):
     assert cut_commands(text, knows()) == (text,)
-    everything = cut_commands(text, lambda pieces: [None if each == text else 0.0 for each in pieces])
+    everything = cut_commands(
+        text, lambda pieces: [None if each == text else 0.0 for each in pieces]
+    )
     assert 1 <= len(everything) <= 3
