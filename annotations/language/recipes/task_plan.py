@@ -45,7 +45,12 @@ class TaskProblem:
         return cls(str(problem.trouble), step, problem.message, problem.hint)
 
     def as_json(self) -> dict[str, Any]:
-        return {"code": self.code, "step": self.step, "message": self.message, "hint": self.hint}
+        return {
+            "code": str(self.code),
+            "step": self.step,
+            "message": self.message,
+            "hint": self.hint,
+        }
 
 
 @dataclass(frozen=True, slots=True)
