@@ -129,7 +129,7 @@ def _row_page(request: WorldRequest, world: World, kind: str, pk: int) -> HttpRe
         except Overtaken as clash:
             return merge_page(request, row, form, clash, initial_values)
         except ValidationError as error:
-            form.add_error("text", error)
+            form.add_error("text", error.messages)
         else:
             messages.success(request, f"Saved as version {row.version}.")
             return redirect(kind, world=world.name, pk=pk)
@@ -146,7 +146,7 @@ def _new_page(request: WorldRequest, world: World, kind: str) -> HttpResponse:
         try:
             row = add(model(world=world, **form.values), request.user, form.cleaned_data["once"])
         except ValidationError as error:
-            form.add_error("text", error)
+            form.add_error("text", error.messages)
         else:
             messages.success(request, f"Added {_name_of(row)}.")
             return redirect(kind, world=world.name, pk=row.pk)
