@@ -43,8 +43,12 @@ class AnsweredMeanwhile(Refusal):
 
 
 def ask_parser(world: str, utterance: str) -> Parsed:
-    """Return what the promoted parser of a world answers. Raises ParserAway or ParserRefused."""
-    return client().parse(world, utterance, beam=1)
+    """Return what the promoted parser of a world answers. Raises ParserAway or ParserRefused.
+
+    It is asked for several candidates: the first is the one that fits the entities of the utterance best, of those
+    that are about equally good.
+    """
+    return client().parse(world, utterance)
 
 
 def start(world: World, utterance: str, by: User, ask: Ask = ask_parser) -> Dialogue:

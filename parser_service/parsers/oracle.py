@@ -61,8 +61,8 @@ class GrammarOracle(Parser):
     """
 
     name = "grammar-oracle"
-    version = 4
-    reads = (2, 3)
+    version = 5
+    reads = (2, 3, 4)
     protocols = (Protocol.GRAMMAR,)
     Config = OracleConfig
 

@@ -13,11 +13,12 @@ from annotations.language.grounding import (
     Slot,
     UtteranceMentions,
     fill_all,
+    named_entities,
     resolve_slots,
-    say_with_blank,
     with_values,
 )
 from annotations.language.plans import doubts_about
+from annotations.language.predicates import ask_for
 from parser_service.parsers.interface import Candidate
 from parser_service.serving.outlines import (
     Outline,
@@ -103,6 +104,8 @@ class AnswerWriter:
     def _fill(self, candidate: Candidate, form: Form, slots: Slots) -> str | None:
         """Return the outline with its entities; None where it would say something else."""
         put_in = [(slot.path, value) for slot in slots if (value := slot.filler) is not None]
+        if len({value.casefold() for _, value in put_in}) < len(put_in):
+            return None  # who is named twice is one person
         paths = tuple(path for path, _ in put_in)
         texts = [text for _, value in put_in if (text := self._outlines.text(value))]
         asked = self._outlines.asked(candidate.form, paths)
@@ -145,13 +148,22 @@ class AnswerWriter:
             for sign, text in zip(signs, (each.text, each.plural), strict=True)
         }
 
-        def sentence_of(slot: Slot) -> str:
-            sentence = self._outlines.sentence(candidate.form, paths, slot.path)
-            if sentence is not None:
-                return sentence.fill(plain)
+        named = named_entities(slots)
+
+        def asked_for(slot: Slot) -> str:
+            asked = self._outlines.question(candidate.form, paths, slot.path)
+            if asked is not None:
+                return asked.fill(plain)
             language = self.language
             filled = fill_all(form, slots).form
-            return say_with_blank(slot.path, filled, language.predicates, language.ontology.classes)
+            return ask_for(
+                filled,
+                slot.path,
+                slot.entity_class,
+                language.predicates,
+                language.ontology.classes,
+                named,
+            )
 
         given = Deanonymized(form, slots)
         found = doubts_about(slots)
@@ -163,7 +175,7 @@ class AnswerWriter:
             "spoken": spoken,
             "score": as_json(score_of(candidate)),
             "values": as_json(list(candidate.values)),
-            "open_slots": as_json(list(questions_of(given, self.language, sentence_of))),
+            "open_slots": as_json(list(questions_of(given, self.language, asked_for))),
             "remarks": as_json(remarks_on(given, self.language.ontology)),
             "is_executable": as_json(outline.is_executable and not doubts),
             "problems": as_json([*doubts, *outline.problems]),

@@ -20,9 +20,9 @@ from annotations.language.english import (
     stand_in,
 )
 from annotations.language.forms import Form, Reference, walk
-from annotations.language.grounding import Deanonymized, FormSlots, SlotPath, filled, say_with_blank
+from annotations.language.grounding import Deanonymized, FormSlots, SlotPath, filled
 from annotations.language.plans import Lookup, Named, PlanProblem, Value, Words
-from annotations.language.predicates import can_stand_in, is_loose, texts_of_patterns
+from annotations.language.predicates import ask_for, can_stand_in, is_loose, texts_of_patterns
 from annotations.language.recipes import spoken
 from parser_service.parsers.interface import Candidate
 from parser_service.parsers.remembering import remembered
@@ -149,13 +149,18 @@ class Outlines:
         return as_json(made.as_json()), as_json(spoken(made))
 
     @remembered(REMEMBERED)
-    def sentence(self, form: str, paths: Paths, blank: SlotPath) -> Outline | None:
-        """Return the outline of the sentence with a blank in the place of the slot at ``blank``."""
-        text = say_with_blank(
-            blank,
+    def question(self, form: str, paths: Paths, asked: SlotPath) -> Outline | None:
+        """Return the outline of the question for the slot at ``asked``."""
+        classes = {slot.path: slot.entity_class for slot in self.slots(form).slots}
+        named = {stand_in(number): classes[path] for number, path in enumerate(paths)}
+        language = self.language
+        text = ask_for(
             _with_signs(form, paths),
-            self.language.predicates,
-            self.language.ontology.classes,
+            asked,
+            classes[asked],
+            language.predicates,
+            language.ontology.classes,
+            {sign: entity_class for sign, entity_class in named.items() if entity_class},
         )
         return Outline(text) if _is_sound(text, paths) else None
 
@@ -186,6 +191,9 @@ class _AwaitingLookup(Lookup):
         entity_class = self._class_of.get(asked, "")
         awaited = _AwaitedNamed(entity_class, name) if entity_class else _AwaitedWords(name)
         return awaited, False
+
+    def places_called(self, text: str) -> tuple[Named, ...]:
+        return self._lookup.places_called(text)
 
 
 class _AwaitedNamed(Named):

@@ -292,11 +292,11 @@ def score_of(candidate: Candidate) -> float:
 
 
 def questions_of(
-    given: Deanonymized, language: WorldLanguage, sentence_of: Callable[[Slot], str] | None = None
+    given: Deanonymized, language: WorldLanguage, asked_for: Callable[[Slot], str] | None = None
 ) -> Iterator[dict[str, Any]]:
     """Yield the open slots, with at most ``MOST_OFFERED`` choices each where the utterance names none."""
     for slot in open_slots_as_json(
-        given, language.predicates, sentence_of, language.ontology.classes
+        given, language.predicates, asked_for, language.ontology.classes
     ):
         if not slot["is_named"]:
             slot["choices"] = slot["choices"][:MOST_OFFERED]

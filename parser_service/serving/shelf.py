@@ -33,7 +33,7 @@ from parser_service.serving.batching import Batcher
 from parser_service.serving.loading import load_anew, make_untrained, size_of
 from parser_service.serving.metrics import Metrics
 from parser_service.serving.preparing import WorldLanguage
-from parser_service.serving.remote import SEATS, TOGETHER, RemoteAsker, Unanswered
+from parser_service.serving.remote import PATIENCE, SEATS, TOGETHER, RemoteAsker, Unanswered
 
 logger = logging.getLogger(__name__)
 
@@ -167,10 +167,13 @@ class Shelf:
     ``update`` loads what was promoted beside what answers, and then changes over; whoever answers with
     the old one ends with it. Other runs are loaded when they are asked, and take at most ``most_bytes``
     together.
+
+    ``patience`` is how many seconds a request waits for a parser that asks a server elsewhere.
     """
 
-    def __init__(self, most_bytes: int, metrics: Metrics) -> None:
+    def __init__(self, most_bytes: int, metrics: Metrics, patience: float = PATIENCE) -> None:
         self.metrics = metrics
+        self._patience = patience
         self._most_bytes = most_bytes
         self._turn = threading.Lock()
         self._seats = threading.BoundedSemaphore(SEATS)
@@ -371,7 +374,7 @@ class Shelf:
             score_kind=str(parser.score_kind or ""),
             knowledge=knowledge,
             size=size,
-            batcher=RemoteAsker(parser.predict, self._seats)
+            batcher=RemoteAsker(parser.predict, self._seats, self._patience)
             if parser.asks_a_server
             else Batcher(parser.predict, self._turn, self.metrics.batches.observe),
             lines_together=TOGETHER if parser.asks_a_server else together,

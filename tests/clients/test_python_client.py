@@ -132,7 +132,7 @@ def test_a_desk_asks_and_hands_over_the_agreed_plan(home, settings):
     desk = CommandDesk(home, said.append, plans.append)
     for text in ("bring me the flurb", "", "new", "yes", "find the bowl", "stop"):
         desk.hear(text)
-    assert said[0].startswith("Which object is “flurb”?")
+    assert said[0].startswith("Which object do you mean by “flurb”?")
     assert said[1:3] == ["Shall I bring you the flurb?", "I will do it."]
     assert said[4] == "I will not do it."
     (plan,) = map(json.loads, plans)

@@ -27,6 +27,7 @@ from annotations.language.grounding import (
     Slot,
     deanonymize,
     fill_all,
+    named_entities,
     noun_for,
     question_for,
 )
@@ -297,7 +298,8 @@ def state_with_prompt(
             f"I do not know any {noun_for(slot, classes)} called “{state.word}”. Shall I learn it?"
         )
     else:
-        prompt = question_for(slot, state.form, dialogue.predicates, classes=classes)
+        named = named_entities(state.slots)
+        prompt = question_for(slot, state.form, dialogue.predicates, classes=classes, named=named)
         if slot.phrases and slot.entity_class and not slot.is_named:
             prompt = f"{prompt} Name one that I know, or say “new”."
     return replace(state, prompt=sorry + prompt)

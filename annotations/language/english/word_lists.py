@@ -12,7 +12,7 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 VARIABLE = "GPSR_ENGLISH_DIR"
 _KINDS: dict[type, str] = {str: "text", list: "list", dict: "table"}
@@ -142,6 +142,8 @@ THING_WORDS = frozenset(_nouns.words("things"))
 RECIPIENT_PRONOUNS = _nouns.words("recipients")
 ANY_OBJECT = _nouns.text("any_object")
 OPEN_CATEGORIES = _nouns.words("open_categories")
+REFERENCES = _nouns.words_by_name("references")
+KINDS_OF_PLACES = tuple(map(frozenset, _nouns.groups("kinds_of_places")))
 PLURALS = _nouns.texts_by_name("plurals")
 OBFUSCATED = _nouns.texts_by_name("obfuscated")
 PRONOUNS = _nouns.tables_by_name("pronouns")
@@ -167,11 +169,43 @@ NEAR_SYNONYMS = _contrasts.groups("near_synonyms")
 _arguments = WordFile("arguments")
 ARGUMENT_NAMES = _arguments.choices_by_name("names")
 NEEDED_ARGUMENTS = _arguments.words_by_name("needed")
-ARGUMENT_QUESTIONS = _arguments.texts_by_name("questions")
+
+_questions = WordFile("questions")
+QUESTION_WORDS = {
+    entity_class: word
+    for word, classes in _questions.words_by_name("words").items()
+    for entity_class in classes
+}
+QUESTION_NOUNS = _questions.texts_by_name("nouns")
+ARGUMENT_QUESTION_WORDS = _questions.texts_by_name("arguments")
+PREPOSITIONS_OF_WHERE = frozenset(_questions.words("prepositions_of_where"))
+PREPOSITIONS_LEFT_OUT = frozenset(_questions.words("prepositions_left_out"))
+ACTION_QUESTION_PATTERNS = _questions.texts_by_name("actions")
+AMONG_WHAT = _questions.text("superlative")
+WHOLE_QUESTIONS = _questions.tables_by_name("whole")
+DESCRIPTION_QUESTIONS = _questions.tables_by_name("descriptions")
 
 _paraphrases = WordFile("paraphrases")
 COURTESY_WORDS = frozenset(_paraphrases.words("courtesy"))
 CHECK_WORDS = _paraphrases.words("checks")
+
+_rewordings = WordFile("rewordings")
+REWORDING_OPENINGS = _rewordings.words("openings")
+REWORDING_CLOSINGS = _rewordings.words("closings")
+REWORDED_JOINTS = _rewordings.words("joints")
+REWORDING_DETERMINERS = _rewordings.words("determiners")
+REWORDING_PERSONS = _rewordings.words("persons")
+REWORDING_THINGS = _rewordings.words("things")
+REWORDED_PATTERNS = _rewordings.words_by_name("patterns")
+
+_joints = WordFile("joints")
+JOINTS = _joints.words("joints")
+JOINT_OPENINGS = _joints.words("openings")
+
+_other_requests = WordFile("other_requests")
+FORBIDDING_PHRASES = _other_requests.words("forbidding")
+CONDITIONAL_PHRASES = _other_requests.words("conditions")
+POLITE_BEFORE_IF = _other_requests.words("polite_before_if")
 
 
 @cache
@@ -185,3 +219,21 @@ def sample_commands() -> tuple[tuple[str, str], ...]:
 def unrelated_sentences() -> tuple[str, ...]:
     """Return sentences that are no command."""
     return WordFile("unrelated_sentences").words("sentences")
+
+
+class RequestGroup(NamedTuple):
+    """Examples of one kind of request that is no command, unless a world has one of ``actions``."""
+
+    gloss: str
+    texts: tuple[str, ...]
+    actions: tuple[str, ...]
+
+
+@cache
+def other_request_groups() -> tuple[RequestGroup, ...]:
+    """Return what people say to a robot that is none of its commands, by kind."""
+    groups = _other_requests.tables("requests")
+    return tuple(
+        RequestGroup(each["gloss"], tuple(each["texts"]), tuple(each.get("actions", ())))
+        for each in groups
+    )

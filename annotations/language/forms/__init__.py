@@ -42,6 +42,7 @@ from annotations.language.forms.terms import (
     predicates,
     size,
     walk,
+    with_part,
 )
 from annotations.language.forms.tree_distance import FormDistances
 
@@ -93,4 +94,5 @@ __all__ = [
     "to_reading",
     "to_template",
     "walk",
+    "with_part",
 ]

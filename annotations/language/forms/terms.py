@@ -7,7 +7,7 @@ Equality is literal and hashes agree with it; for equality up to the names of va
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -92,6 +92,19 @@ def children(form: Form) -> tuple[Form, ...]:
     if isinstance(form, Lambda):
         return form.bodies
     return form.arguments if isinstance(form, Application) else ()
+
+
+def with_part(form: Form, path: Sequence[int], part: Form) -> Form:
+    """Return the form with another part at ``path``, which leads to it by child numbers. Raises IndexError."""
+    if not path:
+        return part
+    place, rest = path[0], path[1:]
+    parts = list(children(form))
+    parts[place] = with_part(parts[place], rest, part)
+    if isinstance(form, Lambda):
+        return Lambda(form.variable, form.type, tuple(parts))
+    assert isinstance(form, Application)
+    return Application(form.predicate, tuple(parts))
 
 
 def walk(form: Form) -> Iterator[Form]:

@@ -19,10 +19,10 @@ from annotations.language.grounding.drawing import may_fill
 from annotations.language.grounding.grounding import Grounded, ground
 from annotations.language.grounding.questions import (
     choices_of,
+    named_entities,
     noun_for,
     open_slots_as_json,
     question_for,
-    say_with_blank,
 )
 from annotations.language.grounding.role_evidence import Evidence
 from annotations.language.grounding.roles import SlotPath
@@ -51,10 +51,10 @@ __all__ = [
     "ground_like",
     "ground_text",
     "may_fill",
+    "named_entities",
     "noun_for",
     "open_slots_as_json",
     "question_for",
     "resolve_slots",
-    "say_with_blank",
     "with_values",
 ]

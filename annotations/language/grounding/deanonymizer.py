@@ -8,13 +8,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from annotations.language.forms import (
-    Application,
     Constant,
     Form,
-    Lambda,
     Unknown,
     canonical_text,
     children,
+    with_part,
 )
 from annotations.language.grounding.anonymizer import Anonymized, Span
 from annotations.language.grounding.assignment import Mention, SlotChoice, assign
@@ -116,16 +115,7 @@ def fill_all(form: Form, slots: tuple[Slot, ...]) -> Deanonymized:
 
 def filled(form: Form, path: SlotPath, value: str) -> Form:
     """Return the form with a constant at a path."""
-    if not path:
-        return Constant(value)
-    place, rest = path[0], path[1:]
-    parts = list(children(form))
-    parts[place] = filled(parts[place], rest, value)
-    if isinstance(form, Lambda):
-        return Lambda(form.variable, form.type, tuple(parts))
-    if isinstance(form, Application):
-        return Application(form.predicate, tuple(parts))
-    raise IndexError(f"a leaf has no part {place}")
+    return with_part(form, path, Constant(value))
 
 
 def slots_of(form: Form, path: SlotPath = ()) -> Iterator[Slot]:

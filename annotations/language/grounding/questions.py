@@ -2,49 +2,49 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from annotations.language.forms import Form
-from annotations.language.grounding.deanonymizer import Deanonymized, Slot, filled
-from annotations.language.grounding.roles import SlotPath
-from annotations.language.predicates import Predicate, gloss
+from annotations.language.grounding.deanonymizer import Deanonymized, Slot
+from annotations.language.predicates import Predicate, ask_for
 from annotations.language.symbols import DEFAULT_CLASSES, EntityClasses
 
-BLANK = "___"
 MOST_OFFERED = 4  # entities of the ontology that a question lists
 
 
-def say_with_blank(
-    path: SlotPath,
-    form: Form,
-    predicates: Mapping[str, Predicate],
-    classes: EntityClasses = DEFAULT_CLASSES,
-) -> str:
-    """Return the English sentence of a form with a blank in the place of the slot at ``path``."""
-    return gloss(filled(form, path, BLANK), predicates, classes)
+def named_entities(slots: Iterable[Slot]) -> dict[str, str]:
+    """Return the entities that fill slots with their classes, but none that is of two classes."""
+    classes: defaultdict[str, set[str]] = defaultdict(set)
+    for slot in slots:
+        if slot.filler is not None and slot.entity_class:
+            classes[slot.filler].add(slot.entity_class)
+    return {text: of_text.pop() for text, of_text in classes.items() if len(of_text) == 1}
 
 
 def question_for(
     slot: Slot,
     form: Form,
     predicates: Mapping[str, Predicate],
-    sentence: str | None = None,
+    asked: str | None = None,
     classes: EntityClasses = DEFAULT_CLASSES,
+    named: Mapping[str, str] | None = None,
 ) -> str:
-    """Return the question for an open slot: what is missing, where, and what there is to choose from.
+    """Return the question for an open slot, as a person would ask it, and what there is to choose from.
 
-    An unknown word of the utterance is asked about itself: "Which object is “flurb”?". What the
-    utterance joins with "or" is offered whole, unknown words in quotation marks. ``sentence`` is that of
-    ``say_with_blank``; made from the form if there is none.
+    An unknown word of the utterance is asked about itself: "Which object do you mean by “flurb”?". What the
+    utterance joins with "or" is offered whole, unknown words in quotation marks.
+
+    Args:
+        asked: what ``ask_for`` says of the slot; made from the form if it is not known.
+        named: the classes of texts of the form that name entities.
     """
-    noun = noun_for(slot, classes)
     if slot.phrases and not slot.is_named:
-        asked = f"Which {noun} is {_or(tuple(f'“{phrase}”' for phrase in slot.phrases))}?"
-    else:
-        if sentence is None:
-            sentence = say_with_blank(slot.path, form, predicates, classes)
-        asked = f"Which {noun} is {BLANK} in “{sentence}”?"
+        what = f"Which {noun_for(slot, classes)}" if slot.entity_class else "What"
+        asked = f"{what} do you mean by {_or(tuple(f'“{phrase}”' for phrase in slot.phrases))}?"
+    elif asked is None:
+        asked = ask_for(form, slot.path, slot.entity_class, predicates, classes, named)
     choices = choices_of(slot)
     if slot.is_choice:
         choices += tuple(f"“{phrase}”" for phrase in slot.phrases)
@@ -68,15 +68,16 @@ def noun_for(slot: Slot | None, classes: EntityClasses = DEFAULT_CLASSES) -> str
 def open_slots_as_json(
     deanonymized: Deanonymized,
     predicates: Mapping[str, Predicate],
-    sentence_of: Callable[[Slot], str] | None = None,
+    asked_for: Callable[[Slot], str] | None = None,
     classes: EntityClasses = DEFAULT_CLASSES,
 ) -> list[dict[str, Any]]:
     """Return the slots to ask about as plain data, with their questions.
 
     ``likely`` is null unless the utterance names several values; ``choices`` are the values to choose
     from, the likely one first; ``phrases`` the unknown words of the utterance that may be meant.
-    ``sentence_of`` gives what ``say_with_blank`` says of a slot, where that is known already.
+    ``asked_for`` gives what ``ask_for`` says of a slot, where that is known already.
     """
+    named = named_entities(deanonymized.slots)
     return [
         {
             "path": list(slot.path),
@@ -86,8 +87,9 @@ def open_slots_as_json(
                 slot,
                 deanonymized.form,
                 predicates,
-                sentence_of(slot) if sentence_of else None,
+                asked_for(slot) if asked_for else None,
                 classes,
+                named,
             ),
             "is_named": slot.is_named,
             "likely": slot.likely,

@@ -3,8 +3,8 @@
 1. The words as they are: a command of the grammar.
 2. The longest names of entities, left to right, as class tokens: what ``Anonymizer`` makes of it.
 3. Everything: all names of entities, also where they overlap; words and names without their case, accents,
-   signs and spaces, and names in the plural; "a" for "an"; a comma of the grammar that nobody wrote; and paths
-   that pass over punctuation and courtesy.
+   signs and spaces, and names in the plural; "a" for "an"; "this person" and a repeated name for "them"; a comma
+   of the grammar that nobody wrote; and paths that pass over punctuation and courtesy.
 
 What the third one reads otherwise than it is written costs something, so that the closest reading is the best.
 """
@@ -22,8 +22,12 @@ from annotations.language.english import (
     COURTESY_ANYWHERE,
     COURTESY_CLOSINGS,
     COURTESY_OPENINGS,
+    DETERMINERS,
+    PERSON_WORDS,
+    REFERENCES,
+    THING_WORDS,
 )
-from annotations.language.forms import CLASS_TOKEN
+from annotations.language.forms import ANTECEDENTS, CLASS_TOKEN, PERSON, THING, kind_of_class
 from annotations.language.grammar import Arc, Lattice
 from annotations.language.grounding.anonymizer import (
     Anonymized,
@@ -170,12 +174,22 @@ def _longest(heard: Anonymized) -> HeardLattice:
     return HeardLattice(Lattice(arcs, len(arcs)), heard.spans)
 
 
+def _is_same(one: Span, other: Span) -> bool:
+    return (one.entity_class, one.value) == (other.entity_class, other.value)
+
+
 def _folded(phrases: Sequence[str]) -> list[list[str]]:
     return [[fold(word) for word in phrase.split()] for phrase in phrases]
 
 
 _OPENINGS, _CLOSINGS = _folded(COURTESY_OPENINGS), _folded(COURTESY_CLOSINGS)
 _ANYWHERE = _folded(COURTESY_ANYWHERE)
+# Nouns for somebody or something that is described rather than named.
+_DESCRIBED = {
+    PERSON: PERSON_WORDS.difference(REFERENCES["them"]),
+    THING: THING_WORDS.difference(REFERENCES["it"]),
+}
+_REFERENCES = {word: _folded(phrases) for word, phrases in REFERENCES.items()}
 
 
 class _Everything:
@@ -190,7 +204,9 @@ class _Everything:
         self.spans: list[Span] = []
 
     def heard(self) -> HeardLattice:
-        arcs = [*self._word_arcs(), *self._entity_arcs(), *self._commas()]
+        named = list(self._entity_arcs())
+        arcs = [*self._word_arcs(), *named, *self._commas(), *self._references()]
+        arcs += self._repetitions(named)
         return HeardLattice(
             Lattice(_skipping(arcs, self._skipped(), len(self.tokens)), len(self.tokens)),
             tuple(self.spans),
@@ -236,6 +252,42 @@ class _Everything:
         if self.reader.has(","):
             for place in range(1, len(self.tokens)):
                 yield Arc(place, place, ",", FOLDED)
+
+    def _references(self) -> Iterator[Arc]:
+        """Yield the words of the grammar for somebody or something said before: "him" may be its "them"."""
+        for reference, phrases in _REFERENCES.items():
+            for start, end in (each for phrase in phrases for each in self._places_of(phrase)):
+                yield from self._reference(reference, start, end)
+
+    def _reference(self, reference: str, start: int, end: int) -> Iterator[Arc]:
+        """Yield the words of the grammar that mean the same as ``it`` or ``them``."""
+        for word in {phrase for phrase in REFERENCES[reference] if " " not in phrase}:
+            if self.reader.has(word) and self.folded[start:end] != [fold(word)]:
+                yield Arc(start, end, word, FOLDED)
+
+    def _repetitions(self, named: Sequence[Arc]) -> Iterator[Arc]:
+        """Yield references for what is named again: "find Jane and follow Jane", "take the tea and bring the tea".
+
+        It has to be the last that was named or described of its kind, as with a reference.
+        """
+        for arc in named:
+            again = self.spans[arc.number]
+            kind = kind_of_class(again.entity_class)
+            for reference, kinds in ANTECEDENTS.items():
+                if kind not in kinds:
+                    continue
+                before = [
+                    each
+                    for each in named
+                    if each.end <= arc.start
+                    and kind_of_class(self.spans[each.number].entity_class) in kinds
+                ]
+                last = max(before, key=lambda each: (each.end, -each.start), default=None)
+                if last is None or not _is_same(self.spans[last.number], again):
+                    continue
+                if _DESCRIBED[kinds[0]].isdisjoint(self.folded[last.end : arc.start]):
+                    is_after_article = self.folded[arc.start - 1] in DETERMINERS
+                    yield from self._reference(reference, arc.start - is_after_article, arc.end)
 
     def _entity_arcs(self) -> Iterator[Arc]:
         for start in range(len(self.tokens)):
@@ -302,16 +354,16 @@ class _Everything:
             if not self._is_word(place) and not text.startswith("<")
         ]
         for phrase in _ANYWHERE:
-            skipped += self._places_of(phrase, range(len(self.texts)))
+            skipped += self._places_of(phrase)
         # Openings and closings follow one another from the two ends.
         skipped += self._chain(_OPENINGS)
         skipped += self._chain_back(_CLOSINGS)
         return sorted(set(skipped))
 
     def _places_of(
-        self, words: Sequence[str], starts: Collection[int]
+        self, words: Sequence[str], starts: Collection[int] | None = None
     ) -> Iterator[tuple[int, int]]:
-        for start in starts:
+        for start in range(len(self.texts)) if starts is None else starts:
             if self.folded[start : start + len(words)] == words:
                 yield start, start + len(words)
 

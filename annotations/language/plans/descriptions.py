@@ -15,17 +15,18 @@ from annotations.language.forms import (
     Variable,
 )
 from annotations.language.plans.plan import Condition, Described, Number, OpenValue, Value
-from annotations.language.predicates import Predicate, gloss
+from annotations.language.predicates import NAMING, SUPERLATIVES, Predicate, gloss
 from annotations.language.symbols import EntityClasses
 
 ValueOf = Callable[[Constant, str, int], Value]
 AT = "at"  # the predicate that says where something is
-_SUPERLATIVES = ("est", "most")
 
 
 @dataclass
 class Describer:
     """Makes descriptions; numbers what they describe, so that the same variable is the same thing.
+
+    Somebody who is called by the same name again is the same person.
 
     ``value_of`` turns a constant at a place of a predicate into a value, ``refer`` the word of a reference.
     """
@@ -35,10 +36,27 @@ class Describer:
     refer: Callable[[str], Value]
     classes: EntityClasses
     _made: int = field(default=0, init=False)
+    _called: dict[str, str] = field(default_factory=dict, init=False)  # name → id
 
-    def new_id(self) -> str:
+    def _id_of(self, variable: int, conjuncts: Sequence[Form]) -> str:
+        """Return the id of what a variable stands for: that of somebody of the same name, or a new one."""
+        names = (
+            each.arguments[1]
+            for each in conjuncts
+            if isinstance(each, Application)
+            and each.predicate == NAMING
+            and each.arguments[:1] == (Variable(variable),)
+            and len(each.arguments) == 2
+        )
+        name = next((each for each in names if isinstance(each, Constant)), None)
+        known = None if name is None or name.token_class else str(name.value).casefold()
+        if known in self._called:
+            return self._called[known]
         self._made += 1
-        return f"x{self._made}"
+        made = f"x{self._made}"
+        if known is not None:
+            self._called[known] = made
+        return made
 
     def of_lambda(self, form: Lambda) -> Described:
         """Return the description of what a λ stands for."""
@@ -55,7 +73,7 @@ class Describer:
 
         ``ids`` are those of the variables that already have one; they are not described again.
         """
-        ids = {variable: self.new_id(), **ids}
+        ids = {variable: self._id_of(variable, conjuncts), **ids}
         applications = [each for each in conjuncts if isinstance(each, Application)]
         about = [each for each in applications if each.arguments[:1] == (Variable(variable),)]
         text = self._text(variable, conjuncts)
@@ -112,7 +130,7 @@ class Describer:
 
 def superlative_without_set(described: Described) -> str:
     """Return the superlative of a description that does not say among what; empty if there is none."""
-    superlatives = [each for each in described.conditions if each.predicate.endswith(_SUPERLATIVES)]
+    superlatives = [each for each in described.conditions if each.predicate.endswith(SUPERLATIVES)]
     others = [each for each in described.conditions if each not in superlatives]
     has_set = others or any(not isinstance(v, Number) for each in superlatives for v in each.values)
     return "" if has_set or not superlatives else superlatives[0].predicate

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
-from annotations.language.english import ANY_OBJECT, spellings
+from annotations.language.english import ANY_OBJECT, KINDS_OF_PLACES, spellings
 from annotations.language.grounding import QUESTION_WORD
 from annotations.language.ontology import Entity, Ontology
 from annotations.language.plans.plan import Named, Value, Words
@@ -34,6 +34,7 @@ class Lookup:
     def __init__(self, ontology: Ontology, predicates: Mapping[str, Predicate]) -> None:
         self.classes = ontology.classes
         self._predicates = predicates
+        self._locations = ontology.of_class("location")
         self._rows: defaultdict[str, list[Entity]] = defaultdict(list)
         for entity in ontology.entities:
             singular = entity.attribute("singular") if entity.entity_class == "category" else None
@@ -58,13 +59,31 @@ class Lookup:
         if fitting:
             entity_class = fitting[0].entity_class
             same_class = [each for each in fitting if each.entity_class == entity_class]
-            attributes: dict[str, str] = {}  # those that the rows agree on
-            for name in (name for each, name in _ATTRIBUTES if each == entity_class):
-                values = {each.attribute(name) for each in same_class}
-                value = values.pop() if len(values) == 1 else None
-                if value:
-                    attributes[name] = value
             exact = [each.text for each in same_class if each.text.casefold() == text.casefold()]
-            return Named(entity_class, (exact or [text])[0], attributes), False
+            return _named((exact or [text])[0], same_class), False
         is_missing = bool(kinds - _SPOKEN) and text.casefold() not in NEUTRAL_WORDS
+        if is_missing and len(places := self.places_called(text)) == 1:
+            return places[0], False
         return Words(text), is_missing
+
+    def places_called(self, text: str) -> tuple[Named, ...]:
+        """Return the locations that a word for a kind of place can mean: "the trash" is a garbage bin."""
+        words = next((each for each in KINDS_OF_PLACES if text.casefold() in each), frozenset())
+        rows: dict[str, list[Entity]] = {}
+        for entity in self._locations:
+            names = (entity.text, *entity.aliases)
+            if not words.isdisjoint(word for name in names for word in name.casefold().split()):
+                rows.setdefault(entity.text, []).append(entity)
+        return tuple(_named(name, of_name) for name, of_name in rows.items())
+
+
+def _named(text: str, rows: Sequence[Entity]) -> Named:
+    """Return an entity, with the attributes that all of its rows agree on."""
+    entity_class = rows[0].entity_class
+    attributes: dict[str, str] = {}
+    for name in (name for each, name in _ATTRIBUTES if each == entity_class):
+        values = {each.attribute(name) for each in rows}
+        value = values.pop() if len(values) == 1 else None
+        if value:
+            attributes[name] = value
+    return Named(entity_class, text, attributes)

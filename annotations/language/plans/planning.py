@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import count
 
-from annotations.language.english import ARGUMENT_NAMES, ARGUMENT_QUESTIONS, NEEDED_ARGUMENTS
+from annotations.language.english import ARGUMENT_NAMES, NEEDED_ARGUMENTS
 from annotations.language.forms import (
     ANTECEDENTS,
     CONJUNCTION,
@@ -58,6 +59,7 @@ from annotations.language.predicates import (
     Predicate,
     PredicateKind,
     argument_kind,
+    ask_for,
     declared_or_inferred,
     gloss,
 )
@@ -117,6 +119,57 @@ class _ActionScope:
 
 
 @dataclass
+class _Acting:
+    """The action of a step with the descriptions around it, and which of its slots were asked for.
+
+    ``form`` is a λ whose last body is the action, with a variable in place of what describes it.
+    """
+
+    action: str
+    form: Lambda
+    asked: Counter[tuple[Constant, str, int]] = field(default_factory=Counter)
+
+    @classmethod
+    def of(
+        cls, form: Application, conjuncts: tuple[Form, ...], predicates: Mapping[str, Predicate]
+    ) -> _Acting:
+        about = tuple(each for each in form.arguments if is_description(each, predicates))
+        if about:  # ``(follow (person $1) (at $1 …))``
+            others = (each for each in form.arguments if each not in about)
+            form = replace(form, arguments=(children(about[0])[0], *others))
+        return cls(str(form.predicate), Lambda(1, "e", (*conjuncts, *about, form)))
+
+    def constants(self) -> Iterator[tuple[Constant, str, int, tuple[int, ...]]]:
+        """Yield the texts with the predicates and the places that take them, and the ways to them."""
+        waiting: list[tuple[Form, tuple[int, ...]]] = [(self.form, ())]
+        while waiting:
+            form, path = waiting.pop(0)
+            for place, child in enumerate(children(form)):
+                waiting.append((child, (*path, place)))
+                if isinstance(form, Application) and isinstance(child, Constant):
+                    yield child, str(form.predicate), place, (*path, place)
+
+    def next_slot(self, token: Constant, predicate: str, place: int) -> tuple[int, ...]:
+        """Return the way to a class token; to the next one where several are taken alike."""
+        key = (token, predicate, place)
+        paths = [path for *each, path in self.constants() if tuple(each) == key]
+        self.asked[key] += 1
+        return paths[min(self.asked[key], len(paths)) - 1]
+
+    def place_of(self, place: int) -> tuple[int, ...]:
+        """Return the way to an argument of the action."""
+        return len(self.form.bodies) - 1, place
+
+    def form_for(self, path: tuple[int, ...]) -> Form:
+        """Return the form with UNKNOWN for the arguments that are missing up to that at ``path``."""
+        *about, action = self.form.bodies
+        assert isinstance(action, Application)
+        missing = path[1] + 1 - len(action.arguments) if path[0] == len(about) else 0
+        arguments = (*action.arguments, *[UNKNOWN] * missing)
+        return replace(self.form, bodies=(*about, replace(action, arguments=arguments)))
+
+
+@dataclass
 class _Planner:
     """Collects steps and problems."""
 
@@ -126,6 +179,7 @@ class _Planner:
     steps: list[Step] = field(default_factory=list)
     problems: list[PlanProblem] = field(default_factory=list)
     describer: Describer = field(init=False)
+    acting: _Acting = field(default_factory=lambda: _Acting("", Lambda(1, "e", ())))
     waiting: list[tuple[Trouble, str, str]] = field(default_factory=list)
     last: dict[str, Value] = field(default_factory=dict)  # person or thing → the one described last
 
@@ -195,7 +249,9 @@ class _Planner:
         text = gloss(spoken, self.predicates, self.lookup.classes)
         arguments: dict[str, Value] = {}
         said: list[tuple[Form, Value]] = []
-        for place, argument in enumerate(self._gather(form, scope)):
+        around, self.acting = self.acting, _Acting.of(form, scope.conjuncts, self.predicates)
+        gathered = self._gather(form, scope)
+        for place, argument in enumerate(gathered):
             value = self._value(argument, action, place, scope)
             entity_class = value.entity_class if isinstance(value, Named) else ""
             name = argument_name(action, place, argument, entity_class)
@@ -207,14 +263,13 @@ class _Planner:
                 if name not in arguments
                 else next(each for each in numbered if each not in arguments)
             )
-            arguments[free] = self._asked(value, name, action)
+            arguments[free] = self._asked(value, name, place)
         for name in NEEDED_ARGUMENTS.get(action, ()):
             if name not in arguments:
-                arguments[name] = self._asked(OpenValue(""), name, action)
-        for (
-            argument,
-            value,
-        ) in said:  # a reference of this very action stands for something before it
+                place = max(place_of_argument(action, name), len(gathered))
+                arguments[name] = self._asked(OpenValue(""), name, place)
+        # A reference of this very action stands for something before it.
+        for argument, value in said:
             self._remember(argument, value)
         # A source says among what something is the largest, as in ``from the table``.
         for value in arguments.values():
@@ -226,7 +281,7 @@ class _Planner:
         number = self._append(action, arguments, text)
         for trouble, message, hint in self.waiting:
             self.report(trouble, message, hint, step=number)
-        self.waiting = before
+        self.waiting, self.acting = before, around
         return number
 
     def ask(self, question: str, expects: str) -> StepResult:
@@ -242,8 +297,19 @@ class _Planner:
     def text_value(self, constant: Constant, predicate: str, place: int) -> Value:
         """Return the value of a constant; an open one is asked for, an unknown one reported."""
         if constant.token_class:
-            return self._asked(OpenValue(constant.token_class), constant.token_class, predicate)
+            what = f"the {constant.token_class} is open"
+            self.waiting.append((Trouble.OPEN_SLOT, what, "name one, or answer the question"))
+            question = self._question(
+                constant.token_class, self.acting.next_slot(constant, predicate, place)
+            )
+            return self.ask(question, constant.token_class)
         value, is_missing = self.lookup.value(str(constant.value), predicate, place)
+        if is_missing and (places := self.lookup.places_called(str(constant.value))):
+            message = f"“{constant.value}” can be several places"
+            *others, last = (f"the {each.text}" for each in places)
+            choices = f"{', '.join(others)} or {last}"
+            self.waiting.append((Trouble.AMBIGUOUS, message, "name one, or answer the question"))
+            return self.ask(f"Which one do you mean: {choices}?", places[0].entity_class)
         if is_missing:
             message = f"the ontology has no “{constant.value}”"
             hint = "add it to the ontology, or name something that is there"
@@ -314,17 +380,23 @@ class _Planner:
         self.waiting.append((Trouble.NO_ANTECEDENT, message, "name it, or answer the question"))
         return self.ask(f"What do you mean by “{word}”?", kinds[0])
 
-    def _asked(self, value: Value, name: str, action: str) -> Value:
-        """Return the answer of the operator in place of an open value."""
+    def _asked(self, value: Value, name: str, place: int) -> Value:
+        """Return the answer of the operator in place of an argument that is open."""
         if not isinstance(value, OpenValue):
             return value
-        if value.entity_class:
-            what = f"the {value.entity_class} is open"
-            self.waiting.append((Trouble.OPEN_SLOT, what, "name one, or answer the question"))
-            return self.ask(f"Which {value.entity_class}?", value.entity_class)
-        message = f"{action} has no {name.replace('_', ' ')}"
+        message = f"{self.acting.action} has no {name.replace('_', ' ')}"
         self.waiting.append((Trouble.MISSING_ARGUMENT, message, "say it in the command"))
-        return self.ask(question_of(name), name)
+        return self.ask(self._question("", self.acting.place_of(place)), name)
+
+    def _question(self, entity_class: str, path: tuple[int, ...]) -> str:
+        """Return the question for what is open at ``path`` of the action."""
+        acting, classes = self.acting, self.lookup.classes
+        named = {}
+        for constant, predicate, place, _ in acting.constants():
+            value, _ = self.lookup.value(str(constant.value), predicate, place)
+            if isinstance(value, Named):
+                named[str(constant.value)] = value.entity_class
+        return ask_for(acting.form_for(path), path, entity_class, self.predicates, classes, named)
 
     def _append(
         self, predicate: str, arguments: Mapping[str, Value], text: str, gives_result: bool = False
@@ -356,6 +428,13 @@ def _kind_of(form: Form, value: Value) -> str:
     return THINGS if "category" in classes else THING
 
 
+def place_of_argument(action: str, name: str) -> int:
+    """Return the place of the argument that plans call ``name``; 0 where the action has none of that name."""
+    names = ARGUMENT_NAMES.get(action, ())
+    known = (each == name if isinstance(each, str) else name in each.values() for each in names)
+    return next((place for place, is_it in enumerate(known) if is_it), 0)
+
+
 def argument_name(action: str, place: int, argument: Form, entity_class: str = "") -> str:
     """Return the name of an argument: ``destination`` for the second one of ``guide``.
 
@@ -381,8 +460,3 @@ def argument_name(action: str, place: int, argument: Form, entity_class: str = "
     else:
         said = "name" if "name" in (kind, entity_class) else "text"
     return name.get(said) or name.get("") or f"argument_{place + 1}"
-
-
-def question_of(name: str) -> str:
-    """Return what to ask the operator for an argument that a command leaves open."""
-    return ARGUMENT_QUESTIONS.get(name, f"What is the {name.replace('_', ' ')}?")

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from annotations.language.predicates.gloss_patterns import pattern_of_name
+from annotations.language.predicates.gloss_patterns import SUPERLATIVES, pattern_of_name
+from annotations.language.predicates.glossing import NAMING
 from annotations.language.predicates.predicates import (
     Misuse,
     Predicate,
     PredicateKind,
+    ask_for,
     check_form,
     declared_or_inferred,
     find_misuses,
@@ -32,6 +34,8 @@ from annotations.language.predicates.standing_in import (
 )
 
 __all__ = [
+    "NAMING",
+    "SUPERLATIVES",
     "ArgumentKind",
     "Misuse",
     "Predicate",
@@ -39,6 +43,7 @@ __all__ = [
     "Signature",
     "admits",
     "argument_kind",
+    "ask_for",
     "can_stand_in",
     "check_form",
     "declared_or_inferred",

@@ -21,6 +21,7 @@ from functools import lru_cache
 from annotations.language.english import KNOWN_PATTERNS, PREPOSITIONS, RELATIONS
 from annotations.language.predicates.signatures import Signature
 
+SUPERLATIVES = ("est", "most")  # how the names of predicates end that choose one among several
 ALL_IN_ORDER = "{*}"  # how a sequence is said
 _SLOT = re.compile(r"\{(?P<place>[1-9][0-9]?|\*)(?::(?P<kind>\w+)|=(?P<value>[^{}]*))?\}")
 
@@ -86,7 +87,7 @@ def pattern_of_name(name: str, is_action: bool, signatures: tuple[Signature, ...
 def _description(name: str, words: str, arity: int) -> str:
     if arity <= 1:
         return f"_ that is {words}" if name.endswith("ing") else f"{words} _"
-    if name.endswith(("est", "most")):
+    if name.endswith(SUPERLATIVES):
         return f"{{2}} {words} _"
     if name.startswith(("is_", "has_", "can_")):
         return f"_ that {words} {{2}}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
@@ -23,8 +23,9 @@ from annotations.language.forms import (
     walk,
 )
 from annotations.language.limits import MAX_GLOSS
+from annotations.language.predicates.asking import question
 from annotations.language.predicates.gloss_patterns import ALL_IN_ORDER, default_pattern
-from annotations.language.predicates.glossing import sentence
+from annotations.language.predicates.glossing import Scope, sentence
 from annotations.language.predicates.signatures import (
     ArgumentKind,
     Signature,
@@ -138,11 +139,40 @@ def gloss(
     ``( bring ( lambda $1 e ( is_a $1 " <object> " ) ) )`` is "bring me the object". Predicates that
     are not declared are glossed by their names. ``classes`` say how class tokens are called.
     """
+    return sentence(form, _scope_of(form, declared_or_inferred(predicates, form), classes))
+
+
+def ask_for(
+    form: Form,
+    path: Sequence[int],
+    entity_class: str,
+    predicates: Mapping[str, Predicate],
+    classes: EntityClasses = DEFAULT_CLASSES,
+    named: Mapping[str, str] | None = None,
+) -> str:
+    """Return the question for the part of a form at ``path``, which leads to it by child numbers.
+
+    ``( bring ( lambda $1 e ( is_a $1 " <object> " ) ) )`` gives "What shall I bring you?". It says what else is
+    known, and leaves out what is open too. ``entity_class`` is that of what is asked for, empty for any; ``named``
+    gives the classes of texts of the form that name entities.
+    """
     declared = declared_or_inferred(predicates, form)
+
+    def kinds_of(name: str, place: int) -> frozenset[str]:
+        signatures = (each.arguments for each in declared[name].signatures)
+        return frozenset(
+            kinds[place] for kinds in signatures if kinds[place:] and is_entity_kind(kinds[place])
+        )
+
+    scope = replace(_scope_of(form, declared, classes), named=named or {})
+    return question(form, path, entity_class, scope, kinds_of)
+
+
+def _scope_of(form: Form, declared: Mapping[str, Predicate], classes: EntityClasses) -> Scope:
     used = {name: declared[name] for name in map(_name_of, _applications(form))}
     patterns = {name: each.gloss or _default(each) for name, each in used.items()}
     actions = frozenset(name for name, each in used.items() if each.is_action)
-    return sentence(form, patterns, actions, classes)
+    return Scope(patterns, actions, classes)
 
 
 def declared_or_inferred(

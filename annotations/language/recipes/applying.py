@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from annotations.language.plans import (
     ASK,
@@ -89,10 +89,15 @@ class _Applier:
         of_plan = (
             TaskProblem.of_plan(each, first.get(each.step, 0)) for each in self._plan.problems
         )
-        return TaskPlan(steps, (*of_plan, *self._world.problems))
+        own = (  # one that is about a step which was left out is about the whole plan
+            each if each.step <= len(steps) else replace(each, step=0)
+            for each in self._world.problems
+        )
+        return TaskPlan(steps, (*of_plan, *own))
 
     def _best_fit(self, step: Step) -> _Fit | None:
-        fits = [fit for each in self._book.recipes if (fit := self._fit(step, each))]
+        recipes = self._book.recipes_of(step.predicate)
+        fits = [fit for each in recipes if (fit := self._fit(step, each))]
         return max(fits, key=lambda fit: fit.recipe.pattern.restrictions, default=None)
 
     def _fit(self, step: Step, recipe: Recipe) -> _Fit | None:
@@ -100,16 +105,14 @@ class _Applier:
         absorbed: set[int] = set()
         if not self._match(step, recipe.pattern, values, absorbed):
             return None
-        primitives = (self._book.primitive(call.primitive) for call in recipe.calls)
-        return _Fit(recipe, values, frozenset(absorbed)) if all(primitives) else None
+        return _Fit(recipe, values, frozenset(absorbed))
 
     def _match(
         self, step: Step, pattern: ActionPattern, values: dict[str, Value], absorbed: set[int]
     ) -> bool:
         arguments = dict(step.arguments)
-        if step.predicate != pattern.action or {p.name for p in pattern.parameters} != set(
-            arguments
-        ):
+        names = {each.name for each in pattern.parameters}
+        if step.predicate != pattern.action or names != arguments.keys():
             return False
         return all(
             self._match_argument(arguments[each.name], each, values, absorbed)

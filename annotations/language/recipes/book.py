@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 
 from annotations.language.errors import (
@@ -33,7 +33,23 @@ class RecipeBook:
 
     def primitive(self, name: str) -> Primitive | None:
         """Return the primitive of a name; None if there is none."""
-        return next((each for each in self.primitives if each.name == name), None)
+        return self._by_name.get(name)
+
+    def recipes_of(self, action: str) -> Sequence[Recipe]:
+        """Return the recipes of an action that can be used: those without an error."""
+        return self._usable.get(action, ())
+
+    @cached_property
+    def _by_name(self) -> Mapping[str, Primitive]:
+        return {each.name: each for each in reversed(self.primitives)}
+
+    @cached_property
+    def _usable(self) -> Mapping[str, Sequence[Recipe]]:
+        recipes: dict[str, list[Recipe]] = {}
+        for each in self.recipes:
+            if not any(self._call_problems(each)):
+                recipes.setdefault(each.pattern.action, []).append(each)
+        return recipes
 
     def problems(
         self, actions: Collection[str] | None = None, classes: Collection[str] = ()

@@ -31,10 +31,8 @@ def usual_places(ontology: Ontology, lookup: Lookup | None = None) -> UsualPlace
 
 def usual_place(value: TaskValue, places: UsualPlaces) -> Named | None:
     """Return where a thing usually is, by its category; None if nothing says that."""
-    if not isinstance(value, Described):
-        return None
-    named = (each for condition in value.conditions for each in condition.values)
-    for each in named:
+    conditions = value.conditions if isinstance(value, Described) else ()
+    for each in (value, *(each for condition in conditions for each in condition.values)):
         if isinstance(each, Named):
             place = places.get(each.attributes.get("category", each.text))
             if place is not None:

@@ -17,7 +17,7 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import cache
 from itertools import groupby, pairwise
-from math import prod
+from math import isfinite, prod
 from typing import Any, TypeAlias
 
 from annotations.language.errors import Refusal
@@ -44,6 +44,12 @@ class TooManyCommands(Refusal):
     """More commands at once than a robot is given."""
 
     code = "too_many_commands"
+
+
+class WrongDistance(Refusal):
+    """A table of distances that has no sense."""
+
+    code = "wrong_distance"
 
 
 class Reason(StrEnum):
@@ -114,6 +120,22 @@ class Distances:
     """
 
     table: Mapping[tuple[str, str], float] = field(default_factory=dict)
+
+    @classmethod
+    def of_rows(cls, rows: Iterable[tuple[str, str, float]]) -> Distances:
+        """Return the distances of a table with two places and their distance a row.
+
+        Raises:
+            WrongDistance: a distance is negative or no number, or a pair has two.
+        """
+        table: dict[tuple[str, str], float] = {}
+        for one, other, distance in rows:
+            if not (isfinite(distance) and distance >= 0):
+                raise WrongDistance(f"From {one} to {other} is no distance: {distance}.")
+            if table.get((other, one), table.get((one, other), distance)) != distance:
+                raise WrongDistance(f"There are two distances from {one} to {other}.")
+            table[one, other] = distance
+        return cls(table)
 
     def between(self, one: Place, other: Place) -> float:
         """Return the distance of two places; 0 if they are the same."""
@@ -495,9 +517,10 @@ class _Writer:
     def _doer(self, step: TaskStep, values: Mapping[str, TaskValue]) -> int:
         """Return the step of the joint plan that has done already what a step does; 0 if none had to."""
         finds = step.primitive.effect(EffectKind.FINDS)
-        if finds is None or _has(step, EffectKind.MOVES):
+        value = values.get(finds.subject) if finds else None
+        if value is None or _has(step, EffectKind.MOVES):
             return self._world.moved_by
-        return self._world.step_that_found(self._world.known(values[finds.subject]))
+        return self._world.step_that_found(self._world.known(value))
 
     def serves(self) -> tuple[tuple[int, ...], ...]:
         return tuple(tuple(sorted(each)) for each in self._serves)
@@ -543,9 +566,11 @@ class _Writer:
         arrival, place = stay[0].arrival, stay[0].place
         if not arrival or isinstance(place, Somewhere):
             return
-        commands = {each.command for each in stay}
-        if isinstance(place, Operator):
-            commands = self._serves[arrival - 1]  # those that have to come back
+        commands = self._serves[arrival - 1]
+        if not isinstance(
+            place, Operator
+        ):  # where commands that merely begin have nothing to share
+            commands = commands | {each.command for each in stay}
         if len(commands) < 2:
             return
         numbers = tuple(sorted(commands))
@@ -597,7 +622,8 @@ def _place(step: TaskStep, before: Place) -> Place:
 def _name(place: Place) -> str:
     if isinstance(place, Operator):
         return OPERATOR_WORD
-    return "" if isinstance(place, Somewhere) else str(place.as_json().get("text", ""))
+    text = "" if isinstance(place, Somewhere) else str(place.as_json().get("text", ""))
+    return text.removeprefix("the ")
 
 
 def _room(place: Place) -> str:

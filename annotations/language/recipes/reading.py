@@ -225,6 +225,9 @@ class _Row:
             if match[1] not in names:
                 hint = f"it has {', '.join(names)}" if names else "write it without braces"
                 raise LanguageError(f"there is no parameter {match[1]}", position, hint)
+        if re.search(r"[{}]", PLACEHOLDER.sub("", pattern)):
+            hint = "write a parameter as {thing}, or as {things:plural}"
+            raise LanguageError("a brace has no partner", position, hint)
 
     def _pattern(self, depth: int = 0) -> ActionPattern:
         if depth > MAX_NESTING:

@@ -61,9 +61,7 @@ class _Clauses:
     """Says steps one after another; what was mentioned last is ``it`` or ``them``."""
 
     steps: Sequence[TaskStep]
-    _last: dict[str, object] = field(
-        default_factory=dict
-    )  # person or thing → the one mentioned last
+    _last: dict[str, object] = field(default_factory=dict)  # person or thing → the last mentioned
 
     def all(self) -> list[str]:
         clauses = []

@@ -14,6 +14,7 @@ from django.urls import reverse
 from django.views.decorators.cache import never_cache
 from django_htmx.http import replace_url
 
+from annotations.generation.example_commands import example_commands
 from annotations.language.errors import Refusal
 from annotations.lists.paging import number_in
 from annotations.models import Duty, World
@@ -28,7 +29,8 @@ from parser_service.serving.default_runs import opening_run
 from parser_service.serving.parser_client import ParserAway, ParserRefused, client
 
 MOST_OFFERED = 50  # other runs
-KEYS = (("1–6", "take a text of the paper"),)
+OWN_EXAMPLES = 3  # as many as there are keys for, beside the texts of the paper
+KEYS = (("1–9", "take an example"),)
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +59,7 @@ def playground(request: WorldRequest, world: World) -> HttpResponse:
         "promoted": promoted,
         "chosen": number_in(request.GET.get("run", "")) or (opening.pk if opening else 0),
         "others": [run for run in runs[:MOST_OFFERED] if run != promoted],
-        "paper_texts": [probe.text for probe in PAPER_PROBES],
+        "examples": _examples(world),
         "most_text": MOST_CHARACTERS,
         "page_keys": KEYS,
     }
@@ -118,6 +120,17 @@ def playground_wrong(request: WorldRequest, world: World) -> HttpResponse:
         context["refused"] = str(error)
     status = 422 if "refused" in context else 200
     return render(request, "parser_service/serving/_playground_wrong.html", context, status=status)
+
+
+def _examples(world: World) -> list[tuple[str, list[tuple[int, str]]]]:
+    """Return texts to try with the digits that take them, by what they are; commands of the world come first."""
+    own = example_commands(world, OWN_EXAMPLES)
+    paper = [probe.text for probe in PAPER_PROBES]
+    groups = (
+        ("Commands of this world", enumerate(own, start=1)),
+        ("Texts of the paper", enumerate(paper, start=len(own) + 1)),
+    )
+    return [(legend, numbered) for legend, texts in groups if (numbered := list(texts))]
 
 
 def _share(score: float, kind: str) -> float | None:

@@ -20,7 +20,9 @@ from annotations.language.ontology import (
     Ontology,
     read_competition,
 )
-from annotations.language.predicates import Predicate, check_form, infer_signatures
+from annotations.language.plans import make_plan
+from annotations.language.predicates import Predicate, check_form, gloss, infer_signatures
+from annotations.language.recipes import apply_recipes, default_book, same_plan, usual_places
 from annotations.language.templates import (
     DEFAULT_LIMIT,
     Balance,
@@ -217,6 +219,74 @@ def test_other_wordings_have_the_same_form(one, other):
     assert grounded(oracle(), one) == grounded(oracle(), other) != set()
 
 
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        # The rulebook's own example of a rephrasing, with things of this house.
+        (
+            "bring me a quince from the larder",
+            "go to the larder, find a quince, and bring it to me",
+        ),
+        (
+            "take the quince from the larder and put it on the workbench",
+            "go to the larder, find a quince, take it and put it on the workbench",
+        ),
+        (
+            "follow the person waving at the piano",
+            "find the person waving at the piano and follow them",
+        ),
+    ],
+)
+def test_other_actions_for_the_same_errand_are_the_same_plan(one, other):
+    def plan(command):
+        (form,) = grounded(oracle(), command)
+        plan_of_form = make_plan(read_form(form), ontology(), predicates())
+        return form, apply_recipes(plan_of_form, default_book(), usual_places(ontology()))
+
+    (form, task_plan), (other_form, other_task_plan) = plan(one), plan(other)
+    assert form != other_form and same_plan(task_plan, other_task_plan)
+
+
+@pytest.mark.parametrize(
+    ("said", "like"),
+    [
+        ("find Otto in the lobby and follow Otto", "find Otto in the lobby and follow him"),
+        (
+            "find Otto in the lobby and tell this person the time",
+            "find Otto in the lobby and tell him the time",
+        ),
+        ("find Otto in the lobby and follow that one", "find Otto in the lobby and follow him"),
+        (
+            "meet Bea at the piano then find Bea in the lobby",
+            "meet Bea at the piano then find her in the lobby",
+        ),
+        (
+            "find a quince in the galley, take that one and bring it to me",
+            "find a quince in the galley, take it and bring it to me",
+        ),
+        (
+            "take a quince from the larder and bring the quince to Bea",
+            "take a quince from the larder and bring it to Bea",
+        ),
+    ],
+)
+def test_who_or_what_is_said_again_is_referred_to(said, like):
+    assert grounded(oracle(), said) == grounded(oracle(), like) != set()
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "find Otto in the lobby and follow Bea",
+        "take a quince from the larder and bring the papaya to Bea",
+        "follow Otto",
+        "follow this person",
+    ],
+)
+def test_nothing_is_referred_to_that_was_not_said(said):
+    assert not any("them" in form or "it )" in form for form in grounded(oracle(), said))
+
+
 def test_questions_are_of_2025_and_the_trash_is_of_2026():
     of_2025, of_2026 = (Knowledge(ontology=ontology(), grammar=(each,)) for each in categories())
     question, trash = KINDS["answerQuestion"][0], KINDS["putObjInTrash"][0]
@@ -235,6 +305,44 @@ def test_paraphrases_rewrite_commands_of_every_kind_of_action_with_their_forms()
         assert grounded(oracle(), prompt) == {form}
         said |= {" ".join(heads(form))}
     assert {wanted for _, wanted in KINDS.values()} <= said
+
+
+@pytest.mark.parametrize(
+    ("said", "wanted"),
+    [
+        ("find a person in the galley and follow them", "find follow"),
+        ("go to the lobby, find someone and tell them the time", "go find say"),
+        ("in the lobby, greet the person", "greet"),
+        ("follow the person at the piano", "follow"),
+        ("guide the person from the piano to the lobby", "guide"),
+        ("please tell me what day it is", "say"),
+        ("could you say something about yourself", "say"),
+    ],
+)
+def test_nobody_in_particular_is_found_and_whoever_asks_is_told(said, wanted):
+    (form,) = grounded(oracle(), said)
+    assert " ".join(heads(form)) == wanted
+    assert make_plan(read_form(form), ontology(), predicates()).is_executable
+
+
+@pytest.mark.parametrize(
+    ("form", "said"),
+    [
+        ('(find (λ$1:e (person $1) (pose $1 "<pose>")))', "find the person who is in the pose"),
+        ('(find (λ$1:e (person $1) (pose $1 "sitting")))', "find the person who is sitting"),
+        ('(say "the time")', "tell me the time"),
+        ('(say "<topic>")', "tell me the topic"),
+    ],
+)
+def test_forms_with_open_places_read_well(form, said):
+    assert gloss(read_form(form), predicates(), ontology().classes) == said
+
+
+def test_the_trash_is_the_garbage_pail():
+    (form,) = grounded(oracle(), KINDS["putObjInTrash"][0])
+    plan = make_plan(read_form(form), ontology(), predicates())
+    assert plan.is_executable
+    assert dict(plan.steps[-1].arguments)["destination"].text == "garbage pail"
 
 
 def test_the_kind_of_the_documents_is_added_by_two_rows():

@@ -21,7 +21,7 @@ def test_an_unknown_word_is_asked_about_learnt_and_then_known(parse_server, call
     first = begun.json()
     assert (
         first["prompt"]
-        == "Which object is “flurb”? Red cup or bowl? Name one that I know, or say “new”."
+        == "Which object do you mean by “flurb”? Red cup or bowl? Name one that I know, or say “new”."
     )
     assert first["asked"] == {
         "entity_class": "object",

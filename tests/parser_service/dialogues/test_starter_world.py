@@ -67,7 +67,7 @@ def test_things_joined_with_or_are_asked_about_and_an_unknown_one_once(ask, pars
     assert after["prompt"] == "Shall I bring you the lemonade?" and after["offers"] == []
 
     row = ask("dialogues/", {"utterance": "bring me the flurb"})
-    assert row["prompt"].startswith("Which object is “flurb”?")
+    assert row["prompt"].startswith("Which object do you mean by “flurb”?")
     after = ask(f"dialogues/{row['id']}/answer/", {"answer": "new"})
     assert after["prompt"] == "Shall I bring you the flurb?"
     (offer,) = ask("offered-entities/")["results"]
@@ -76,3 +76,11 @@ def test_things_joined_with_or_are_asked_about_and_an_unknown_one_once(ask, pars
     again = ask("dialogues/", {"utterance": "bring me the flurb"})
     assert (again["phase"], again["asked"]) == ("confirming", None)
     assert again["plan"]["is_executable"]
+
+
+@pytest.mark.parametrize("shelf", [NEIGHBOURS], indirect=True)
+def test_of_equally_good_readings_the_dialogue_takes_the_one_that_leaves_nothing_open(ask):
+    said = {"utterance": "bring me the hammer from the kitchen"}
+    row = ask("dialogues/", said)
+    assert (row["phase"], row["asked"]) == ("confirming", None)
+    assert row["grounded"] == ask("parse/", said)["candidates"][0]["grounded"]

@@ -11,10 +11,7 @@ from tests.annotations.language.dialogue.robot import BRING, PUT, ROBOT, UNCLEAR
 
 def test_choosing_one_of_two_places_decides_the_other() -> None:
     state = begin(UNCLEAR, PUT)
-    assert state.prompt == (
-        "Which location is ___ in “take the tea that is at the ___ and put it on the stool”? "
-        "Shelf or stool?"
-    )
+    assert state.prompt == "Where is the tea? Shelf or stool?"
     after = ROBOT.reply(state, "the stool")
     assert after.phase is Phase.CONFIRMING
     assert '"stool")) "shelf")' in to_template(after.form)
@@ -24,7 +21,7 @@ def test_choosing_one_of_two_places_decides_the_other() -> None:
 def test_an_or_is_settled_by_a_choice_of_what_it_joins() -> None:
     text = "bring me the tea or the small dish"
     state = begin(text, BRING)
-    assert state.prompt == "Which object is ___ in “bring me the ___”? Tea or small dish?"
+    assert state.prompt == "What shall I bring you? Tea or small dish?"
     assert '"small dish"' in to_template(ROBOT.reply(state, "the small dish please").form)
     for answer in ("yes", "either one", "It doesn't matter."):
         after = ROBOT.reply(state, answer)
@@ -37,7 +34,7 @@ def test_an_or_is_settled_by_a_choice_of_what_it_joins() -> None:
 
 def test_an_unknown_word_in_an_or_can_be_chosen_and_is_learnt() -> None:
     state = begin("bring me the tea or the flurb", BRING)
-    assert state.prompt == "Which object is ___ in “bring me the ___”? Tea or “flurb”?"
+    assert state.prompt == "What shall I bring you? Tea or “flurb”?"
     for answer in ("the flurb", "new"):
         after = ROBOT.reply(state, answer)
         assert after.offers == (Offer("object", "flurb"),)

@@ -17,18 +17,18 @@ def test_a_command_without_open_slots_is_only_confirmed() -> None:
     assert to_template(done.parsed) == BRING
 
 
-def test_an_open_slot_is_asked_for_with_its_place_in_the_sentence() -> None:
+def test_an_open_slot_is_asked_for() -> None:
     state = begin("follow", '(follow (λ$1:e (person $1) (name $1 "<name>")))')
     assert state.phase is Phase.ASKING
     assert state.asked is not None and state.asked.entity_class == "name"
-    assert state.prompt == "Which name is ___ in “follow the person named ___”? Bo or Ada?"
+    assert state.prompt == "Who shall I follow? Bo or Ada?"
     after = ROBOT.reply(state, "it is ada")
     assert after.prompt == "Shall I follow the person named Ada?"
     assert after.asked is None
 
 
 def test_answers_that_do_not_fit_are_asked_again_and_then_given_up() -> None:
-    assert talk("take the tea", PUT, "tea").prompt.startswith("“tea” is no location. Which")
+    assert talk("take the tea", PUT, "tea").prompt.startswith("“tea” is no location. Where is")
     assert talk("take the tea", PUT, "stool or shelf").prompt.startswith(
         "Please name one location."
     )

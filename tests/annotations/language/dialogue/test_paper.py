@@ -41,4 +41,4 @@ def test_the_examples_of_the_paper() -> None:
     )
 
     umbrella = robot.begin(read_form(BRING), anonymizer.anonymize("Bring an umbrella to me"))
-    assert umbrella.prompt.startswith("Which object is “umbrella”?")
+    assert umbrella.prompt.startswith("Which object do you mean by “umbrella”?")

@@ -22,7 +22,9 @@ def test_an_unknown_word_is_asked_about_and_learnt_so_that_the_next_command_need
     None
 ):
     state = begin("bring me the flurb", BRING)
-    assert state.prompt == "Which object is “flurb”? Name one that I know, or say “new”."
+    assert (
+        state.prompt == "Which object do you mean by “flurb”? Name one that I know, or say “new”."
+    )
     for answer in ("new", "it is a flurb", "The flurb!", "It's a new one."):
         after = ROBOT.reply(state, answer)
         assert after.offers == (Offer("object", "flurb"),), answer
@@ -72,19 +74,19 @@ def test_a_word_that_is_settled_is_offered_for_no_other_slot(answer: str) -> Non
 
 def test_of_two_unknown_words_the_second_slot_is_offered_the_one_that_is_left() -> None:
     asked = begin("bring the flurb to the glim", MOVE)
-    assert asked.prompt.startswith("Which object is “flurb” or “glim”?")
+    assert asked.prompt.startswith("Which object do you mean by “flurb” or “glim”?")
     for answer in ("new", "the flurb"):
         after = ROBOT.reply(asked, answer)
-        assert after.prompt.startswith("Which location is “glim”?"), answer
+        assert after.prompt.startswith("Which location do you mean by “glim”?"), answer
     other_way = ROBOT.reply(asked, "the glim")
-    assert other_way.prompt.startswith("Which location is “flurb”?")
+    assert other_way.prompt.startswith("Which location do you mean by “flurb”?")
     unsettled = ROBOT.reply(asked, "the tea")  # for either word
-    assert unsettled.prompt.startswith("Which location is “glim” or “flurb”?")
+    assert unsettled.prompt.startswith("Which location do you mean by “glim” or “flurb”?")
 
 
 def test_an_unknown_argument_settles_a_word_too() -> None:
     asked = talk("put the flurb", '(put UNKNOWN (λ$1:e (is_a $1 "<object>")))', "the flurb")
-    assert asked.prompt.startswith("Which object is ___ in")
+    assert asked.prompt.startswith("What shall I put the flurb on?")
 
 
 def test_an_or_keeps_its_unknown_words_from_other_slots() -> None:

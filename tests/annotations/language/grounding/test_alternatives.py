@@ -68,7 +68,7 @@ def hear(text: str, form: object, evidence: Evidence | None = GRAMMAR) -> Deanon
 def asked(text: str, form: object) -> list[str]:
     """Return what is offered for each open slot, as a person hears it."""
     slots = open_slots_as_json(hear(text, form), {})
-    return [each["question"].rpartition("”? ")[2] for each in slots]
+    return [each["question"].partition("? ")[2] for each in slots]
 
 
 @pytest.mark.parametrize("evidence", [None, GRAMMAR], ids=["English alone", "with the grammar"])

@@ -79,10 +79,8 @@ def test_where_words_leave_it_open_the_likely_places_stand_in_the_form_and_are_a
     ]
     assert all(slot.is_ambiguous for slot in result.open_slots)
     assert [each["question"] for each in open_slots_as_json(result, {})] == [
-        "Which location is ___ in “take the tea that is at the ___ and put it on the shelf”? "
-        "Stool or shelf?",
-        "Which location is ___ in “take the tea that is at the stool and put it on the ___”? "
-        "Shelf or stool?",
+        "Where is the tea? Stool or shelf?",
+        "Where shall I put the tea? Shelf or stool?",
     ]
 
 
@@ -147,7 +145,7 @@ def test_unknown_words_are_offered_for_what_nobody_named() -> None:
     asked = open_slots_as_json(
         put_back("bring me the flurb", '(bring (λ$1:e (is_a $1 "<object>")))'), {}
     )
-    assert asked[0]["question"] == "Which object is “flurb”?"
+    assert asked[0]["question"] == "Which object do you mean by “flurb”?"
     assert asked[0]["choices"] == ["tea", "bread knife", "knife", "small dish", "cookies"]
 
 

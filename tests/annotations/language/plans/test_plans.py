@@ -11,10 +11,11 @@ from hypothesis import given
 
 from annotations.language.forms import read_form
 from annotations.language.grounding import Anonymizer, deanonymize
-from annotations.language.ontology import Entity
+from annotations.language.ontology import Entity, Ontology
 from annotations.language.plans import (
     ASK,
     ActionName,
+    Described,
     Plan,
     Trouble,
     behavior_tree_schema_text,
@@ -140,12 +141,21 @@ def test_unknown_asks_the_operator() -> None:
         (
             '(guide (λ$1:e (person $1) (name $1 "Ada")) UNKNOWN)',
             "Guide has no destination.",
-            "Where to?",
+            "Where shall I guide Ada?",
         ),
-        ('(guide (λ$1:e (person $1) (name $1 "Ada")))', "Guide has no destination.", "Where to?"),
-        ("(go UNKNOWN)", "Go has no destination.", "Where to?"),
-        ('(put (λ$1:e (is_a $1 "tea")) UNKNOWN)', "Put has no destination.", "Where to?"),
-        ("(bring UNKNOWN)", "Bring has no thing.", "Which thing?"),
+        (
+            '(guide (λ$1:e (person $1) (name $1 "Ada")))',
+            "Guide has no destination.",
+            "Where shall I guide Ada?",
+        ),
+        ("(go UNKNOWN)", "Go has no destination.", "Where shall I go?"),
+        ("(go)", "Go has no destination.", "Where shall I go?"),
+        (
+            '(put (λ$1:e (is_a $1 "tea")) UNKNOWN)',
+            "Put has no destination.",
+            "Where shall I put the tea?",
+        ),
+        ("(bring UNKNOWN)", "Bring has no thing.", "What shall I bring you?"),
     ],
 )
 def test_a_missing_argument_is_named_and_asked_for_before_the_action(
@@ -164,12 +174,80 @@ def test_a_class_token_is_asked_for() -> None:
     assert troubles(plan) == [Trouble.OPEN_SLOT]
 
 
+@pytest.mark.parametrize(
+    ("text", "questions"),
+    [
+        (
+            '(put (λ$1:e (is_a $1 "<object>") (at $1 "<location>")) "<location>")',
+            ["What shall I put?", "Where is it?", "Where shall I put it?"],
+        ),
+        (
+            '(put (λ$1:e (is_a $1 "tea") (at $1 "<location>")) "<location>")',
+            ["Where is the tea?", "Where shall I put the tea?"],
+        ),
+        (
+            '(say (count (λ$1:e (is_a $1 "<category>") (at $1 "attic"))))',
+            ["Which kind of thing in the attic shall I count?"],
+        ),
+        (
+            '(sequence (bring (λ$1:e (is_a $1 "<object>"))) (go "<room>"))',
+            ["What shall I bring you?", "Which room shall I go to?"],
+        ),
+        (
+            '(λ$1:e (sequence (follow (person $1) (name $1 "<name>")) (guide $1 "<room>")))',
+            ["Who shall I follow?", "Which room shall I guide them to?"],
+        ),
+    ],
+)
+def test_a_plan_asks_as_a_person_would(text: str, questions: list[str]) -> None:
+    asked = [step for step in plan_of(text).steps if step.predicate == ASK]
+    assert [dict(step.arguments)["question"].as_json()["text"] for step in asked] == questions
+
+
 def test_an_entity_that_the_ontology_does_not_have_is_named() -> None:
     plan = plan_of('(bring (λ$1:e (is_a $1 "flurb")))')
     assert [each.message for each in plan.problems] == ["The ontology has no “flurb”."]
     assert troubles(plan_of('(go "moon")')) == [Trouble.UNKNOWN_ENTITY]
     for known in ("TEA", "cuppa", "drink", "drinks", "objects"):
         assert plan_of(f'(bring (λ$1:e (is_a $1 "{known}")))').is_executable, known
+
+
+@pytest.mark.parametrize(
+    ("locations", "meant", "question"),
+    [
+        (["sofa", "garbage pail"], "garbage pail", None),
+        (["cabinet", "Trash Bin"], "Trash Bin", None),
+        (["sink", "trash"], "trash", None),
+        (["cabin", "binder shelf"], None, None),
+        (
+            ["trash bin", "sofa", "waste basket"],
+            None,
+            "Which one do you mean: the trash bin or the waste basket?",
+        ),
+    ],
+)
+def test_the_trash_is_the_place_with_a_word_for_it_in_its_name(
+    locations: list[str], meant: str | None, question: str | None
+) -> None:
+    rooms = ({"room": "kitchen"}, {"room": "hall"}, {"room": "attic"})
+    rows = (Entity("location", *each) for each in zip(locations, [()] * 3, rooms, strict=False))
+    plan = make_plan(
+        read_form('(sequence (take (λ$1:e (largest $1 2))) (put it "trash"))'),
+        Ontology(tuple(rows)),
+    )
+    require_valid(plan)
+    destination = said_in(plan, -1, "destination")
+    asked = [
+        dict(step.arguments)["question"].as_json()["text"]
+        for step in plan.steps
+        if step.predicate == ASK
+    ]
+    assert asked == [question] * (question is not None)
+    if meant:
+        room = rooms[locations.index(meant)]["room"]
+        assert destination == entity("location", meant, room=room)
+    else:
+        assert (Trouble.AMBIGUOUS if question else Trouble.UNKNOWN_ENTITY) in troubles(plan)
 
 
 def test_a_superlative_needs_a_set() -> None:
@@ -298,6 +376,31 @@ def test_a_reference_is_what_was_described_before(
     value = said_in(plan, -1, argument)
     assert value["id"] == stands_for and value["said"] in ("it", "them")
     assert "no_antecedent" not in troubles(plan)
+
+
+def test_who_is_called_by_the_same_name_again_is_the_same_person() -> None:
+    ada, bo = (f'(λ$1:e (person $1) (name $1 "{name}"))' for name in ("Ada", "Bo"))
+    at = ada.replace("(person $1)", '(person $1) (at $1 "stool")')
+    plan = plan_of(f'(sequence (find {at}) (follow {bo}) (say "hello" {ada}) (bring {CUP} {ada}))')
+    people = [
+        said_in(plan, *each)
+        for each in ((0, "target"), (1, "person"), (2, "listener"), (3, "recipient"))
+    ]
+    assert [each["id"] for each in people] == ["x1", "x2", "x1", "x1"]
+    assert [len(each["conditions"]) for each in people] == [3, 2, 2, 2]
+
+
+def test_those_of_no_name_are_others_each() -> None:
+    plan = plan_of(
+        f'(sequence (find {ANN}) (follow {ANN}) (greet (λ$1:e (person $1) (name $1 "<name>"))))'
+    )
+    people = [
+        value.id
+        for step in plan.steps
+        for _, value in step.arguments
+        if isinstance(value, Described)
+    ]
+    assert people == ["x1", "x2", "x3"]
 
 
 @pytest.mark.parametrize(

@@ -22,6 +22,7 @@ from annotations.language.recipes import (
     TaskPlan,
     TaskStep,
     TooManyCommands,
+    WrongDistance,
     default_book,
     join,
     joint_plan_schema,
@@ -43,9 +44,7 @@ COUNT = '(say (count (λ$1:e (is_a $1 "drinks") (at $1 "{}"))))'
 
 
 def joined(*forms: str, distances: Distances | None = None) -> JointPlan:
-    joint = join([task_plan(form) for form in forms], default_book(), distances)
-    JSON_SCHEMA.validate(joint.as_json())
-    return joint
+    return join([task_plan(form) for form in forms], default_book(), distances)
 
 
 def has(step: TaskStep, *kinds: EffectKind) -> bool:
@@ -86,6 +85,13 @@ def test_the_robot_comes_back_once_to_tell_two_results():
     reasons = [each.reason for each in joint.interleavings]
     assert reasons == [Reason.SHARED_VISIT, Reason.SAME_ROOM, Reason.SHORTER]
     assert spoken(joint.plan).count("the number of the drinks in the attic") == 1
+
+
+def test_who_is_guided_somewhere_shares_the_way_there():
+    joint = joined(f"(bring {TEA})", f'(guide {ADA} "attic")')
+    assert joint.plan.steps[2].action == "guide" and joint.serves[2] == (1, 2)
+    reasons = [(each.reason, each.commands) for each in joint.interleavings]
+    assert reasons[0] == (Reason.SHARED_VISIT, (1, 2))
 
 
 def test_one_thing_is_carried_at_a_time():
@@ -141,6 +147,18 @@ def test_the_table_of_distances_decides():
     assert joined(*forms, distances=Distances(near)).length == 4
     assert joined(*forms, distances=Distances(far)).length == 19
     assert joined(COUNT.format("stool"), distances=Distances(near)).length == 2  # by its room
+
+
+@pytest.mark.parametrize(
+    "rows", [[("a", "b", -1.0)], [("a", "b", float("nan"))], [("a", "b", 1.0), ("b", "a", 2.0)]]
+)
+def test_a_table_without_sense_is_refused(rows):
+    with pytest.raises(WrongDistance):
+        Distances.of_rows(rows)
+
+
+def test_a_table_has_rows():
+    assert Distances.of_rows([("a", "b", 1.0), ("b", "a", 1.0)]).table[("a", "b")] == 1
 
 
 def test_more_than_three_commands_are_refused():
@@ -201,17 +219,20 @@ def test_the_order_inside_each_command_is_kept_and_nothing_is_lost(forms):
         # Who goes to a place is there as well if another command follows somebody to it.
         assert all(action in ("follow", "guide") for action, *_ in extra)
         assert is_subsequence(before, after)
-        # Whom another command has followed is found.
-        assert is_subsequence(
-            found_in(plan, EffectKind.FINDS),
-            found_in(own, EffectKind.FINDS, EffectKind.ACCOMPANIES),
-        )
+        # Who was found or followed for another command is found, maybe earlier.
+        finding = found_in(plan, EffectKind.FINDS)
+        found = found_in(own, EffectKind.FINDS, EffectKind.ACCOMPANIES)
+        assert not Counter(finding) - Counter(found)
+        alone = zip(joint.plan.steps, joint.serves, strict=True)
+        for_it = TaskPlan(tuple(step for step, commands in alone if commands == (number,)))
+        assert is_subsequence(found_in(for_it, EffectKind.FINDS), finding)
     assert Counter(codes(joint.plan)) >= Counter(code for each in plans for code in codes(each))
 
 
 @given(several)
 def test_a_joint_plan_holds_one_thing_and_requires_earlier_steps(forms):
     joint = joined(*forms)
+    JSON_SCHEMA.validate(joint.as_json())
     XML_SCHEMA.validate(to_behavior_tree(joint.plan))
     reported = {(each.code, each.step) for each in joint.plan.problems}
     held = None

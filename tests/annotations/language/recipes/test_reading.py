@@ -74,6 +74,8 @@ def test_what_is_printed_reads_back(name):
         ("go(x) “go”: moves to x", 7),
         ('go(x) "go {y}"', 7),
         ('go(x) "go', 7),
+        ('go(x) "go {x"', 7),
+        ('go(x) "go {x:many}"', 7),
         ("go(x): moves to x then", 19),
     ],
 )

@@ -9,9 +9,11 @@ import jsonschema
 import pytest
 import xmlschema
 from hypothesis import given
+from hypothesis import strategies as st
 
 from annotations.importing.predicates_file import read_predicates
 from annotations.language.decoding import read_folder
+from annotations.language.english import ARGUMENT_NAMES
 from annotations.language.forms import read_form
 from annotations.language.plans import (
     ASK,
@@ -24,10 +26,12 @@ from annotations.language.plans import (
 )
 from annotations.language.recipes import (
     EffectKind,
+    RecipeBook,
     RecipeTrouble,
     TaskPlan,
     apply_recipes,
     default_book,
+    join,
     read_book,
     shipped_books,
     spoken,
@@ -201,6 +205,7 @@ def test_questions_come_first_while_the_robot_is_with_the_operator():
     [
         ('(bring (λ$1:e (is_a $1 "tea")))', ["shelf", "operator"]),
         ('(bring (λ$1:e (is_a $1 "drinks")))', ["shelf", "operator"]),
+        ('(bring "tea")', ["shelf", "operator"]),
         ('(bring (λ$1:e (is_a $1 "knife")))', []),
         (f"(bring {TEA})", ["attic", "operator"]),
         (
@@ -289,7 +294,7 @@ def plans_of(world: str) -> tuple[tuple[str, Plan], ...]:
     ontology, _ = read_ontology_folder(folder)
     categories = read_generator_files(read_folder(folder, "*.txt"), ontology.classes).categories()
     if world == "competition":
-        request = SampleRequest(2_000, balance=Balance.FORMS)
+        request = SampleRequest(1_000, balance=Balance.FORMS)
         generated = Language(categories).sample(request).generated
     else:
         generated = generate(categories)
@@ -326,6 +331,62 @@ def test_every_form_of_the_worlds_has_a_recipe_for_each_action(world, book):
         assert task.steps and task.is_executable == plan.is_executable, form
         assert {step.source for step in task.steps} >= set(range(1, asks + 1)), form
     require_valid(task)
+
+
+ARGUMENTS = ("thing", "person", "place of thing", "place of person", "operator", '"x"', "thing")
+EFFECTS = (
+    *("moves to a", "finds a", "takes a", "releases a", "releases a at b", "releases b to a"),
+    *("accompanies a", "accompanies a to b", "learns", "speaks", "speaks to b", "acts on b"),
+)
+
+
+@st.composite
+def books(draw: st.DrawFn) -> RecipeBook:
+    """A book of odd primitives, some of which a recipe uses in any order with any arguments."""
+    rows = []
+    for number in range(4):
+        effects = draw(
+            st.lists(st.sampled_from(EFFECTS), max_size=2, unique_by=lambda e: e.split()[0])
+        )
+        rows.append(f"p{number}(a?, b?): {', '.join(effects)}" if effects else f"p{number}(a?, b?)")
+    recipes = []
+    for left in ("bring(thing)", "bring(thing, person: recipient)", "take(thing)", "find(target)"):
+        names = [each for each in ARGUMENTS if "person" not in each]
+        calls = draw(
+            st.lists(st.tuples(st.integers(0, 3), st.lists(st.sampled_from(names), max_size=2)))
+        )
+        text = " ".join(f"p{number}({', '.join(values)})" for number, values in calls) or "p0()"
+        if "target" in left:
+            text = text.replace("thing", "target")
+        recipes.append(f"{left} -> {text}")
+    book, _ = read_book("\n".join(rows), "\n".join(recipes))
+    return book
+
+
+@given(books(), st.lists(commands(), min_size=1, max_size=2))
+def test_any_book_makes_task_plans(book, texts):
+    plans = [task_plan(text, book) for text in texts]
+    for plan in plans:
+        JSON_SCHEMA.validate(plan.as_json())
+        assert all(each.step <= len(plan.steps) for each in plan.problems)
+        spoken(plan)
+    joint = join(plans, book)
+    assert len(joint.serves) == len(joint.plan.steps)
+
+
+def test_a_book_has_a_recipe_for_each_action_whose_arguments_have_names():
+    for shipped in shipped_books().values():
+        actions = {each.pattern.action for each in shipped.book.recipes}
+        assert actions == {*ARGUMENT_NAMES, ASK}
+        assert not shipped.book.problems()
+
+
+def test_a_recipe_with_an_error_is_not_used():
+    book, problems = read_book(
+        "go_to(place)", "go(destination) -> go_to()\ngo(destination: room) -> fly()"
+    )
+    assert len(problems) == 2
+    assert codes(task_plan('(go "attic")', book)) == [RecipeTrouble.NO_RECIPE]
 
 
 def test_the_schema_of_task_plans_has_the_values_of_plans():

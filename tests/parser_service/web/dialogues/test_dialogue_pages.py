@@ -28,7 +28,7 @@ def text_of(answer):
 
 def test_a_command_is_talked_about_learnt_and_kept(parse_server, browse):
     page = browse.post(PAGE, {"utterance": "bring me the flurb"}, follow=True)
-    assert "Which object is “flurb”?" in text_of(page)
+    assert "Which object do you mean by “flurb”?" in text_of(page)
     row = Dialogue.objects.get()
     assert '<option value="red cup">' in text_of(page) and not page.context["plan"].is_executable
     address = f"{PAGE}{row.pk}/"

@@ -9,7 +9,7 @@ import pytest
 from annotations.background.progress import UNWATCHED
 from annotations.language.forms import read_form
 from annotations.language.plans import make_plan
-from annotations.models import Proposal, Utterance, WorkItem
+from annotations.models import Command, LogicalForm, Proposal, Utterance, WorkItem
 from parser_service.labelling.label_candidates import PERSON, candidates_for
 from parser_service.labelling.parser_proposals import propose
 from parser_service.parsers.knn import NearestNeighbour
@@ -51,6 +51,24 @@ def test_spans_candidates_english_and_plan_are_shown(answering, anna):
     assert "bring me the red cup" in page and "<meter" in page
     assert 'class="plan-' in page and "data-tree" in page
     assert f"run {answering.pk}" in page
+
+
+def test_commands_of_the_world_are_offered_before_the_texts_of_the_paper(run, anna):
+    form = LogicalForm.objects.create(
+        world=run.world, text="( go )", head_predicate="go", depth=1, length=3
+    )
+    Command.objects.create(
+        world=run.world, logical_form=form, anonymized_text="go for <object>", length=3, position=0
+    )
+    page = anna.get(PAGE).content.decode()
+    groups = anna.get(PAGE).context["examples"]
+    assert [legend for legend, _ in groups] == ["Commands of this world", "Texts of the paper"]
+    (_, own), (_, paper) = groups
+    assert own and [number for _, texts in groups for number, _ in texts] == list(
+        range(1, len(own) + len(paper) + 1)
+    )
+    for _, text in own:
+        assert "<" not in text and f'value="{text}"' in page
 
 
 def test_what_a_reference_in_a_plan_stands_for_is_said():

@@ -1,0 +1,68 @@
+"""Examples of what people can say in a world: commands of its own with entities of its own."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+
+from django.db.models import Count, Exists, F, Max, Min, OuterRef, Window
+from django.db.models.functions import RowNumber
+
+from annotations.language.forms import CLASS_TOKEN, UNKNOWN, to_corpus
+from annotations.models import Command, Entity, LogicalForm, World
+
+_DIGITS = "0123456789"
+
+
+def example_commands(world: World, how_many: int) -> list[str]:
+    """Return at most ``how_many`` short commands with entities, each with another action first, the commonest first.
+
+    The same on every call. A command with a class of which the world has no entity is left out.
+    """
+    has_command = Exists(Command.objects.filter(logical_form=OuterRef("pk")))
+    forms = LogicalForm.objects.filter(has_command, world=world).exclude(text=to_corpus(UNKNOWN))
+    action = F("head_predicate")
+    shortest_forms = (
+        forms.annotate(
+            place=Window(RowNumber(), partition_by=action, order_by=("length", "pk")),
+            count=Window(Count("pk"), partition_by=action),
+        )
+        .filter(place=1)
+        .order_by("-count", "head_predicate")
+    )
+    keys = [each.pk for each in shortest_forms[: 2 * how_many]]
+    of_form = Window(RowNumber(), partition_by=F("logical_form"), order_by=("length", "pk"))
+    shortest = Command.objects.filter(logical_form__in=keys).annotate(place=of_form).filter(place=1)
+    texts = {each.logical_form_id: each.anonymized_text for each in shortest}
+    ordered = [texts[key] for key in keys]
+    entities = _two_of_each_class(world, {each for text in ordered for each in _classes_in(text)})
+    known = (text for text in ordered if all(each in entities for each in _classes_in(text)))
+    return [_name_entities(text, entities) for text in known][:how_many]
+
+
+def _classes_in(text: str) -> list[str]:
+    return [token.rstrip(_DIGITS) for token in CLASS_TOKEN.findall(text)]
+
+
+def _two_of_each_class(world: World, classes: set[str]) -> dict[str, list[str]]:
+    """Return the texts of the first and the last entity of each class that has one."""
+    rows = Entity.objects.filter(ontology__world=world, entity_class__in=classes)
+    ends = rows.order_by().values("entity_class").annotate(first=Min("pk"), last=Max("pk"))
+    keys = {key for each in ends for key in (each["first"], each["last"])}
+    texts: defaultdict[str, list[str]] = defaultdict(list)
+    for entity_class, text in rows.filter(pk__in=keys).values_list("entity_class", "text"):
+        texts[entity_class].append(text)
+    return dict(texts)
+
+
+def _name_entities(text: str, entities: dict[str, list[str]]) -> str:
+    """Return a command with entities for its class tokens, another one for the second of a class."""
+    seen: defaultdict[str, int] = defaultdict(int)
+
+    def name(token: re.Match[str]) -> str:
+        entity_class = token[1].rstrip(_DIGITS)
+        seen[entity_class] += 1
+        texts = entities[entity_class]
+        return texts[(seen[entity_class] - 1) % len(texts)]
+
+    return CLASS_TOKEN.sub(name, text).replace(" ,", ",")
