@@ -10,7 +10,7 @@ import pytest
 from annotations.background import Stopped
 from annotations.background.progress import UNWATCHED
 from annotations.language.corpus import KNOWN
-from annotations.models import Split
+from annotations.models import Recipe, Split
 from parser_service.analyses import plan_comparison
 from parser_service.analyses.plan_comparison import compare_plans
 from parser_service.models import Evaluation, Prediction
@@ -68,6 +68,19 @@ def test_runs_from_before_get_what_a_run_stores(run):
     again = answers_of(run, "validation", examples_of(run.split, "validation"))
     assert (again["is_same_plan"] == columns["is_same_plan"]).all()
     assert compare_plans(run, UNWATCHED) == 0
+
+
+def test_the_recipes_of_the_world_decide_and_are_read_once(run, django_assert_max_num_queries):
+    assert run.predictions.with_outcome("only_plan").exists()
+    recipes = Recipe.objects.filter(world=run.world, action="bring")
+    earlier = list(recipes)
+    recipes.delete()
+    with django_assert_max_num_queries(60):
+        assert compare_plans(run, UNWATCHED) > 0
+    assert not run.predictions.with_outcome("only_plan").exists()
+    Recipe.objects.bulk_create(earlier)
+    compare_plans(run, UNWATCHED)
+    assert run.predictions.with_outcome("only_plan").exists()
 
 
 def test_columns_from_before_are_read_again(run):
