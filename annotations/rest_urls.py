@@ -22,7 +22,9 @@ from annotations.web.description import (
     guidelines_rest,
     predicate_rest,
     production_rest,
+    recipe_rest,
     template_rest,
+    vocabulary_rest,
 )
 from annotations.web.editing import comment_rest, history_rest, notice_rest
 from annotations.web.people import account_rest, member_rest, token_rest
@@ -44,6 +46,8 @@ of_world = SimpleRouter(use_regex_path=False)
 of_world.register("entity-classes", class_rest.EntityClassViewSet, "entity-class")
 of_world.register("entities", entity_rest.EntityViewSet, "entity")
 of_world.register("predicates", predicate_rest.PredicateViewSet, "predicate")
+of_world.register("recipes", recipe_rest.RecipeViewSet, "recipe")
+of_world.register("primitives", recipe_rest.PrimitiveViewSet, "primitive")
 of_world.register("productions", production_rest.ProductionViewSet, "production")
 of_world.register("templates", template_rest.TemplateViewSet, "template")
 of_world.register("commands", command_rest.CommandViewSet, "command")
@@ -77,7 +81,12 @@ description = [
     path("check/template/", check_rest.CheckTemplate.as_view(), name="check-template"),
     path("check/production/", check_rest.CheckProduction.as_view(), name="check-production"),
     path("check/predicate/", check_rest.CheckPredicate.as_view(), name="check-predicate"),
+    path("check/recipe/", recipe_rest.CheckRecipe.as_view(), name="check-recipe"),
+    path("check/primitive/", recipe_rest.CheckPrimitive.as_view(), name="check-primitive"),
+    path("recipe-book/", recipe_rest.OneRecipeBook.as_view(), name="recipe-book"),
+    path("recipe-book/shipped/", recipe_rest.ShippedBooks.as_view(), name="shipped-books"),
     path("check/form/", check_rest.CheckForm.as_view(), name="check-form"),
+    path("vocabulary/", vocabulary_rest.Vocabulary.as_view(), name="vocabulary"),
     path("guidelines/", guidelines_rest.OneGuidelines.as_view(), name="guidelines"),
     path("history/<slug:kind>/<int:pk>/", history_rest.HistoryOfRow.as_view(), name="history"),
     path("deleted/<slug:kind>/", history_rest.Deleted.as_view(), name="deleted"),

@@ -16,6 +16,7 @@ from parser_service.web.reviews import prediction_rest, review_rest
 from parser_service.web.reviews.error_category_rest import ErrorCategoryViewSet
 from parser_service.web.robots import robot_rest
 from parser_service.web.runs import run_rest
+from parser_service.web.serving import joint_rest
 from parser_service.web.serving.parsing_rest import ParseJobs, ParseRoute
 
 router = SimpleRouter(use_regex_path=False)
@@ -59,6 +60,8 @@ of_world = [
     path(f"{ANSWER}/doubt/", review_rest.DoubtLabel.as_view(), name="answer-doubt"),
     path("results/", result_rest.Results.as_view(), name="results"),
     path("plan/", robot_rest.PlanRoute.as_view(), name="plan"),
+    path("joint-plan/", joint_rest.JointPlanRoute.as_view(), name="joint-plan"),
+    path("task-plan/", robot_rest.TaskPlanRoute.as_view(), name="task-plan"),
     path("robot/action-names/", robot_rest.ActionNamesRoute.as_view(), name="action-names"),
 ]
 

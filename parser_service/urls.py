@@ -16,7 +16,7 @@ from parser_service.web.results import compare_pages, report_pages, result_pages
 from parser_service.web.reviews import error_category_pages, prediction_pages, review_pages
 from parser_service.web.robots import robot_pages
 from parser_service.web.runs import learning_curve_pages, new_run_pages, run_pages
-from parser_service.web.serving import playground_pages
+from parser_service.web.serving import joint_pages, playground_pages
 
 urlpatterns = [
     path("dialogue/", dialogue_pages.dialogues, name="dialogues"),
@@ -73,6 +73,8 @@ urlpatterns = [
     path("runs/<int:pk>/sensitivity/", sensitivity_pages.sensitivity, name="sensitivity"),
     path("runs/<int:pk>/probes/", analysis_pages.probes, name="probes"),
     path("parse/", playground_pages.playground, name="playground"),
+    path("parse/together/", joint_pages.joint_plan, name="joint_plan"),
+    path("parse/together/ask/", joint_pages.joint_plan_ask, name="joint_plan_ask"),
     path("parse/ask/", playground_pages.playground_ask, name="playground_ask"),
     path("parse/wrong/", playground_pages.playground_wrong, name="playground_wrong"),
     path("parse/state/", promotion_pages.parser_state, name="parser_state"),

@@ -64,7 +64,7 @@ def scored_run(
     TrainingRun.objects.filter(pk=run.pk).update(status=Status.SUCCEEDED, progress=1)
     examples = list(split.examples.filter(part="validation"))
     clusters = [cluster_of(example, split.criterion) for example in examples]
-    judgements = [Judgement(n < right, n < right, True) for n in range(len(examples))]
+    judgements = [Judgement(n < right, n < right, True, n < right) for n in range(len(examples))]
     for number, example in enumerate(examples):
         answer(run, example, example.logical_form if number < right else '( go " <room> " )')
     Evaluation.objects.create(
@@ -78,6 +78,7 @@ def scored_run(
         interval_high=0.6,
         equivalent=right / len(examples),
         well_formed=1,
+        same_plan=right / len(examples),
         outcomes=outcomes_of(clusters, judgements),
     )
     EpochMetric.objects.create(
@@ -99,6 +100,7 @@ def answer(run: TrainingRun, example: Example, form: str) -> Prediction:
         is_exact_match=is_right,
         is_equivalent=is_right,
         is_well_formed=True,
+        is_same_plan=is_right,
     )
 
 

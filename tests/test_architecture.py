@@ -49,7 +49,7 @@ ROOMS = {
     ),
     "annotations/language": (
         "errors", "limits", "text", "decoding", "english", "symbols", "forms", "grammar", "ontology", "predicates",
-        "templates", "assistance", "suggestions", "grounding", "dialogue", "plans", "names", "corpus",
+        "templates", "assistance", "suggestions", "grounding", "dialogue", "plans", "recipes", "names", "corpus",
         "paraphrases", "agreement", "label_errors",
     ),
     "parser_service/neural": (
@@ -58,8 +58,8 @@ ROOMS = {
     ),
     "parser_service/analysis": (
         "arrays", "encoded_labels", "answer_forms", "intervals", "clustered", "scores", "outcomes",
-        "comparing", "slicing", "confusions", "categories", "attractors", "risk_coverage", "probabilities", "edits",
-        "sensitivity", "probe_texts",
+        "plan_agreement", "comparing", "slicing", "confusions", "categories", "attractors", "risk_coverage",
+        "probabilities", "edits", "sensitivity", "probe_texts",
     ),
     "parser_service/parsers": (
         "conditions", "hyperparameters", "interface", "storage", "registry", "words", "spreading", "remembering",
@@ -70,7 +70,8 @@ ROOMS = {
         "worker",
     ),
     "parser_service/analyses": (
-        "stored_findings", "target", "attractor_findings", "probes", "refusal_curves", "analysis_job", "state",
+        "stored_findings", "target", "attractor_findings", "plan_comparison", "probes", "refusal_curves",
+        "analysis_job", "state",
         "tryout_answers",
     ),
     "gpsr_site": (

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from annotations.checking.class_uses import why_kept
 from annotations.checking.predicate_check import BrokenTemplates, templates_without
 from annotations.checking.production_check import ProductionEdit, problems_without
+from annotations.checking.recipe_check import why_primitive_is_kept
 from annotations.generation.world_consequences import (
     TemplateChange,
     WorldConsequences,
@@ -20,6 +21,7 @@ from annotations.models import (
     Entity,
     EntityClass,
     Predicate,
+    Primitive,
     Production,
     SemanticTemplate,
 )
@@ -53,6 +55,8 @@ def check_deletion(row: Editable) -> DeletionCheck:
             return DeletionCheck(expected, problems_without(edit))
         case EntityClass():
             return DeletionCheck(refusal=why_kept(row))
+        case Primitive():
+            return DeletionCheck(refusal=why_primitive_is_kept(row))
         case Predicate():
             return DeletionCheck(templates=templates_without(row.world, row.name))
         case Entity():

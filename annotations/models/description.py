@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Any
 
 from django.core.validators import MaxValueValidator
@@ -11,6 +11,15 @@ from django.db import models
 from django.db.models.fields.json import KeyTextTransform
 from django.db.models.functions import Coalesce, Left, Lower
 
+from annotations.language.errors import LanguageError
+from annotations.language.limits import MAX_INDEXED_BYTES, MAX_PREDICATE
+from annotations.language.recipes import (
+    MAX_ROW,
+    ActionPattern,
+    RecipeBook,
+    read_primitive,
+    read_recipe,
+)
 from annotations.language.symbols import (
     DEFAULT_CLASSES,
     HUES,
@@ -89,6 +98,109 @@ class EntityClass(Editable):
     def is_of_every_world(self) -> bool:
         """Whether a new world starts with it, so that no world goes without."""
         return self.token in DEFAULT_CLASSES
+
+
+class BookRow(Editable):
+    """A row of the recipe book of a world, as a text that ``annotations.language.recipes`` reads and writes."""
+
+    edited_fields = ("text",)
+
+    text = models.CharField(max_length=MAX_ROW)
+    position = models.PositiveIntegerField()
+
+    class Meta:
+        abstract = True
+        ordering = ["position", "pk"]
+
+    def __str__(self) -> str:
+        return self.text
+
+
+class PrimitiveQuerySet(models.QuerySet["Primitive"]):
+    def start_book(self, world: World, book: RecipeBook) -> None:
+        """Store the primitives of ``book`` in a world that has none."""
+        rows = enumerate(map(str, book.primitives))
+        self.bulk_create(
+            Primitive(world=world, position=n, **Primitive.columns_of(text)) for n, text in rows
+        )
+
+
+class Primitive(BookRow):
+    """Something that the team's robot can do. ``name`` is that in the text."""
+
+    fields_beside = ("name",)
+
+    world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="primitives")
+    name = models.CharField(max_length=MAX_PREDICATE)
+
+    objects = PrimitiveQuerySet.as_manager()
+
+    class Meta(BookRow.Meta):
+        constraints = [
+            models.UniqueConstraint(
+                fields=["world", "name"],
+                name="primitive_name",
+                violation_error_message="There is a primitive of this name already.",
+            )
+        ]
+
+    @staticmethod
+    def columns_of(text: str) -> dict[str, str]:
+        """Return the columns that follow from a text, and the text in its one spelling. Raises LanguageError."""
+        value = read_primitive(text)
+        return {"text": str(value), "name": value.name}
+
+
+class RecipeQuerySet(models.QuerySet["Recipe"]):
+    def start_book(self, world: World, book: RecipeBook) -> None:
+        """Store the recipes of ``book`` in a world that has none."""
+        rows = enumerate(map(str, book.recipes))
+        self.bulk_create(
+            Recipe(world=world, position=n, **Recipe.columns_of(text)) for n, text in rows
+        )
+
+
+class Recipe(BookRow):
+    """How the robot does an action of a form: its primitives in order.
+
+    ``action`` is that of the text, and ``left`` its left side with the arguments in order: of two recipes with the
+    same one, none fits better than the other.
+    """
+
+    fields_beside = ("action", "left")
+
+    world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="recipes")
+    action = models.CharField(max_length=MAX_PREDICATE)
+    left = models.CharField(max_length=MAX_ROW)
+
+    objects = RecipeQuerySet.as_manager()
+
+    class Meta(BookRow.Meta):
+        constraints = [
+            models.UniqueConstraint(
+                fields=["world", "left"],
+                name="recipe_left_side",
+                violation_error_message="There is a recipe with this left side already.",
+            )
+        ]
+
+    @staticmethod
+    def columns_of(text: str) -> dict[str, str]:
+        """Return the columns that follow from a text, and the text in its one spelling. Raises LanguageError."""
+        value = read_recipe(text)
+        left = str(_in_order(value.pattern))
+        if len(left.encode()) > MAX_INDEXED_BYTES:
+            raise LanguageError("the left side is too long", hint="give its arguments short names")
+        return {"text": str(value), "action": value.pattern.action, "left": left}
+
+
+def _in_order(pattern: ActionPattern) -> ActionPattern:
+    """Return a left side with its arguments in the order of their names."""
+    parameters = (
+        replace(each, action=_in_order(each.action)) if each.action else each
+        for each in pattern.parameters
+    )
+    return replace(pattern, parameters=tuple(sorted(parameters, key=lambda each: each.name)))
 
 
 class Ontology(models.Model):

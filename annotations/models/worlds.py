@@ -13,6 +13,7 @@ from django.core.validators import RegexValidator
 from django.db import models
 from django.utils import timezone
 
+from annotations.language.recipes import default_book
 from annotations.language.templates import DEFAULT_LIMIT, EVERYTHING, SampleNote, SampleRequest
 from annotations.models.people import User, digest_of
 
@@ -121,11 +122,13 @@ class World(models.Model):
         return self.name
 
     def save(self, *args: Any, **kwargs: Any) -> None:
-        """Store the world; a new one with the classes of entities that every world starts with."""
+        """Store the world; a new one with the classes of entities and the recipes that every world starts with."""
         is_new = self._state.adding
         super().save(*args, **kwargs)
         if is_new:
             self.entity_classes.add_defaults(self)
+            self.primitives.start_book(self, default_book())
+            self.recipes.start_book(self, default_book())
 
     @property
     def commands_are_stale(self) -> bool:

@@ -28,7 +28,7 @@ MOST_SUBJECT_CHARACTERS = 200
 # a pseudonym alone also where they are logged in.
 UNRECORDED = re.compile(
     r"_(check|preview|suggestions|completion|consequences)$"
-    r"|^(draft|inbox|notice_open|notice-read-all|notice-read|queue_next|work-item-next|tryout_ask|playground_ask)$"
+    r"|^(draft|inbox|notice_open|notice-read-all|notice-read|queue_next|work-item-next|tryout_ask|playground_ask|joint_plan_ask)$"
     r"|^(campaign|campaign_place|campaign_done)$"
 )
 VERBS = {"POST": "create", "PUT": "change", "PATCH": "change", "DELETE": "delete"}
@@ -76,6 +76,9 @@ WHAT = {
     "entities_new": "add entities",
     "entity_class": "change class",
     "entity_class_new": "new class",
+    **{name: f"change {name}" for name in ("recipe", "primitive")},
+    **{f"{name}_new": f"new {name}" for name in ("recipe", "primitive")},
+    "recipe_book": "replace the recipes",
     "offered_entity_decide": "decide about a word from dialogues",
     "robot": "name actions",
     "template_duplicate": "copy a template",

@@ -1,8 +1,9 @@
-"""Which rows name a nonterminal, a predicate or an entity, and what they say once it has another name."""
+"""Which rows name a nonterminal, a predicate, an entity or a primitive, and what they say once it has another name."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Any, Protocol
 
 from django.db.models import Q
@@ -16,6 +17,8 @@ from annotations.language.names import (
     require_nonterminal,
     require_predicate,
 )
+from annotations.language.recipes import Primitive as PrimitiveValue
+from annotations.language.recipes import read_primitive
 from annotations.models import (
     AuditDecision,
     AuditFinding,
@@ -25,12 +28,14 @@ from annotations.models import (
     Label,
     Paraphrase,
     Predicate,
+    Primitive,
     Production,
     SemanticTemplate,
     Utterance,
 )
 from annotations.renaming.entity_rename import EntityRename, RenamedRows, differing
 from annotations.rows.composition import split_entry
+from annotations.rows.from_rows import primitive_of, recipe_of
 
 
 class RenamePlan(Protocol):
@@ -165,6 +170,42 @@ class PredicateRename:
             )
 
 
+class PrimitiveRename:
+    """Renames a primitive in the recipe book of the world."""
+
+    def __init__(self, row: Primitive, old: str) -> None:
+        self.row = row
+        self.old = row.name
+
+    def require_free(self, new: str) -> None:
+        renamed = self._primitive(new)
+        if renamed.name != new:
+            raise LanguageError(f"“{new}” is no name", hint="use letters, digits and _")
+        if self.row.world.primitives.filter(name=renamed.name).exists():
+            raise LanguageError(f"there is a primitive {new} already", hint="choose another name")
+
+    def changes(self, new: str) -> Iterator[tuple[str, RenamedRows]]:
+        yield "primitive", [(self.row, Primitive.columns_of(str(self._primitive(new))))]
+        recipes = self.row.world.recipes.filter(text__contains=self.old)
+        yield (
+            "recipe",
+            differing((row, {"text": self._renamed(row.text, new)}) for row in recipes),
+        )
+
+    def _primitive(self, new: str) -> PrimitiveValue:
+        """Return the primitive under its new name. Raises LanguageError where this is none."""
+        renamed = replace(primitive_of(self.row.text), name=new)
+        return read_primitive(str(renamed))
+
+    def _renamed(self, text: str, new: str) -> str:
+        recipe = recipe_of(text)
+        calls = (
+            replace(call, primitive=new) if call.primitive == self.old else call
+            for call in recipe.calls
+        )
+        return str(replace(recipe, calls=tuple(calls)))
+
+
 def _rename_alias(entry: str, old: str, new: str) -> str:
     source, alias = split_entry(entry)
     return f"{source} as ${new}" if alias == old else entry
@@ -174,4 +215,5 @@ PLANS: dict[type[Editable], Callable[[Any, str], RenamePlan]] = {
     Production: NonterminalRename,
     Predicate: PredicateRename,
     Entity: EntityRename,
+    Primitive: PrimitiveRename,
 }

@@ -13,6 +13,14 @@ from annotations.language.errors import Position
 from annotations.language.grammar import Grammar, Production, apply_alias, read_production
 from annotations.language.ontology import Entity, Ontology
 from annotations.language.predicates import Predicate, PredicateKind, Signature
+from annotations.language.recipes import (
+    Primitive,
+    Recipe,
+    RecipeBook,
+    default_book,
+    read_primitive,
+    read_recipe,
+)
 from annotations.language.symbols import EntityClasses
 from annotations.language.templates import (
     BoundedCache,
@@ -27,6 +35,8 @@ from annotations.rows.composition import split_entry
 _GRAMMARS: BoundedCache[tuple[object, ...], Grammar] = BoundedCache(12)
 _TEMPLATES: BoundedCache[tuple[str, str, Position], SemanticTemplate] = BoundedCache(20_000)
 
+_PRIMITIVES: BoundedCache[str, Primitive] = BoundedCache(2_000)
+_RECIPES: BoundedCache[str, Recipe] = BoundedCache(2_000)
 
 # File → its productions in order: file, line, nonterminal, expansion.
 Line = tuple[str, int, str, str]
@@ -158,6 +168,32 @@ def predicates_of(
 def predicate_of(row: models.Predicate) -> Predicate:
     signatures = (Signature(tuple(kinds)) for kinds in row.signatures)
     return Predicate(row.name, PredicateKind(row.kind), tuple(signatures), row.gloss)
+
+
+def recipe_book_of(world: models.World) -> RecipeBook:
+    """Return the recipe book of ``world``; the shipped one where it has no recipes of its own.
+
+    Raises:
+        LanguageError: a stored row that cannot be read.
+    """
+    primitives = world.primitives.values_list("text", flat=True)
+    recipes = world.recipes.values_list("text", flat=True)
+    return book_of(primitives, recipes) if recipes else default_book()
+
+
+def book_of(primitives: Iterable[str], recipes: Iterable[str]) -> RecipeBook:
+    """Return the book with these rows. Raises LanguageError for one that cannot be read."""
+    return RecipeBook(tuple(map(primitive_of, primitives)), tuple(map(recipe_of, recipes)))
+
+
+def primitive_of(text: str) -> Primitive:
+    """Return the primitive of a row. Raises LanguageError."""
+    return _PRIMITIVES.get(text, lambda: read_primitive(text))
+
+
+def recipe_of(text: str) -> Recipe:
+    """Return the recipe of a row. Raises LanguageError."""
+    return _RECIPES.get(text, lambda: read_recipe(text))
 
 
 def _by_source(rows: QuerySet[models.Production]) -> dict[str, list[Line]]:

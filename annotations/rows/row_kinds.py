@@ -16,7 +16,9 @@ from annotations.models import (
     Guidelines,
     Paraphrase,
     Predicate,
+    Primitive,
     Production,
+    Recipe,
     SemanticTemplate,
     Utterance,
     World,
@@ -86,6 +88,8 @@ KINDS = {
         EditableKind("entity", Entity, "entities", "ontology", "entity"),
         EditableKind("entity_class", EntityClass, "classes", "entity_classes", "entity_class"),
         EditableKind("predicate", Predicate, "predicates", "predicates", "predicate"),
+        EditableKind("recipe", Recipe, "recipes", "recipes", "recipe"),
+        EditableKind("primitive", Primitive, "primitives", "recipes", "primitive"),
         EditableKind("paraphrase", Paraphrase, "paraphrases", "paraphrases", "paraphrase"),
         EditableKind("utterance", Utterance, "utterances", "utterances", "utterance"),
         EditableKind(

@@ -20,7 +20,17 @@ from annotations.importing.zip_archives import MANIFEST, open_archive, read_line
 from annotations.language.errors import LanguageError, Position, Problem, Refusal
 from annotations.language.symbols import EntityClasses
 from annotations.language.text import TextChanges, normalise_json, say_changes
-from annotations.models import Assignment, Grammar, Membership, Ontology, Split, User, World
+from annotations.models import (
+    Assignment,
+    Grammar,
+    Membership,
+    Ontology,
+    Primitive,
+    Recipe,
+    Split,
+    User,
+    World,
+)
 from annotations.models.worlds import Role
 from annotations.rows.from_rows import annotated_categories, classes_of, predicates_of
 from annotations.rows.stored_problems import as_json
@@ -28,6 +38,7 @@ from annotations.rows.synchronise import BATCH, batches
 from annotations.splits.freezing import content_hash_of
 from annotations.world_archive.archive_tables import ArchiveTable, tables
 from annotations.world_archive.class_checks import check_classes, check_token
+from annotations.world_archive.recipe_checks import check_book_row
 from annotations.world_archive.row_checks import check_row, parse_object
 from annotations.world_archive.row_texts import equal_row, normalise_columns
 from annotations.world_archive.world_manifest import WorldManifest, read_manifest
@@ -86,8 +97,9 @@ def import_world(
             Ontology.objects.create(world=world)
         World.objects.filter(pk=world.pk).update(**manifest.world_values)
         try:
-            if "entity_classes" in manifest.rows:
-                world.entity_classes.all().delete()  # the archive has those that a world starts with
+            # The archive has those that a world starts with.
+            for name in manifest.rows.keys() & {"entity_classes", "primitives", "recipes"}:
+                getattr(world, name).all().delete()
             loader = _Loader(archive, manifest, world, progress)
             rows = loader.load()
             _check_world(world)
@@ -228,6 +240,8 @@ class _Loader:
             check_row(table, values, place)
             if table.name == "entity_classes":
                 check_token(values["token"], place)
+            elif table.model in (Primitive, Recipe):
+                check_book_row(table.model, values, place)
             else:
                 check_classes(table.name, values, self._stored_classes, place)
             yield self._row(table, self._normalise(table, values, place), place)

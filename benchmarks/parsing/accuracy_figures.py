@@ -181,6 +181,6 @@ def _row_of(cell: dict[str, Any]) -> dict[str, Any]:
                 row |= {f"{key}_{part}": each for key, each in single.items()}
         elif name.startswith("interval") and value:
             row |= dict(zip((f"{name}_low", f"{name}_high"), value, strict=True))
-        elif name not in ("outcomes", "key"):
+        elif name not in ("outcomes", "outcomes_same_plan", "key"):
             row[name] = round(value, 6) if isinstance(value, float) else value
     return row

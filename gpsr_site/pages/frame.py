@@ -153,7 +153,12 @@ PLACES = (
         label="Parse",
         page="playground",
         waiting=Waiting(count="promotions_proposed", noun="run", reason="proposed for promotion"),
-        pages_below=("promotions", "dialogues", "dialogue"),
+        pages_below=("promotions", "dialogues", "dialogue", "joint_plan"),
+    ),
+    Place(
+        label="Recipes",
+        page="recipes",
+        pages_below=("recipe", "recipe_new", "primitive", "primitive_new"),
     ),
 )
 

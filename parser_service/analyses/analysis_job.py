@@ -14,6 +14,7 @@ from annotations.language.errors import Refusal
 from annotations.models import Job
 from annotations.models.background import Status
 from parser_service.analyses.attractor_findings import attractor_findings, attractors_in
+from parser_service.analyses.plan_comparison import plan_findings
 from parser_service.analyses.probes.probe_answers import answer_findings
 from parser_service.analyses.probes.probe_making import probe_findings
 from parser_service.analyses.probes.sensitivity_findings import (
@@ -95,6 +96,7 @@ OF_PARTS = (
     AnalysisStep(SLOTS, "counting confusions of slots", confusion_findings),
 )
 OF_FIRST_PART = (
+    AnalysisStep("plans", "comparing plans", plan_findings, 2, True),
     AnalysisStep("proposals", "proposing error categories", proposal_findings, 4, True),
     AnalysisStep("pairs", "comparing utterances one word apart", pair_findings),
     AnalysisStep("probes", "making probes", probe_findings, 2),

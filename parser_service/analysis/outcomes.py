@@ -18,11 +18,12 @@ from parser_service.analysis.scores import Judged
 # independent as clusters are, and 300 of them say nearly as much.
 MOST_CLUSTERS = 300
 NAME_DIGITS = 8
-Counted: TypeAlias = Literal["exact", "equivalent", "well_formed"]
-PLACES: dict[Counted, int] = {"exact": 1, "equivalent": 2, "well_formed": 3}
+Counted: TypeAlias = Literal["exact", "equivalent", "well_formed", "same_plan"]
+PLACES: dict[Counted, int] = {"exact": 1, "equivalent": 2, "well_formed": 3, "same_plan": 4}
 
 Outcomes: TypeAlias = dict[str, list[int]]
-"""Cluster, as digits of its SHA-256 → number of examples, and how many are exact, equivalent and well-formed."""
+"""Cluster, as digits of its SHA-256 → number of examples, and how many are exact, equivalent and well-formed; where
+plans were compared, also how many have the same plan."""
 
 
 def name_clusters(clusters: Collection[str]) -> dict[str, str]:
@@ -43,23 +44,26 @@ def encode_clusters(clusters: Sequence[str]) -> Ints:
 def outcomes_of(clusters: Sequence[str], judgements: Sequence[Judged]) -> Outcomes:
     """Count the answers to examples, whose clusters are given, by cluster. Shapes: [examples] each."""
     names = name_clusters(set(clusters))
+    has_plans = not any(judgement.is_same_plan is None for judgement in judgements)
     outcomes: Outcomes = {}
     for cluster, judgement in zip(clusters, judgements, strict=True):
-        counts = outcomes.setdefault(names[cluster], [0, 0, 0, 0])
+        counts = outcomes.setdefault(names[cluster], [0] * (5 if has_plans else 4))
         counts[0] += 1
         counts[1] += judgement.is_exact_match
         counts[2] += judgement.is_equivalent
         counts[3] += judgement.is_well_formed
+        if has_plans:
+            counts[4] += bool(judgement.is_same_plan)
     return dict(sorted(outcomes.items()))
 
 
 def clustered(
     of: Sequence[Mapping[str, Sequence[int]]], counted: Counted = "exact"
 ) -> Clustered | None:
-    """Return what some trainings got right; None where one of them has no outcomes."""
-    if not of or not all(of):
-        return None
+    """Return what some trainings got right; None where one of them has no outcomes, or did not count this."""
     at = PLACES[counted]
+    if not of or not all(one and len(next(iter(one.values()))) > at for one in of):
+        return None
     return Clustered.of([{name: (each[at], each[0]) for name, each in one.items()} for one in of])
 
 

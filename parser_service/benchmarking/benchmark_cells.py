@@ -6,7 +6,7 @@ import json
 import os
 import time
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import cache
 from hashlib import sha256
 from importlib import metadata
@@ -18,7 +18,10 @@ from django.conf import settings
 from annotations.language.corpus import KNOWN, harmonic_mean
 from annotations.language.errors import Refusal
 from annotations.language.forms import read_form
+from annotations.language.ontology import Ontology
 from annotations.language.predicates import infer_signatures
+from annotations.language.recipes import default_book
+from parser_service.analysis.plan_agreement import PlanAgreement
 from parser_service.analysis.scores import score
 from parser_service.benchmarking.corpus import Corpus
 from parser_service.benchmarking.measured_answers import (
@@ -45,9 +48,15 @@ class Fitted:
     n_train: int
 
 
+def agreement_without_world() -> PlanAgreement:
+    """Return what compares plans by the shipped recipes alone."""
+    return PlanAgreement(Ontology(()), {}, default_book())
+
+
 @dataclass(frozen=True)
 class TrialGroup:
-    """Trials of the same ``training``, the pairs they are measured on and what the parser may know.
+    """Trials of the same ``training``, the pairs they are measured on, what the parser may know, and what compares
+    the plans of its answers.
 
     It holds no rows of the database, so any process can measure it.
     """
@@ -56,6 +65,7 @@ class TrialGroup:
     corpus: Corpus
     knowledge: Knowledge
     knowledge_hash: str
+    same_plan: PlanAgreement = field(default_factory=agreement_without_world)
 
     def __str__(self) -> str:
         first = self.trials[0]
@@ -64,14 +74,17 @@ class TrialGroup:
 
     def key(self, trial: Trial) -> str:
         """Return the key of the cell of ``trial``."""
-        return cell_key(trial, self.corpus, self.knowledge_hash)
+        book = self.same_plan.book
+        recipes = [str(row) for row in (*book.primitives, *book.recipes)]
+        return cell_key(trial, self.corpus, self.knowledge_hash, recipes)
 
     def measure(self) -> Iterator[Cell | str]:
         """Train once and test each trial; yield its cell, or the sentence why there is none."""
         training = cache(lambda: _fit(self.trials[0], self.corpus, self.knowledge))
         for trial in self.trials:
             try:
-                cell = {**measure_cell(trial, self.corpus, training), "key": self.key(trial)}
+                measured = measure_cell(trial, self.corpus, training, self.same_plan)
+                cell = {**measured, "key": self.key(trial)}
             except Refusal as error:
                 yield trial.refuse(str(error))
             else:
@@ -107,7 +120,9 @@ def declared_by(train: Sequence[Pair], knowledge: Knowledge) -> Knowledge:
     return replace(knowledge, predicates=kept)
 
 
-def measure_cell(trial: Trial, corpus: Corpus, training: Callable[[], Fitted]) -> Cell:
+def measure_cell(
+    trial: Trial, corpus: Corpus, training: Callable[[], Fitted], same_plan: PlanAgreement
+) -> Cell:
     """Test the parser of ``training``. Accuracies are fractions of 1; that of an absent part is None.
 
     The validation part is cross-fitted: what answers a pair was not calibrated on its cluster. Of the
@@ -128,7 +143,7 @@ def measure_cell(trial: Trial, corpus: Corpus, training: Callable[[], Fitted]) -
         asked[KNOWN] = [pair for pair in asked[KNOWN] if pair.form in trained]
     fitted = training()
     answers = _ask_all(
-        fitted.parser, asked, corpus.pairs("validation", trial.train_sources), corpus
+        fitted.parser, asked, corpus.pairs("validation", trial.train_sources), corpus, same_plan
     )
     over_both = None  # the unseen forms of the validation part and known ones
     if trial.by_form:
@@ -144,8 +159,12 @@ def measure_cell(trial: Trial, corpus: Corpus, training: Callable[[], Fitted]) -
         **{f"n_{part}": len(pairs) for part, pairs in asked.items()},
         **{f"accuracy_{part}": each.accuracy for part, each in answers.items()},
         **({"harmonic_mean": over_both} if trial.by_form else {}),
+        **{f"same_plan_{part}": each.same_plan for part, each in answers.items()},
         **dict(intervals(answers)),
         "outcomes": {part: each.tally() for part, each in answers.items() if each.of},
+        "outcomes_same_plan": {
+            part: each.tally(by_plan=True) for part, each in answers.items() if each.of
+        },
         "score_kind": fitted.parser.score_kind,
         "calibration": {part: each.calibration() for part, each in answers.items() if each.of},
         "well_formed": score(last.judgements).well_formed,
@@ -162,19 +181,20 @@ def _ask_all(
     asked: dict[str, list[Pair]],
     calibrating: Sequence[Pair],
     corpus: Corpus,
+    same_plan: PlanAgreement,
 ) -> dict[str, PartAnswers]:
     """Return the answers to each part of ``asked``."""
     answering = {KNOWN: parser, "test": parser.for_test_part(calibrating)}
     return {
-        part: ask_cross_fitted(parser, pairs, calibrating, corpus.cluster)
+        part: ask_cross_fitted(parser, pairs, calibrating, corpus.cluster, same_plan)
         if part == "validation"
-        else ask(answering[part], pairs, corpus.cluster)
+        else ask(answering[part], pairs, corpus.cluster, same_plan)
         for part, pairs in asked.items()
     }
 
 
-def cell_key(trial: Trial, corpus: Corpus, knowledge_hash: str) -> str:
-    """Return the SHA-256 of everything that decides a cell: conditions, pairs, knowledge and code."""
+def cell_key(trial: Trial, corpus: Corpus, knowledge_hash: str, recipes: Sequence[str] = ()) -> str:
+    """Return the SHA-256 of everything that decides a cell: conditions, pairs, knowledge, recipes and code."""
     used = {*trial.train_sources, *trial.test_sources}
     pairs = [
         [part, pair.source, pair.utterance, pair.form, pair.task_category]
@@ -183,7 +203,7 @@ def cell_key(trial: Trial, corpus: Corpus, knowledge_hash: str) -> str:
     ]
     clusters = sorted({corpus.cluster(pair) for pair in corpus.pairs("validation", sorted(used))})
     conditions = [asdict(trial), entry(trial.parser).version, knowledge_hash, code_version(), pairs]
-    conditions.append(clusters)
+    conditions += [clusters, list(recipes)]
     return sha256(json.dumps(conditions, ensure_ascii=False).encode()).hexdigest()
 
 

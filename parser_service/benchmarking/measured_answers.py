@@ -15,7 +15,7 @@ import numpy as np
 from parser_service.analysis.clustered import Clustered, Parts, interval_of
 from parser_service.analysis.probabilities import NO_PROBABILITY, calibration, probability_of
 from parser_service.analysis.risk_coverage import risk_coverage
-from parser_service.analysis.scores import NO_ANSWER, Judgement, judge
+from parser_service.analysis.scores import Judgement, SamePlan, judge
 from parser_service.parsers.interface import Pair, Parser, ScoreKind
 from parser_service.runs.training.cross_fitting import calibrated_folds
 from parser_service.runs.training.evaluating import BEAM_WIDTH
@@ -57,12 +57,22 @@ class PartAnswers:
     def milliseconds(self) -> float:
         return 1000 * self.seconds / len(self.of) if self.of else 0.0
 
-    def tally(self) -> dict[str, list[int]]:
-        """Return cluster, as digits of its SHA-256, → [right answers, pairs], in the order of the digits."""
+    @property
+    def same_plan(self) -> float | None:
+        """The share that has the plan of the annotated form; None without a pair."""
+        right = sum(bool(answer.judgement.is_same_plan) for answer in self.of)
+        return right / len(self.of) if self.of else None
+
+    def tally(self, by_plan: bool = False) -> dict[str, list[int]]:
+        """Return cluster, as digits of its SHA-256, → [right answers, pairs], in the order of the digits.
+
+        Right are exact matches; with ``by_plan`` answers with the same plan.
+        """
         tally: dict[str, list[int]] = defaultdict(lambda: [0, 0])
         for answer in self.of:
             name = sha256(answer.cluster.encode()).hexdigest()[:NAME_DIGITS]
-            tally[name][0] += answer.judgement.is_exact_match
+            judgement = answer.judgement
+            tally[name][0] += bool(judgement.is_same_plan) if by_plan else judgement.is_exact_match
             tally[name][1] += 1
         return dict(sorted(tally.items()))
 
@@ -98,27 +108,32 @@ class PartAnswers:
         }
 
 
-def ask(parser: Parser, pairs: Sequence[Pair], cluster_of: ClusterOf) -> PartAnswers:
-    """Ask for the first answer to each pair."""
+def ask(
+    parser: Parser, pairs: Sequence[Pair], cluster_of: ClusterOf, same_plan: SamePlan
+) -> PartAnswers:
+    """Ask for the first answer to each pair; ``same_plan`` compares its plan with that of the pair's form."""
     began = time.perf_counter()
     ranked = parser.predict([pair.utterance for pair in pairs], BEAM_WIDTH) if pairs else []
     seconds = time.perf_counter() - began
     answers = []
     for candidates, pair in zip(ranked, pairs, strict=True):
-        judgement, score = NO_ANSWER, None
-        if candidates:
-            judgement, score = judge(candidates[0].form, pair.form), candidates[0].score
+        form, score = (candidates[0].form, candidates[0].score) if candidates else ("", None)
+        judgement = judge(form, pair.form, same_plan)
         answers.append(PairAnswer(cluster_of(pair), judgement, score))
     return PartAnswers(tuple(answers), seconds, parser.score_kind)
 
 
 def ask_cross_fitted(
-    parser: Parser, pairs: Sequence[Pair], calibrating: Sequence[Pair], cluster_of: ClusterOf
+    parser: Parser,
+    pairs: Sequence[Pair],
+    calibrating: Sequence[Pair],
+    cluster_of: ClusterOf,
+    same_plan: SamePlan,
 ) -> PartAnswers:
     """Ask for the first answer to each pair of the validation part; each is scored by the parser calibrated on the
     pairs of other clusters. The answers are in no order that means anything."""
     folds = [
-        ask(of_fold, [pairs[at] for at in places], cluster_of)
+        ask(of_fold, [pairs[at] for at in places], cluster_of, same_plan)
         for of_fold, places in calibrated_folds(
             parser,
             [cluster_of(pair) for pair in pairs],
@@ -131,8 +146,9 @@ def ask_cross_fitted(
 
 
 def intervals(answers: dict[str, PartAnswers]) -> Iterator[tuple[str, Any]]:
-    """Yield the interval (fractions of 1) and the number of clusters of each part with an answer. The names of
-    ``known`` and ``test`` end with the part. By form the interval of the harmonic mean comes too."""
+    """Yield the interval (fractions of 1), that of the share with the same plan, and the number of clusters of each
+    part with an answer. The names of ``known`` and ``test`` end with the part. By form the interval of the harmonic
+    mean comes too."""
     parts = {
         part: Clustered.of([each.tally()])  # type: ignore[list-item]
         for part, each in answers.items()
@@ -141,6 +157,8 @@ def intervals(answers: dict[str, PartAnswers]) -> Iterator[tuple[str, Any]]:
     for part, clustered in parts.items():
         ending = "" if part == "validation" else f"_{part}"
         yield f"interval{ending}", rounded_interval((clustered,))
+        by_plan = Clustered.of([answers[part].tally(by_plan=True)])  # type: ignore[list-item]
+        yield f"interval_same_plan{ending}", rounded_interval((by_plan,))
         yield f"clusters{ending}", clustered.clusters
     if "known" in parts:
         both = (parts["validation"], parts["known"])

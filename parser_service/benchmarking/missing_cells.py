@@ -11,14 +11,19 @@ from pathlib import Path
 from annotations.language.corpus import TRIPLES_FILE, Criterion
 from annotations.language.errors import Refusal
 from annotations.models import World
-from parser_service.benchmarking.benchmark_cells import Cell, CellFile, TrialGroup
+from parser_service.benchmarking.benchmark_cells import (
+    Cell,
+    CellFile,
+    TrialGroup,
+    agreement_without_world,
+)
 from parser_service.benchmarking.corpus import Corpus, new_split, read_corpus
 from parser_service.benchmarking.in_parallel import measure_in_parallel
 from parser_service.benchmarking.paraphrase_sources import Sources, find_sources
 from parser_service.benchmarking.trials import Trial
 from parser_service.parsers.interface import Knowledge
 from parser_service.runs.requests.content_key import knowledge_hash
-from parser_service.runs.training.knowledge import knowledge_of
+from parser_service.runs.training.knowledge import knowledge_of, plan_agreement_of
 
 
 def find_missing(
@@ -31,9 +36,10 @@ def find_missing(
         trials: those of one training follow each other.
         cells: the file that has the cells measured so far.
         folder: the pair files.
-        world: whose predicates, ontology and grammar may be known, if any.
+        world: whose predicates, ontology and grammar may be known, if any. Plans are compared by its recipes.
     """
     groups, failures = [], []
+    same_plan = plan_agreement_of(world) if world else agreement_without_world()
     sources = cache(lambda: find_sources(folder, world))
     corpora = cache(
         lambda criterion, split: load_corpus(folder, criterion, split, world, sources())
@@ -50,7 +56,7 @@ def find_missing(
         try:
             corpus = corpora(first.criterion, first.split)
             corpus = corpus.with_known(first.seed) if first.by_form else corpus
-            group = TrialGroup((first, *others), corpus, *known(first.protocol))
+            group = TrialGroup((first, *others), corpus, *known(first.protocol), same_plan)
         except Refusal as error:
             failures.append(first.refuse(str(error)))
             continue

@@ -8,10 +8,12 @@ from typing import Any
 from annotations.language.dialogue import DialogueState
 from annotations.language.forms import to_corpus, to_reading
 from annotations.language.grounding import choices_of
-from annotations.language.plans import Plan, make_plan
+from annotations.language.plans import Plan, doubts_about, make_plan
 from annotations.language.predicates import gloss
+from annotations.language.recipes import TaskPlan, spoken
 from parser_service.dialogues.conversation import state_of
 from parser_service.models import Dialogue
+from parser_service.serving.parse_answers import task_plan_of
 from parser_service.serving.preparing import WorldLanguage
 
 MOST_CHOICES = 20
@@ -24,9 +26,15 @@ def plan_of(state: DialogueState, language: WorldLanguage) -> Plan:
     )
 
 
+def task_plan_in(state: DialogueState, language: WorldLanguage) -> TaskPlan:
+    """Return the same in the primitives of the robot."""
+    return task_plan_of(state.form, doubts_about(state.slots), language)
+
+
 def as_json(row: Dialogue) -> dict[str, Any]:
     """Return a dialogue with what it asks, its form so far and its plan."""
     state, language = state_of(row), WorldLanguage.of(row.world)
+    task_plan = task_plan_in(state, language)
     return {
         "id": row.pk,
         "utterance": row.utterance,
@@ -39,6 +47,8 @@ def as_json(row: Dialogue) -> dict[str, Any]:
         "reading": to_reading(state.form),
         "english": gloss(state.form, language.predicates, language.ontology.classes),
         "plan": plan_of(state, language).as_json(),
+        "task_plan": task_plan.as_json(),
+        "spoken": spoken(task_plan),
         "offers": [asdict(offer) for offer in state.offers],
         "transcript": row.transcript,
         "run": row.run_id,

@@ -35,8 +35,8 @@ class Evaluation(models.Model):
     """Exact match of one run on one of ``TEST_SOURCES`` of one part.
 
     Fractions of 1; the interval at 95 % is that of a bootstrap of clusters, which ``outcomes`` counts
-    (``analysis.outcomes``). Of a split by form, ``known`` is a part too: pairs held out of the training
-    part, whose forms stay there.
+    (``analysis.outcomes``). ``same_plan`` is None where plans were not compared. Of a split by form, ``known`` is a
+    part too: pairs held out of the training part, whose forms stay there.
     """
 
     run = models.ForeignKey(TrainingRun, on_delete=models.CASCADE, related_name="evaluations")
@@ -49,6 +49,7 @@ class Evaluation(models.Model):
     interval_high = models.FloatField()
     equivalent = models.FloatField()
     well_formed = models.FloatField()
+    same_plan = models.FloatField(null=True, blank=True)
     outcomes = models.JSONField(default=dict, blank=True)
 
     objects = EvaluationQuerySet.as_manager()

@@ -15,6 +15,9 @@ OUTCOMES = {
     "correct": models.Q(is_exact_match=True),
     "wrong": models.Q(is_exact_match=False),
     "equivalent": models.Q(is_exact_match=False, is_equivalent=True),
+    "same_plan": models.Q(is_same_plan=True),
+    "only_plan": models.Q(is_equivalent=False, is_same_plan=True),
+    "other_plan": models.Q(is_same_plan=False),
     "malformed": models.Q(is_well_formed=False) & ~models.Q(logical_form=""),
     "none": models.Q(logical_form=""),
 }
@@ -26,14 +29,18 @@ class PredictionQuerySet(models.QuerySet["Prediction"]):
         return self.filter(rank=1)
 
     def with_outcome(self, outcome: str) -> PredictionQuerySet:
-        """Return those with the outcome ``correct``, ``wrong``, ``equivalent`` (but not exact), ``malformed``
-        or ``none`` (no answer)."""
+        """Return those with the outcome ``correct``, ``wrong``, ``equivalent`` (but not exact), ``same_plan``,
+        ``only_plan`` (the same plan, but not equivalent), ``other_plan``, ``malformed`` or ``none`` (no answer).
+
+        Where plans were not compared, an answer has neither the same plan nor another one."""
         return self.filter(OUTCOMES[outcome])
 
 
 class Prediction(models.Model):
     """A ranked candidate for one example. An example without candidates has one row with an empty form.
 
+    ``is_same_plan`` says whether the answer has the plan of the annotated form by the recipes that the world had when
+    the run was scored, or its plans were last compared; None where they were not.
     ``answer_in_training`` and ``label_in_training`` count the training pairs that have this form and the
     example's, None where it is not known and for the empty form. ``origin`` says where the parser has the
     form from: ``training`` unless the parser tells something else; ``score_parts`` says what its score is
@@ -49,6 +56,7 @@ class Prediction(models.Model):
     is_exact_match = models.BooleanField()
     is_equivalent = models.BooleanField()
     is_well_formed = models.BooleanField()
+    is_same_plan = models.BooleanField(null=True, blank=True)
     answer_in_training = models.PositiveIntegerField(null=True, blank=True)
     label_in_training = models.PositiveIntegerField(null=True, blank=True)
     origin = models.CharField(max_length=20, blank=True)

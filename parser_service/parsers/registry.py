@@ -175,7 +175,7 @@ PARSERS: dict[str, RegistryEntry] = {
         title="Form ranker",
         description="A fine-tuned sentence encoder chooses among whole forms, by their examples and "
         "by their English glosses; new forms, made from those of the training pairs, are among them.",
-        version=11,
+        version=12,
         protocols=(Protocol.STRICT, Protocol.DOMAIN, Protocol.GRAMMAR),
         in_short="Chooses the form that fits best among known and new ones; the most accurate on new wording.",
         loss_unit="nats an utterance",
@@ -197,8 +197,9 @@ PARSERS: dict[str, RegistryEntry] = {
         config="parser_service.parsers.llm.config.LanguageModelConfig",
         title="Language model",
         description="Asks a language model over HTTP, with the nearest training pairs as examples. It "
-        "chooses among their forms, or writes one; it learns nothing here.",
-        version=1,
+        "chooses among their forms, action by action where these are sequences, or writes one; it learns "
+        "nothing here.",
+        version=2,
         protocols=(Protocol.STRICT, Protocol.DOMAIN),
         in_short="Shows the most similar training utterances to a language model on a server of yours.",
         needs=Needs.SERVER,

@@ -63,7 +63,9 @@ class _ComparisonReport:
         self, compared: Compared, names: Sequence[str], chosen: Sequence[tuple[str, str]]
     ) -> None:
         self.compared, self.names, self.chosen = compared, names, chosen
-        self.addresses = Addresses(compared.world, compared.runs, compared.part)
+        self.addresses = Addresses(
+            compared.world, compared.runs, compared.part, measure=compared.measure
+        )
 
     @cached_property
     def accuracies(self) -> list[Any]:
@@ -109,7 +111,7 @@ class _ComparisonReport:
         ]
         return {
             "compared": self.compared,
-            "chart": draw_bars("Exact match of each run", bars),
+            "chart": draw_bars(f"{self.compared.measure.in_words.capitalize()} of each run", bars),
             "matrix": win_matrix(self.compared, self.addresses),
             "pairs": pair_rows(self.compared, self.names),
         }
@@ -121,6 +123,7 @@ class _ComparisonReport:
             "tables": [*tables, saved] if saved.rows else tables,
             "names": [letter for letter, _, _ in self.accuracies],
             "count": self.compared.count,
+            "measure": self.compared.measure,
         }
 
     def confusions(self) -> dict[str, Any]:
@@ -135,6 +138,7 @@ class _ComparisonReport:
         return {"count": count, "shown": min(count, MOST_DIFFERENT)}
 
     def answer_rows(self) -> Iterator[DifferentAnswers]:
+        is_right = self.compared.measure.column
         for keys in batches(self.different[:MOST_DIFFERENT], ROWS_AT_ONCE):
             examples = Example.objects.in_bulk(keys)
             best = Prediction.objects.best().filter(run__in=self.compared.runs, example__in=keys)
@@ -147,7 +151,7 @@ class _ComparisonReport:
                     unmarked(label),
                     [
                         (
-                            answer.is_exact_match,
+                            bool(getattr(answer, is_right)),
                             difference(label, answer.logical_form)[1]
                             if answer.logical_form
                             else [],

@@ -159,6 +159,7 @@ class _RunReport:
             "tables": [*tables, saved] if saved.rows else tables,
             "names": ["Exact match"],
             "count": self.compared.count,
+            "measure": self.compared.measure,
         }
 
     def confusions(self) -> dict[str, Any]:

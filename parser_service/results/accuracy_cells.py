@@ -8,14 +8,18 @@ from dataclasses import dataclass, replace
 from annotations.models.background import Status
 from parser_service.analysis.scores import OverSeeds, over_seeds
 from parser_service.models import Evaluation, TrainingRun
+from parser_service.results.measures import Measure
 from parser_service.results.seed_figures import AccuracyFigure
+
+PLANS_NOT_COMPARED = "The plans of these answers were not compared: analyse the run again"
 
 
 @dataclass(frozen=True)
 class Cell:
     """A parser in a column: its scores, one per seed, newest first, or the runs that will have some.
 
-    ``figures`` are by the measures that the table shows; none before there is a score. ``published`` is
+    ``figures`` are by the ``measures`` that the table shows; none before there is a score, and None by a measure
+    that is not known of each score. ``published`` is
     the paper's figure in percent, whether it is shown or not. ``answered_by`` names the models behind the
     scores, as their servers report them.
     """
@@ -24,8 +28,9 @@ class Cell:
     active: tuple[TrainingRun, ...]
     published: float | None
     url: str
-    figures: tuple[AccuracyFigure, ...] = ()
+    figures: tuple[AccuracyFigure | None, ...] = ()
     answered_by: str = ""
+    measures: tuple[Measure, ...] = ()
 
     @property
     def score(self) -> Evaluation | None:
@@ -42,25 +47,35 @@ class Cell:
         return len(self.scores)
 
     @property
+    def by_measure(self) -> list[tuple[Measure, AccuracyFigure | None]]:
+        """Each measure with its figure; none before there is a score."""
+        return list(zip(self.measures, self.figures, strict=False))
+
+    @property
+    def first(self) -> AccuracyFigure | None:
+        """The first of its figures; None where it is not known, or there is none."""
+        return self.figures[0] if self.figures else None
+
+    @property
     def percent(self) -> float | None:
-        return self.figures[0].percent if self.figures else None
+        return self.first.percent if self.first else None
 
     @property
     def spread(self) -> float | None:
-        return self.figures[0].spread if self.figures else None
+        return self.first.spread if self.first else None
 
     @property
     def low(self) -> float | None:
-        return self.figures[0].low if self.figures else None
+        return self.first.low if self.first else None
 
     @property
     def high(self) -> float | None:
-        return self.figures[0].high if self.figures else None
+        return self.first.high if self.first else None
 
     @property
     def is_best(self) -> bool:
         """Whether the first of its figures is better than every other one of its column, beyond chance."""
-        return bool(self.figures) and self.figures[0].is_best
+        return self.first is not None and self.first.is_best
 
     @property
     def note(self) -> str:
@@ -70,7 +85,8 @@ class Cell:
         waiting = f"; {len(self.active)} more on the way" if self.active else ""
         best = "; better than every other one of this column" if self.is_best else ""
         model = f"; answered by {self.answered_by}" if self.answered_by else ""
-        return "; ".join(figure.note for figure in self.figures) + waiting + best + model
+        notes = (figure.note if figure else PLANS_NOT_COMPARED for figure in self.figures)
+        return "; ".join(notes) + waiting + best + model
 
     @property
     def status(self) -> str:
@@ -87,7 +103,8 @@ class Cell:
     def mark_best(self, measures: Collection[int]) -> Cell:
         """Return the cell with the figures at these places marked as the best of their column."""
         marked = tuple(
-            replace(figure, is_best=at in measures) for at, figure in enumerate(self.figures)
+            figure and replace(figure, is_best=at in measures)
+            for at, figure in enumerate(self.figures)
         )
         return replace(self, figures=marked)
 

@@ -21,7 +21,7 @@ from parser_service.models import Evaluation, TrainingRun
 from parser_service.parsers.conditions import PAPERS_SETTINGS, SETTINGS, Protocol, only_source
 from parser_service.parsers.registry import PARSERS
 from parser_service.results.accuracy_cells import Cell, newest_of_each_seed
-from parser_service.results.measures import Measure
+from parser_service.results.measures import Measure, count_of, is_known
 from parser_service.results.published import published_accuracy, published_criteria
 from parser_service.results.seed_figures import AccuracyFigure, figure_of
 from parser_service.results.table_parts import (
@@ -141,7 +141,8 @@ class TableMaker:
         figures = self.figures(scores, published, known) if scores else ()
         names = dict.fromkeys(run.answered_by for run in counted if run.answered_by)
         address = self.cell_url(counted, active, column)
-        return Cell(scores, active, published, address, figures, ", ".join(names))
+        by = ", ".join(names)
+        return Cell(scores, active, published, address, figures, by, self.measures)
 
     def known_scores(
         self, counted: list[TrainingRun], column: TableColumn
@@ -158,10 +159,15 @@ class TableMaker:
         scores: tuple[Evaluation, ...],
         published: float | None,
         known: tuple[Evaluation, ...] | None = None,
-    ) -> tuple[AccuracyFigure, ...]:
-        """Return the figures over ``scores``, one by each measure."""
+    ) -> tuple[AccuracyFigure | None, ...]:
+        """Return the figures over ``scores``, one by each measure; None where one of them is not known."""
         beside = {Measure.EXACT: published} if self.with_published else {}
-        return tuple(figure_of(scores, each, beside.get(each), known) for each in self.measures)
+        return tuple(
+            figure_of(scores, each, beside.get(each), known_by(known, each))
+            if all(is_known(score, each) for score in scores)
+            else None
+            for each in self.measures
+        )
 
     def cell_url(
         self, counted: list[TrainingRun], active: tuple[TrainingRun, ...], column: TableColumn
@@ -173,9 +179,13 @@ class TableMaker:
         if not counted:
             return self.url("run", among[0].pk)
         score = self.scores[among[0].pk, column.test_source]
-        return self.predictions_url(
-            among[0], column, "wrong" if score.correct < score.count else ""
-        )
+        return self.predictions_url(among[0], column, self.wrong_outcome(score))
+
+    def wrong_outcome(self, score: Evaluation) -> str:
+        """Return what the answers that the first figure counts as wrong are called; empty where there are none."""
+        by_plan = self.measures[0] is Measure.SAME_PLAN and is_known(score, Measure.SAME_PLAN)
+        measure = Measure.SAME_PLAN if by_plan else Measure.EXACT
+        return measure.outcomes[1] if count_of(score, measure) < score.count else ""
 
     def published_figure(self, parser: str, column: TableColumn) -> float | None:
         criterion = self.published.get(column.split.pk, "")
@@ -198,6 +208,14 @@ class TableMaker:
         return reverse(name, kwargs={"world": self.world.name, "pk": key})
 
 
+def known_by(
+    known: tuple[Evaluation, ...] | None, measure: Measure
+) -> tuple[Evaluation, ...] | None:
+    """Return the scores on known forms; none where one of them is not known by ``measure``: no answers to known
+    forms are kept, so that their plans cannot be compared later."""
+    return () if known and not all(is_known(score, measure) for score in known) else known
+
+
 def seeds_url(world: World, run: TrainingRun) -> str:
     """Return the address of the list of ``run`` and those that differ from it only by their seed."""
     return f"{reverse('runs', kwargs={'world': world.name})}?seeds_of={run.pk}"
@@ -217,13 +235,17 @@ def by_part(scores: Iterable[Evaluation], part: str) -> Scores:
 
 def _best(cells: Sequence[Cell | None]) -> list[int | None]:
     """Return by each measure the place of the cell that is better than all others of a column; None where
-    the difference may be chance, or where one was not counted by cluster."""
+    the difference may be chance, and where one is not known or was not counted by cluster."""
     scored = [(at, cell.figures) for at, cell in enumerate(cells) if cell and cell.figures]
     if not scored:
         return []
     places = [at for at, _ in scored]
     winners: list[int | None] = []
-    for figures in zip(*(figures for _, figures in scored), strict=True):
+    for of_measure in zip(*(figures for _, figures in scored), strict=True):
+        figures = [figure for figure in of_measure if figure is not None]
+        if len(figures) < len(of_measure):
+            winners.append(None)
+            continue
         ranked = sorted(zip(places, figures, strict=True), key=lambda pair: -pair[1].percent)
         counted = [figure.counted for _, figure in ranked]
         if {len(each) if each else 0 for each in counted} in ({1}, {2}):

@@ -8,6 +8,7 @@ from typing import Any
 
 from annotations.models import World
 from parser_service.models.evaluations import KNOWN_FORMS, UNSEEN
+from parser_service.results.measures import Measure
 from parser_service.results.result_choices import ResultsChoices
 from parser_service.results.seed_figures import AccuracyFigure
 from parser_service.results.table_parts import (
@@ -35,6 +36,8 @@ FIGURE_FIELDS = ("measure", "percent", "plus_minus", "low", "high", "is_best", "
 MODEL_FIELDS = ("answered_by", "may_know_corpora")
 # By form, what it is the mean of, each with the ends of its interval.
 PART_FIELDS = ("unseen", "unseen_low", "unseen_high", "known", "known_low", "known_high")
+# Of the newest run too; empty where plans were not compared.
+PLAN_FIELDS = ("same_plan",)
 # The columns, in this order in every release.
 HEADER = (
     "parser",
@@ -49,6 +52,7 @@ HEADER = (
     *FIGURE_FIELDS,
     *MODEL_FIELDS,
     *PART_FIELDS,
+    *PLAN_FIELDS,
 )
 
 
@@ -57,8 +61,8 @@ def rows_of(tables: Iterable[AccuracyTable]) -> Iterator[tuple[Any, ...]]:
 
     What the newest run scored comes first, then mean and spread of exact match (the sample standard
     deviation, empty for one run) over all seeds, then the figure as the page shows it, in percent, with
-    how far its 95 % interval reaches (``plus_minus``), then ``MODEL_FIELDS``, and by form the figures on
-    unseen and on known forms (``PART_FIELDS``).
+    how far its 95 % interval reaches (``plus_minus``), then ``MODEL_FIELDS``, by form the figures on
+    unseen and on known forms (``PART_FIELDS``), and ``PLAN_FIELDS``. A figure that is not known has its measure alone.
     """
     for table in tables:
         for row, cells in table.filled:
@@ -75,8 +79,9 @@ def rows_of(tables: Iterable[AccuracyTable]) -> Iterator[tuple[Any, ...]]:
                         *(getattr(cell.over_seeds, name) for name in SEED_FIELDS),
                     )
                     model = (cell.answered_by, may_know_corpora(row.parser))
-                    for figure in cell.figures:
-                        yield (*about, *_figure_and_model(figure, model))
+                    plans = [getattr(cell.score, name) for name in PLAN_FIELDS]
+                    for measure, figure in zip(table.measures, cell.figures, strict=True):
+                        yield (*about, *_figure_and_model(measure, figure, model), *plans)
 
 
 def as_json(
@@ -94,14 +99,18 @@ def as_json(
 
 
 def _figure_and_model(
-    figure: AccuracyFigure, model: tuple[str, bool]
+    measure: Measure, figure: AccuracyFigure | None, model: tuple[str, bool]
 ) -> Iterator[str | float | bool | None]:
     """Yield the values of ``FIGURE_FIELDS``, ``MODEL_FIELDS`` and ``PART_FIELDS``.
 
     The parts are the figures on unseen and on known forms with their intervals; None each where there is none. On
     unseen forms alone it is the figure itself.
     """
-    yield from (figure.measure, figure.percent, figure.reach, figure.low, figure.high)
+    if figure is None:
+        nothing = [None] * (len(FIGURE_FIELDS) - 1)
+        yield from (measure, *nothing, *model, *[None] * len(PART_FIELDS))
+        return
+    yield from (measure, figure.percent, figure.reach, figure.low, figure.high)
     yield from (figure.is_best, figure.published, *model)
     parts = {part.label: (part.percent, part.low, part.high) for part in figure.parts}
     if figure.alone:

@@ -66,7 +66,8 @@ def _table(choices: ResultsChoices, table: AccuracyTable) -> str:
 
 
 def _caption(choices: ResultsChoices, table: AccuracyTable) -> str:
-    measures = " and ".join(measure.in_words for measure in table.measures)
+    *others, last = (measure.in_words for measure in table.measures)
+    measures = f"{', '.join(others)} and {last}" if others else last
     sentences = [
         f"{measures[0].upper()}{measures[1:]} in percent on the {choices.part} part, "
         f"{table.protocol} protocol.",
@@ -74,7 +75,7 @@ def _caption(choices: ResultsChoices, table: AccuracyTable) -> str:
         "Bold: better than every other row, by a paired bootstrap with Holm's correction.",
     ]
     cells = [cell for row in table.rows for cell in row.cells if cell]
-    if any(figure.parts for cell in cells for figure in cell.figures):
+    if any(figure and figure.parts for cell in cells for figure in cell.figures):
         sentences.append("By form: the harmonic mean of unseen and known forms.")
     if table.is_published and choices.published:
         sentences.append("In parentheses: Walker, Peng and Cakmak (2019).")
@@ -120,7 +121,9 @@ def _row(
     return _line(f"{name}{SIGN if may_know_corpora(row.parser) else ''}", figures)
 
 
-def _figure(figure: AccuracyFigure) -> str:
+def _figure(figure: AccuracyFigure | None) -> str:
+    if figure is None:
+        return "--"
     percent = f"{figure.percent:.1f}"
     parts = [rf"\textbf{{{percent}}}" if figure.is_best else percent]
     parts.append(rf"{{\scriptsize $\pm$ {figure.reach:.1f}}}")

@@ -106,7 +106,7 @@ class LearningCurves:
                         [point.pairs, figure.percent, figure.low, figure.high]
                         for point in curve.points
                         if point.pairs is not None and point.cell
-                        for figure in point.cell.figures[:1]
+                        if (figure := point.cell.first) is not None
                     ],
                 }
                 for curve in self.curves

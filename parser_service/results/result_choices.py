@@ -21,13 +21,15 @@ MOST_SPLITS = 4  # side by side without a choice
 MEASURES = {
     "exact": (Measure.EXACT,),
     "equivalent": (Measure.EQUIVALENT,),
-    "both": (Measure.EXACT, Measure.EQUIVALENT),
+    "same_plan": (Measure.SAME_PLAN,),
+    "all": (Measure.EXACT, Measure.EQUIVALENT, Measure.SAME_PLAN),
     "well_formed": (Measure.WELL_FORMED,),
 }
 MEASURE_LABELS = {
     "exact": "exact match",
     "equivalent": "equivalence",
-    "both": "both",
+    "same_plan": "same plan",
+    "all": "all three",
     "well_formed": "well-formed",
 }
 
@@ -53,6 +55,14 @@ class ResultsChoices:
     @property
     def measures(self) -> tuple[Measure, ...]:
         return MEASURES[self.measure]
+
+    @property
+    def measures_in_words(self) -> str:
+        """The measures, each with its sign where there are several: ``exact match (✓) and same plan (→)``."""
+        if len(self.measures) == 1:
+            return self.measures[0].in_words
+        *others, last = (f"{each.in_words} ({each.sign})" for each in self.measures)
+        return f"{', '.join(others)} and {last}"
 
     @property
     def query(self) -> str:

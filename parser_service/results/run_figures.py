@@ -60,6 +60,7 @@ def report_run(run: TrainingRun) -> dict[str, Any]:
                 "interval": [score.interval_low, score.interval_high],
                 "equivalent": score.equivalent,
                 "well_formed": score.well_formed,
+                "same_plan": score.same_plan,
             }
             for score in run.evaluations.all()
         ],

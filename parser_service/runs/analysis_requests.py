@@ -17,7 +17,7 @@ def request_analysis(run: TrainingRun, by: User | None = None, again: bool = Fal
     """Queue the job where the run was trained, unless one waits or works already; return it.
 
     What an earlier job has found is kept, so that this one goes on where that stopped. With ``again`` it
-    makes anew what depends on the world of today: the proposals of error categories.
+    makes anew what depends on the world of today: the plans of answers and the proposals of error categories.
     """
     arguments = {"run": run.pk, "again": True} if again else {"run": run.pk}
     active = analysis_jobs(run).active()

@@ -166,8 +166,13 @@ class AnswerWriter:
             )
 
         given = Deanonymized(form, slots)
-        doubts = [each.as_json() for each in doubts_about(slots)]
+        found = doubts_about(slots)
+        doubts = [each.as_json() for each in found]
+        put_in = tuple(each.text for each in texts)
+        task_plan, spoken = self._outlines.task_plan(candidate.form, paths, put_in, found)
         return {
+            "task_plan": task_plan,
+            "spoken": spoken,
             "score": as_json(score_of(candidate)),
             "values": as_json(list(candidate.values)),
             "open_slots": as_json(list(questions_of(given, self.language, asked_for))),

@@ -21,14 +21,16 @@ from annotations.language.english import (
 )
 from annotations.language.forms import Form, Reference, walk
 from annotations.language.grounding import Deanonymized, FormSlots, SlotPath, filled
-from annotations.language.plans import Lookup, Named, Value, Words
+from annotations.language.plans import Lookup, Named, PlanProblem, Value, Words
 from annotations.language.predicates import ask_for, can_stand_in, is_loose, texts_of_patterns
+from annotations.language.recipes import spoken
 from parser_service.parsers.interface import Candidate
 from parser_service.parsers.remembering import remembered
-from parser_service.serving.parse_answers import answer_with, as_json, form_of
+from parser_service.serving.parse_answers import answer_with, as_json, form_of, task_plan_of
 from parser_service.serving.preparing import WorldLanguage
 
 REMEMBERED = 4096  # of each kind of thing that is made once
+OWN = ("score", "open_slots", "remarks", "values", "task_plan", "spoken")  # of each answer
 _AWAITED = "awaited"
 _PLACE = re.compile(rf'({STAND_IN.pattern}|\{{"{_AWAITED}": "[^"]*"\}})')
 
@@ -127,10 +129,24 @@ class Outlines:
             return None
         asked = self.asked(form, paths) or ()
         answer, _ = self._make(form, paths, dict(zip(asked, classes, strict=True)))
-        own = {name: _await(name) for name in ("score", "open_slots", "remarks", "values")}
+        own = {name: _await(name) for name in OWN}
         plan = answer["plan"] | {name: _await(name) for name in ("is_executable", "problems")}
         text = as_json(answer | own | {"plan": plan})
         return Outline(text, answer["plan"]) if _is_sound(text, paths) else None
+
+    @remembered(REMEMBERED)
+    def task_plan(
+        self, form: str, paths: Paths, texts: tuple[str, ...], doubts: tuple[PlanProblem, ...]
+    ) -> tuple[str, str]:
+        """Return the task plan of a form with entities in it, and the sentence about it, as JSON.
+
+        No outline says them: which steps there are depends on which entities are the same.
+        """
+        grounded = _read(form)
+        for path, text in zip(paths, texts, strict=True):
+            grounded = filled(grounded, path, text)
+        made = task_plan_of(grounded, doubts, self.language)
+        return as_json(made.as_json()), as_json(spoken(made))
 
     @remembered(REMEMBERED)
     def question(self, form: str, paths: Paths, asked: SlotPath) -> Outline | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import exp, inf
 from typing import Any
@@ -27,8 +27,9 @@ from annotations.language.grounding import (
     open_slots_as_json,
 )
 from annotations.language.ontology import Ontology
-from annotations.language.plans import Lookup, make_plan
+from annotations.language.plans import Lookup, PlanProblem, doubts_about, make_plan
 from annotations.language.predicates import gloss
+from annotations.language.recipes import TaskPlan, apply_recipes, spoken
 from annotations.models import World
 from parser_service.models import TrainingRun
 from parser_service.parsers.interface import UNKNOWN, Candidate, Parser, ScoreKind
@@ -46,8 +47,9 @@ _JSON = json.JSONEncoder(ensure_ascii=False, allow_nan=False)
 class ParsedCandidate:
     """One candidate. ``grounded`` names the entities of the utterance, certain and likely ones, and
     ``remarks`` say what stays open; ``open_slots`` ask for it (``grounding.open_slots_as_json``). ``plan``
-    is what a robot does (``plans.Plan.as_json``). Where the parser wrote no well-formed form there is
-    nothing but ``form`` and ``score``. ``values`` are those of ``Candidate``."""
+    is what a robot does (``plans.Plan.as_json``), ``task_plan`` the same in its own primitives
+    (``recipes.TaskPlan.as_json``), and ``spoken`` says that in a sentence. Where the parser wrote no well-formed
+    form there is nothing but ``form`` and ``score``. ``values`` are those of ``Candidate``."""
 
     form: str
     score: float
@@ -59,6 +61,8 @@ class ParsedCandidate:
     open_slots: tuple[dict[str, Any], ...] = ()
     remarks: tuple[str, ...] = ()
     plan: dict[str, Any] | None = None
+    task_plan: dict[str, Any] | None = None
+    spoken: str = ""
     values: tuple[str | None, ...] = ()
 
     def as_json(self) -> dict[str, Any]:
@@ -73,6 +77,8 @@ class ParsedCandidate:
             "open_slots": list(self.open_slots),
             "remarks": list(self.remarks),
             "plan": self.plan,
+            "task_plan": self.task_plan,
+            "spoken": self.spoken,
             "values": list(self.values),
         }
 
@@ -242,6 +248,7 @@ def answer_with(
         slots=given.slots,
         lookup=lookup,
     )
+    task_plan = task_plan_of(given.form, doubts_about(given.slots), language, lookup)
     return ParsedCandidate(
         form=candidate.form,
         score=score_of(candidate),
@@ -253,8 +260,25 @@ def answer_with(
         open_slots=tuple(questions_of(given, language)),
         remarks=remarks_on(given, language.ontology),
         plan=plan.as_json(),
+        task_plan=task_plan.as_json(),
+        spoken=spoken(task_plan),
         values=candidate.values,
     )
+
+
+def task_plan_of(
+    form: Form, doubts: Sequence[PlanProblem], language: WorldLanguage, lookup: Lookup | None = None
+) -> TaskPlan:
+    """Return what the robot of the world does for a form with entities, in its own primitives.
+
+    Args:
+        doubts: the problems of entities that are only likely.
+        lookup: finds the entities; that of the language by default.
+    """
+    # Recipes know the arguments by the names that the language gives them, whatever the robot calls them.
+    plan = make_plan(form, language.ontology, language.predicates, lookup=lookup or language.lookup)
+    plan = replace(plan, problems=(*doubts, *plan.problems))
+    return apply_recipes(plan, language.recipes, language.usual)
 
 
 def as_json(value: object) -> str:

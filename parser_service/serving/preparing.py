@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from itertools import islice
 from typing import Self
@@ -15,12 +15,13 @@ from annotations.language.grounding import Anonymizer, Evidence
 from annotations.language.ontology import Ontology
 from annotations.language.plans import ActionName, Lookup
 from annotations.language.predicates import Predicate
+from annotations.language.recipes import RecipeBook, UsualPlaces, default_book, usual_places
 from annotations.language.symbols import Symbols
 from annotations.language.templates import TemplateExpander
 from annotations.language.text import has_half_character, normalise
 from annotations.models import World
 from annotations.models.corpus import MOST_CHARACTERS
-from annotations.rows.from_rows import ontology_of, predicates_of, task_categories
+from annotations.rows.from_rows import ontology_of, predicates_of, recipe_book_of, task_categories
 from parser_service.robots.action_naming import names_of
 
 MOST_CANDIDATES = 20
@@ -41,18 +42,23 @@ class WorldLanguage:
     lookup: Lookup
     evidence: Evidence
     action_names: Mapping[str, ActionName]
+    recipes: RecipeBook = field(default_factory=default_book)
+    usual: UsualPlaces = field(default_factory=dict)  # where things are of which nobody says it
 
     @classmethod
     def of(cls, world: World) -> Self:
         """Read the language of ``world`` from the database."""
         ontology, predicates = ontology_of(world), predicates_of(world)
+        lookup = Lookup(ontology, predicates)
         return cls(
             ontology,
             predicates,
             Anonymizer(ontology),
-            Lookup(ontology, predicates),
+            lookup,
             evidence_of(world),
             names_of(world),
+            recipe_book_of(world),
+            usual_places(ontology, lookup),
         )
 
 

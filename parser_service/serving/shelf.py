@@ -15,7 +15,15 @@ from django.db.models import Count, Max, Sum
 
 from annotations.language.errors import Refusal
 from annotations.language.grounding import Anonymized
-from annotations.models import Entity, EntityClass, Predicate, World
+from annotations.models import (
+    Editable,
+    Entity,
+    EntityClass,
+    Predicate,
+    Primitive,
+    Recipe,
+    World,
+)
 from parser_service.models import ActionNames, Promotion, TrainingRun
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.interface import Candidate, Parser
@@ -25,7 +33,7 @@ from parser_service.serving.batching import Batcher
 from parser_service.serving.loading import load_anew, make_untrained, size_of
 from parser_service.serving.metrics import Metrics
 from parser_service.serving.preparing import WorldLanguage
-from parser_service.serving.remote import SEATS, TOGETHER, RemoteAsker, Unanswered
+from parser_service.serving.remote import PATIENCE, SEATS, TOGETHER, RemoteAsker, Unanswered
 
 logger = logging.getLogger(__name__)
 
@@ -102,7 +110,7 @@ class WantedParser:
     """A world, the key of its promoted run (None: none), and what changes whenever its words do.
 
     ``language`` stands for ontology and predicates, ``revision`` for the grammar, ``names`` for those
-    of actions.
+    of actions, and ``recipes`` for these and the primitives.
     """
 
     world: int
@@ -110,6 +118,7 @@ class WantedParser:
     language: tuple[object, ...]
     revision: int
     names: int = 0
+    recipes: tuple[object, ...] = ()
 
     def knowledge(self, protocol: str) -> tuple[object, ...]:
         """Return what a run may know of the world; it is loaded anew where that changes."""
@@ -119,27 +128,37 @@ class WantedParser:
 
 
 def read_wanted() -> dict[str, WantedParser]:
-    """Return world name → what is wanted there, in six queries.
+    """Return world name → what is wanted there, in eight queries.
 
     Every edit and import of rows adds, deletes or raises a version, so that number, last key and sum of
     the versions together change.
     """
-    language: dict[int, list[object]] = defaultdict(list)
-    for model, path in (
-        (Entity, "ontology__world"),
-        (EntityClass, "world"),
-        (Predicate, "world"),
-    ):
-        totals = model.objects.order_by().values_list(path)
-        for world, *of_world in totals.annotate(Count("pk"), Max("pk"), Sum("version")):
-            language[world] += [model.__name__, *of_world]
+    language = _totals((Entity, "ontology__world"), (EntityClass, "world"), (Predicate, "world"))
+    recipes = _totals((Primitive, "world"), (Recipe, "world"))
     runs = dict(Promotion.objects.present().order_by().values_list("world", "run"))
     names = dict(ActionNames.objects.values_list("world", "version"))
     rows = World.objects.present().values_list("pk", "name", "revision")
     return {
-        name: WantedParser(key, runs.get(key), tuple(language[key]), revision, names.get(key, 0))
+        name: WantedParser(
+            key,
+            runs.get(key),
+            tuple(language[key]),
+            revision,
+            names.get(key, 0),
+            tuple(recipes[key]),
+        )
         for key, name, revision in rows
     }
+
+
+def _totals(*models: tuple[type[Editable], str]) -> dict[int, list[object]]:
+    """Return world → number, last key and sum of the versions of its rows of each model; the path leads to it."""
+    totals: dict[int, list[object]] = defaultdict(list)
+    for model, path in models:
+        rows = model._default_manager.order_by().values_list(path)
+        for world, *of_world in rows.annotate(Count("pk"), Max("pk"), Sum("version")):
+            totals[world] += [model.__name__, *of_world]
+    return totals
 
 
 class Shelf:
@@ -148,10 +167,13 @@ class Shelf:
     ``update`` loads what was promoted beside what answers, and then changes over; whoever answers with
     the old one ends with it. Other runs are loaded when they are asked, and take at most ``most_bytes``
     together.
+
+    ``patience`` is how many seconds a request waits for a parser that asks a server elsewhere.
     """
 
-    def __init__(self, most_bytes: int, metrics: Metrics) -> None:
+    def __init__(self, most_bytes: int, metrics: Metrics, patience: float = PATIENCE) -> None:
         self.metrics = metrics
+        self._patience = patience
         self._most_bytes = most_bytes
         self._turn = threading.Lock()
         self._seats = threading.BoundedSemaphore(SEATS)
@@ -352,7 +374,7 @@ class Shelf:
             score_kind=str(parser.score_kind or ""),
             knowledge=knowledge,
             size=size,
-            batcher=RemoteAsker(parser.predict, self._seats)
+            batcher=RemoteAsker(parser.predict, self._seats, self._patience)
             if parser.asks_a_server
             else Batcher(parser.predict, self._turn, self.metrics.batches.observe),
             lines_together=TOGETHER if parser.asks_a_server else together,
@@ -361,7 +383,7 @@ class Shelf:
 
 def _words(wanted: WantedParser) -> tuple[object, ...]:
     """Return what changes when the language of the world has to be read anew."""
-    return wanted.language, wanted.revision, wanted.names
+    return wanted.language, wanted.revision, wanted.names, wanted.recipes
 
 
 def _nobody_answers(world: str, wanted: WantedParser) -> str:

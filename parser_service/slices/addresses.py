@@ -10,6 +10,7 @@ from django.utils.http import urlencode
 
 from annotations.models import World
 from parser_service.models import TrainingRun
+from parser_service.results.measures import Measure
 
 # Filters that say something of answers rather than of examples.
 OF_ANSWERS = {
@@ -21,7 +22,7 @@ Parameters = Mapping[str, str]
 
 @dataclass(frozen=True, slots=True)
 class Addresses:
-    """``query`` are the filters of the comparison, without ``part``.
+    """``query`` are the filters of the comparison, without ``part``; ``measure`` says which answers are right.
 
     A filter of answers means those of the first run, so that the list of another run's answers would show others:
     there such a number leads to the first run's answers where the other run is right or wrong.
@@ -31,14 +32,16 @@ class Addresses:
     runs: tuple[TrainingRun, ...]
     part: str
     query: Parameters = field(default_factory=dict)
+    measure: Measure = Measure.EXACT
 
     def of_base(self, chosen: Parameters) -> str:
         """Return the address of all answers of the first run in a slice; empty where no list shows just these."""
         return self._list(0, chosen)
 
-    def of_run(self, run: int, chosen: Parameters, outcome: str = "") -> str:
-        """Return the address of a run's answers in a slice, of one outcome or all; empty where no list shows
+    def of_run(self, run: int, chosen: Parameters, only_wrong: bool = False) -> str:
+        """Return the address of a run's answers in a slice, the wrong ones or all; empty where no list shows
         just these."""
+        outcome = self.measure.outcomes[1] if only_wrong else ""
         if run == 0 or not OF_ANSWERS & {*self.query, *chosen}:
             return self._list(run, chosen, {"outcome": outcome} if outcome else {})
         versus = {"versus": str(self.runs[run].pk), "versus_outcome": outcome}
@@ -47,11 +50,12 @@ class Addresses:
     def of_win(self, winner: int, loser: int) -> str:
         """Return the address of the answers where one run is right and another is wrong; empty where no list shows
         just these."""
+        right, wrong = self.measure.outcomes
         if not OF_ANSWERS & set(self.query):
-            first, second, outcomes = loser, winner, ("wrong", "correct")
+            first, second, outcomes = loser, winner, (wrong, right)
         elif 0 in (winner, loser) and "outcome" not in self.query:
             first, second = 0, winner or loser
-            outcomes = ("correct", "wrong") if winner == 0 else ("wrong", "correct")
+            outcomes = (right, wrong) if winner == 0 else (wrong, right)
         else:
             return ""
         versus = {"versus": str(self.runs[second].pk), "versus_outcome": outcomes[1]}
@@ -69,6 +73,8 @@ class Addresses:
         """Return the address of the same comparison on a smaller slice."""
         keys = [("run", str(run.pk)) for run in self.runs]
         given = {"part": self.part, **(join(self.query, chosen) or chosen)}
+        if self.measure != Measure.EXACT:
+            given["measure"] = self.measure
         path = reverse("compare", kwargs={"world": self.world.name})
         return f"{path}?{urlencode([*keys, *given.items()])}"
 

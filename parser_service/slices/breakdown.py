@@ -99,9 +99,7 @@ def _cells(
             percent=100 * correct / count if count else None,
             low=100 * float(accuracies.low[run, place]) if count else 0.0,
             high=100 * float(accuracies.high[run, place]) if count else 0.0,
-            url=""
-            if chosen is None
-            else addresses.of_run(run, chosen, "wrong" if correct < count else ""),
+            url="" if chosen is None else addresses.of_run(run, chosen, only_wrong=correct < count),
             is_best=bool(accuracies.is_best[run, place]),
         )
         for run, correct in enumerate(right.tolist())

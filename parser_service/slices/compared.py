@@ -19,9 +19,15 @@ from parser_service.analysis.encoded_labels import EncodedLabels
 from parser_service.analysis.intervals import SAMPLES
 from parser_service.analysis.slicing import SliceAccuracies, accuracy_where
 from parser_service.models import TrainingRun
+from parser_service.results.measures import Measure
 from parser_service.slices.filter_conditions import FilterCondition, NoColumn
 from parser_service.slices.prediction_filters import PredictionFilters
-from parser_service.slices.stored_columns import ExampleArrays, answers_of, examples_of
+from parser_service.slices.stored_columns import (
+    UNKNOWN_COUNT,
+    ExampleArrays,
+    answers_of,
+    examples_of,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +35,8 @@ class Compared:
     """``runs`` share a split. ``answers`` are their columns, and ``chosen`` [examples] says which examples are
     counted: those of the slice that every run has an answer stored for.
 
-    What a filter says of answers (outcome, category, form in training) is meant of the first run.
+    What a filter says of answers (outcome, category, form in training) is meant of the first run. ``measure`` says
+    which answers are right.
     """
 
     world: World
@@ -38,6 +45,7 @@ class Compared:
     examples: ExampleArrays
     answers: tuple[Mapping[str, Any], ...]
     chosen: Bools
+    measure: Measure = Measure.EXACT
 
     @property
     def base(self) -> TrainingRun:
@@ -50,7 +58,16 @@ class Compared:
     @cached_property
     def correct(self) -> Bools:
         """Whether each run is right on each chosen example, [runs, chosen]."""
-        return np.array([columns["is_exact_match"][self.chosen] for columns in self.answers])
+        is_right = self.measure.column
+        return np.array([columns[is_right][self.chosen] == 1 for columns in self.answers])
+
+    @cached_property
+    def without_plans(self) -> list[TrainingRun]:
+        """The runs with a chosen answer whose plan was not compared."""
+        plans = (columns["is_same_plan"][self.chosen] for columns in self.answers)
+        return [
+            run for run, of in zip(self.runs, plans, strict=True) if (of == UNKNOWN_COUNT).any()
+        ]
 
     @cached_property
     def clusters(self) -> Ints:
@@ -102,15 +119,22 @@ class Compared:
 
 
 def compare_on(
-    world: World, runs: Sequence[TrainingRun], part: str, filters: PredictionFilters
+    world: World,
+    runs: Sequence[TrainingRun],
+    part: str,
+    filters: PredictionFilters,
+    measure: Measure = Measure.EXACT,
 ) -> Compared:
-    """Compare runs of one split on a part, where ``filters`` (of which ``part`` is ignored) choose its examples."""
+    """Compare runs of one split on a part, where ``filters`` (of which ``part`` is ignored) choose its examples.
+
+    By same plan an answer whose plan was not compared is wrong: ``without_plans`` names the runs that have any.
+    """
     filters.of_run = runs[0]
     examples = examples_of(runs[0].split, part)
     answers = tuple(answers_of(run, part, examples) for run in runs)
     chosen = np.logical_and.reduce([columns["is_there"] for columns in answers])
     chosen = chosen & _mask(filters.conditions(but=["part"]), runs[0], part, examples, answers[0])
-    return Compared(world, tuple(runs), part, examples, answers, chosen)
+    return Compared(world, tuple(runs), part, examples, answers, chosen, measure)
 
 
 def are_in_columns(conditions: Sequence[FilterCondition], compared: Compared) -> bool:

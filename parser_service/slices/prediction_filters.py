@@ -38,6 +38,9 @@ OUTCOMES = [
     ("correct", "correct"),
     ("wrong", "wrong"),
     ("equivalent", "equivalent only"),
+    ("same_plan", "same plan"),
+    ("only_plan", "same plan only"),
+    ("other_plan", "another plan"),
     ("malformed", "malformed"),
     ("none", "no answer"),
 ]

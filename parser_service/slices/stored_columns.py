@@ -29,7 +29,9 @@ from parser_service.runs.training.split_pairs import cluster_of
 
 TEXTS = ".values"  # ends the name of the array with the texts that codes stand for
 Column = "NDArray[Any] | EncodedLabels[str]"
-UNKNOWN_COUNT = -1  # where it is not known how often training had a label
+UNKNOWN_COUNT = (
+    -1
+)  # where it is not known how often training had a label, or whether plans are the same
 AT_ONCE = 20_000  # rows read from the database
 
 
@@ -71,15 +73,19 @@ def answers_of(run: TrainingRun, part: str, examples: ExampleArrays) -> dict[str
     """Return the columns of a run's first answers to ``examples``, [examples] each.
 
     They are ``is_there``, ``is_exact_match``, ``is_equivalent``, ``is_well_formed``, ``is_empty``,
-    ``answer_in_training`` and ``label_in_training`` (``UNKNOWN_COUNT`` where not known), and the texts
+    ``is_same_plan`` (1, 0), ``answer_in_training`` and ``label_in_training`` (these three ``UNKNOWN_COUNT`` where not
+    known), and the texts
     ``answer_head`` and ``logical_form``, of which only the empty one is kept apart. They are stored once the
     run has succeeded.
     """
     stored = AnswerColumns.objects.filter(run=run, part=part).first()
-    if stored is not None:
-        return _with_emptiness(_unpack(stored.data))
+    columns = _unpack(stored.data) if stored else {}
+    if "is_same_plan" in columns:  # not in those that were stored before plans were compared
+        return _with_emptiness(columns)
     arrays = _read_answers(run, part, examples.keys)
-    if run.status == Status.SUCCEEDED:
+    if stored is not None:
+        AnswerColumns.objects.filter(pk=stored.pk).update(data=_pack(arrays))
+    elif run.status == Status.SUCCEEDED:
         AnswerColumns.objects.get_or_create(run=run, part=part, defaults={"data": _pack(arrays)})
     return _with_emptiness(arrays)
 
@@ -115,10 +121,10 @@ def _read_examples(split: Split, part: str) -> dict[str, Any]:
 
 def _read_answers(run: TrainingRun, part: str, keys: Ints) -> dict[str, Any]:
     flags = ("is_exact_match", "is_equivalent", "is_well_formed")
-    counts = ("answer_in_training", "label_in_training")
+    counts = ("answer_in_training", "label_in_training", "is_same_plan")
     best = run.predictions.best().filter(example__part=part, example__split=run.split_id)
     read = _read_columns(best.order_by(), ("example_id", *counts), ("logical_form",), flags)
-    examples, values, forms, outcomes = read[0], read[1:3], read[3], read[4:]
+    examples, values, forms, outcomes = read[0], read[1:4], read[4], read[5:]
     places = np.searchsorted(keys, examples)
     arrays: dict[str, Any] = {"is_there": _scatter(places, len(keys), True)}
     for name, outcome in zip(flags, outcomes, strict=True):
@@ -141,7 +147,8 @@ def _read_columns(
     texts: Sequence[str],
     flags: Sequence[str] = (),
 ) -> list[Any]:
-    """Return whole numbers (``UNKNOWN_COUNT`` for None) as arrays, then texts as labels, then truths as arrays.
+    """Return whole numbers (``UNKNOWN_COUNT`` for None, 1 for what is true) as arrays, then texts as labels, then
+    truths as arrays.
 
     A million rows are never in memory at once as Python objects, only the distinct texts.
     """

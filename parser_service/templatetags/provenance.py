@@ -26,6 +26,7 @@ ORIGINS = {
     "substitution": "made by substitution of a declared description",
     "unseen": "made with a predicate that training lacks",
     "written": "written by the language model",
+    "composed": "put together from actions of training",
     "refusal": "given because no form was probable enough",
 }
 PARTS = {

@@ -1,4 +1,5 @@
-// Keys: j and k move through the rows of a table, Enter opens, n and p turn the page, / searches, ? lists the keys.
+// Keys: j and k move through the rows of a table, Enter opens, n and p turn the page, / searches, ? lists the keys,
+// Ctrl+Enter sends a form.
 import { copyForm } from "./forms.js";
 import { isPlain } from "./typing.js";
 
@@ -67,7 +68,17 @@ function onKey(event) {
   }
 }
 
+/** Ctrl+Enter in a plain field presses the button that says so; an editor does it by itself. */
+function onSend(event) {
+  if (event.defaultPrevented || event.key !== "Enter" || !(event.ctrlKey || event.metaKey)) return;
+  const button = event.target.form?.querySelector('button[title="Ctrl+Enter"]');
+  if (!button) return;
+  event.preventDefault();
+  event.target.form.requestSubmit(button);
+}
+
 document.addEventListener("keydown", onKey);
+document.addEventListener("keydown", onSend);
 document.addEventListener("click", (event) => {
   if (event.target.closest("[data-keys-open]")) dialog(true);
   const tick = event.target.closest("[data-tick-all]");

@@ -45,6 +45,10 @@ def test_a_form_becomes_a_plan_and_a_behaviour_tree(home):
     best = home.parse("find the red cup").best
     assert home.plan(best.grounded) == best.plan
     assert home.behavior_tree(best.grounded).startswith("<?xml")
+    assert home.task_plan(best.grounded) == best.task_plan
+    assert [step.primitive for step in best.task_plan.steps] == ["find_object"]
+    assert "find_object" in home.behavior_tree(best.grounded, in_primitives=True)
+    assert "red cup" in best.spoken
     with pytest.raises(Refused) as refused:
         home.behavior_tree("( find")
     assert refused.value.status == 400
@@ -80,6 +84,8 @@ def test_a_dialogue_is_held_and_gone_on_with(home):
     assert late.value.status == 409
     done = after.answer("yes")
     assert done.is_agreed and done.plan.is_executable and "bowl" in done.grounded
+    assert done.task_plan.is_executable and done.task_plan.steps[-1].releases["kind"]
+    assert "bowl" in done.spoken
 
 
 def test_examples_are_exported_whole(home, parse_server, world, tmp_path):

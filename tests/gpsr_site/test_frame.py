@@ -99,7 +99,7 @@ def test_every_page_of_a_world_belongs_to_one_entry():
         "near_duplicates",
     }
     parts |= {"production_check", "production_preview", "predicate_preview", "class_colours"}
-    parts |= {"download_part"}
+    parts |= {"download_part", "recipe_book", "recipe_preview", "primitive_preview"}
     parts |= {"template_completion", "template_suggestions", "template_repair"}
     parts |= {"template_duplicate", "delete_row"}
     parts |= {"runs_table", "run_state", "run_charts", "run_curves", "run_cancel", "results_table"}
@@ -123,7 +123,7 @@ def test_every_page_of_a_world_belongs_to_one_entry():
     parts |= {"dialogue_keep", "offered_entity_decide", "plan_schema"}
     parts |= {"learning_curves_table", "learning_curves_data", "learning_curve_start"}
     parts |= {"paraphrase_runs", "paraphrase_runs_start"}
-    parts |= {"playground_ask", "playground_wrong", "parser_state"}
+    parts |= {"playground_ask", "joint_plan_ask", "playground_wrong", "parser_state"}
     parts |= {"guidelines_preview", "utterances_delete", "utterances_restore"}
     parts |= {"upload_undo", "upload_redo", "campaign_state", "campaign_act"}
     parts |= {"submission_decide", "submissions_decide", "submissions_take_back"}

@@ -12,7 +12,7 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 VARIABLE = "GPSR_ENGLISH_DIR"
 _KINDS: dict[type, str] = {str: "text", list: "list", dict: "table"}
@@ -189,6 +189,24 @@ _paraphrases = WordFile("paraphrases")
 COURTESY_WORDS = frozenset(_paraphrases.words("courtesy"))
 CHECK_WORDS = _paraphrases.words("checks")
 
+_rewordings = WordFile("rewordings")
+REWORDING_OPENINGS = _rewordings.words("openings")
+REWORDING_CLOSINGS = _rewordings.words("closings")
+REWORDED_JOINTS = _rewordings.words("joints")
+REWORDING_DETERMINERS = _rewordings.words("determiners")
+REWORDING_PERSONS = _rewordings.words("persons")
+REWORDING_THINGS = _rewordings.words("things")
+REWORDED_PATTERNS = _rewordings.words_by_name("patterns")
+
+_joints = WordFile("joints")
+JOINTS = _joints.words("joints")
+JOINT_OPENINGS = _joints.words("openings")
+
+_other_requests = WordFile("other_requests")
+FORBIDDING_PHRASES = _other_requests.words("forbidding")
+CONDITIONAL_PHRASES = _other_requests.words("conditions")
+POLITE_BEFORE_IF = _other_requests.words("polite_before_if")
+
 
 @cache
 def sample_commands() -> tuple[tuple[str, str], ...]:
@@ -201,3 +219,21 @@ def sample_commands() -> tuple[tuple[str, str], ...]:
 def unrelated_sentences() -> tuple[str, ...]:
     """Return sentences that are no command."""
     return WordFile("unrelated_sentences").words("sentences")
+
+
+class RequestGroup(NamedTuple):
+    """Examples of one kind of request that is no command, unless a world has one of ``actions``."""
+
+    gloss: str
+    texts: tuple[str, ...]
+    actions: tuple[str, ...]
+
+
+@cache
+def other_request_groups() -> tuple[RequestGroup, ...]:
+    """Return what people say to a robot that is none of its commands, by kind."""
+    groups = _other_requests.tables("requests")
+    return tuple(
+        RequestGroup(each["gloss"], tuple(each["texts"]), tuple(each.get("actions", ())))
+        for each in groups
+    )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from annotations.language.plans.behavior_tree import to_behavior_tree
+from annotations.language.plans.descriptions import AT
 from annotations.language.plans.lookup import Lookup
 from annotations.language.plans.plan import (
     ASK,
@@ -12,8 +13,10 @@ from annotations.language.plans.plan import (
     Named,
     Number,
     OpenValue,
+    Operator,
     Plan,
     PlanProblem,
+    Referred,
     Step,
     StepResult,
     Trouble,
@@ -27,6 +30,7 @@ from annotations.language.plans.planning import doubts_about, make_plan
 
 __all__ = [
     "ASK",
+    "AT",
     "ActionName",
     "Condition",
     "Described",
@@ -34,8 +38,10 @@ __all__ = [
     "Named",
     "Number",
     "OpenValue",
+    "Operator",
     "Plan",
     "PlanProblem",
+    "Referred",
     "Step",
     "StepResult",
     "Trouble",

@@ -2,7 +2,7 @@
 
 https://www.behaviortree.dev/docs/learn-the-basics/xml_format; what is written here is valid against
 ``behavior_tree.xsd`` beside this module. Nodes are written explicitly (``<Action ID="go" …/>``).
-Entities, texts and numbers are ports with plain text, descriptions ports with ``json:`` and their JSON
+Entities, texts, numbers and the operator are ports with plain text, descriptions ports with ``json:`` and their JSON
 (the prefix that the library itself uses), results entries of the blackboard: ``{result_1}``.
 """
 
@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Sequence
+from typing import Protocol
 from xml.etree import ElementTree
 
 from annotations.language.plans.plan import (
@@ -17,7 +19,7 @@ from annotations.language.plans.plan import (
     Named,
     Number,
     OpenValue,
-    Plan,
+    Operator,
     Referred,
     StepResult,
     Value,
@@ -26,11 +28,34 @@ from annotations.language.plans.plan import (
 
 TREE = "Command"
 RESULT = "result"
+OPERATOR = "operator"
 _NO_NAME = re.compile(r"[^A-Za-z0-9_]")
 _RESERVED = frozenset(("name", "id", RESULT))
 
 
-def to_behavior_tree(plan: Plan) -> str:
+class TreeStep(Protocol):
+    """A step of a plan, or of a task plan, as a node."""
+
+    @property
+    def number(self) -> int: ...
+    @property
+    def action(self) -> str: ...
+    @property
+    def arguments(self) -> Sequence[tuple[str, Value | Operator]]: ...
+    @property
+    def text(self) -> str: ...
+    @property
+    def gives_result(self) -> bool: ...
+
+
+class Steps(Protocol):
+    """What has steps in the order in which a robot does them."""
+
+    @property
+    def steps(self) -> Sequence[TreeStep]: ...
+
+
+def to_behavior_tree(plan: Steps) -> str:
     """Return the plan as XML: a sequence of actions and the ports of each."""
     root = ElementTree.Element("root", {"BTCPP_format": "4", "main_tree_to_execute": TREE})
     tree = ElementTree.SubElement(root, "BehaviorTree", {"ID": TREE})
@@ -69,7 +94,9 @@ def port_name(argument: str) -> str:
     return name if name[:1].isalpha() and name.casefold() not in _RESERVED else f"p_{name}"
 
 
-def _port(value: Value) -> str:
+def _port(value: Value | Operator) -> str:
+    if isinstance(value, Operator):
+        return OPERATOR
     if isinstance(value, StepResult):
         return _blackboard(value.step)
     if isinstance(value, Number):

@@ -19,6 +19,7 @@ from annotations.language.predicates import NAMING, SUPERLATIVES, Predicate, glo
 from annotations.language.symbols import EntityClasses
 
 ValueOf = Callable[[Constant, str, int], Value]
+AT = "at"  # the predicate that says where something is
 
 
 @dataclass
@@ -75,8 +76,9 @@ class Describer:
         ids = {variable: self._id_of(variable, conjuncts), **ids}
         applications = [each for each in conjuncts if isinstance(each, Application)]
         about = [each for each in applications if each.arguments[:1] == (Variable(variable),)]
-        whole = Lambda(variable, "e", tuple(conjuncts))
-        text = gloss(whole, self.predicates, self.classes) if conjuncts else ""
+        text = self._text(variable, conjuncts)
+        placeless = [each for each in conjuncts if not _says_place(each)]
+        short = self._text(variable, placeless) if len(placeless) < len(conjuncts) else ""
         # ``(name $2 $1)`` for ``$1``: the description of something else that names it.
         naming = (each for each in applications if Variable(variable) in each.arguments[1:])
         owner = None if about or is_inner else next(naming, None)
@@ -84,7 +86,7 @@ class Describer:
         if owner is not None and isinstance(first, Variable):
             others = [each for each in conjuncts if each is not owner]
             described = self.of_variable(first.index, others, ids, True)
-            return Described(ids[variable], text, (), str(owner.predicate), described)
+            return Described(ids[variable], text, (), str(owner.predicate), described, short)
         conditions = tuple(
             Condition(
                 str(each.predicate),
@@ -95,7 +97,11 @@ class Describer:
             )
             for each in about
         )
-        return Described(ids[variable], text, conditions)
+        return Described(ids[variable], text, conditions, short_text=short)
+
+    def _text(self, variable: int, conjuncts: Sequence[Form]) -> str:
+        whole = Lambda(variable, "e", tuple(conjuncts))
+        return gloss(whole, self.predicates, self.classes) if conjuncts else ""
 
     def _value(
         self,
@@ -128,6 +134,10 @@ def superlative_without_set(described: Described) -> str:
     others = [each for each in described.conditions if each not in superlatives]
     has_set = others or any(not isinstance(v, Number) for each in superlatives for v in each.values)
     return "" if has_set or not superlatives else superlatives[0].predicate
+
+
+def _says_place(form: Form) -> bool:
+    return isinstance(form, Application) and form.predicate == AT
 
 
 def is_description(form: Form, predicates: Mapping[str, Predicate]) -> bool:

@@ -155,6 +155,7 @@ class Described:
     """Something to be found by what is said of it. In one plan the same ``id`` is the same thing.
 
     ``of`` is the id of another described thing, of which this is the ``attribute``: her name.
+    ``short_text`` is the text without where it is; empty where that is the text.
     """
 
     id: str
@@ -162,6 +163,7 @@ class Described:
     conditions: tuple[Condition, ...]
     attribute: str = ""
     of: Described | None = None
+    short_text: str = field(default="", compare=False)
 
     def as_json(self) -> dict[str, Any]:
         if self.of is not None:
@@ -205,6 +207,14 @@ class OpenValue:
 
     def as_json(self) -> dict[str, Any]:
         return {"kind": "open", "entity_class": self.entity_class}
+
+
+@dataclass(frozen=True, slots=True)
+class Operator:
+    """The person who gave the command, and the place where they are. Plans of forms have none, recipes do."""
+
+    def as_json(self) -> dict[str, Any]:
+        return {"kind": "operator"}
 
 
 Value: TypeAlias = "Named | Words | Number | Described | Referred | StepResult | OpenValue"

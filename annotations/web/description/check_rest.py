@@ -37,7 +37,7 @@ from annotations.web.rest.problem_details import ProblemItemSerializer, refusal_
 from annotations.web.rest.routes import WorldRoute
 
 
-def _row_field() -> serializers.IntegerField:
+def replaced_field() -> serializers.IntegerField:
     return serializers.IntegerField(
         min_value=1,
         max_value=LARGEST_INTEGER,
@@ -65,7 +65,7 @@ class SampleSerializer(serializers.Serializer[Any]):
 
 
 class TemplateToCheck(TemplateChange):
-    replaces = _row_field()
+    replaces = replaced_field()
 
 
 class CheckedTemplate(FoundSerializer):
@@ -78,7 +78,7 @@ class CheckedTemplate(FoundSerializer):
 
 
 class ProductionToCheck(NewProduction):
-    replaces = _row_field()
+    replaces = replaced_field()
 
 
 class GrammarSizeSerializer(serializers.Serializer[Any]):
@@ -96,7 +96,7 @@ class CheckedProductionSerializer(FoundSerializer):
 
 
 class PredicateToCheck(NewPredicate):
-    replaces = _row_field()
+    replaces = replaced_field()
 
 
 class BrokenTemplateSerializer(serializers.Serializer[Any]):

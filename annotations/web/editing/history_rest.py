@@ -34,6 +34,8 @@ SERIALIZERS = {
     "entity": "annotations.web.description.entity_rest.EntitySerializer",
     "entity_class": "annotations.web.description.class_rest.EntityClassSerializer",
     "predicate": "annotations.web.description.predicate_rest.PredicateSerializer",
+    "recipe": "annotations.web.description.recipe_rest.RecipeSerializer",
+    "primitive": "annotations.web.description.recipe_rest.PrimitiveSerializer",
     "guidelines": "annotations.web.description.guidelines_rest.GuidelinesSerializer",
     "paraphrase": "annotations.web.corpus.paraphrase_rest.ParaphraseSerializer",
     "utterance": "annotations.web.corpus.utterance_rest.UtteranceSerializer",

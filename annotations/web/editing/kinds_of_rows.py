@@ -8,7 +8,8 @@ from typing import Any
 from django.http import Http404
 
 from annotations.editing.class_deletion import delete_class
-from annotations.models import Editable, EntityClass, User, Utterance
+from annotations.editing.recipe_deletion import delete_primitive
+from annotations.models import Editable, EntityClass, Primitive, User, Utterance
 from annotations.rows.row_kinds import KINDS, EditableKind
 from annotations.utterances.utterance_deletion import delete_utterance
 from annotations.utterances.utterance_deletion import restore as restore_with_answers
@@ -20,6 +21,7 @@ RESTORING: dict[type[Editable], Callable[[Any, User], Any]] = {
 DELETING: dict[type[Editable], Callable[[Any, User, int], Any]] = {
     Utterance: delete_utterance,
     EntityClass: delete_class,
+    Primitive: delete_primitive,
 }  # what keeps more than its history, or may have to stay
 
 

@@ -8,7 +8,7 @@ from django import forms
 
 from annotations.language.errors import LanguageError
 from annotations.language.limits import MAX_ENTITY
-from annotations.models import Editable, Entity, Production
+from annotations.models import Editable, Entity, Primitive, Production
 from annotations.renaming.world_rename import TouchedRows, touched_by
 from annotations.web.forms import choice_field, sentence_of
 
@@ -17,6 +17,8 @@ def names_of(row: Editable) -> list[str]:
     """Return what ``row`` is called: one name, or the text and the aliases of an entity."""
     if isinstance(row, Entity):
         return [row.text, *row.aliases]
+    if isinstance(row, Primitive):
+        return [row.name]
     return [row.nonterminal if isinstance(row, Production) else str(row)]
 
 

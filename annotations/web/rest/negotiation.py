@@ -11,12 +11,14 @@ from rest_framework.request import Request
 
 from annotations.exporting.split_export import SplitFormat
 
-CONTENT_TYPES = {
+# Suffix of a file → its type.
+CONTENT_TYPES: dict[str, str] = {
     SplitFormat.TXT: "text/plain; charset=utf-8",
     SplitFormat.JSONL: "application/jsonl; charset=utf-8",
     SplitFormat.CSV: "text/csv; charset=utf-8",
     SplitFormat.PARQUET: "application/vnd.apache.parquet",
     SplitFormat.ZIP: "application/zip",
+    "json": "application/json; charset=utf-8",
 }
 
 

@@ -6,7 +6,6 @@ from collections.abc import Iterable
 
 from django.http import StreamingHttpResponse
 
-from annotations.exporting.split_export import SplitFormat
 from annotations.web.rest.negotiation import CONTENT_TYPES
 
 JSON_LINES = "application/jsonl"
@@ -22,6 +21,6 @@ class BrokenOff(Exception):
 
 def attachment(pieces: Iterable[bytes], format: str, name: str) -> StreamingHttpResponse:
     """Send a file in pieces, to be kept under ``name``. ``format`` is one of ``CONTENT_TYPES``."""
-    response = StreamingHttpResponse(pieces, content_type=CONTENT_TYPES[SplitFormat(format)])
+    response = StreamingHttpResponse(pieces, content_type=CONTENT_TYPES[format])
     response["Content-Disposition"] = f'attachment; filename="{name}"'
     return response

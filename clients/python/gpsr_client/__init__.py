@@ -5,12 +5,25 @@ from __future__ import annotations
 from gpsr_client.client import Workbench
 from gpsr_client.dialogue import Dialogue, SlotQuestion
 from gpsr_client.errors import Away, Refused, WorkbenchError
-from gpsr_client.responses import Candidate, OpenSlot, Parse, Plan, PlanProblem, Step
+from gpsr_client.responses import (
+    Candidate,
+    Interleaving,
+    JointPlan,
+    OpenSlot,
+    Parse,
+    Plan,
+    PlanProblem,
+    Step,
+    TaskPlan,
+    TaskStep,
+)
 
 __all__ = [
     "Away",
     "Candidate",
     "Dialogue",
+    "Interleaving",
+    "JointPlan",
     "OpenSlot",
     "Parse",
     "Plan",
@@ -18,6 +31,8 @@ __all__ = [
     "Refused",
     "SlotQuestion",
     "Step",
+    "TaskPlan",
+    "TaskStep",
     "Workbench",
     "WorkbenchError",
 ]

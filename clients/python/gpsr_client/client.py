@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from http.client import HTTPException
 from pathlib import Path
 from urllib.parse import quote
@@ -12,7 +12,7 @@ from uuid import uuid4
 
 from gpsr_client.dialogue import Dialogue
 from gpsr_client.errors import Away, Refused, WorkbenchError
-from gpsr_client.responses import Parse, Plan
+from gpsr_client.responses import JointPlan, Parse, Plan, TaskPlan
 from gpsr_client.transport import Transport
 
 
@@ -72,11 +72,31 @@ class Workbench:
         """Return the plan of a form with entities, such as ``grounded`` of a candidate."""
         return Plan.from_json(self._transport.post(f"{self._path}plan/", {"form": form}))
 
-    def behavior_tree(self, form: str) -> str:
-        """Return the plan of a form as XML for BehaviorTree.CPP 4."""
+    def task_plan(self, form: str) -> TaskPlan:
+        """Return the plan of a form in the primitives of the robot."""
+        value = self._transport.post(f"{self._path}task-plan/", {"form": form})
+        return TaskPlan.from_json(value["task_plan"])
+
+    def joint_plan(
+        self, utterances: Iterable[str], distances: Mapping[tuple[str, str], float] | None = None
+    ) -> JointPlan:
+        """Return one plan of up to three commands.
+
+        ``distances`` are those of pairs of places, in any unit; ``operator`` is where the person is.
+        """
+        table = [
+            {"one": one, "other": other, "distance": distance}
+            for (one, other), distance in (distances or {}).items()
+        ]
+        body = {"utterances": list(utterances), "distances": table}
+        return JointPlan.from_json(self._transport.post(f"{self._path}joint-plan/", body))
+
+    def behavior_tree(self, form: str, in_primitives: bool = False) -> str:
+        """Return the plan of a form as XML for BehaviorTree.CPP 4; of its actions, or in the robot's primitives."""
         body = json.dumps({"form": form, "as": "xml"}).encode()
+        path = f"{self._path}task-plan/" if in_primitives else f"{self._path}plan/"
         try:
-            with self._transport.open("POST", f"{self._path}plan/", body) as answer:
+            with self._transport.open("POST", path, body) as answer:
                 return answer.read().decode("utf-8")
         except (HTTPException, OSError) as error:
             raise Away(f"The answer broke off: {error}") from error

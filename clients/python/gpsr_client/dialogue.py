@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 from uuid import uuid4
 
-from gpsr_client.responses import Plan
+from gpsr_client.responses import Plan, TaskPlan
 from gpsr_client.transport import Transport
 
 
@@ -65,6 +65,16 @@ class Dialogue:
     @property
     def plan(self) -> Plan:
         return Plan.from_json(self.raw["plan"])
+
+    @property
+    def task_plan(self) -> TaskPlan:
+        """The same in the primitives of the robot."""
+        return TaskPlan.from_json(self.raw["task_plan"])
+
+    @property
+    def spoken(self) -> str:
+        """What the robot says before it begins."""
+        return str(self.raw["spoken"])
 
     @property
     def asked(self) -> SlotQuestion | None:

@@ -46,6 +46,104 @@ class Plan:
 
 
 @dataclass(frozen=True)
+class TaskStep:
+    """One primitive of the robot.
+
+    ``arguments``, ``place``, ``holds`` and ``releases`` are values as docs/reference/plans.md has them.
+    ``requires`` are the numbers of the steps that have to come before it, ``source`` is that of the step of
+    the plan that it belongs to.
+    """
+
+    number: int
+    primitive: str
+    text: str
+    arguments: dict[str, dict[str, Any]]
+    place: dict[str, Any] | None
+    holds: dict[str, Any] | None
+    releases: dict[str, Any] | None
+    requires: tuple[int, ...]
+    gives_result: bool
+    source: int
+
+    @classmethod
+    def from_json(cls, value: dict[str, Any]) -> TaskStep:
+        return cls(
+            value["number"],
+            value["primitive"],
+            value["text"],
+            value["arguments"],
+            value["place"],
+            value["holds"],
+            value["releases"],
+            tuple(value["requires"]),
+            value["gives_result"],
+            value["source"],
+        )
+
+
+@dataclass(frozen=True)
+class TaskPlan:
+    """A command in the primitives of the robot, as the recipes of the world say."""
+
+    is_executable: bool
+    steps: tuple[TaskStep, ...]
+    problems: tuple[PlanProblem, ...]
+
+    @classmethod
+    def from_json(cls, value: dict[str, Any]) -> TaskPlan:
+        return cls(
+            value["is_executable"],
+            tuple(map(TaskStep.from_json, value["steps"])),
+            tuple(PlanProblem(**problem) for problem in value["problems"]),
+        )
+
+
+@dataclass(frozen=True)
+class Interleaving:
+    """Steps of several commands that are done together, and why."""
+
+    reason: str
+    commands: tuple[int, ...]
+    steps: tuple[int, ...]
+    message: str
+
+
+@dataclass(frozen=True)
+class JointPlan:
+    """One plan of several commands, which count from 1.
+
+    ``serves`` has the commands of each step. ``length_before`` is the walk of one command after the other,
+    ``length`` that of this plan.
+    """
+
+    plan: TaskPlan
+    serves: tuple[tuple[int, ...], ...]
+    interleavings: tuple[Interleaving, ...]
+    length_before: float
+    length: float
+    spoken: str
+    raw: dict[str, Any] = field(repr=False, compare=False)
+
+    @classmethod
+    def from_json(cls, value: dict[str, Any]) -> JointPlan:
+        joint = value["joint_plan"]
+        return cls(
+            TaskPlan.from_json(joint),
+            tuple(tuple(step["commands"]) for step in joint["steps"]),
+            tuple(
+                Interleaving(
+                    each["reason"], tuple(each["commands"]), tuple(each["steps"]), each["message"]
+                )
+                for each in joint["interleavings"]
+            ),
+            joint["length_before"],
+            joint["length"],
+            value["spoken"],
+            value,
+        )
+
+
+@dataclass(frozen=True)
 class OpenSlot:
     """Something that the utterance leaves open: the question, and what there is to choose from."""
 
@@ -68,7 +166,11 @@ class OpenSlot:
 
 @dataclass(frozen=True)
 class Candidate:
-    """One form: with class tokens, and ``grounded`` with the entities of the utterance."""
+    """One form: with class tokens, and ``grounded`` with the entities of the utterance.
+
+    ``plan`` has the actions of the form, ``task_plan`` the primitives of the robot; ``spoken`` is what it says
+    before it begins.
+    """
 
     form: str
     grounded: str
@@ -76,6 +178,8 @@ class Candidate:
     english: str
     open_slots: tuple[OpenSlot, ...]
     plan: Plan | None
+    task_plan: TaskPlan | None
+    spoken: str
     raw: dict[str, Any] = field(repr=False, compare=False)
 
     @classmethod
@@ -87,6 +191,8 @@ class Candidate:
             value["english"],
             tuple(map(OpenSlot.from_json, value["open_slots"])),
             Plan.from_json(value["plan"]) if value["plan"] else None,
+            TaskPlan.from_json(value["task_plan"]) if value["task_plan"] else None,
+            value["spoken"],
             value,
         )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Mapping
 from http import HTTPStatus
@@ -66,7 +67,8 @@ class Command(ReportingCommand):
         found = find_world(world)
         run = None if options["parser"] else find_run(found, options["run"])
         if file is not None:
-            shelf = Shelf(settings.PARSER_MEMORY_MB * 1_000_000, Metrics())
+            # Nobody else waits: a language model may take as long as it needs.
+            shelf = Shelf(settings.PARSER_MEMORY_MB * 1_000_000, Metrics(), patience=math.inf)
             service = shelf.load(found.name, run.pk if run else None, options["parser"] or "")
             self._answer_file(service, file, options["beam"], options["json"])
             return None
@@ -117,6 +119,8 @@ class Command(ReportingCommand):
             shown = candidate["reading"] or f"{candidate['form']}   (no well-formed form)"
             lines.append(f"{candidate['score']:8.3f}  {shown}")
         best = report["candidates"][0]["remarks"] if report["candidates"] else ["no answer"]
+        if report["candidates"] and report["candidates"][0]["spoken"]:
+            lines.append(report["candidates"][0]["spoken"])
         if report["is_cut"]:
             lines.append("The text is longer than the parser reads: it read only the beginning.")
         return "\n".join([*lines, *report["remarks"], *best])

@@ -121,8 +121,9 @@ def weigh(
     known forms, and among the new ones; and with the bound of nearness that withholds ``WITHHELD`` of the
     right answers.
 
-    Targets number known forms first, then new ones; -1 is a form that is in neither list. The bound is for the
-    utterances that ``spoken`` [utterances] names, where it names any.
+    Targets number known forms first, then new ones; -1 is a form that is in neither list. The bound is learned from
+    the utterances that ``spoken`` [utterances] names: what people say is less like the examples than what a
+    grammar generates. Where it names none, the bound is the usual one.
     """
     number = scores.known.shape[-1]
     is_known, is_made = (targets >= 0) & (targets < number), targets >= number
@@ -132,8 +133,7 @@ def weigh(
         best_weights(scores.new[:, is_made], targets[is_made] - number),
     )
     is_right = decision.log_probabilities(scores).argmax(-1) == targets
-    if spoken is not None and spoken.any():
-        is_right &= spoken
+    is_right &= torch.zeros_like(is_right) if spoken is None else spoken
     return replace(decision, least_nearness=least_nearness(scores.nearness[is_right]))
 
 

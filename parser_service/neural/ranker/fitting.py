@@ -16,6 +16,7 @@ from parser_service.neural.ranker.calibration import (
     DecisionRule,
     best_novelty,
 )
+from parser_service.neural.ranker.closed_classes import ClosedClasses
 from parser_service.neural.ranker.holding_out import HeldOut, hold_out
 from parser_service.neural.ranker.model import RankerModel
 from parser_service.neural.ranker.ranked_forms import RankedForms, collect
@@ -104,13 +105,16 @@ class Fitting:
     def _prepare(self, sets: Sequence[Sequence[Pair]], is_open: bool) -> None:
         """Make the trainings, one on each of ``sets``, with one encoder and its average."""
         check = self.observe.check
-        collected = [collect(pairs, self.knowledge, is_open, check) for pairs in sets]
+        collected = [
+            collect(pairs, self.knowledge, is_open, check, self.config.rewordings, self.seed)
+            for pairs in sets
+        ]
         self._sets = [ranked for ranked, _, _ in collected]
         examples = [of_set for _, of_set, _ in collected]
         self.observe.log(collected[-1][2])
         config = self.config
         pretrained = load_encoder(config.encoder, encoders_folder())
-        encoder = SentenceEncoder.of(pretrained, config.dropout)
+        encoder = SentenceEncoder.of(pretrained, config.dropout, config.frozen_layers)
         models = [make_model(encoder, ranked, self.knowledge) for ranked in self._sets]
         is_strict = self.knowledge.predicates is None
         share = config.pretrained_share if is_strict else config.pretrained_share_domain
@@ -254,8 +258,10 @@ class Fitting:
 def make_model(encoder: SentenceEncoder, ranked: RankedForms, knowledge: Knowledge) -> RankerModel:
     """Make a model that chooses from ``ranked`` with ``encoder``."""
     ontology = knowledge.ontology
-    slots = SlotTerm(ranked.forms, ontology) if ontology is not None else None
-    return RankerModel(encoder, ranked, slots).to(processor())
+    if ontology is None:
+        return RankerModel(encoder, ranked).to(processor())
+    slots, closed = SlotTerm(ranked.forms, ontology), ClosedClasses(ontology)
+    return RankerModel(encoder, ranked, slots, closed).to(processor())
 
 
 def is_due(epoch: int, epochs: int) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import asdict, replace
 from http import HTTPStatus
@@ -11,6 +11,8 @@ from pathlib import Path
 from typing import Self
 
 from annotations.language.errors import Refusal
+from annotations.language.forms import CLASS_TOKEN
+from annotations.language.requests import is_qualified
 from parser_service.neural.device import threads
 from parser_service.neural.ranker.calibration import TERMS, DecisionRule, Scores
 from parser_service.neural.ranker.fitting import Fitting, make_model
@@ -23,6 +25,7 @@ from parser_service.neural.weights import WEIGHTS, load_weights, save_weights
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.hyperparameters.ranker import RankerConfig
 from parser_service.parsers.interface import (
+    UNKNOWN,
     Candidate,
     Check,
     Knowledge,
@@ -38,6 +41,7 @@ from parser_service.parsers.storage import open_sealed, read_json, seal, write_j
 FORMS = "forms.json"
 SAVED = (FORMS, ENCODER, TOKENIZER, WEIGHTS)
 PREDICTION_BATCH = 64
+MOST_HEARD = 5  # forms whose slots an utterance may fill in words of its own
 
 
 class FormRanker(Parser):
@@ -52,8 +56,8 @@ class FormRanker(Parser):
     """
 
     name = "ranker"
-    version = 11
-    reads = (10,)
+    version = 12
+    reads = (10, 11)
     protocols = (Protocol.STRICT, Protocol.DOMAIN, Protocol.GRAMMAR)
     score_kind = ScoreKind.LOG_PROBABILITY
     Config = RankerConfig
@@ -108,15 +112,18 @@ class FormRanker(Parser):
             asked = utterances[begin : begin + PREDICTION_BATCH]
             model = self._model_or_refuse()
             scores = model.scores(asked, check)
+            members = self._hear(asked, scores, check)
+            heard = {number: (asked[number], said.keys()) for number, said in members.items()}
             is_cut = model.encoder.cut(asked)
-            ranked_forms = self._rank(scores, beam_width)
+            ranked_forms = self._rank(model.rescored(scores, heard), members, beam_width)
             near = scores.nearness.tolist()
             for text, ranked, nearness, is_long in zip(
                 asked, ranked_forms, near, is_cut, strict=True
             ):
-                is_unlike = not text.strip() or nearness < self._decision.least_nearness
-                if self._is_hesitant and is_unlike:
-                    ranked = refuse(ranked, ranked[0].score)
+                if self._is_hesitant and ranked[0].form != UNKNOWN:
+                    is_unlike = not text.strip() or nearness < self._decision.least_nearness
+                    if is_unlike or self._is_other(text, ranked[0].form):
+                        ranked = refuse(ranked, ranked[0].score)
                 if ranked[0].score < least:
                     ranked = refuse(ranked, least)
                 if is_long:
@@ -137,22 +144,55 @@ class FormRanker(Parser):
         )
         return other
 
-    def _rank(self, scores: Scores, beam_width: int) -> Iterator[list[Candidate]]:
-        """Yield the most probable forms of each utterance."""
+    def _is_other(self, text: str, form: str) -> bool:
+        """Return whether an utterance asks for something else than ``form``, or for more."""
+        slots = self._model_or_refuse().slots
+        return is_qualified(text) or (slots is not None and slots.asks_for_more(text, form))
+
+    def _hear(
+        self, utterances: Sequence[str], scores: Scores, check: Check
+    ) -> dict[int, Mapping[str, str]]:
+        """Return, by the number of the utterance, the members of closed classes that it names in words of its
+        own, where one of the best forms has a slot for one."""
+        model = self._model_or_refuse()
         logs = self._decision.log_probabilities(scores)
-        best = logs.topk(min(beam_width, logs.shape[1]), dim=-1)
+        logs[:, self._ranked.refused] = -inf
+        best = logs.topk(min(MOST_HEARD, logs.shape[1]), dim=-1).indices.tolist()
+        heard = {}
+        for number, (utterance, forms) in enumerate(zip(utterances, best, strict=True)):
+            said = model.hear(utterance, [self._ranked.forms[form] for form in forms], check)
+            if said:
+                heard[number] = said
+        return heard
+
+    def _rank(
+        self, scores: Scores, members: Mapping[int, Mapping[str, str]], beam_width: int
+    ) -> Iterator[list[Candidate]]:
+        """Yield the most probable forms of each utterance; UNKNOWN first where a hesitant parser takes it for
+        something else than a command. ``members`` are those of closed classes, by the number of the utterance."""
+        logs = self._decision.log_probabilities(scores)
+        refused = logs[:, self._ranked.refused].clone()
+        logs[:, self._ranked.refused] = -inf
+        number = logs.shape[1] - self._ranked.requests
+        best = logs.topk(min(beam_width, number), dim=-1)
         terms = self._decision.terms(scores, best.indices).permute(1, 2, 0)
         rows = zip(best.indices.tolist(), best.values.tolist(), terms.tolist(), strict=True)
-        for numbers, probabilities, parts in rows:
-            yield [
+        for at, ((numbers, probabilities, parts), others) in enumerate(
+            zip(rows, refused.tolist(), strict=True)
+        ):
+            ranked = [
                 Candidate(
                     self._ranked.forms[number],
                     score,
                     self._ranked.origin(number),
                     {name: value for name, value in zip(TERMS, part, strict=True) if value},
+                    values=values_of(self._ranked.forms[number], members.get(at, {})),
                 )
                 for number, score, part in zip(numbers, probabilities, parts, strict=True)
             ]
+            other = max(others, default=-inf)
+            is_other = self._is_hesitant and other > ranked[0].score
+            yield refuse(ranked, other) if is_other else ranked
 
     def save(self, folder: Path) -> None:
         model = self._model_or_refuse()
@@ -199,3 +239,11 @@ class FormRanker(Parser):
         if self._model is None:
             raise ValueError("This parser has learned nothing yet: fit it, or load a fitted one.")
         return self._model
+
+
+def values_of(form: str, members: Mapping[str, str]) -> tuple[str | None, ...]:
+    """Return the entity of each class token of a form, where its class has one slot and ``members`` has its entity;
+    none where there is no such token."""
+    classes = [name.rstrip("0123456789") for name in CLASS_TOKEN.findall(form)]
+    values = tuple(members.get(each) if classes.count(each) == 1 else None for each in classes)
+    return values if any(values) else ()

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 import torch
 from torch import Tensor, nn
 from torch.nn.functional import normalize
 
+from annotations.language.forms import CLASS_TOKEN
 from parser_service.neural.ranker.calibration import EXPERTS, Scores
+from parser_service.neural.ranker.closed_classes import ClosedClasses
 from parser_service.neural.ranker.ranked_forms import RankedForms
 from parser_service.neural.ranker.slots import SlotTerm
 from parser_service.neural.sentence_encoder import SentenceEncoder
@@ -120,15 +122,20 @@ class RankerModel(nn.Module):
     """Scores forms by the nearest of their examples and by their glosses."""
 
     def __init__(
-        self, encoder: SentenceEncoder, ranked: RankedForms, slots: SlotTerm | None = None
+        self,
+        encoder: SentenceEncoder,
+        ranked: RankedForms,
+        slots: SlotTerm | None = None,
+        closed: ClosedClasses | None = None,
     ):
-        """``slots`` is given where the ontology is known."""
+        """``slots`` and ``closed`` are given where the ontology is known."""
         super().__init__()
         self.encoder = encoder
         self.nearest = NearestExamples(ranked.examples, encoder.width)
         self.glosses = GlossHead(ranked.glosses, encoder.width)
-        self.slots = slots
+        self.slots, self.closed = slots, closed
         self.known = ranked.known
+        self.refused = ranked.refused
         self.support = torch.tensor(ranked.support, dtype=torch.float)  # [new forms]
 
     def trained(self) -> Iterator[tuple[str, nn.Parameter]]:
@@ -137,14 +144,42 @@ class RankerModel(nn.Module):
 
     def add_slots(self, logits: Tensor, utterances: Sequence[str]) -> Tensor:
         """Add the slot term, where the ontology is known, to gloss logits [batch, forms]."""
+        slots = self._slot_scores(utterances)
+        return logits if slots is None else logits + slots.to(logits.device)
+
+    def _slot_scores(self, utterances: Sequence[str]) -> Tensor | None:
+        """Return scores [utterances, forms], where the ontology is known. What is no command has no slots, and any
+        entities fit it."""
         if self.slots is None:
-            return logits
-        return logits + self.slots.scores(utterances).to(logits.device)
+            return None
+        scores = self.slots.scores(utterances)
+        scores[:, self.refused] = 0.0
+        return scores
 
     def encode(self, utterances: Sequence[str], check: Check) -> None:
         """Re-encode the glosses and ``utterances``, the examples, with the current encoder."""
         self.glosses.encode(self.encoder, check)
         self.nearest.encode(self.encoder, utterances, check)
+
+    def hear(self, utterance: str, forms: Iterable[str], check: Check) -> Mapping[str, str]:
+        """Return the members of closed classes that ``forms`` have slots for and that the utterance names in other
+        words than the ontology."""
+        if self.slots is None or self.closed is None:
+            return {}
+        asked = {name.rstrip("0123456789") for form in forms for name in CLASS_TOKEN.findall(form)}
+        unnamed = sorted(asked.intersection(self.closed.tokens) - self.slots.named(utterance))
+        return self.closed.find(self.encoder, utterance, unnamed, check) if unnamed else {}
+
+    def rescored(self, scores: Scores, heard: Mapping[int, tuple[str, Collection[str]]]) -> Scores:
+        """Return ``scores`` with the slots of some utterances, by number, scored with more entities of classes."""
+        if self.slots is None or not heard:
+            return scores
+        known, new = scores.known.clone(), scores.new.clone()
+        for number, (utterance, classes) in heard.items():
+            row = self.slots.scores_with(utterance, classes)
+            row[self.refused] = 0.0
+            known[2, number], new[2, number] = row[: self.known], row[self.known :]
+        return Scores(known, new)
 
     @torch.no_grad()
     def scores(self, utterances: Sequence[str], check: Check) -> Scores:
@@ -155,7 +190,7 @@ class RankerModel(nn.Module):
         by_example = self.nearest(vectors).cpu()  # [utterances, forms with examples]
         scores[0, :, : by_example.shape[1]] = by_example
         scores[1] = by_gloss
-        if self.slots is not None:
-            scores[2] = self.slots.scores(utterances)
+        if (slots := self._slot_scores(utterances)) is not None:
+            scores[2] = slots
         scores[3, :, self.known :] = SUPPORT_WEIGHT * self.support
         return Scores(scores[..., : self.known], scores[..., self.known :])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from random import Random
 from typing import Any, Self
 
 from annotations.language.grounding import Anonymizer
@@ -14,8 +15,11 @@ from annotations.language.predicates import (
     infer_signatures,
     pattern_of_name,
 )
+from annotations.language.requests import other_requests
+from annotations.language.rewording import Rewording
 from annotations.language.symbols import DEFAULT_CLASSES, EntityClasses
-from parser_service.parsers.interface import TRAINING, Check, Knowledge, Pair, keep_going
+from parser_service.parsers.conditions import GENERATED
+from parser_service.parsers.interface import REFUSAL, TRAINING, Check, Knowledge, Pair, keep_going
 from parser_service.parsers.new_forms.generation import generate_candidates
 from parser_service.parsers.spreading import spread
 from parser_service.parsers.written_forms import read_or_none
@@ -38,6 +42,9 @@ class RankedExample:
 class RankedForms:
     """Known forms first, then new ones; each with its gloss.
 
+    The last ``requests`` of the known ones are no forms but kinds of requests that are no command; they are
+    answered with UNKNOWN.
+
     ``support`` is, for each new form, the number of kinds of step that arrive at it. ``examples`` has
     for each example the number of its form: known forms have examples, and under *grammar* all have.
     ``origins`` names for each new form the step that made it; a parser that was saved without them has
@@ -50,6 +57,7 @@ class RankedForms:
     support: tuple[int, ...]
     examples: tuple[int, ...]
     origins: tuple[str, ...] = ()
+    requests: int = 0
 
     @classmethod
     def read(cls, values: Mapping[str, Any]) -> Self:
@@ -61,10 +69,18 @@ class RankedForms:
             tuple(values["support"]),
             tuple(values["examples"]),
             tuple(values.get("origins", ())),
+            values.get("requests", 0),
         )
+
+    @property
+    def refused(self) -> slice:
+        """The numbers of the requests that are no command."""
+        return slice(self.known - self.requests, self.known)
 
     def origin(self, number: int) -> str:
         """Return where form ``number`` comes from; empty where it is not known."""
+        if number in range(self.known)[self.refused]:
+            return REFUSAL
         if number < self.known:
             return TRAINING
         return self.origins[number - self.known] if self.origins else ""
@@ -75,15 +91,23 @@ class RankedForms:
 
 
 def collect(
-    pairs: Sequence[Pair], knowledge: Knowledge, is_open: bool, check: Check = keep_going
+    pairs: Sequence[Pair],
+    knowledge: Knowledge,
+    is_open: bool,
+    check: Check = keep_going,
+    rewordings: int = 0,
+    seed: int = 0,
 ) -> tuple[RankedForms, list[RankedExample], str]:
     """Return the forms to choose from, the examples to learn from, and a line for the log.
 
     Where the grammar is known, its commands are examples as well; a command that is the utterance of a
-    pair keeps the form of the pair. There are at most ``MOST_EXAMPLES``, or one of each form.
+    pair keeps the form of the pair. There are at most ``MOST_EXAMPLES``, or one of each form. Each form that
+    nobody has paraphrased has ``rewordings`` more examples, where the predicates are declared.
     """
     generated = generate_candidates(pairs, knowledge, is_open, check)
-    forms = (*generated.training, *(each.form for each in generated.new))
+    requests = other_requests(knowledge.predicates) if knowledge.predicates is not None else ()
+    known = (*generated.training, *(each.gloss for each in requests))
+    forms = (*known, *(each.form for each in generated.new))
     number = {form: at for at, form in enumerate(forms)}
     meant = [(pair.utterance, pair.form) for pair in pairs]
     said = {utterance for utterance, _ in meant}
@@ -94,6 +118,10 @@ def collect(
         if command not in said
     ]
     kept = spread(meant, max(MOST_EXAMPLES, len(forms)), lambda each: each[1])
+    kept += reword(pairs, knowledge, rewordings, seed, check)
+    random = Random(f"{seed} other requests")
+    commands = sorted(said)
+    kept += [(text, each.gloss) for each in requests for text in each.examples(commands, random)]
     ontology = knowledge.ontology or Ontology(())
     anonymizer = Anonymizer(ontology)
     examples = []
@@ -104,15 +132,40 @@ def collect(
     ranked = RankedForms(
         forms,
         tuple(glosses(forms, knowledge.predicates, check, ontology.classes)),
-        len(generated.training),
+        len(known),
         tuple(min(each.support, MOST_SUPPORT) for each in generated.new),
         tuple(each.form for each in examples),
         tuple(each.main_step for each in generated.new),
+        len(requests),
     )
     line = str(generated)
-    if len(kept) < len(meant):
-        line += f" Of {len(meant):,} pairs, {len(kept):,} are read, of all forms alike."
+    if len(meant) > max(MOST_EXAMPLES, len(forms)):
+        line += f" Of {len(meant):,} pairs, {MOST_EXAMPLES:,} are read, of all forms alike."
     return ranked, examples, line
+
+
+def reword(
+    pairs: Sequence[Pair], knowledge: Knowledge, number: int, seed: int, check: Check = keep_going
+) -> list[tuple[str, str]]:
+    """Return ``number`` rewordings of each form of ``pairs`` that nobody has paraphrased, each with its form.
+
+    They stand in for people: what is learned from generated commands alone is not how people speak. There are none
+    where the predicates are not declared.
+    """
+    if knowledge.predicates is None or not number:
+        return []
+    classes = knowledge.ontology.classes if knowledge.ontology else DEFAULT_CLASSES
+    rewording = Rewording(knowledge.predicates, classes)
+    paraphrased = {pair.form for pair in pairs if pair.source != GENERATED}
+    others = sorted({pair.form for pair in pairs} - paraphrased)
+    said: dict[tuple[str, str], None] = {}
+    for form in others:
+        check()
+        if read_or_none(form) is None:
+            continue
+        random = Random(f"{seed} rewordings of {form}")
+        said |= {(rewording.say(form, random), form): None for _ in range(number)}
+    return list(said)
 
 
 def glosses(

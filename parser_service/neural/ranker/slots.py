@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from random import Random
 from re import Match
 
@@ -12,10 +12,12 @@ import torch
 from torch import Tensor
 
 from annotations.language.english import ANY_OBJECT, OPEN_CATEGORIES
-from annotations.language.forms import CLASS_TOKEN
+from annotations.language.forms import CLASS_TOKEN, Constant, walk
 from annotations.language.grounding import QUESTION_WORD, Anonymizer
 from annotations.language.ontology import Ontology
+from annotations.language.requests import says_number
 from parser_service.parsers.remembering import remembered
+from parser_service.parsers.written_forms import read_or_none
 
 _MOST_READINGS = 8
 # These words mean a category that is left open (``{category?}`` says "objects") or things of no
@@ -41,12 +43,50 @@ class SlotTerm:
 
     def scores(self, utterances: Sequence[str]) -> Tensor:
         """Return scores [utterances, forms]; 0 where all slots fit."""
-        rows = []
-        for utterance in utterances:
-            readings = torch.tensor(self._read(utterance))  # [readings, classes]
-            misfit = (self._kinds[None] - readings[:, None]).abs().sum(-1)  # [readings, kinds]
-            rows.append(-misfit.min(0).values)
-        return torch.stack(rows).float()[:, self._kind_of]
+        return torch.stack([self._score(self._read(each)) for each in utterances])
+
+    def _score(self, readings: Sequence[Counts]) -> Tensor:
+        """Return scores [forms] for the best of the readings of an utterance."""
+        read = torch.tensor(readings)  # [readings, classes]
+        misfit = (self._kinds[None] - read[:, None]).abs().sum(-1).amin(0)  # [kinds]
+        scores: Tensor = -misfit.float()[self._kind_of]
+        return scores
+
+    def named(self, utterance: str) -> frozenset[str]:
+        """Return the classes of which an utterance names an entity, by its words or by a class token."""
+        spans = self._anonymizer.anonymize(utterance).spans
+        tokens = {name.rstrip("0123456789") for name in CLASS_TOKEN.findall(utterance)}
+        return frozenset((*tokens, *(span.entity_class for span in spans)))
+
+    def scores_with(self, utterance: str, classes: Iterable[str]) -> Tensor:
+        """Return the scores [forms] of an utterance that names one more entity of each of ``classes``."""
+        readings = self._read(utterance)
+        for name in classes:
+            readings = tuple(self._with_one(counts, name) for counts in readings)
+        return self._score(readings)
+
+    def asks_for_more(self, utterance: str, form: str) -> bool:
+        """Return whether an utterance names an entity that ``form`` has no slot for, or a number of things where
+        it has none.
+
+        The words of a closed class may say something else: what lies on the table is in no pose.
+        """
+        heard = self._anonymizer.anonymize(utterance)
+        if says_number(heard) and not _has_number(form):
+            return True
+        free = Counter(name.rstrip("0123456789") for name in CLASS_TOKEN.findall(form))
+        named: dict[str, frozenset[str]] = {}
+        for span in heard.spans:
+            entities = (span.entity, *span.others)
+            classes = {span.entity_class, *(each.entity_class for each in entities)}
+            if not any(map(self._classes.is_closed, classes)):
+                named[span.value] = frozenset(classes)
+        for wanted in sorted(named.values(), key=len):
+            slot = next((each for each in sorted(wanted) if free[each]), None)
+            if slot is None:
+                return True
+            free[slot] -= 1
+        return False
 
     @remembered(100_000)
     def _read(self, utterance: str) -> tuple[Counts, ...]:
@@ -69,6 +109,13 @@ class SlotTerm:
     def _with_one(self, counts: Counts, name: str) -> Counts:
         at = self._classes.place(name)
         return (*counts[:at], counts[at] + 1, *counts[at + 1 :])
+
+
+def _has_number(form: str) -> bool:
+    read = read_or_none(form)
+    return read is not None and any(
+        isinstance(each, Constant) and isinstance(each.value, int) for each in walk(read)
+    )
 
 
 class SlotFiller:

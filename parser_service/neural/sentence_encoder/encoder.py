@@ -16,6 +16,7 @@ from tokenizers import Tokenizer
 from torch import Tensor, nn
 from torch.nn.functional import normalize
 
+from annotations.language.errors import Refusal
 from parser_service.neural.device import denormals_flushed
 from parser_service.neural.pretrained import Pretrained
 from parser_service.neural.sentence_encoder.bert import Bert, BertConfig, is_bert, share_dropout
@@ -62,11 +63,17 @@ class SentenceEncoder(nn.Module):
         model.get_input_embeddings().weight.requires_grad_(False)
 
     @classmethod
-    def of(cls, pretrained: Pretrained, dropout: float = 0.0) -> Self:
-        """Make a trainable copy of a published encoder."""
+    def of(cls, pretrained: Pretrained, dropout: float = 0.0, frozen_layers: int = 0) -> Self:
+        """Make a copy of a published encoder, trainable but for its lowest ``frozen_layers``.
+
+        Raises Refusal where it has no layer above them.
+        """
         text = pretrained.tokenizer.backend_tokenizer.to_str()
         model = pretrained.model
-        return cls(make_trainable(model), describe(model), Tokenizer.from_str(text), dropout)
+        network = make_trainable(model)
+        if frozen_layers:
+            freeze(network, frozen_layers)
+        return cls(network, describe(model), Tokenizer.from_str(text), dropout)
 
     @classmethod
     def described_in(cls, folder: Path) -> Self:
@@ -156,6 +163,26 @@ def make_trainable(model: PreTrainedModel) -> Network:
     network = Bert(BertConfig.read(description))
     network.load_state_dict(model.state_dict())
     return network
+
+
+def freeze(network: Network, layers: int) -> None:
+    """Keep the embeddings and the lowest ``layers`` as they are: training then follows no gradient into them.
+
+    Raises Refusal where ``network`` has no layer above them.
+    """
+    number = network.config.num_hidden_layers
+    if layers >= number:
+        raise Refusal(
+            f"frozen_layers is {layers}, but the encoder has {number} layers. Leave one to be trained.",
+            "hyperparameter_out_of_range",
+        )
+    stack = next(
+        part
+        for part in network.modules()
+        if isinstance(part, nn.ModuleList) and len(part) == number
+    )
+    network.requires_grad_(False)
+    stack[layers:].requires_grad_(True)
 
 
 def make_empty(description: Mapping[str, Any]) -> Network:

@@ -16,6 +16,7 @@ from annotations.language.forms import (
     Constant,
     Form,
     Lambda,
+    Reference,
     Variable,
     children,
     depth,
@@ -44,9 +45,9 @@ Kinds = tuple[str, ...]
 class Rules:
     """Predicates with the kinds of their arguments, constants, and how deep and long forms may be.
 
-    ``types`` are those of λs, ``lambdas`` the most λs around a term, ``deepest`` the most λs and
-    applications around one, ``longest`` the bytes of a form, and ``may_refuse`` tells whether
-    UNKNOWN may be a whole form.
+    ``references`` are those that forms have: it, them. ``types`` are those of λs, ``lambdas`` the most λs
+    around a term, ``deepest`` the most λs and applications around one, ``longest`` the bytes of a form, and
+    ``may_refuse`` tells whether UNKNOWN may be a whole form.
     """
 
     signatures: Mapping[str, tuple[Kinds, ...]]
@@ -56,6 +57,7 @@ class Rules:
     deepest: int
     longest: int
     may_refuse: bool
+    references: tuple[Reference, ...] = ()
 
     @classmethod
     def of(
@@ -87,22 +89,37 @@ class Rules:
             deepest=min(MAX_NESTING, DEEPER + max(map(depth, forms), default=3)),
             longest=min(longest, round(LONGER * max(map(length, forms), default=100))),
             may_refuse=UNKNOWN in forms,
+            references=tuple(
+                sorted({node for node in nodes if isinstance(node, Reference)}, key=str)
+            ),
         )
 
     def to_json(self) -> dict[str, Any]:
-        return {**asdict(self), "constants": [each.value for each in self.constants]}
+        return {
+            **asdict(self),
+            "constants": [each.value for each in self.constants],
+            "references": [each.word for each in self.references],
+        }
 
     @classmethod
     def read(cls, values: Mapping[str, Any]) -> Self:
         """Return what ``to_json`` wrote."""
         signatures = {name: tuple(map(tuple, each)) for name, each in values["signatures"].items()}
         constants = tuple(map(Constant, values["constants"]))
-        types = tuple(values["types"])
-        return cls(**{**values, "signatures": signatures, "constants": constants, "types": types})
+        return cls(
+            **{
+                **values,
+                "signatures": signatures,
+                "constants": constants,
+                "types": tuple(values["types"]),
+                "references": tuple(map(Reference, values.get("references", ()))),
+            }
+        )
 
     def leaves(self, bound: int) -> Iterator[Form]:
         """Yield the terms without parts that may stand inside ``bound`` λs."""
         yield from self.constants
+        yield from self.references
         yield UNKNOWN
         for index in range(1, bound + 1):
             yield Variable(index)
@@ -123,7 +140,7 @@ def own_length(form: Form) -> int:
         return _bytes(f"${form.index} ")
     if isinstance(form, Constant):
         return _bytes(f"{form.value} " if isinstance(form.value, int) else f'" {form.value} " ')
-    return _bytes("UNKNOWN ")
+    return _bytes(f"{form.word} " if isinstance(form, Reference) else "UNKNOWN ")
 
 
 def _bytes(text: str) -> int:

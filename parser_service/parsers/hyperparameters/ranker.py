@@ -18,6 +18,12 @@ class RankerConfig:
         DEFAULT_ENCODER,
         "Pretrained sentence encoder: its name in GPSR_ENCODERS_DIR, or a package.",
     )
+    frozen_layers: int = hyperparameter(
+        0,
+        "Lowest layers of the encoder that keep their pretrained values: a large encoder then trains faster.",
+        minimum=0,
+        maximum=100,
+    )
     steps: int = hyperparameter(400, "Optimisation steps, rounded up to whole epochs.", 1, 100_000)
     minutes: float = hyperparameter(
         15.0,
@@ -66,6 +72,13 @@ class RankerConfig:
         "where the ontology is known.",
         minimum=0.0,
         maximum=1.0,
+    )
+    rewordings: int = hyperparameter(
+        20,
+        "Other ways to say each form that nobody has paraphrased, to learn from, where glosses are declared "
+        "(domain, grammar).",
+        0,
+        1_000,
     )
     forms: str = hyperparameter(
         "open",

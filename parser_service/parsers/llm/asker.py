@@ -19,6 +19,7 @@ from parser_service.parsers.llm.kept_answers import KeptAnswers, hash_of
 from parser_service.parsers.llm.protocol import (
     CHAT,
     MODELS,
+    SCHEMA_FIELD,
     Dialect,
     ModelAnswer,
     Question,
@@ -109,13 +110,15 @@ class Asker:
         """Send a question, in other words where the server does not understand the first ones."""
         sent = self.dialect.write(question)
         reply = crew.send("POST", CHAT, sent)
-        if reply.status not in NOT_UNDERSTOOD:
-            return reply
         detail = detail_of(reply, self.server.key)
+        # llama-cpp-python calls a field that it does not understand a fault of its own (500).
+        is_refused = reply.status in NOT_UNDERSTOOD or SCHEMA_FIELD in detail
+        if reply.status == HTTPStatus.OK or not is_refused:
+            return reply
         self.dialect.learn(detail)
         if (again := self.dialect.write(question)) != sent:
             reply = crew.send("POST", CHAT, again)
-        if reply.status in NOT_UNDERSTOOD and question.schema is not None:
+        if reply.status != HTTPStatus.OK and question.schema is not None:
             plainly = replace(self.dialect, takes_schema=False)
             without = crew.send("POST", CHAT, plainly.write(question))
             if without.status == HTTPStatus.OK:

@@ -17,6 +17,7 @@ from parser_service.parsers.llm.exchange import NoAnswer, NoReply, Reply
 Message = dict[str, str]
 
 CHAT, MODELS = "/chat/completions", "/models"
+SCHEMA_FIELD = "response_format"
 MOST_DETAIL = 200  # characters of a server's own words
 MOST_NAME = 200
 THOUGHTS = re.compile(r"\A\s*<think>.*?</think>", re.DOTALL)
@@ -71,7 +72,7 @@ class Dialect:
             "stream": False,
         }
         if question.schema is not None and self.takes_schema:
-            body["response_format"] = {
+            body[SCHEMA_FIELD] = {
                 "type": "json_schema",
                 "json_schema": {"name": "answer", "strict": True, "schema": question.schema},
             }

@@ -17,6 +17,7 @@ from annotations.language.forms import (
     Constant,
     Form,
     Lambda,
+    Reference,
     Unknown,
     Variable,
     children,
@@ -83,6 +84,8 @@ def _leaf(form: Form, mark: str) -> str:
         return f"${form.index}"
     if isinstance(form, Unknown):
         return "?"
+    if isinstance(form, Reference):
+        return f"&{form.word}"
     if isinstance(form, Constant):
         is_number = isinstance(form.value, int)
         return f"#{form.value}" if is_number else f"{mark}{_quote(str(form.value))}"
@@ -97,7 +100,7 @@ def _read(waiting: list[str]) -> Form:
     token = waiting.pop()
     if token.startswith("("):
         return Application(unquote(token[1:]), _read_until_close(waiting))
-    if token.startswith(("$", "?", "#", '"')):
+    if token.startswith(("$", "?", "&", "#", '"')):
         return _read_leaf(token.removeprefix('"'))
     if ":" in token:
         name, *leaves = token.split(":")
@@ -121,4 +124,6 @@ def _read_leaf(token: str) -> Form:
         return Variable(int(token[1:]))
     if token == "?":
         return UNKNOWN
+    if token.startswith("&"):
+        return Reference(token[1:])
     return Constant(int(token[1:])) if token.startswith("#") else Constant(unquote(token))

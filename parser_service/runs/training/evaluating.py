@@ -12,12 +12,13 @@ from annotations.language.text import normalise
 from annotations.models import Example
 from annotations.rows.synchronise import BATCH, batches
 from parser_service.analysis.outcomes import interval_of_outcomes, outcomes_of
-from parser_service.analysis.scores import NO_ANSWER, judge, score
+from parser_service.analysis.scores import SamePlan, judge, score
 from parser_service.models import Evaluation, Prediction, TrainingRun
 from parser_service.parsers.conditions import TEST_SOURCES, sources_of
 from parser_service.parsers.interface import TRAINING, Candidate, Pair, Parser
 from parser_service.runs import lifecycle
 from parser_service.runs.training.cross_fitting import calibrated_folds
+from parser_service.runs.training.knowledge import plan_agreement_of
 from parser_service.runs.training.observing import RunObserver
 from parser_service.runs.training.split_pairs import as_pairs, cluster_of
 
@@ -67,11 +68,12 @@ def evaluate(
             f"{len(cut):,} of {len(predicted):,} utterances are longer than the parser reads; it read the "
             f'beginning of each, first of "{cut[0].utterance[:60]}…".'
         )
+    same_plan = plan_agreement_of(run.world)
     ranked = [
         (
             part,
             [
-                _make_prediction(run, example, rank, answer, forms)
+                _make_prediction(run, example, rank, answer, forms, same_plan)
                 for rank, answer in enumerate(answers or [NO_CANDIDATE], start=1)
             ],
         )
@@ -152,9 +154,14 @@ def _conclude(
 
 
 def _make_prediction(
-    run: TrainingRun, example: Example, rank: int, answer: Candidate, counts: Mapping[str, int]
+    run: TrainingRun,
+    example: Example,
+    rank: int,
+    answer: Candidate,
+    counts: Mapping[str, int],
+    same_plan: SamePlan,
 ) -> Prediction:
-    judgement = judge(answer.form, example.logical_form) if answer.form else NO_ANSWER
+    judgement = judge(answer.form, example.logical_form, same_plan)
     return Prediction(
         run=run,
         example=example,
@@ -164,6 +171,7 @@ def _make_prediction(
         is_exact_match=judgement.is_exact_match,
         is_equivalent=judgement.is_equivalent,
         is_well_formed=judgement.is_well_formed,
+        is_same_plan=judgement.is_same_plan,
         answer_in_training=counts.get(answer.form, 0) if answer.form else None,
         label_in_training=counts.get(example.logical_form, 0),
         origin=answer.origin or (TRAINING if answer.form in counts else ""),
@@ -203,5 +211,6 @@ def _make_evaluation(
         interval_high=high,
         equivalent=result.equivalent,
         well_formed=result.well_formed,
+        same_plan=result.same_plan,
         outcomes=outcomes,
     )

@@ -6,7 +6,13 @@ from collections.abc import Callable
 
 from annotations.language.grounding import Anonymizer
 from annotations.models import World
-from annotations.rows.from_rows import ontology_of, predicates_of, task_categories
+from annotations.rows.from_rows import (
+    ontology_of,
+    predicates_of,
+    recipe_book_of,
+    task_categories,
+)
+from parser_service.analysis.plan_agreement import PlanAgreement
 from parser_service.parsers.interface import Knowledge
 
 
@@ -22,6 +28,14 @@ def knowledge_of(world: World, protocol: str) -> Knowledge:
     if protocol == "domain":
         return Knowledge(predicates, ontology)
     return Knowledge(predicates, ontology, task_categories(world))
+
+
+def plan_agreement_of(world: World) -> PlanAgreement:
+    """Return what compares the plans of answers, by what the world says now; it asks no database.
+
+    Raises LanguageError where a stored text cannot be read.
+    """
+    return PlanAgreement(ontology_of(world), predicates_of(world), recipe_book_of(world))
 
 
 def anonymizer_of(world: World) -> Callable[[str], str]:

@@ -12,12 +12,13 @@ from annotations.language.dialogue import Phase
 from annotations.language.errors import Refusal
 from annotations.language.forms import to_corpus
 from annotations.language.predicates import gloss
+from annotations.language.recipes import spoken
 from annotations.models import Duty, World
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
 from annotations.people.audit_log import note
 from parser_service.dialogues.conversation import AnsweredMeanwhile, keep, reply, start, state_of
-from parser_service.dialogues.dialogue_json import asked_of, plan_of
+from parser_service.dialogues.dialogue_json import asked_of, plan_of, task_plan_in
 from parser_service.dialogues.entity_offers import confirm, refuse
 from parser_service.models import Dialogue, OfferedEntity, OfferState
 from parser_service.serving.preparing import WorldLanguage
@@ -66,8 +67,11 @@ def dialogue(request: WorldRequest, world: World, pk: int) -> HttpResponse:
             trouble = error.message
     state, language = state_of(row), WorldLanguage.of(row.world)
     has_form = state.phase is not Phase.REPHRASING and bool(row.state["parsed"] != "UNKNOWN")
+    task_plan = task_plan_in(state, language) if has_form else None
     context = {
         "row": row,
+        "task_plan": task_plan and task_plan.as_json(),
+        "spoken": spoken(task_plan) if task_plan else "",
         "asked": asked_of(state),
         "is_yes_or_no": state.phase in YES_OR_NO,
         "grounded": to_corpus(state.form) if has_form else "",

@@ -75,6 +75,8 @@ class DialogueSerializer(serializers.Serializer[Any]):
     reading = serializers.CharField()
     english = serializers.CharField()
     plan = serializers.DictField(help_text="As docs/reference/plans.md describes it.")
+    task_plan = serializers.DictField(help_text="As docs/reference/recipes.md describes it.")
+    spoken = serializers.CharField(allow_blank=True)
     offers = OfferSerializer(many=True)
     transcript = TurnSerializer(many=True)
     run = serializers.IntegerField(allow_null=True)

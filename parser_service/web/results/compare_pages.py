@@ -15,6 +15,7 @@ from annotations.people.access import PageRequest, WorldRequest, world_view
 from parser_service.analyses.state import analysis_of
 from parser_service.models import Prediction, TrainingRun
 from parser_service.models.evaluations import ShownScore
+from parser_service.results.measures import OF_EXAMPLES, Measure
 from parser_service.results.result_choices import default_part
 from parser_service.slices.addresses import Addresses
 from parser_service.slices.breakdown import accuracies_of, break_down, break_down_by_slices
@@ -65,26 +66,39 @@ def compare(request: WorldRequest, world: World) -> HttpResponse:
     part = part if part in PARTS else default_part(world, named_keys(request.GET))
     choice = choose_runs(world, request.GET, part)
     filters = ComparedFilters(request)
+    measure = measure_of(request)
     context = {
         "choice": choice,
         "parts": PARTS,
         "filters": filters,
         "lettered": list(zip(LETTERS, choice.runs, strict=False)),
         "part_urls": [(each, filters.url(part=each)) for each in PARTS],
+        "measure": measure,
+        "measure_urls": [(each, filters.url(measure=each)) for each in OF_EXAMPLES],
         "suggestion_url": url_with_runs(request, choice.suggested),
         "slice_query": slice_query(world, request.GET),
     }
     if len(choice.runs) > 1:
-        context |= comparison_of(request, world, choice, filters)
+        context |= comparison_of(request, world, choice, filters, measure)
     return render(request, "parser_service/results/compare.html", context)
 
 
+def measure_of(request: PageRequest) -> Measure:
+    """Return the measure that the address chooses; exact match where it names none by which runs are compared."""
+    asked = request.GET.get("measure", "")
+    return next((each for each in OF_EXAMPLES if each == asked), Measure.EXACT)
+
+
 def comparison_of(
-    request: WorldRequest, world: World, choice: RunChoice, filters: ComparedFilters
+    request: WorldRequest,
+    world: World,
+    choice: RunChoice,
+    filters: ComparedFilters,
+    measure: Measure,
 ) -> dict[str, Any]:
     """Return what the page says about the runs."""
-    compared = compare_on(world, choice.runs, choice.part, filters.filters)
-    addresses = Addresses(world, choice.runs, choice.part, filters.chosen)
+    compared = compare_on(world, choice.runs, choice.part, filters.filters, measure)
+    addresses = Addresses(world, choice.runs, choice.part, filters.chosen, measure)
     if not compared.count:
         return {"compared": compared}
     place = confused_run(request, choice.runs)

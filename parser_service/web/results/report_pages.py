@@ -20,7 +20,7 @@ from parser_service.reports.run_report import run_report as write_run_report
 from parser_service.results.result_choices import default_part
 from parser_service.slices.compared import compare_on
 from parser_service.slices.run_choice import PARTS, choose_runs, named_keys
-from parser_service.web.results.compare_pages import ComparedFilters
+from parser_service.web.results.compare_pages import ComparedFilters, measure_of
 
 
 @never_cache
@@ -59,7 +59,7 @@ def compare_report(request: WorldRequest, world: World) -> HttpResponseBase:
     if len(choice.runs) < 2:
         messages.info(request, "Choose two runs or more to report how they compare.")
         return redirect(page)
-    compared = compare_on(world, choice.runs, choice.part, filters.filters)
+    compared = compare_on(world, choice.runs, choice.part, filters.filters, measure_of(request))
     if not compared.count:
         messages.info(request, "There is no example in this slice to report about.")
         return redirect(page)

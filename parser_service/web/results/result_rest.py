@@ -24,7 +24,8 @@ from parser_service.results.result_choices import read_choices, scored_splits
 class EvaluationSerializer(serializers.ModelSerializer[Evaluation]):
     """Exact match of a run on one source of one part; fractions of 1, the interval at 95 %. On a split by
     form ``accuracy`` is that on unseen forms, except for the part ``known``; ``harmonic_mean`` combines it
-    with ``accuracy_known``. Both are null for other splits, and if known forms were not held out."""
+    with ``accuracy_known``. Both are null for other splits, and if known forms were not held out. ``same_plan`` is
+    null where plans were not compared."""
 
     run = serializers.IntegerField(source="run_id")
     accuracy_known = serializers.FloatField(allow_null=True)
@@ -34,7 +35,7 @@ class EvaluationSerializer(serializers.ModelSerializer[Evaluation]):
         model = Evaluation
         fields = [
             *("id", "run", "part", "test_source", "count", "correct", "accuracy"),
-            *("interval_low", "interval_high", "equivalent", "well_formed"),
+            *("interval_low", "interval_high", "equivalent", "well_formed", "same_plan"),
             *("accuracy_known", "harmonic_mean"),
         ]
 

@@ -24,7 +24,7 @@ from parser_service.web.runs.run_rest import OfRun
 
 class PredictionSerializer(serializers.ModelSerializer[Prediction]):
     """A ranked candidate of a run for an example, whose ``label`` is the annotated form. ``is_cut``: the
-    parser read only the beginning of the utterance."""
+    parser read only the beginning of the utterance. ``is_same_plan`` is null where plans were not compared."""
 
     run = serializers.IntegerField(source="run_id")
     example = serializers.IntegerField(source="example_id")
@@ -36,7 +36,7 @@ class PredictionSerializer(serializers.ModelSerializer[Prediction]):
         model = Prediction
         fields = [
             *("id", "run", "example", "utterance", "label", "rank", "logical_form", "score"),
-            *("is_exact_match", "is_equivalent", "is_well_formed"),
+            *("is_exact_match", "is_equivalent", "is_well_formed", "is_same_plan"),
             *("answer_in_training", "label_in_training", "origin", "is_cut"),
         ]
 

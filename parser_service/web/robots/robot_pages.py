@@ -10,6 +10,7 @@ from django.shortcuts import redirect, render
 
 from annotations.language.errors import Refusal
 from annotations.language.plans import ActionName, behavior_tree_schema_text, plan_schema_text
+from annotations.language.recipes import joint_plan_schema_text, task_plan_schema_text
 from annotations.lists.paging import number_in
 from annotations.models import Duty, World
 from annotations.people.access import READ_AND_WRITE, WorldRequest, world_view
@@ -24,6 +25,8 @@ from parser_service.robots.action_naming import (
 
 SCHEMAS = {
     "plan.schema.json": ("application/schema+json", plan_schema_text),
+    "task_plan.schema.json": ("application/schema+json", task_plan_schema_text),
+    "joint_plan.schema.json": ("application/schema+json", joint_plan_schema_text),
     "behavior_tree.xsd": ("application/xml", behavior_tree_schema_text),
 }
 

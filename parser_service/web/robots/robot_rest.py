@@ -17,6 +17,7 @@ from annotations.language.errors import LanguageError
 from annotations.language.forms import read_form
 from annotations.language.limits import MAX_FORM
 from annotations.language.plans import make_plan, to_behavior_tree
+from annotations.language.recipes import spoken
 from annotations.models import Duty, Scope
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.permissions import ApiRequest
@@ -31,6 +32,7 @@ from parser_service.robots.action_naming import (
     version_of,
     write_arguments,
 )
+from parser_service.serving.parse_answers import task_plan_of
 from parser_service.serving.preparing import WorldLanguage
 
 
@@ -69,6 +71,39 @@ class PlanRoute(WorldRoute):
         if sent["as"] == "xml":
             return HttpResponse(to_behavior_tree(plan), content_type="application/xml")
         return Response(plan.as_json())
+
+
+class TaskPlanSerializer(serializers.Serializer[Any]):
+    """What the robot does for a form in its own primitives, and what it says before it begins."""
+
+    task_plan = serializers.DictField(help_text="As docs/reference/recipes.md describes it.")
+    spoken = serializers.CharField(allow_blank=True)
+
+
+class TaskPlanRoute(WorldRoute):
+    """Makes the plan of a form in the primitives of the robot: JSON, or XML for BehaviorTree.CPP 4. Stores nothing."""
+
+    filter_backends = []
+    scopes = {"POST": Scope.READ}
+
+    @extend_schema(
+        operation_id="task_plan",
+        request=PlanQuery,
+        responses={
+            (200, "application/json"): TaskPlanSerializer,
+            (200, "application/xml"): OpenApiTypes.STR,
+        },
+    )
+    def post(self, request: ApiRequest, world: str) -> HttpResponseBase:
+        sent = self.read(PlanQuery)
+        try:
+            form = read_form(sent["form"])
+        except LanguageError as error:
+            raise refusal_of_text(error, "form") from error
+        task_plan = task_plan_of(form, (), WorldLanguage.of(self.world))
+        if sent["as"] == "xml":
+            return HttpResponse(to_behavior_tree(task_plan), content_type="application/xml")
+        return Response({"task_plan": task_plan.as_json(), "spoken": spoken(task_plan)})
 
 
 class ActionNameSerializer(Fields):

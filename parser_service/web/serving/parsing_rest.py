@@ -126,6 +126,12 @@ class CandidateSerializer(serializers.Serializer[Any]):
     plan = serializers.DictField(
         allow_null=True, help_text="As docs/reference/plans.md describes it."
     )
+    task_plan = serializers.DictField(
+        allow_null=True, help_text="As docs/reference/recipes.md describes it."
+    )
+    spoken = serializers.CharField(
+        allow_blank=True, help_text="What the robot says it will do, in a sentence."
+    )
 
 
 class ParseSerializer(serializers.Serializer[Any]):

@@ -32,6 +32,13 @@ CHANGES: dict[tuple[str, str], Body] = {
     ("api:entity-detail", "PATCH"): lambda *each: {"aliases": [different(*each)]},
     ("api:entity-class-detail", "PATCH"): lambda *each: {"said": different(*each)},
     ("api:predicate-detail", "PATCH"): lambda *each: {"gloss": different(*each)},
+    ("api:recipe-detail", "PATCH"): lambda *each: {
+        "text": f'go(destination) -> say("{different(*each)}")'
+    },
+    ("api:primitive-detail", "PATCH"): lambda *each: {"text": f'dance() "{different(*each)}"'},
+    ("api:recipe-book", "PATCH"): lambda *each: {
+        "recipes": [f'go(destination) -> say("{different(*each)}")']
+    },
     ("api:production-detail", "PATCH"): lambda *each: {"expansion": f"go {different(*each)}"},
     ("api:template-detail", "PATCH"): lambda *each: {"pattern": f"find {different(*each)} $object"},
     ("api:rename", "POST"): lambda writer, turn: {"new": f"name_{writer}_{turn}"},
@@ -57,6 +64,8 @@ CHANGES: dict[tuple[str, str], Body] = {
                 "entity-detail",
                 "entity-class-detail",
                 "predicate-detail",
+                "recipe-detail",
+                "primitive-detail",
                 "production-detail",
                 "template-detail",
                 "paraphrase-detail",
@@ -86,6 +95,8 @@ NAMES: dict[str, dict[str, Any]] = {
         **{"said": "garment", "hue": 60},
     },
     "api:predicate-list": {"name": "shines", "kind": "description", "signatures": [["object"]]},
+    "api:recipe-list": {"text": "dance() -> greet(operator)"},
+    "api:primitive-list": {"text": "dance()"},
     "api:worlds": {"name": "attic"},
     "api:import-world": {"name": "attic"},
     "api:split-list": {"name": "mine"},
@@ -133,6 +144,7 @@ NAMELESS = {
         "job-cancel",
         "site-job-cancel",
     ),
+    *("check-recipe", "check-primitive", "task-plan", "joint-plan"),
     *("check-form", "check-predicate", "check-production", "check-template", "suggestions"),
     *("parse", "parse-wrong", "plan", "action-names", "dialogue-answer", "dialogue-keep"),
     *("offered-entity-decide", "answer-doubt", "example-send", "predictions-send"),

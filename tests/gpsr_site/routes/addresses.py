@@ -25,7 +25,9 @@ from tests.gpsr_site.routes.sample_rows import (
     join_keys,
     offered_entity,
     predicate,
+    primitive,
     proposal,
+    recipe,
     removable_member,
     review,
     run,
@@ -136,6 +138,8 @@ KEYS: dict[str, RouteKeys] = {
         pk_of(lambda sample: Entity.objects.filter(ontology__world=sample.world).first()),
     ),
     **dict.fromkeys(("entity_class", "api:entity-class-detail"), pk_of(entity_class)),
+    **dict.fromkeys(("recipe", "api:recipe-detail"), pk_of(recipe)),
+    **dict.fromkeys(("primitive", "api:primitive-detail"), pk_of(primitive)),
     **dict.fromkeys(("predicate", "api:predicate-detail"), pk_of(predicate)),
     **dict.fromkeys(("rename", "api:rename"), pk_of(predicate, kind="predicate")),
     **dict.fromkeys(

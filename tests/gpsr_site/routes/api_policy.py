@@ -20,6 +20,12 @@ READABLE = (
         "entity-class-detail",
         "predicate-list",
         "predicate-detail",
+        "recipe-list",
+        "recipe-detail",
+        "primitive-list",
+        "primitive-detail",
+        "recipe-book",
+        "shipped-books",
         "task-categories",
         "production-list",
     ),
@@ -90,12 +96,15 @@ READABLE = (
         "guidelines",
     ),
     *("split-changes", "upload-list", "upload-detail", "utterance-export"),
+    *("vocabulary", "paraphrase-export"),
 )
 # Lists that annotators add to, and rows that they change and delete.
 ADDED_BY_ANNOTATORS = (
     "entity-list",
     "entity-class-list",
     "predicate-list",
+    "recipe-list",
+    "primitive-list",
     "production-list",
     "template-list",
     "utterance-list",
@@ -105,6 +114,8 @@ CHANGED_BY_ANNOTATORS = (
     "entity-detail",
     "entity-class-detail",
     "predicate-detail",
+    "recipe-detail",
+    "primitive-detail",
     "production-detail",
     "template-detail",
 )
@@ -213,7 +224,10 @@ API_POLICY = [
     # What is only checked
     *(
         Rule(f"api:{name}", *annotators(NO_JSON), method="post")
-        for name in ("check-template", "check-production", "check-predicate", "suggestions")
+        for name in (
+            *("check-template", "check-production", "check-predicate", "suggestions"),
+            *("check-recipe", "check-primitive"),
+        )
     ),
     Rule("api:check-form", *members(NO_JSON), method="post"),
     # What annotators answer; the queue itself knows who may do which item
@@ -244,6 +258,7 @@ API_POLICY = [
         for name in ("audit", "work-item-list", "example-send")
     ),
     # Admins say who does what
+    Rule("api:recipe-book", *annotators(NO_VERSION), method="patch"),
     Rule("api:guidelines", *admins(NO_VERSION), method="patch"),
     Rule("api:queue-settings", *admins(YES)),
     Rule("api:queue-settings", *admins(NO_VERSION), method="patch"),
@@ -297,7 +312,10 @@ API_POLICY = [
     Rule("api:dialogue-detail", *READ),
     Rule("api:dialogue-list", NO_TOKEN, NOWHERE, *[NO_JSON] * 3, method="post"),
     Rule("api:dialogue-answer", NO_TOKEN, NOWHERE, *[NO_JSON] * 3, method="post"),
-    Rule("api:plan", NO_TOKEN, NOWHERE, *[NO_JSON] * 3, method="post"),
+    *(
+        Rule(f"api:{name}", *members(NO_JSON), method="post")
+        for name in ("plan", "task-plan", "joint-plan")
+    ),
     Rule("api:action-names", *READ),
     Rule("api:action-names", *annotators(NO_JSON), method="post"),
     Rule("api:offered-entity-list", *READ),

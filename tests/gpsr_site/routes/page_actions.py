@@ -75,6 +75,13 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "entity": "patch entity-detail",
     "entity_class_new": "post entity-class-list",
     "entity_class": "patch entity-class-detail",
+    "recipe_new": "post recipe-list",
+    "recipe": "patch recipe-detail",
+    "recipe_preview": "post check-recipe",
+    "primitive_new": "post primitive-list",
+    "primitive": "patch primitive-detail",
+    "primitive_preview": "post check-primitive",
+    "recipe_book": "patch recipe-book",
     "predicate_new": "post predicate-list",
     "predicate": "patch predicate-detail",
     "predicate_preview": "post check-predicate",
@@ -91,7 +98,7 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "template_consequences": "post check-template",
     "template_suggestions": "post suggestions",
     "delete_row": "delete entity-detail, delete predicate-detail, delete production-detail, "
-    "delete entity-class-detail, "
+    "delete entity-class-detail, delete recipe-detail, delete primitive-detail, "
     "delete template-detail, delete paraphrase-detail, delete utterance-detail",
     "history": "post history",
     "rename": "post rename",
@@ -155,6 +162,7 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "tryout_ask": "post parse",
     # Parsing
     "playground_ask": "post parse",
+    "joint_plan_ask": "post joint-plan",
     "playground_wrong": "post parse-wrong",
     "promotion_promote": "post promotion-list",
     "promotion_roll_back": "post promotion-roll-back",
@@ -191,6 +199,7 @@ PAGE_VIEWS: dict[str, str | NoRoute] = {
     "ontology": "get entity-list",
     "entity_classes": "get entity-class-list",
     "class_colours": NoRoute("The route of classes gives their hues."),
+    "recipes": "get recipe-list, get primitive-list, get recipe-book, get shipped-books",
     "predicates": "get predicate-list",
     "grammar": "get production-list",
     "coverage": "get task-categories",
@@ -240,7 +249,7 @@ PAGE_VIEWS: dict[str, str | NoRoute] = {
     "probes": "get run-probes",
     "predictions": "get predictions, get candidates",
     "review": "get predictions, get answer-review",
-    **dict.fromkeys(("playground", "tryout"), CHOICES),
+    **dict.fromkeys(("playground", "tryout", "joint_plan"), CHOICES),
     **dict.fromkeys(("promotions", "parser_state"), "get promotion-list"),
     "offered_entities": "get offered-entity-list",
     "plan_schema": NoRoute("The page is the file itself, for programs."),

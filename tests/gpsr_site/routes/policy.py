@@ -87,6 +87,7 @@ POLICY = [
             "entity",
             "entity_classes",
             "class_colours",
+            "recipes",
             "predicates",
             "grammar",
             "coverage",
@@ -127,6 +128,7 @@ POLICY = [
             "probes",
             "tryout",
             "playground",
+            "joint_plan",
             "parser_state",
             "promotions",
             "predictions",
@@ -157,6 +159,7 @@ POLICY = [
             "progress",
         )
     ),
+    Rule("joint_plan_ask", *MEMBERS, method="post"),
     # Who may see a world may talk about its commands
     Rule("dialogues", LOG_IN, NOWHERE, 422, 422, 422, method="post"),
     Rule("dialogue", LOG_IN, NOWHERE, 422, 422, 422, method="post"),
@@ -179,6 +182,14 @@ POLICY = [
     Rule("entity_class", *ANNOTATORS, method="post"),
     Rule("entity_class_new", *ANNOTATORS),
     Rule("entity_class_new", *ANNOTATORS, method="post"),
+    *(Rule(name, *MEMBERS) for name in ("recipe", "primitive")),
+    *(
+        Rule(name, *ANNOTATORS, method="post")
+        for name in ("recipe", "primitive", "recipe_preview", "primitive_preview")
+    ),
+    *(Rule(name, *ANNOTATORS) for name in ("recipe_new", "primitive_new")),
+    *(Rule(name, *ANNOTATORS, method="post") for name in ("recipe_new", "primitive_new")),
+    Rule("recipe_book", LOG_IN, NOWHERE, GONE_ON, NO, GONE_ON, method="post"),
     Rule("predicate", *MEMBERS),
     Rule("predicate", *ANNOTATORS, method="post"),
     Rule("predicate_new", *ANNOTATORS),

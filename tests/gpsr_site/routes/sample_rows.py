@@ -179,6 +179,16 @@ def entity_class(sample: SampleWorld) -> EntityClass:
     return own_class_in(sample.world)
 
 
+def recipe(sample: SampleWorld) -> Model:
+    return sample.world.recipes.first()
+
+
+def primitive(sample: SampleWorld) -> Model:
+    """Return a primitive that no recipe uses, so that it can be deleted."""
+    values = {"text": "dance()", "position": 1_000}
+    return sample.world.primitives.get_or_create(name="dance", defaults=values)[0]
+
+
 def predicate(sample: SampleWorld) -> Model:
     return sample.world.predicates.first()
 

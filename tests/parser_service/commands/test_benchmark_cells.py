@@ -12,10 +12,14 @@ from django.core.management import CommandError, call_command
 
 from annotations.language.corpus import harmonic_mean
 from annotations.language.forms import read_form
+from annotations.language.ontology import Ontology
 from annotations.language.predicates import infer_signatures
+from annotations.language.recipes import RecipeBook, default_book
+from parser_service.analysis.plan_agreement import PlanAgreement
 from parser_service.analysis.probabilities import NO_PROBABILITY, probability_of
 from parser_service.analysis.scores import Judgement
 from parser_service.benchmarking.benchmark_cells import TrialGroup, declared_by
+from parser_service.benchmarking.corpus import Corpus
 from parser_service.benchmarking.measured_answers import PairAnswer, PartAnswers
 from parser_service.benchmarking.trials import TrialColumn, trials
 from parser_service.management.options import read_column
@@ -76,6 +80,27 @@ def test_every_cell_has_an_interval_over_clusters(folder, tmp_path):
             sum(right for right, _ in tally) == cell["accuracy_validation"] * cell["n_validation"]
         )
         assert "harmonic_mean" not in cell
+
+
+def test_every_cell_says_how_many_answers_have_the_same_plan(folder, tmp_path):
+    for cell in run(folder, tmp_path / "cells.json"):
+        for part, ending in (("validation", ""), ("known", "_known")):
+            low, high = cell[f"interval_same_plan{ending}"]
+            assert cell[f"accuracy_{part}"] <= cell[f"same_plan_{part}"]
+            assert low <= cell[f"same_plan_{part}"] <= high
+            tally = cell["outcomes_same_plan"][part].values()
+            assert sum(right for right, _ in tally) == cell[f"same_plan_{part}"] * cell[f"n_{part}"]
+        assert cell["same_plan_test"] is None
+
+
+def test_other_recipes_are_another_measurement():
+    (trial,) = trials(["knn"], [TrialColumn("gen-gen", "command", "strict")], seeds=[0])
+    corpus = Corpus("command", {})
+    groups = (
+        TrialGroup((trial,), corpus, Knowledge(), "", PlanAgreement(Ontology(()), {}, book))
+        for book in (default_book(), RecipeBook())
+    )
+    assert len({group.key(trial) for group in groups}) == 2
 
 
 def test_a_similarity_is_no_probability_and_says_so(folder, tmp_path):

@@ -69,9 +69,9 @@ def test_patience_ends_before_that_of_whoever_asks_the_parse_server():
     assert remote.PATIENCE < PATIENCE
 
 
-def test_a_model_that_takes_too_long_ends_in_a_sentence(shelf, tiny, monkeypatch):
-    service = shelf.find("home", None, 0)
-    monkeypatch.setattr(service.parser.batcher, "_patience", 0.3)
+def test_a_model_that_takes_too_long_ends_in_a_sentence(run, tiny):
+    shelf = Shelf(10_000_000, Metrics(), patience=0.3)
+    shelf.update()
     tiny.seconds = 30
     began = time.monotonic()
     with pytest.raises(NotServed, match=r"\b0\.3 s") as caught:

@@ -27,11 +27,15 @@ def varied(sample) -> SampleWorld:
         row.is_exact_match = False
         row.is_equivalent = number == 5
         row.is_well_formed = number > 1
+        row.is_same_plan = None if number == 2 else number > 3
         row.label_in_training = number
         row.save()
     for row in best[len(ANSWERS) :]:
         Prediction.objects.filter(pk=row.pk).update(
-            logical_form=row.example.logical_form, is_exact_match=True, is_equivalent=True
+            logical_form=row.example.logical_form,
+            is_exact_match=True,
+            is_equivalent=True,
+            is_same_plan=True,
         )
     wrong = ErrorCategory.objects.create(
         world=sample.world, code="wrong_predicate", name="wrong predicate", position=1

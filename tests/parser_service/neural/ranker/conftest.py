@@ -30,6 +30,7 @@ def config(tmp_path_factory):
         averaging=0.9,
         pretrained_share=0.0,
         pretrained_share_domain=0.0,
+        rewordings=0,
         threads=1,
     )
 

@@ -7,6 +7,7 @@ import pytest
 
 from parser_service.neural.ranker.calibration import TERMS
 from parser_service.neural.ranker.form_ranker import FormRanker
+from parser_service.neural.ranker.ranked_forms import reword
 from parser_service.parsers.interface import Cancelled, Knowledge
 from tests.parser_service.neural.ranker.sample_domain import UNSEEN, domain, utterances
 
@@ -187,3 +188,34 @@ def test_an_utterance_longer_than_the_encoder_reads_says_so(learned):
         learned.predict(["bring the <object> " * 40], 2)[0],
     )
     assert not short.is_cut and long.is_cut and other.is_cut
+
+
+@pytest.fixture(scope="module")
+def learned_domain(config, pairs):
+    parser = FormRanker(replace(config, steps=60, rewordings=2), 1, domain())
+    parser.fit(pairs, pairs)
+    return parser
+
+
+def test_what_is_no_command_is_answered_with_unknown_by_a_hesitant_parser_alone(learned_domain):
+    [[answer, *_]] = learned_domain.hesitant().predict(["never mind"], 2)
+    assert (answer.form, answer.origin) == ("UNKNOWN", "refusal")
+    assert learned_domain.predict(["never mind"])[0][0].form != "UNKNOWN"
+
+
+def test_kinds_of_requests_are_no_answers(learned_domain):
+    answers = learned_domain.predict(["find it"], 10_000)[0]
+    ranked = learned_domain._ranked
+    assert ranked.requests > 5
+    assert len(answers) == len(ranked.forms) - ranked.requests
+    assert all(each.form.startswith("(") for each in answers)
+
+
+def test_a_form_that_nobody_paraphrased_has_rewordings(pairs):
+    generated = [replace(pair, source="generated") for pair in pairs]
+    knowledge = domain()
+    said = reword([*generated, replace(pairs[0], source="paraphrased")], knowledge, 3, seed=0)
+    forms = {form for _, form in said}
+    assert forms == {pair.form for pair in pairs} - {pairs[0].form}
+    assert reword(generated, Knowledge(), 3, seed=0) == []
+    assert said == reword([*generated, replace(pairs[0], source="paraphrased")], knowledge, 3, 0)

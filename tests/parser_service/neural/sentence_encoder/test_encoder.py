@@ -1,7 +1,11 @@
+import shutil
+
 import pytest
 import torch
 from tokenizers.processors import TemplateProcessing
+from transformers import MPNetConfig, MPNetModel
 
+from annotations.language.errors import Refusal
 from parser_service.neural.pretrained import load_encoder
 from parser_service.neural.sentence_encoder import SentenceEncoder
 from parser_service.neural.sentence_encoder.encoder import LONGEST
@@ -67,3 +71,41 @@ def test_described_and_loaded_it_encodes_alike(encoder, tmp_path):
 def test_word_embeddings_are_not_trained(encoder):
     trained = {name for name, weight in encoder.named_parameters() if weight.requires_grad}
     assert not any("word_embeddings" in name for name in trained) and trained
+
+
+def test_frozen_layers_are_not_trained_and_those_above_are(folder):
+    encoder = SentenceEncoder.of(load_encoder(str(folder)), frozen_layers=1)
+    encoder(TEXTS).sum().backward()
+    changed = {name for name, weight in encoder.named_parameters() if weight.grad is not None}
+    assert changed and all(".layer.1." in name for name in changed)
+
+
+def test_an_encoder_needs_a_layer_that_is_trained(folder):
+    with pytest.raises(Refusal) as refused:
+        SentenceEncoder.of(load_encoder(str(folder)), frozen_layers=2)
+    assert refused.value.code == "hyperparameter_out_of_range"
+
+
+def test_another_transformer_encodes_and_is_loaded_like_one_of_bert(folder, tmp_path):
+    config = MPNetConfig(
+        vocab_size=len(load_encoder(str(folder)).tokenizer),
+        hidden_size=32,
+        num_hidden_layers=2,
+        num_attention_heads=2,
+        intermediate_size=64,
+        max_position_embeddings=80,
+    )
+    published = tmp_path / "published"
+    shutil.copytree(folder, published)
+    MPNetModel(config).eval().save_pretrained(published)
+    pretrained = load_encoder(str(published))
+    encoder = SentenceEncoder.of(pretrained, frozen_layers=1).eval()
+    read = [encoder.tokenizer.encode(text).ids for text in TEXTS]
+    with torch.no_grad():
+        states = [pretrained.model.eval()(torch.tensor([ids])).last_hidden_state[0] for ids in read]
+    means = torch.stack([state.mean(0) / state.mean(0).norm() for state in states])
+    assert torch.allclose(encoder.vectors(TEXTS), means, atol=1e-5)
+    encoder.describe(tmp_path)
+    other = SentenceEncoder.described_in(tmp_path).eval()
+    other.load_state_dict(encoder.state_dict())
+    assert torch.equal(other.vectors(TEXTS), encoder.vectors(TEXTS))

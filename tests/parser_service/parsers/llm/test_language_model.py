@@ -7,7 +7,14 @@ import json
 import pytest
 
 from annotations.language.errors import Refusal
-from annotations.language.predicates import Predicate, PredicateKind, read_signatures
+from annotations.language.forms import read_form
+from annotations.language.ontology import Entity, Ontology
+from annotations.language.predicates import (
+    Predicate,
+    PredicateKind,
+    infer_signatures,
+    read_signatures,
+)
 from parser_service.parsers.interface import TRAINING, Cancelled, Knowledge, Observer, Pair
 from parser_service.parsers.knn import NearestNeighbour
 from parser_service.parsers.llm.config import LanguageModelConfig
@@ -16,6 +23,12 @@ from tests.parser_service.llm_server import KEY, MODEL, REPORTED, says
 from tests.parser_service.made_up import made_up_pairs
 
 PAIRS = [Pair(command, form) for command, _, form in made_up_pairs()]
+GO, FIND, FOLLOW = '( go " <room> " )', "( find ( lambda $1 e ( person $1 ) ) )", "( follow them )"
+COMPOSED = [
+    Pair("go to the <room> and find somebody", f"( sequence {GO} {FIND} )"),
+    Pair("find somebody and follow them", f"( sequence {FIND} {FOLLOW} )"),
+    Pair("go to the <room>", GO),
+]
 BRING = '( bring ( lambda $1 e ( is_a $1 " <object> " ) ) )'
 POINT = '( point ( lambda $1 e ( is_a $1 " <object> " ) ) )'
 
@@ -116,6 +129,65 @@ def test_a_free_answer_is_read_as_a_form(place, tiny, text, form, origin):
     assert (answer.form, answer.origin, answer.score) == (form, origin, 0)
     assert "response_format" not in tiny.asked[-1]
     assert tiny.asked[-1]["messages"][-2]["content"].startswith("( ")
+
+
+def test_where_commands_are_composed_the_list_is_one_of_actions(place, tiny):
+    parser = fitted(COMPOSED)
+    parser.predict(["go to the <room> now"])
+    asked = tiny.asked[-1]
+    actions = asked["response_format"]["json_schema"]["schema"]["properties"]["actions"]
+    assert set(actions["items"]["enum"]) == {GO, FIND, FOLLOW, "UNKNOWN"}
+    assert (actions["minItems"], actions["maxItems"]) == (1, 2)
+    system, *_, last, _ = (each["content"] for each in asked["messages"])
+    assert "( sequence" in system and "them" in system
+    assert json.loads(last) == {"actions": [GO]}
+    single = tiny.asked[0]["messages"][0]["content"]
+    fitted()
+    assert "sequence" not in tiny.asked[-1]["messages"][0]["content"] and single == system
+
+
+@pytest.mark.parametrize(
+    ("text", "form", "origin"),
+    [
+        (json.dumps({"actions": [GO, FIND]}), f"( sequence {GO} {FIND} )", TRAINING),
+        (f"```json\n{json.dumps({'actions': [GO]})}\n```", GO, TRAINING),
+        (f"( sequence {FIND} {FOLLOW} )", f"( sequence {FIND} {FOLLOW} )", TRAINING),
+        (json.dumps({"actions": [FIND, GO]}), f"( sequence {FIND} {GO} )", "composed"),
+        # What the list does not have, and what nothing stands for, stays open.
+        (json.dumps({"actions": [GO, POINT]}), f"( sequence {GO} UNKNOWN )", "written"),
+        (json.dumps({"actions": [GO, "UNKNOWN"]}), f"( sequence {GO} UNKNOWN )", "written"),
+        (json.dumps({"actions": [GO, FOLLOW]}), f"( sequence {GO} ( follow UNKNOWN ) )", "written"),
+        (json.dumps({"actions": ["UNKNOWN"]}), "UNKNOWN", ""),
+    ],
+)
+def test_actions_are_put_together_in_their_order(place, tiny, text, form, origin):
+    parser = fitted(COMPOSED)
+    tiny.always = says(text)
+    [[answer]] = parser.predict(["go to the <room> then"], 5)
+    assert (answer.form, answer.origin) == (form, origin)
+
+
+@pytest.mark.parametrize(
+    "answer", [{"actions": [POINT]}, {"actions": []}, {"actions": [GO, GO, GO]}, {"actions": GO}]
+)
+def test_more_actions_than_any_form_has_or_none_of_the_list_are_no_answer(place, tiny, answer):
+    parser = fitted(COMPOSED)
+    tiny.always = says(json.dumps(answer))
+    assert parser.predict(["go to the <room> then"]) == [[]]
+
+
+@pytest.mark.parametrize("decoding", ["listed", "free"])
+def test_in_the_domain_an_answer_holds_what_the_world_has(place, tiny, decoding):
+    ontology = Ontology((Entity("room", "kitchen"), Entity("room", "study")))
+    predicates = infer_signatures(read_form(pair.form) for pair in COMPOSED)
+    parser = fitted(COMPOSED, Knowledge(predicates, ontology), decoding=decoding)
+    tiny.always = says('( sequence ( go " kitchn " ) ( point " kitchen " ) )\nuser: go')
+    [[answer]] = parser.predict(["go to the kitchen and dance"])
+    if decoding == "free":
+        assert (answer.form, answer.values) == (f"( sequence {GO} UNKNOWN )", ("kitchen",))
+    tiny.always = says(f'( sequence ( go " kitchn " ) {FIND} )')
+    [[answer]] = parser.predict(["go to the kitchen and find one"])
+    assert (answer.form, answer.values) == (f"( sequence {GO} {FIND} )", ("kitchen",))
 
 
 def test_an_answer_holds_nothing_that_a_database_refuses(place, tiny):

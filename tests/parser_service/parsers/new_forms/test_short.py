@@ -3,7 +3,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from annotations.language.corpus import read_pairs
-from annotations.language.forms import UNKNOWN, Application, Constant, Lambda, Variable, read_form
+from annotations.language.forms import (
+    UNKNOWN,
+    Application,
+    Constant,
+    Lambda,
+    Reference,
+    Variable,
+    read_form,
+)
 from parser_service.parsers.new_forms.short import lengthen, name_of, shorten
 
 NAMES = st.text('aL:$#?/() "é_', min_size=1, max_size=4).map(lambda name: f"p{name}")
@@ -11,7 +19,7 @@ LEAVES = st.one_of(
     st.builds(Variable, st.integers(1, 9)),
     st.builds(Constant, st.integers(0, 99)),
     st.builds(Constant, st.text("L$#?:%/(< >é1", min_size=1).filter(str.strip)),
-    st.just(UNKNOWN),
+    st.sampled_from([UNKNOWN, Reference("it"), Reference("them")]),
 )
 
 

@@ -84,6 +84,39 @@ def test_each_cell_of_the_matrix_leads_to_the_answers_that_it_counts(sample, sec
             assert total_behind(anna, cell.url) == cell.count
 
 
+def test_runs_are_compared_by_plan_too(sample, second, anna):
+    """One more answer of the first run has the plan of its label, though another form."""
+    wrong = sample.run.predictions.filter(is_exact_match=False).order_by("example_id").last()
+    Prediction.objects.filter(pk=wrong.pk).update(is_same_plan=True)
+    by_form, by_plan = (
+        compare(anna, sample.run, second, measure=measure).context
+        for measure in ("exact", "same_plan")
+    )
+    assert by_form["measure"] == "exact"
+    assert [cell.correct for *_, cell in by_form["accuracies"]] == [3, 8]
+    assert [cell.correct for *_, cell in by_plan["accuracies"]] == [4, 8]
+    cells = [cell for _, row in by_plan["matrix"] for cell in row if cell.count]
+    cells += [cell for *_, cell in by_plan["accuracies"]]
+    for cell in cells:
+        behind = cell.count - cell.correct if hasattr(cell, "correct") else cell.count
+        assert total_behind(anna, cell.url) == behind
+    (bigger,) = [url for measure, url in by_plan["measure_urls"] if measure == "exact"]
+    assert anna.get(f"{PAGE}{bigger}").context["measure"] == "exact"
+
+
+def test_a_run_whose_plans_were_not_compared_is_named(sample, second, anna):
+    second.predictions.update(is_same_plan=None)
+    for measure, named in (("exact", []), ("same_plan", [second])):
+        page = compare(anna, sample.run, second, measure=measure)
+        assert page.context["compared"].without_plans == [second]
+        notes = re.findall(r'/runs/(\d+)/">run \d+</a> were not all', page.content.decode())
+        assert notes == [str(run.pk) for run in named]
+
+
+def test_a_measure_that_is_misspelled_is_exact_match(sample, second, anna):
+    assert compare(anna, sample.run, second, measure="best").context["measure"] == "exact"
+
+
 def test_slices_are_those_of_the_core_and_lead_to_their_answers(sample, second, anna):
     context = compare(anna, sample.run, second).context
     tables = {table.name: table for table in context["breakdowns"]}

@@ -50,7 +50,7 @@ def test_no_cell_of_the_download_is_taken_for_a_formula(sample, anna):
     assert "'-1-1" in anna.get("/w/home/results.csv").content.decode()
 
 
-@pytest.mark.parametrize("measure", ["exact", "equivalent", "both", "well_formed"])
+@pytest.mark.parametrize("measure", ["exact", "equivalent", "same_plan", "all", "well_formed"])
 @pytest.mark.parametrize("beside", ["yes", ""])
 def test_every_download_holds_what_the_page_shows(measure, beside, sample, anna, published):
     equivalents(sample, 5 / 12)
@@ -58,7 +58,7 @@ def test_every_download_holds_what_the_page_shows(measure, beside, sample, anna,
     chosen = {"measure": measure, "published": beside, "part": "validation"}
     page = anna.get("/w/home/results/", chosen).content.decode()
     percents = SHOWN.findall(page)
-    assert len(percents) == (4 if measure == "both" else 2)
+    assert len(percents) == (6 if measure == "all" else 2)
     lines = list(
         csv.DictReader(io.StringIO(anna.get("/w/home/results.csv", chosen).content.decode()))
     )
@@ -71,22 +71,42 @@ def test_every_download_holds_what_the_page_shows(measure, beside, sample, anna,
     assert cells == percents
     assert f"±{float(lines[-1]['plus_minus']):.1f}" in page
     assert rf"$\pm$ {figures[-1]['plus_minus']:.1f}" in latex
-    is_beside = bool(beside) and measure in ("exact", "both")
+    is_beside = bool(beside) and measure in ("exact", "all")
     assert {line["published"] for line in lines} >= ({"63.0"} if is_beside else {""})
     assert ("(63.0)" in latex) == is_beside == any(each["published"] == 63.0 for each in figures)
 
 
+def test_a_figure_that_is_not_known_is_a_line_without_numbers(sample, anna):
+    sample.run.evaluations.update(same_plan=None)
+    seeds(sample, 2)
+    chosen = {"measure": "same_plan", "part": "validation"}
+    unknown, known = anna.get("/w/home/results.json", chosen).json()["figures"]
+    assert (unknown["measure"], unknown["percent"], unknown["same_plan"]) == (
+        "same_plan",
+        None,
+        None,
+    )
+    assert unknown["accuracy"] == 0.25
+    assert known["percent"] == pytest.approx(100 * known["same_plan"])
+    lines = csv.DictReader(
+        io.StringIO(anna.get("/w/home/results.csv", chosen).content.decode(), newline="")
+    )
+    assert [line["percent"] == "" for line in lines] == [True, False]
+    assert "& -- " in anna.get("/w/home/results.tex", chosen).content.decode()
+    assert SHOWN.findall(anna.get("/w/home/results/", chosen).content.decode()) == ["16.7"]
+
+
 def test_the_downloads_are_offered_with_the_choices_of_the_page(sample, anna):
-    page = anna.get("/w/home/results/", {"measure": "both", "part": "test"}).content.decode()
+    page = anna.get("/w/home/results/", {"measure": "all", "part": "test"}).content.decode()
     for ending in ("csv", "tex", "json"):
-        query = "part=test&amp;split=home-split&amp;measure=both"
+        query = "part=test&amp;split=home-split&amp;measure=all"
         assert f'href="/w/home/results.{ending}?{query}"' in page
 
 
 def test_the_latex_has_as_many_cells_in_every_line_and_closes_what_it_opens(sample, anna):
     scored_run(sample.world, sample.split, "seq2seq")
-    both = {"measure": "both"}
-    latex = anna.get("/w/home/results.tex", both).content.decode()
+    every = {"measure": "all"}
+    latex = anna.get("/w/home/results.tex", every).content.decode()
     (columns,) = re.findall(r"\\begin\{tabular\}\{l(r+)\}", latex)
     for line in latex.splitlines():
         if line.endswith(r"\\"):
@@ -112,7 +132,7 @@ def test_what_people_named_is_escaped_in_latex(sample, anna):
 @pytest.mark.skipif(not which("pdflatex"), reason="there is no LaTeX")
 def test_the_latex_compiles(sample, anna, tmp_path):
     seeds(sample, 2, 6)
-    tables_of_all = anna.get("/w/home/results.tex", {"measure": "both"}).content.decode()
+    tables_of_all = anna.get("/w/home/results.tex", {"measure": "all"}).content.decode()
     odd = escape('a_b % & # $ ~ ^ \\ {x} <y> "q" |')
     preamble = r"\documentclass{article}\usepackage{booktabs}\begin{document}"
     text = "\n".join([preamble, tables_of_all, odd, r"\end{document}"])

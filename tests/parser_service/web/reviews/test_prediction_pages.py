@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from django.utils.html import escape
 
@@ -12,6 +14,8 @@ from parser_service.templatetags.provenance import (
     score_kind_in_words,
     seen_in_training,
 )
+
+VERDICT = re.compile(r'<span class="verdict[^"]*">\S\s+([^<]+)</span>')
 
 
 def predictions(client, sample, **chosen):
@@ -47,6 +51,17 @@ def test_an_answer_that_is_right_but_for_the_order_is_found(sample, anna):
     Prediction.objects.filter(pk=wrong.pk).update(is_equivalent=True)
     assert totals(anna, sample, outcome="equivalent") == 1
     assert "equivalent" in predictions(anna, sample, outcome="equivalent").content.decode()
+
+
+def test_an_answer_with_the_same_plan_says_so_and_one_without_a_comparison_does_not(sample, anna):
+    wrong = Prediction.objects.filter(is_exact_match=False).first()
+    Prediction.objects.filter(pk=wrong.pk).update(is_same_plan=True)
+    assert totals(anna, sample, outcome="only_plan") == 1
+    page = predictions(anna, sample, outcome="only_plan").content.decode()
+    assert VERDICT.findall(page) == ["same plan"]
+    Prediction.objects.filter(pk=wrong.pk).update(is_same_plan=None)
+    assert totals(anna, sample, outcome="only_plan") == 0
+    assert totals(anna, sample, outcome="other_plan") == 8
 
 
 def test_the_head_predicate_of_the_annotated_form_filters(sample, anna):

@@ -174,6 +174,24 @@ def test_all_candidates_are_shown_in_order(run, anna):
     assert "0.250" in page.content.decode()
 
 
+@pytest.mark.parametrize(
+    ("met", "verdict"),
+    [
+        ((True, True, True), "exact"),
+        ((False, True, True), "equivalent"),
+        ((False, False, True), "same plan"),
+        ((False, False, False), "wrong"),
+        ((False, False, None), "wrong"),
+    ],
+)
+def test_the_page_says_which_measure_an_answer_meets(run, anna, met, verdict):
+    answer = run.predictions.first()
+    names = ("is_exact_match", "is_equivalent", "is_same_plan")
+    Prediction.objects.filter(pk=answer.pk).update(**dict(zip(names, met, strict=True)))
+    page = look(anna, run, example=answer.example_id).content.decode()
+    assert verdict in re.findall(r'<span class="verdict[^"]*">\S\s+([^<]+)</span>', page)
+
+
 def test_an_example_that_one_run_was_not_asked_about_says_so(run, other, anna):
     other.predictions.filter(example=wrong_of(run)[0]).delete()
     page = look(anna, run, other, example=wrong_of(run)[0])

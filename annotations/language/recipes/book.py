@@ -1,0 +1,193 @@
+"""A recipe book: the primitives of a team's robot and the recipes that use them; the books that ship."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
+from pathlib import Path
+
+from annotations.language.errors import (
+    LanguageError,
+    Position,
+    Problem,
+    Severity,
+    error_at,
+    warning_at,
+)
+from annotations.language.recipes.reading import read_primitive, read_recipe
+from annotations.language.recipes.rows import Name, Primitive, Recipe
+from annotations.language.recipes.values import KINDS
+
+DEFAULT_BOOK = "primitives"
+_FOLDER = Path(__file__).parent / "books"
+
+
+@dataclass(frozen=True)
+class RecipeBook:
+    """Primitives and recipes in the order of their rows."""
+
+    primitives: tuple[Primitive, ...] = ()
+    recipes: tuple[Recipe, ...] = ()
+
+    def primitive(self, name: str) -> Primitive | None:
+        """Return the primitive of a name; None if there is none."""
+        return self._by_name.get(name)
+
+    def recipes_of(self, action: str) -> Sequence[Recipe]:
+        """Return the recipes of an action that can be used: those without an error."""
+        return self._usable.get(action, ())
+
+    @cached_property
+    def _by_name(self) -> Mapping[str, Primitive]:
+        return {each.name: each for each in reversed(self.primitives)}
+
+    @cached_property
+    def _usable(self) -> Mapping[str, Sequence[Recipe]]:
+        recipes: dict[str, list[Recipe]] = {}
+        for each in self.recipes:
+            if not any(self._call_problems(each)):
+                recipes.setdefault(each.pattern.action, []).append(each)
+        return recipes
+
+    def problems(
+        self, actions: Collection[str] | None = None, classes: Collection[str] = ()
+    ) -> tuple[Problem, ...]:
+        """Return what is wrong with the rows as a whole: an error for what cannot work, else a warning.
+
+        Args:
+            actions: the actions of the world's forms, if known; a recipe of another one is never used.
+            classes: the tokens of the world's entity classes, which arguments can be restricted to.
+        """
+        return (*self._primitive_problems(), *self._recipe_problems(actions, classes))
+
+    def _primitive_problems(self) -> Iterator[Problem]:
+        seen: set[str] = set()
+        for each in self.primitives:
+            if each.name in seen:
+                yield error_at(each.position, f"{each.name} is there twice", "remove one row")
+            seen.add(each.name)
+        used = {call.primitive for recipe in self.recipes for call in recipe.calls}
+        for each in self.primitives:
+            if each.name not in used:
+                yield warning_at(
+                    each.position, f"no recipe uses {each.name}", "use it, or remove it"
+                )
+
+    def _recipe_problems(
+        self, actions: Collection[str] | None, classes: Collection[str]
+    ) -> Iterator[Problem]:
+        shapes = set()
+        for recipe in self.recipes:
+            if recipe.pattern.shape() in shapes:
+                message = f"{recipe.pattern} has a recipe already"
+                yield error_at(recipe.position, message, "remove one of the two")
+            shapes.add(recipe.pattern.shape())
+            if actions is not None and recipe.pattern.action not in actions:
+                message = f"no form has the action {recipe.pattern.action}"
+                yield warning_at(recipe.position, message, "check its spelling")
+            for kind in _kinds(recipe):
+                if classes and kind not in KINDS and kind not in classes:
+                    hint = f"use a class of the world, or {', '.join(sorted(KINDS))}"
+                    yield warning_at(recipe.position, f"no value is a “{kind}”", hint)
+            yield from self._call_problems(recipe)
+
+    def _call_problems(self, recipe: Recipe) -> Iterator[Problem]:
+        results: set[str] = set()
+        for call in recipe.calls:
+            primitive = self.primitive(call.primitive)
+            if primitive is None:
+                names = ", ".join(each.name for each in self.primitives)
+                hint = f"there are {names}" if names else "add a row for it"
+                yield error_at(call.position, f"there is no primitive {call.primitive}", hint)
+                continue
+            needed = sum(not each.is_optional for each in primitive.parameters)
+            if not needed <= len(call.arguments) <= len(primitive.parameters):
+                message = f"{call.primitive} does not take {len(call.arguments)} arguments"
+                yield error_at(call.position, message, f"its row is {primitive}")
+            if call.result and not primitive.gives_result:
+                message = f"{call.primitive} gives no result"
+                yield error_at(call.position, message, "only a primitive that learns gives one")
+            for argument in call.arguments:
+                if isinstance(argument, Name) and argument.part and argument.name in results:
+                    message = f"{argument.name} is a result, which has no {argument.part}"
+                    yield error_at(argument.position, message, "use the result as it is")
+            results |= {call.result} - {""}
+
+
+def read_book(
+    primitives: str, recipes: str, source: str = ""
+) -> tuple[RecipeBook, tuple[Problem, ...]]:
+    """Read a book from two texts with a row a line; ``#`` starts a line that is a comment.
+
+    Args:
+        primitives: rows of primitives.
+        recipes: rows of recipes.
+        source: what positions name; ``primitives`` and ``recipes`` if it is empty.
+
+    Returns:
+        The book of the rows that can be read, and the problems of the others and of the book.
+    """
+    problems: list[Problem] = []
+    read_primitives: list[Primitive] = []
+    read_recipes: list[Recipe] = []
+    for text, position in _rows(primitives, source or "primitives"):
+        try:
+            read_primitives.append(read_primitive(text, position))
+        except LanguageError as error:
+            problems.append(error.problem)
+    for text, position in _rows(recipes, source or "recipes"):
+        try:
+            read_recipes.append(read_recipe(text, position))
+        except LanguageError as error:
+            problems.append(error.problem)
+    book = RecipeBook(tuple(read_primitives), tuple(read_recipes))
+    return book, (*problems, *book.problems())
+
+
+@dataclass(frozen=True)
+class ShippedBook:
+    """A book that comes with the program; a world starts with a copy of its rows."""
+
+    name: str
+    title: str
+    description: str
+    book: RecipeBook
+
+
+@cache
+def shipped_books() -> dict[str, ShippedBook]:
+    """Return the books that ship by name, ``DEFAULT_BOOK`` first."""
+    books = {}
+    for path in sorted(_FOLDER.glob("*.toml"), key=lambda path: path.stem != DEFAULT_BOOK):
+        values = tomllib.loads(path.read_text(encoding="utf-8"))
+        book, problems = read_book(values["primitives"], values["recipes"], path.name)
+        errors = [each for each in problems if each.severity is Severity.ERROR]
+        if errors:
+            first = errors[0]
+            raise LanguageError(first.message, first.position, first.hint)
+        books[path.stem] = ShippedBook(path.stem, values["title"], values["description"], book)
+    return books
+
+
+def default_book() -> RecipeBook:
+    """Return the book that a new world starts with."""
+    return shipped_books()[DEFAULT_BOOK].book
+
+
+def _rows(text: str, source: str) -> Iterator[tuple[str, Position]]:
+    for number, line in enumerate(text.splitlines(), start=1):
+        row = line.strip()
+        if row and not row.startswith("#"):
+            yield row, Position(source, number, line.index(row) + 1)
+
+
+def _kinds(recipe: Recipe) -> Iterable[str]:
+    patterns = [recipe.pattern]
+    while patterns:
+        for each in patterns.pop().parameters:
+            if each.kind:
+                yield each.kind
+            if each.action:
+                patterns.append(each.action)

@@ -1,0 +1,238 @@
+"""Say a task plan in English: each step, and all of it as one sentence that a robot can speak."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from annotations.language.english import plural
+from annotations.language.forms import PERSON, THING, kind_of_class
+from annotations.language.grounding import QUESTION_WORD
+from annotations.language.plans import (
+    Described,
+    Named,
+    Number,
+    Operator,
+    Referred,
+    StepResult,
+    Words,
+)
+from annotations.language.recipes.rows import PLACEHOLDER, EffectKind, Primitive
+from annotations.language.recipes.task_plan import TaskPlan, TaskStep
+from annotations.language.recipes.values import PLACE, TaskValue, content, kinds_of
+
+YOU = "you"
+COME_BACK = "come back to you"
+NOTHING = "I have nothing to do."
+_PRONOUNS = {PERSON: "them", THING: "it"}
+_OWNERS = {"them": "their", "it": "its"}
+_OF_PRONOUN = re.compile(r"\bthe (?P<what>[\w ]+?(?: “[^”]*”)?) of (?P<owner>them|it)\b")
+_AT_HERE = re.compile(r" (?:on|to|at|in) here\b")
+_CLAUSE = re.compile(r" (who|that) is ")
+_CAPITAL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
+# What a person says about the robot, as the robot says it.
+_TURNED = {"yourself": "myself", "your": "my", "you": "me"}
+_TO_TURN = re.compile(rf"\b({'|'.join(_TURNED)})\b")
+
+
+def spoken(plan: TaskPlan) -> str:
+    """Return one sentence for the robot to speak.
+
+    >>> spoken(plan)
+    'I will go to the kitchen, find a coke, and bring it to you.'
+    """
+    clauses = _Clauses(plan.steps).all()
+    if not clauses:
+        return NOTHING
+    if len(clauses) > 2:
+        clauses = [", ".join(clauses[:-1]) + ",", clauses[-1]]
+    return f"I will {' and '.join(clauses)}."
+
+
+def step_texts(steps: Sequence[TaskStep]) -> list[str]:
+    """Return each step in English, to be read on its own."""
+    clauses = _Clauses(steps)
+    return [clauses.say(step, {}) for step in steps]
+
+
+@dataclass
+class _Clauses:
+    """Says steps one after another; what was mentioned last is ``it`` or ``them``."""
+
+    steps: Sequence[TaskStep]
+    _last: dict[str, object] = field(default_factory=dict)  # person or thing → the last mentioned
+
+    def all(self) -> list[str]:
+        clauses = []
+        at = 0
+        while at < len(self.steps):
+            step = self.steps[at]
+            delivery = self._delivery(at)
+            if delivery:
+                step = self.steps[at + delivery]
+                effect = step.primitive.effect(EffectKind.RELEASES)
+                assert effect is not None
+                is_to_you = isinstance(_value(step, effect.target), Operator)
+                pattern = f"bring {{{effect.subject}}} to {YOU}" if is_to_you else ""
+                clauses.append(self.say(step, self._last, pattern))
+            else:
+                clauses.append(self.say(step, self._last))
+            at += 1 + delivery
+            self._remember(step)
+        return clauses
+
+    def _delivery(self, at: int) -> int:
+        """Return how many steps further on the thing that is taken now is left, if nothing but a move comes between.
+
+        It is left at the place, or with the operator, where the robot is then; 0 if it is not.
+        """
+        take, *after = self.steps[at : at + 3]
+        if not take.primitive.effect(EffectKind.TAKES):
+            return 0
+        place = take.place
+        for distance, step in enumerate(after, start=1):
+            released = step.primitive.effect(EffectKind.RELEASES)
+            if released is None and not step.primitive.effect(EffectKind.MOVES):
+                return 0
+            if released is not None:
+                target = _value(step, released.target)
+                is_there = place and target and content(place) == content(target)
+                return distance if is_there and step.releases == take.holds else 0
+            place = step.place
+        return 0
+
+    def say(self, step: TaskStep, last: Mapping[str, object], pattern: str = "") -> str:
+        """Return a step in English, with pronouns for what was mentioned last."""
+        moves = step.primitive.effect(EffectKind.MOVES)
+        if moves and isinstance(_value(step, moves.subject), Operator):
+            return COME_BACK
+        values = dict(step.arguments)
+        found = step.primitive.effect(EffectKind.FINDS)
+        new = found.subject if found else ""
+        is_heard = any(PERSON in kinds_of(each) for each in values.values())
+
+        def words(name: str, is_plural: bool) -> str:
+            value = values.get(name)
+            if isinstance(value, StepResult):
+                return self._result(value.step, {} if is_heard else last)
+            return _say_value(value, {} if is_plural else last, name == new, is_plural)
+
+        text = _AT_HERE.sub(" here", _fill(pattern or _pattern(step.primitive, values), words))
+        return _OF_PRONOUN.sub(lambda match: f"{_OWNERS[match['owner']]} {match['what']}", text)
+
+    def _result(self, number: int, last: Mapping[str, object]) -> str:
+        """Return what a step has learnt; with its place where another step learns what has the same words."""
+        step = next((each for each in self.steps if each.number == number), None)
+        if step is None or not _learnt(step, {}):
+            return f"the result of step {number}"
+        words = _learnt(step, {})
+        is_one_of_many = sum(_learnt(each, {}) == words for each in self.steps) > 1
+        if is_one_of_many and step.place is not None:
+            return f"{words} {_preposition(step.place)} {_noun_phrase(step.place, False, False)}"
+        return _learnt(step, last)
+
+    def _remember(self, step: TaskStep) -> None:
+        for _, value in step.arguments:
+            for kind in kinds_of(value) & _PRONOUNS.keys():
+                self._last[kind] = _identity(value)
+
+
+def _learnt(step: TaskStep, last: Mapping[str, object]) -> str:
+    """Return the result of a step in English; empty if it has no words for it."""
+    effect = step.primitive.effect(EffectKind.LEARNS)
+    values = dict(step.arguments)
+    return _fill(
+        effect.noun if effect else "",
+        lambda name, is_plural: _say_value(
+            values.get(name), {} if is_plural else last, False, is_plural
+        ),
+    )
+
+
+def _preposition(place: TaskValue) -> str:
+    """Return "in" for a room, "with" for the operator and "at" for any other place."""
+    if isinstance(place, Operator):
+        return "with"
+    return "in" if isinstance(place, Named) and place.entity_class == "room" else "at"
+
+
+def _pattern(primitive: Primitive, values: Mapping[str, TaskValue]) -> str:
+    """Return the fullest pattern whose parameters all have a value."""
+    names = {
+        each: {match["name"] for match in PLACEHOLDER.finditer(each)} for each in primitive.said
+    }
+    fitting = [each for each in primitive.said if names[each] <= values.keys()]
+    if fitting:
+        return max(fitting, key=lambda each: len(names[each]))
+    name = _CAPITAL.sub(" ", primitive.name.replace("_", " ")).lower()
+    return " ".join((name, *(f"{{{each}}}" for each in values)))
+
+
+def _fill(pattern: str, words: Callable[[str, bool], str]) -> str:
+    return PLACEHOLDER.sub(lambda match: words(match["name"], bool(match["is_plural"])), pattern)
+
+
+def _say_value(
+    value: TaskValue | None, last: Mapping[str, object], is_new: bool, is_plural: bool
+) -> str:
+    return _mention(value, last) or _noun_phrase(value, is_new, is_plural)
+
+
+def _mention(value: TaskValue | None, last: Mapping[str, object]) -> str:
+    """Return the pronoun for what was mentioned last; empty for anything else."""
+    if value is None:
+        return ""
+    kinds = sorted(kinds_of(value) & _PRONOUNS.keys())
+    return next((_PRONOUNS[each] for each in kinds if last.get(each) == _identity(value)), "")
+
+
+def _noun_phrase(value: TaskValue | None, is_new: bool, is_plural: bool) -> str:
+    if isinstance(value, Referred):
+        return _noun_phrase(value.value, is_new, is_plural)
+    if isinstance(value, Operator):
+        return YOU
+    if isinstance(value, Number):
+        return str(value.value)
+    if isinstance(value, Words):
+        if value.text == QUESTION_WORD:
+            return f"the {value.text}"
+        return _TO_TURN.sub(lambda match: _TURNED[match[0]], value.text)
+    if isinstance(value, Named):
+        if kind_of_class(value.entity_class) not in ("", PERSON) or PLACE in kinds_of(value):
+            return f"the {value.text}"
+        if value.text.endswith("?"):
+            return f"the question “{value.text}”"
+        return _TO_TURN.sub(lambda match: _TURNED[match[0]], value.text)
+    if not isinstance(value, Described):
+        return "something"
+    if is_plural:
+        head, *clause = _CLAUSE.split(value.text.removeprefix("the "), maxsplit=1)
+        nouns = f"the {plural(head)}"
+        return f"{nouns} {clause[0]} are {clause[1]}" if clause else nouns
+    name = _only(value, "name", PERSON)
+    if name:
+        return name
+    thing = _only(value, "is_a", THING) if is_new else ""
+    if thing and not thing.endswith("s"):
+        return f"{'an' if thing[0] in 'aeiouAEIOU' else 'a'} {thing}"
+    return value.text or "it"
+
+
+def _only(value: Described, predicate: str, kind: str) -> str:
+    """Return the one entity that describes a value; empty where more is said of it."""
+    conditions = [each for each in value.conditions if each.values]
+    others = [each for each in value.conditions if not each.values and each.predicate != kind]
+    if others or len(conditions) != 1 or conditions[0].predicate != predicate:
+        return ""
+    (entity, *_) = conditions[0].values
+    is_entity = isinstance(entity, Named) and kind_of_class(entity.entity_class) == kind
+    return entity.text if is_entity and isinstance(entity, Named) else ""
+
+
+def _identity(value: TaskValue) -> object:
+    return value.id if isinstance(value, Described) else content(value)
+
+
+def _value(step: TaskStep, parameter: str) -> TaskValue | None:
+    return dict(step.arguments).get(parameter)

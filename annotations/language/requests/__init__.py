@@ -1,0 +1,17 @@
+"""What is asked of a robot: several commands at once, commands under a condition, and requests that are none."""
+
+from __future__ import annotations
+
+from annotations.language.requests.cutting import MOST_COMMANDS, Judge, cut_commands
+from annotations.language.requests.other_requests import OtherRequest, other_requests
+from annotations.language.requests.qualifying import is_qualified, says_number
+
+__all__ = [
+    "MOST_COMMANDS",
+    "Judge",
+    "OtherRequest",
+    "cut_commands",
+    "is_qualified",
+    "other_requests",
+    "says_number",
+]

@@ -1,0 +1,64 @@
+"""Template filters: the steps of a task plan, which come as plain data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from django import template
+
+from annotations.language.errors import Problem
+from annotations.language.recipes import Primitive
+
+register = template.Library()
+
+
+@register.filter
+def call(step: Mapping[str, Any]) -> str:
+    """Write the primitive of a step with its arguments: ``give(coke, operator)``."""
+    values = ", ".join(value_text(each) for each in step["arguments"].values())
+    return f"{step['primitive']}({values})"
+
+
+@register.filter
+def signature(primitive: Primitive) -> str:
+    """Write a primitive with its parameters: ``give(thing, person)``."""
+    return f"{primitive.name}({', '.join(map(str, primitive.parameters))})"
+
+
+@register.filter
+def facts(step: Mapping[str, Any]) -> list[str]:
+    """Say where a step happens, what the robot holds and releases, and which steps have to come before it."""
+    place = step["place"]
+    said = ["somewhere" if place is None else f"at {_place_text(place)}"]
+    said += [f"{name} {value_text(step[name])}" for name in ("holds", "releases") if step[name]]
+    if step["requires"]:
+        said.append(f"after {', '.join(map(str, step['requires']))}")
+    return said
+
+
+@register.filter
+def value_text(value: Mapping[str, Any] | None) -> str:
+    """Write a value of a plan in a few words; empty for none."""
+    if not value:
+        return ""
+    match value["kind"]:
+        case "operator":
+            return "operator"
+        case "result":
+            return f"result of {value['step']}"
+        case "number":
+            return str(value["value"])
+        case "open":
+            return f"which {value['entity_class']}".strip()
+    return str(value["text"])
+
+
+def _place_text(place: Mapping[str, Any]) -> str:
+    return "the operator" if place["kind"] == "operator" else value_text(place)
+
+
+@register.filter
+def excerpt_in(problem: Problem, text: str) -> str:
+    """Return the part of a text around the place of a problem, with a caret below it."""
+    return problem.position.excerpt(text)

@@ -1,0 +1,268 @@
+"""The recipes of a world and the primitives that they use, row by row and as a whole book."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from http import HTTPStatus
+from typing import Any
+
+from django.db import transaction
+from django.db.models import Model, QuerySet
+from drf_spectacular.utils import extend_schema
+from rest_framework import serializers
+from rest_framework.response import Response
+
+from annotations.checking.recipe_check import FIELD, RowModel, try_row
+from annotations.editing.recipe_books import replace_book, shipped_book_of
+from annotations.editing.recipe_deletion import delete_primitive
+from annotations.language.errors import Problem
+from annotations.language.recipes import MAX_ROW, RecipeBook, shipped_books
+from annotations.models import Duty, Primitive, Recipe, World
+from annotations.models.corpus import MOST_CHARACTERS
+from annotations.rows.from_rows import recipe_book_of
+from annotations.rows.stored_problems import as_json
+from annotations.web.description.check_rest import Check, FoundSerializer, replaced_field
+from annotations.web.description.recipe_forms import (
+    BookRowForm,
+    RecipeBookForm,
+    initial_values,
+)
+from annotations.web.rest.fields import Fields, LineField
+from annotations.web.rest.matching import etag_of, require_match
+from annotations.web.rest.permissions import ApiRequest
+from annotations.web.rest.problem_details import refusal_of_form
+from annotations.web.rest.routes import EditableViewSet, Noun, WorldRoute
+
+ROWS = ("primitives", "recipes")
+MOST_ROWS = 1_000  # of a kind, in a book
+
+
+class PrimitiveSerializer(serializers.ModelSerializer[Primitive]):
+    """Something that the robot can do: ``go_to(place) "go to {place}": moves to place``."""
+
+    class Meta:
+        model = Primitive
+        fields = ["id", "name", "text", "position", "version"]
+
+
+class RecipeSerializer(serializers.ModelSerializer[Recipe]):
+    """How the robot does an action: ``go(destination) -> go_to(destination)``."""
+
+    class Meta:
+        model = Recipe
+        fields = ["id", "action", "text", "position", "version"]
+
+
+class BookRowChange(Fields):
+    """A row as docs/reference/recipes.md describes it."""
+
+    text = LineField(max_length=MAX_ROW)
+
+
+class BookNoun(Noun):
+    """A kind of row of the book."""
+
+    new_serializer = BookRowChange
+    change_serializer = BookRowChange
+    row_model: RowModel
+
+    def rows(self) -> QuerySet[Any]:
+        return self.row_model._default_manager.filter(world=self.world)
+
+    def form_of(self, row: Any | None, sent: Mapping[str, Any]) -> BookRowForm:
+        stored = initial_values(row) if row else {}
+        return BookRowForm(self.world, self.row_model, row, {**stored, **sent}, initial=stored)
+
+    def unsaved(self, form: BookRowForm) -> Primitive | Recipe:
+        return self.row_model(world=self.world, **form.values)
+
+    def values_of(self, form: BookRowForm, row: Any) -> Mapping[str, Any]:
+        return form.values
+
+    def problems_of(self, form: BookRowForm) -> Iterable[Problem]:
+        return form.checked.problems
+
+
+class PrimitiveNoun(BookNoun):
+    model: type[Model] = Primitive
+    row_model = Primitive
+    serializer_class = PrimitiveSerializer
+
+
+class RecipeNoun(BookNoun):
+    model: type[Model] = Recipe
+    row_model = Recipe
+    serializer_class = RecipeSerializer
+
+
+class PrimitiveViewSet(PrimitiveNoun, EditableViewSet):
+    """What the robot can do. The name of a primitive changes by renaming."""
+
+    filter_backends = []
+    sorts = {"position": "position", "name": "name", "id": "pk"}
+
+    def destroy(self, request: ApiRequest, **kwargs: Any) -> Response:
+        """Deletes one that no recipe uses; its history can bring it back."""
+        row = self.matched()
+        delete_primitive(row, request.user, row.version)
+        return Response(status=HTTPStatus.NO_CONTENT)
+
+
+class RecipeViewSet(RecipeNoun, EditableViewSet):
+    """How the robot does the actions of forms."""
+
+    filter_backends = []
+    sorts = {"position": "position", "action": "action", "id": "pk"}
+
+
+class TaskPlanField(serializers.DictField):
+    """A task plan as docs/reference/recipes.md describes it."""
+
+
+class RecipeExampleSerializer(serializers.Serializer[Any]):
+    """A command of the world, and what the robot does by the row."""
+
+    command = serializers.CharField()
+    english = serializers.CharField()
+    form = serializers.CharField()
+    task_plan = TaskPlanField()
+    spoken = serializers.CharField()
+
+
+class CheckedBookRow(FoundSerializer):
+    """``commands`` are some of the world that use the row; the example is of one of them."""
+
+    commands = serializers.ListField(child=serializers.CharField())
+    example = RecipeExampleSerializer(allow_null=True)
+
+
+class BookRowToCheck(BookRowChange):
+    """``command`` asks for the example of one of the ``commands`` that an earlier answer named."""
+
+    replaces = replaced_field()
+    command = serializers.CharField(max_length=MOST_CHARACTERS, required=False, default="")
+
+
+class CheckBookRow(BookNoun, Check):
+    """Checks a row of the book, and says what the robot does by it."""
+
+    @extend_schema(request=BookRowToCheck, responses={200: CheckedBookRow})
+    def post(self, request: ApiRequest, **kwargs: object) -> Response:
+        sent = self.read(BookRowToCheck)
+        replaced = self.replaced(sent)
+        checked = try_row(self.world, self.row_model, sent["text"], replaced, sent["command"])
+        example = checked.example
+        return Response(
+            {
+                "problems": [{"field": FIELD, **as_json(each)} for each in checked.problems],
+                "commands": checked.commands,
+                "example": example
+                and {
+                    "command": example.command,
+                    "english": example.english,
+                    "form": example.form,
+                    "task_plan": example.task_plan.as_json(),
+                    "spoken": example.spoken,
+                },
+            }
+        )
+
+
+class CheckPrimitive(CheckBookRow, PrimitiveNoun):
+    """Checks a primitive, and says what the robot does with it."""
+
+
+class CheckRecipe(CheckBookRow, RecipeNoun):
+    """Checks a recipe, and says what the robot does by it."""
+
+
+class BookFields(Fields):
+    """The name of a book that ships; or the rows of another one."""
+
+    shipped = serializers.ChoiceField(choices=sorted(shipped_books()), required=False)
+    primitives = serializers.ListField(child=LineField(max_length=MAX_ROW), max_length=MOST_ROWS)
+    recipes = serializers.ListField(child=LineField(max_length=MAX_ROW), max_length=MOST_ROWS)
+
+
+class RecipeBookSerializer(serializers.Serializer[Any]):
+    """The rows in order. ``shipped`` names the book that ships where the world has not changed it."""
+
+    shipped = serializers.CharField(allow_blank=True)
+    primitives = serializers.ListField(child=serializers.CharField())
+    recipes = serializers.ListField(child=serializers.CharField())
+
+
+class OneRecipeBook(WorldRoute):
+    """Shows the recipe book of the world as a whole, and replaces it."""
+
+    model = World
+    serializer_class = RecipeBookSerializer
+    filter_backends = []
+    pagination_class = None
+    duties = {"PATCH": Duty.ANNOTATE}
+    conditional = ("PATCH",)
+
+    @extend_schema(operation_id="recipe_book", responses={200: RecipeBookSerializer})
+    def get(self, request: ApiRequest, **kwargs: object) -> Response:
+        shown = self._shown()
+        return Response(shown, headers={"ETag": etag_of(None, shown)})
+
+    @extend_schema(
+        operation_id="replace_recipe_book",
+        request=BookFields,
+        responses={200: RecipeBookSerializer},
+    )
+    def patch(self, request: ApiRequest, **kwargs: object) -> Response:
+        sent = self.read(BookFields, partial=True)
+        with transaction.atomic():
+            self.hold_world()
+            shown = self._shown()
+            require_match(request, shown, shown)
+            rows = {name: "\n".join(sent.get(name, shown[name])) for name in ROWS}
+            form = RecipeBookForm({**rows, "shipped": sent.get("shipped", "")})
+            if not form.is_valid():
+                raise refusal_of_form(form)
+            replace_book(self.world, form.book, request.user)
+        return self.get(request)
+
+    def _shown(self) -> dict[str, Any]:
+        shipped, book = shipped_book_of(self.world), recipe_book_of(self.world)
+        return {"shipped": shipped.name if shipped else "", **_rows_of(book)}
+
+
+class ShippedBookSerializer(serializers.Serializer[Any]):
+    """A book that comes with the program."""
+
+    name = serializers.CharField()
+    title = serializers.CharField()
+    description = serializers.CharField()
+    primitives = serializers.ListField(child=serializers.CharField())
+    recipes = serializers.ListField(child=serializers.CharField())
+
+
+class ShippedBooks(WorldRoute):
+    """Shows the books that come with the program."""
+
+    filter_backends = []
+    pagination_class = None
+
+    @extend_schema(operation_id="shipped_books", responses={200: ShippedBookSerializer(many=True)})
+    def get(self, request: ApiRequest, **kwargs: object) -> Response:
+        return Response(
+            [
+                {
+                    "name": each.name,
+                    "title": each.title,
+                    "description": each.description,
+                    **_rows_of(each.book),
+                }
+                for each in shipped_books().values()
+            ]
+        )
+
+
+def _rows_of(book: RecipeBook) -> dict[str, list[str]]:
+    return {
+        "primitives": list(map(str, book.primitives)),
+        "recipes": list(map(str, book.recipes)),
+    }

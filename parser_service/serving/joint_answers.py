@@ -1,0 +1,135 @@
+"""Several commands at once: what the parser understands of each, and one plan that does them all."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from annotations.language.errors import Refusal
+from annotations.language.forms import UNKNOWN, Form, read_form
+from annotations.language.plans import PlanProblem, Trouble
+from annotations.language.recipes import (
+    MOST_COMMANDS,
+    Distances,
+    JointPlan,
+    TaskPlan,
+    TooManyCommands,
+    join,
+    spoken,
+)
+from annotations.models import World
+from parser_service.serving.parse_answers import task_plan_of
+from parser_service.serving.parser_client import client
+from parser_service.serving.preparing import WorldLanguage, require_utterance
+
+_ENDS = re.compile(r"[.;!?]\s+|\n+")  # of a command that others follow in one utterance
+
+
+@dataclass(frozen=True, slots=True)
+class UnderstoodCommand:
+    """One of the commands: its form with entities, and the task plan of it alone."""
+
+    utterance: str
+    is_unknown: bool
+    grounded: str
+    english: str
+    task_plan: TaskPlan
+
+    def as_json(self) -> dict[str, Any]:
+        return {
+            "utterance": self.utterance,
+            "is_unknown": self.is_unknown,
+            "grounded": self.grounded,
+            "english": self.english,
+            "task_plan": self.task_plan.as_json(),
+            "spoken": spoken(self.task_plan),
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class JointAnswer:
+    """The commands in the order in which they were said, and one plan of all."""
+
+    commands: tuple[UnderstoodCommand, ...]
+    plan: JointPlan
+
+    @property
+    def spoken(self) -> str:
+        return spoken(self.plan.plan)
+
+    def as_json(self) -> dict[str, Any]:
+        """Return plain values, as REST answers them (docs/reference/recipes.md)."""
+        return {
+            "commands": [each.as_json() for each in self.commands],
+            "joint_plan": self.plan.as_json(),
+            "spoken": self.spoken,
+        }
+
+
+def commands_in(utterance: str) -> tuple[str, ...]:
+    """Return the commands of one utterance, which its sentences, its lines or semicolons tell apart.
+
+    Raises:
+        TooManyCommands: there are more than ``MOST_COMMANDS``.
+    """
+    commands = tuple(each.strip(" .;") for each in _ENDS.split(utterance) if each.strip(" .;"))
+    _require_few(commands)
+    return commands
+
+
+def plan_together(
+    world: World,
+    utterances: Sequence[str],
+    run: int | None = None,
+    distances: Distances | None = None,
+) -> JointAnswer:
+    """Ask the promoted parser of a world, or that of ``run``, about each command, and plan all of them together.
+
+    Raises:
+        Refusal: there is none or too many, or one of them is no utterance.
+        ParserAway, ParserRefused: as ``ParserClient.parse``.
+    """
+    texts = [require_utterance(each) for each in utterances]
+    if not texts:
+        raise Refusal("There is no command: send one to three.", "no_utterance")
+    _require_few(texts)
+    language = WorldLanguage.of(world)
+    ask = client()
+    commands = tuple(
+        _understood(ask.parse(world.name, text, beam=1, run=run), text, language) for text in texts
+    )
+    plans = [each.task_plan for each in commands]
+    return JointAnswer(commands, join(plans, language.recipes, distances))
+
+
+def _understood(
+    answer: Mapping[str, Any], utterance: str, language: WorldLanguage
+) -> UnderstoodCommand:
+    best = next(iter(answer["candidates"]), None)
+    is_unknown = best is None or answer["is_unknown"]
+    form: Form = UNKNOWN
+    doubts: list[PlanProblem] = []
+    if best is not None and not is_unknown:
+        form = read_form(best["grounded"])
+        # Of which of several entities is meant; what else is wrong follows from the form.
+        doubts = [
+            PlanProblem(Trouble.AMBIGUOUS, 0, each["message"], each["hint"])
+            for each in best["plan"]["problems"]
+            if each["code"] == Trouble.AMBIGUOUS
+        ]
+    return UnderstoodCommand(
+        utterance,
+        is_unknown,
+        best["grounded"] if best else "",
+        best["english"] if best else "",
+        task_plan_of(form, doubts, language),
+    )
+
+
+def _require_few(commands: Sequence[str]) -> None:
+    if len(commands) > MOST_COMMANDS:
+        raise TooManyCommands(
+            f"These are {len(commands)} commands; a robot takes at most {MOST_COMMANDS} at once."
+        )

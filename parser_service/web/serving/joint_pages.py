@@ -1,0 +1,58 @@
+"""Type up to three commands, and see one plan that does them all."""
+
+from __future__ import annotations
+
+from typing import Any
+from urllib.parse import urlencode
+
+from django.http import HttpResponse, QueryDict
+from django.shortcuts import render
+from django.urls import reverse
+from django.views.decorators.cache import never_cache
+from django_htmx.http import replace_url
+
+from annotations.language.errors import Refusal
+from annotations.language.recipes import MOST_COMMANDS
+from annotations.models import Duty, World
+from annotations.models.corpus import MOST_CHARACTERS
+from annotations.people.access import WRITE, WorldRequest, world_view
+from parser_service.serving.joint_answers import commands_in, plan_together
+from parser_service.serving.parser_client import ParserAway
+
+FIELDS = [f"command{number}" for number in range(1, MOST_COMMANDS + 1)]
+
+
+@world_view(Duty.VIEW)
+def joint_plan(request: WorldRequest, world: World) -> HttpResponse:
+    """Show the commands that the address names; the plan comes when the page has loaded."""
+    context = {
+        "commands": [(name, _text_of(request.GET, name)) for name in FIELDS],
+        "has_text": any(_text_of(request.GET, name) for name in FIELDS),
+        "most_text": MOST_CHARACTERS,
+    }
+    return render(request, "parser_service/serving/joint_plan.html", context)
+
+
+@never_cache
+@world_view(Duty.VIEW, WRITE)
+def joint_plan_ask(request: WorldRequest, world: World) -> HttpResponse:
+    """Ask the parse server about the commands, and show one plan of them."""
+    texts = {name: text for name in FIELDS if (text := _text_of(request.POST, name))}
+    context: dict[str, Any] = {"has_text": bool(texts)}
+    if texts:
+        try:
+            # One field may hold all of them.
+            utterances = [each for text in texts.values() for each in commands_in(text)]
+            answer = plan_together(world, utterances)
+            context |= {"answer": answer.as_json(), "plan": answer.plan, "spoken": answer.spoken}
+        except ParserAway as error:
+            context["away"] = error.message
+        except Refusal as error:
+            context["refused"] = error.message
+    response = render(request, "parser_service/serving/_joint_plan_answer.html", context)
+    address = reverse("joint_plan", kwargs={"world": world.name})
+    return replace_url(response, f"{address}?{urlencode(texts)}" if texts else address)
+
+
+def _text_of(query: QueryDict, name: str) -> str:
+    return " ".join(query.get(name, "").replace("\0", "").split())[:MOST_CHARACTERS]

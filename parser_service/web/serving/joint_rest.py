@@ -1,0 +1,101 @@
+"""One plan of up to three commands over the API."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from django.http import HttpResponse, HttpResponseBase
+from drf_spectacular.types import OpenApiTypes
+from drf_spectacular.utils import extend_schema
+from rest_framework import serializers
+from rest_framework.response import Response
+
+from annotations.language.limits import MAX_ENTITY
+from annotations.language.plans import to_behavior_tree
+from annotations.language.recipes import MOST_COMMANDS, Distances
+from annotations.models import Scope
+from annotations.models.corpus import MOST_CHARACTERS
+from annotations.web.rest.fields import Fields, LineField
+from annotations.web.rest.permissions import ApiRequest
+from annotations.web.rest.routes import WorldRoute
+from parser_service.serving.joint_answers import commands_in, plan_together
+from parser_service.web.serving.parsing_rest import MOST_KEY
+
+MOST_DISTANCES = 10_000
+
+
+class DistanceSerializer(Fields):
+    """How far two places are from each other, in any unit; ``operator`` is where the person is."""
+
+    one = LineField(max_length=MAX_ENTITY)
+    other = LineField(max_length=MAX_ENTITY)
+    distance = serializers.FloatField(min_value=0, max_value=1e9)
+
+
+class JointQuery(Fields):
+    """One to three ``utterances``, or one ``utterance`` whose sentences are commands.
+
+    ``run`` asks another parser than the promoted one; ``as`` xml asks for a behaviour tree. Without ``distances``
+    two places of one room are 1 apart, and others 2.
+    """
+
+    utterances = serializers.ListField(
+        child=serializers.CharField(max_length=MOST_CHARACTERS),
+        max_length=MOST_COMMANDS,
+        default=list,
+    )
+    utterance = serializers.CharField(
+        max_length=MOST_COMMANDS * MOST_CHARACTERS, default="", allow_blank=True
+    )
+    run = serializers.IntegerField(default=None, min_value=1, max_value=MOST_KEY, allow_null=True)
+    distances = serializers.ListField(
+        child=DistanceSerializer(), max_length=MOST_DISTANCES, default=list
+    )
+
+    def get_fields(self) -> dict[str, Any]:
+        as_ = serializers.ChoiceField(choices=["json", "xml"], default="json")
+        return {**super().get_fields(), "as": as_}
+
+
+class UnderstoodSerializer(serializers.Serializer[Any]):
+    """One of the commands, and the plan of it alone."""
+
+    utterance = serializers.CharField()
+    is_unknown = serializers.BooleanField()
+    grounded = serializers.CharField(allow_blank=True)
+    english = serializers.CharField(allow_blank=True)
+    task_plan = serializers.DictField(help_text="As docs/reference/recipes.md describes it.")
+    spoken = serializers.CharField(allow_blank=True)
+
+
+class JointSerializer(serializers.Serializer[Any]):
+    """The commands in the order in which they were said, and one plan of all."""
+
+    commands = UnderstoodSerializer(many=True)
+    joint_plan = serializers.DictField(help_text="As docs/reference/recipes.md describes it.")
+    spoken = serializers.CharField(allow_blank=True)
+
+
+class JointPlanRoute(WorldRoute):
+    """Plans up to three commands together: JSON, or XML for BehaviorTree.CPP 4. Stores nothing."""
+
+    filter_backends = []
+    scopes = {"POST": Scope.READ}
+
+    @extend_schema(
+        operation_id="joint_plan",
+        request=JointQuery,
+        responses={
+            (200, "application/json"): JointSerializer,
+            (200, "application/xml"): OpenApiTypes.STR,
+        },
+    )
+    def post(self, request: ApiRequest, world: str) -> HttpResponseBase:
+        sent = self.read(JointQuery)
+        utterances = sent["utterances"] or commands_in(sent["utterance"])
+        table = {(each["one"], each["other"]): each["distance"] for each in sent["distances"]}
+        answer = plan_together(self.world, utterances, sent["run"], Distances(table))
+        if sent["as"] == "xml":
+            tree = to_behavior_tree(answer.plan.plan)
+            return HttpResponse(tree, content_type="application/xml")
+        return Response(answer.as_json())
