@@ -41,7 +41,7 @@ ADA = '(λ$1:e (person $1) (name $1 "Ada") (at $1 "stool"))'
             f'(answer "What is up?" {ADA})',
             "go to the stool, find Ada, and answer their question “What is up?”.",
         ),
-        ("(go UNKNOWN)", "ask you “Where to?” and go to the destination that you name."),
+        ("(go UNKNOWN)", "ask you “Where shall I go?” and go to the destination that you name."),
         ('(say "something about yourself")', "say something about myself."),
     ],
 )
