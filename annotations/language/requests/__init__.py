@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from annotations.language.requests.cutting import MOST_COMMANDS, Judge, cut_commands
-from annotations.language.requests.other_requests import OtherRequest, other_requests
+from annotations.language.requests.request_kinds import OtherRequest, other_requests
 from annotations.language.requests.qualifying import is_qualified, says_number
 
 __all__ = [

@@ -28,7 +28,8 @@ class BookRowForm(forms.Form):
     def __init__(
         self, world: World, model: RowModel, row: BookRow | None, *args: Any, **kwargs: Any
     ):
-        super().__init__(*args, auto_id="row_%s", **kwargs)  # a comment below has a text, too
+        # A comment below has a text, too.
+        super().__init__(*args, **{**kwargs, "auto_id": "row_%s"})
         self.world = world
         self.model = model
         self.row = row
