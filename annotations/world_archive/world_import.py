@@ -98,8 +98,8 @@ def import_world(
         World.objects.filter(pk=world.pk).update(**manifest.world_values)
         try:
             # The archive has those that a world starts with.
-            for name in manifest.rows.keys() & {"entity_classes", "primitives", "recipes"}:
-                getattr(world, name).all().delete()
+            for kind in manifest.rows.keys() & {"entity_classes", "primitives", "recipes"}:
+                getattr(world, kind).all().delete()
             loader = _Loader(archive, manifest, world, progress)
             rows = loader.load()
             _check_world(world)

@@ -30,6 +30,7 @@ from annotations.models import (
     Label,
     Membership,
     Ontology,
+    Recipe,
     SemanticTemplate,
     Verdict,
     WorkKind,
@@ -39,6 +40,7 @@ from annotations.models.worlds import Duty
 from annotations.queueing.enqueuing import set_share
 from annotations.queueing.finishing import finish
 from annotations.queueing.giving import next_item
+from annotations.rows.from_rows import recipe_book_of
 from annotations.world_archive.archive_tables import tables
 from annotations.world_archive.world_export import world_archive
 from annotations.world_archive.world_import import import_world
@@ -330,3 +332,11 @@ def test_who_does_not_review_gets_what_was_accepted_and_who_of_it_is_a_model(
     import_world("again", pack_members(archives[annotator]))
     again = World.objects.get(name="again")
     assert sorted(row.is_by_model for row in again.paraphrases.all()) == [False, True]
+
+
+def test_recipes_go_with_the_world(db, world, annotator):
+    row = world.recipes.get(left="go(destination)")
+    change(row, Recipe.columns_of('go(destination) -> say("no")'), annotator, row.version)
+    again = same_again(world)
+    assert recipe_book_of(again) == recipe_book_of(world)
+    assert again.recipes.get(left=row.left).version == 2
