@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -19,6 +20,7 @@ from annotations.language.recipes import (
     join,
     spoken,
 )
+from annotations.language.requests import cut_commands
 from annotations.models import World
 from parser_service.serving.parse_answers import task_plan_of
 from parser_service.serving.parser_client import client
@@ -68,8 +70,30 @@ class JointAnswer:
         }
 
 
-def commands_in(utterance: str) -> tuple[str, ...]:
-    """Return the commands of one utterance, which its sentences, its lines or semicolons tell apart.
+def commands_said(world: World, utterance: str, run: int | None = None) -> tuple[str, ...]:
+    """Return the commands of one utterance: its sentences; those of a single sentence by what a parser understands.
+
+    Raises:
+        TooManyCommands: there are more than ``MOST_COMMANDS``.
+        ParserAway, ParserRefused: as ``ParserClient.parse_lines``.
+    """
+    sentences = sentences_in(utterance)
+    if len(sentences) != 1:
+        return sentences
+
+    def judge(pieces: Sequence[str]) -> list[float | None]:
+        lines = "".join(json.dumps({"utterance": each}) + "\n" for each in pieces).encode()
+        answers = map(json.loads, client().parse_lines(world.name, lines, beam=1, run=run))
+        return [
+            None if each.get("is_unknown", True) else float(each["candidates"][0]["score"])
+            for each in answers
+        ]
+
+    return cut_commands(utterance, judge)
+
+
+def sentences_in(utterance: str) -> tuple[str, ...]:
+    """Return the sentences of an utterance, which signs and ends of lines tell apart.
 
     Raises:
         TooManyCommands: there are more than ``MOST_COMMANDS``.
