@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -19,6 +20,7 @@ from annotations.language.recipes import (
     join,
     spoken,
 )
+from annotations.language.requests import cut_commands
 from annotations.models import World
 from parser_service.serving.parse_answers import task_plan_of
 from parser_service.serving.parser_client import client
@@ -68,13 +70,25 @@ class JointAnswer:
         }
 
 
-def commands_in(utterance: str) -> tuple[str, ...]:
-    """Return the commands of one utterance, which its sentences, its lines or semicolons tell apart.
+def commands_in(world: World, utterance: str, run: int | None = None) -> tuple[str, ...]:
+    """Return the commands of one utterance: its sentences, its lines, and what semicolons tell apart.
+
+    A piece that the parser does not understand as one command is cut where it understands the pieces
+    (``language.requests.cut_commands``).
 
     Raises:
         TooManyCommands: there are more than ``MOST_COMMANDS``.
+        ParserAway, ParserRefused: as ``ParserClient.parse``.
     """
-    commands = tuple(each.strip(" .;") for each in _ENDS.split(utterance) if each.strip(" .;"))
+    sentences = [each.strip(" .;") for each in _ENDS.split(utterance) if each.strip(" .;")]
+    _require_few(sentences)
+
+    def judge(pieces: Sequence[str]) -> list[float | None]:
+        lines = "\n".join(json.dumps({"utterance": each}) for each in pieces)
+        answers = client().parse_lines(world.name, lines.encode(), beam=1, run=run)
+        return [_score_of(json.loads(each)) for each in answers]
+
+    commands = tuple(each for said in sentences for each in cut_commands(said, judge))
     _require_few(commands)
     return commands
 
@@ -102,6 +116,12 @@ def plan_together(
     )
     plans = [each.task_plan for each in commands]
     return JointAnswer(commands, join(plans, language.recipes, distances))
+
+
+def _score_of(answer: Mapping[str, Any]) -> float | None:
+    """Return the score of the best candidate; None where there is none to act on."""
+    best = next(iter(answer.get("candidates", ())), None)
+    return None if best is None or answer["is_unknown"] else float(best["score"])
 
 
 def _understood(

@@ -42,7 +42,7 @@ def joint_plan_ask(request: WorldRequest, world: World) -> HttpResponse:
     if texts:
         try:
             # One field may hold all of them.
-            utterances = [each for text in texts.values() for each in commands_in(text)]
+            utterances = [each for text in texts.values() for each in commands_in(world, text)]
             answer = plan_together(world, utterances)
             context |= {"answer": answer.as_json(), "plan": answer.plan, "spoken": answer.spoken}
         except ParserAway as error:

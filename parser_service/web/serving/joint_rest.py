@@ -33,7 +33,7 @@ class DistanceSerializer(Fields):
 
 
 class JointQuery(Fields):
-    """One to three ``utterances``, or one ``utterance`` whose sentences are commands.
+    """One to three ``utterances``, or one ``utterance`` that holds them.
 
     ``run`` asks another parser than the promoted one; ``as`` xml asks for a behaviour tree. Without ``distances``
     two places of one room are 1 apart, and others 2.
@@ -92,7 +92,7 @@ class JointPlanRoute(WorldRoute):
     )
     def post(self, request: ApiRequest, world: str) -> HttpResponseBase:
         sent = self.read(JointQuery)
-        utterances = sent["utterances"] or commands_in(sent["utterance"])
+        utterances = sent["utterances"] or commands_in(self.world, sent["utterance"], sent["run"])
         table = {(each["one"], each["other"]): each["distance"] for each in sent["distances"]}
         answer = plan_together(self.world, utterances, sent["run"], Distances(table))
         if sent["as"] == "xml":

@@ -6,6 +6,7 @@ import jsonschema
 import pytest
 
 from annotations.language.recipes import TooManyCommands, joint_plan_schema
+from annotations.models import World
 from parser_service.promotions.promoting import promote
 from parser_service.serving.joint_answers import commands_in
 from tests.parser_service.served import trained_run
@@ -32,13 +33,13 @@ def browse(parse_server, client, annotator):
         (" . ", ()),
     ],
 )
-def test_sentences_are_commands(utterance, commands):
-    assert commands_in(utterance) == commands
+def test_sentences_are_commands(browse, utterance, commands):
+    assert commands_in(World.objects.get(name="home"), utterance) == commands
 
 
 def test_more_than_three_are_refused(browse):
     with pytest.raises(TooManyCommands):
-        commands_in("go. go. go. go")
+        commands_in(World.objects.get(name="home"), "go. go. go. go")
     answer = browse.post(API, {"utterance": "go. go. go. go"}, JSON)
     assert answer.status_code == 400
 
