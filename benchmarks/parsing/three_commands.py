@@ -14,12 +14,14 @@ import json
 import os
 import sys
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from random import Random
 
 import django
 
 from annotations.language.errors import Refusal
+from annotations.language.requests import cut_commands
 
 WAYS = (
     "{0}. {1}. {2}.",
@@ -50,8 +52,8 @@ def main() -> None:
     from annotations.models import World
     from parser_service.analysis.intervals import wilson_interval
     from parser_service.models import TrainingRun
+    from parser_service.parsers.interface import UNKNOWN
     from parser_service.serving.loading import load_parser, make_untrained
-    from parser_service.serving.several_commands import commands_in
 
     world = World.objects.get(name=given.world)
     try:
@@ -62,6 +64,11 @@ def main() -> None:
         ).hesitant()
     except Refusal as refusal:
         sys.exit(str(refusal))
+
+    def judge(pieces: Sequence[str]) -> list[float | None]:
+        answers = asked.predict(pieces, 1)
+        return [each[0].score if each and each[0].form != UNKNOWN else None for each in answers]
+
     lines = given.commands.read_text(encoding="utf-8").splitlines()
     commands = [json.loads(line)["command"] for line in lines]
     random = Random(0)
@@ -70,7 +77,7 @@ def main() -> None:
     for number in range(given.joins):
         way = WAYS[number % len(WAYS)]
         three = random.sample(commands, 3)
-        pieces = commands_in(asked, said := join(three, way))
+        pieces = cut_commands(said := join(three, way), judge)
         alone = [each[0].form if each else "" for each in asked.predict(three, 1)]
         cut = [each[0].form if each else "" for each in asked.predict(pieces, 1)]
         found[way] += alone == cut

@@ -70,35 +70,25 @@ class JointAnswer:
         }
 
 
-def commands_said(world: World, utterance: str, run: int | None = None) -> tuple[str, ...]:
-    """Return the commands of one utterance: its sentences; those of a single sentence by what a parser understands.
+def commands_in(world: World, utterance: str, run: int | None = None) -> tuple[str, ...]:
+    """Return the commands of one utterance: its sentences, its lines, and what semicolons tell apart.
+
+    A piece that the parser does not understand as one command is cut where it understands the pieces
+    (``language.requests.cut_commands``).
 
     Raises:
         TooManyCommands: there are more than ``MOST_COMMANDS``.
-        ParserAway, ParserRefused: as ``ParserClient.parse_lines``.
+        ParserAway, ParserRefused: as ``ParserClient.parse``.
     """
-    sentences = sentences_in(utterance)
-    if len(sentences) != 1:
-        return sentences
+    sentences = [each.strip(" .;") for each in _ENDS.split(utterance) if each.strip(" .;")]
+    _require_few(sentences)
 
     def judge(pieces: Sequence[str]) -> list[float | None]:
-        lines = "".join(json.dumps({"utterance": each}) + "\n" for each in pieces).encode()
-        answers = map(json.loads, client().parse_lines(world.name, lines, beam=1, run=run))
-        return [
-            None if each.get("is_unknown", True) else float(each["candidates"][0]["score"])
-            for each in answers
-        ]
+        lines = "\n".join(json.dumps({"utterance": each}) for each in pieces)
+        answers = client().parse_lines(world.name, lines.encode(), beam=1, run=run)
+        return [_score_of(json.loads(each)) for each in answers]
 
-    return cut_commands(utterance, judge)
-
-
-def sentences_in(utterance: str) -> tuple[str, ...]:
-    """Return the sentences of an utterance, which signs and ends of lines tell apart.
-
-    Raises:
-        TooManyCommands: there are more than ``MOST_COMMANDS``.
-    """
-    commands = tuple(each.strip(" .;") for each in _ENDS.split(utterance) if each.strip(" .;"))
+    commands = tuple(each for said in sentences for each in cut_commands(said, judge))
     _require_few(commands)
     return commands
 
@@ -126,6 +116,12 @@ def plan_together(
     )
     plans = [each.task_plan for each in commands]
     return JointAnswer(commands, join(plans, language.recipes, distances))
+
+
+def _score_of(answer: Mapping[str, Any]) -> float | None:
+    """Return the score of the best candidate; None where there is none to act on."""
+    best = next(iter(answer.get("candidates", ())), None)
+    return None if best is None or answer["is_unknown"] else float(best["score"])
 
 
 def _understood(

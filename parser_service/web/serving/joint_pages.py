@@ -16,7 +16,7 @@ from annotations.language.recipes import MOST_COMMANDS
 from annotations.models import Duty, World
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.people.access import WRITE, WorldRequest, world_view
-from parser_service.serving.joint_answers import commands_said, plan_together
+from parser_service.serving.joint_answers import commands_in, plan_together
 from parser_service.serving.parser_client import ParserAway
 
 FIELDS = [f"command{number}" for number in range(1, MOST_COMMANDS + 1)]
@@ -42,7 +42,7 @@ def joint_plan_ask(request: WorldRequest, world: World) -> HttpResponse:
     if texts:
         try:
             # One field may hold all of them.
-            utterances = [each for text in texts.values() for each in commands_said(world, text)]
+            utterances = [each for text in texts.values() for each in commands_in(world, text)]
             answer = plan_together(world, utterances)
             context |= {"answer": answer.as_json(), "plan": answer.plan, "spoken": answer.spoken}
         except ParserAway as error:

@@ -18,7 +18,7 @@ from annotations.models.corpus import MOST_CHARACTERS
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import WorldRoute
-from parser_service.serving.joint_answers import commands_said, plan_together
+from parser_service.serving.joint_answers import commands_in, plan_together
 from parser_service.web.serving.parsing_rest import MOST_KEY
 
 MOST_DISTANCES = 10_000
@@ -92,7 +92,7 @@ class JointPlanRoute(WorldRoute):
     )
     def post(self, request: ApiRequest, world: str) -> HttpResponseBase:
         sent = self.read(JointQuery)
-        utterances = sent["utterances"] or commands_said(self.world, sent["utterance"], sent["run"])
+        utterances = sent["utterances"] or commands_in(self.world, sent["utterance"], sent["run"])
         table = {(each["one"], each["other"]): each["distance"] for each in sent["distances"]}
         answer = plan_together(self.world, utterances, sent["run"], Distances(table))
         if sent["as"] == "xml":

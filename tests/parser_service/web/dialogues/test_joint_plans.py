@@ -6,8 +6,9 @@ import jsonschema
 import pytest
 
 from annotations.language.recipes import TooManyCommands, joint_plan_schema
+from annotations.models import World
 from parser_service.promotions.promoting import promote
-from parser_service.serving.joint_answers import sentences_in
+from parser_service.serving.joint_answers import commands_in
 from tests.parser_service.served import trained_run
 
 API, PAGE, JSON = "/api/v1/worlds/home/joint-plan/", "/w/home/parse/together/", "application/json"
@@ -32,13 +33,13 @@ def browse(parse_server, client, annotator):
         (" . ", ()),
     ],
 )
-def test_sentences_are_commands(utterance, commands):
-    assert sentences_in(utterance) == commands
+def test_sentences_are_commands(browse, utterance, commands):
+    assert commands_in(World.objects.get(name="home"), utterance) == commands
 
 
 def test_more_than_three_are_refused(browse):
     with pytest.raises(TooManyCommands):
-        sentences_in("go. go. go. go")
+        commands_in(World.objects.get(name="home"), "go. go. go. go")
     answer = browse.post(API, {"utterance": "go. go. go. go"}, JSON)
     assert answer.status_code == 400
 
@@ -52,15 +53,6 @@ def test_two_commands_become_one_plan(browse):
     assert answer["joint_plan"]["length"] <= answer["joint_plan"]["length_before"]
     together = browse.post(API, {"utterance": ". ".join(TWO)}, JSON).json()
     assert together["joint_plan"] == answer["joint_plan"]
-
-
-def test_one_sentence_is_cut_by_what_the_parser_understands(browse, parse_server, world):
-    promote(trained_run(world.splits.get(), config={"least_overlap": 0.4}), None)
-    parse_server.update()
-    said = {"utterance": "find the red cup and then bring me the bowl"}
-    answer = browse.post(API, said, JSON).json()
-    commands = [each["utterance"] for each in answer["commands"]]
-    assert commands == ["find the red cup", "bring me the bowl"]
 
 
 def test_a_table_of_distances_is_used(browse):
