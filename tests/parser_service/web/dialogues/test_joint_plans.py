@@ -55,6 +55,15 @@ def test_two_commands_become_one_plan(browse):
     assert together["joint_plan"] == answer["joint_plan"]
 
 
+def test_one_sentence_is_cut_by_what_the_parser_understands(browse, parse_server, world):
+    promote(trained_run(world.splits.get(), config={"least_overlap": 0.4}), None)
+    parse_server.update()
+    said = {"utterance": "find the red cup and then bring me the bowl"}
+    answer = browse.post(API, said, JSON).json()
+    commands = [each["utterance"] for each in answer["commands"]]
+    assert commands == ["find the red cup", "bring me the bowl"]
+
+
 def test_a_table_of_distances_is_used(browse):
     far = {"one": "kitchen", "other": "operator", "distance": 40.5}
     answer = browse.post(API, {"utterances": TWO, "distances": [far]}, JSON).json()
