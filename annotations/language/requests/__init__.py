@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from annotations.language.requests.cutting import MOST_COMMANDS, Judge, cut_commands
-from annotations.language.requests.request_kinds import OtherRequest, other_requests
 from annotations.language.requests.qualifying import is_qualified, says_number
+from annotations.language.requests.request_kinds import OtherRequest, other_requests
 
 __all__ = [
     "MOST_COMMANDS",
