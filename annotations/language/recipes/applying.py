@@ -32,6 +32,7 @@ from annotations.language.recipes.rows import (
     PrimitiveParameter,
     Recipe,
 )
+from annotations.language.recipes.situation import HERE, Place, Situation, Somewhere, with_texts
 from annotations.language.recipes.speaking import step_texts
 from annotations.language.recipes.task_plan import (
     RecipeTrouble,
@@ -39,7 +40,6 @@ from annotations.language.recipes.task_plan import (
     TaskProblem,
 )
 from annotations.language.recipes.values import TaskValue, kinds_of, with_results
-from annotations.language.recipes.world import HERE, Place, Somewhere, World, with_texts
 
 _CURRENT = Words("current")
 
@@ -75,7 +75,7 @@ class _Applier:
         self._plan = plan
         self._book = book
         self._steps = {step.number: step for step in plan.steps}
-        self._world = World(usual=usual)
+        self._situation = Situation(usual=usual)
         self._numbers: dict[int, int] = {}  # step with a result → the step of the task plan
 
     def task_plan(self) -> TaskPlan:
@@ -84,14 +84,14 @@ class _Applier:
         for step in sorted(self._plan.steps, key=lambda step: step.predicate != ASK):
             if step.number not in absorbed:
                 self._apply(step, fits[step.number])
-        steps = with_texts(self._world.steps, step_texts(self._world.steps))
+        steps = with_texts(self._situation.steps, step_texts(self._situation.steps))
         first = {step.source: step.number for step in reversed(steps)}
         of_plan = (
             TaskProblem.of_plan(each, first.get(each.step, 0)) for each in self._plan.problems
         )
         own = (  # one that is about a step which was left out is about the whole plan
             each if each.step <= len(steps) else replace(each, step=0)
-            for each in self._world.problems
+            for each in self._situation.problems
         )
         return TaskPlan(steps, (*of_plan, *own))
 
@@ -131,15 +131,15 @@ class _Applier:
         return not parameter.kind or parameter.kind in kinds_of(value)
 
     def _apply(self, step: Step, fit: _Fit | None) -> None:
-        number = len(self._world.steps) + 1
+        number = len(self._situation.steps) + 1
         if fit is None:
             message = f"No recipe says how to do “{step.text}”."
             names = ", ".join(name for name, _ in step.arguments)
             hint = f"add a recipe for {step.predicate}({names})"
-            self._world.report(RecipeTrouble.NO_RECIPE, number, message, hint)
+            self._situation.report(RecipeTrouble.NO_RECIPE, number, message, hint)
             parameters = tuple(PrimitiveParameter(name) for name, _ in step.arguments)
             values = {name: self._resolved(value) for name, value in step.arguments}
-            self._world.add(Primitive(step.action, parameters), values, step.number)
+            self._situation.add(Primitive(step.action, parameters), values, step.number)
             return
         names_of = {name: self._resolved(value) for name, value in fit.values.items()}
         for call in fit.recipe.calls:
@@ -151,7 +151,7 @@ class _Applier:
         values: dict[str, TaskValue] = {}
         for parameter, argument in zip(primitive.parameters, call.arguments, strict=False):
             values[parameter.name] = self._value(argument, names, primitive, parameter.name)
-        done = self._world.add(primitive, values, step.number)
+        done = self._situation.add(primitive, values, step.number)
         self._note_sending(call, primitive)
         if done is not None and primitive.gives_result:
             self._numbers[step.number] = done.number
@@ -163,7 +163,7 @@ class _Applier:
         moves = primitive.effect(EffectKind.MOVES)
         for parameter, argument in zip(primitive.parameters, call.arguments, strict=False):
             if moves is not None and moves.subject == parameter.name:
-                self._world.is_sent |= isinstance(argument, Name) and argument.part is None
+                self._situation.is_sent |= isinstance(argument, Name) and argument.part is None
 
     def _value(
         self,
@@ -182,24 +182,24 @@ class _Applier:
         if argument.part is Part.ATTRIBUTE:
             return Words(value.attribute if isinstance(value, Described) else "")
         if argument.part is Part.PLACE:
-            return self._named(self._world.place_of(value), primitive, parameter)
+            return self._named(self._situation.place_of(value), primitive, parameter)
         return value
 
     def _named(self, place: Place, primitive: Primitive, parameter: str) -> TaskValue:
         """Return a place as an argument: nobody has named the one to which somebody leads."""
         moves = primitive.effect(EffectKind.MOVES)
         is_goal = moves is not None and moves.subject == parameter
-        if isinstance(place, Operator) and self._world.is_here(place) and not is_goal:
+        if isinstance(place, Operator) and self._situation.is_here(place) and not is_goal:
             return HERE
         if not isinstance(place, Somewhere):
             return place
-        if self._world.is_here(place):
+        if self._situation.is_here(place):
             return HERE
         if is_goal:
             message = "Nobody has said where this place is."
             hint = "do what has to be done there before the robot leaves it"
-            number = len(self._world.steps) + 1
-            self._world.report(RecipeTrouble.UNKNOWN_PLACE, number, message, hint)
+            number = len(self._situation.steps) + 1
+            self._situation.report(RecipeTrouble.UNKNOWN_PLACE, number, message, hint)
         return OpenValue("")
 
     def _resolved(self, value: Value) -> TaskValue:
@@ -213,8 +213,8 @@ class _Applier:
         for number in self._missing(plain):
             message = f"Nothing gives the result of “{self._steps[number].text}”."
             hint = "use a primitive that learns something in its recipe"
-            step = len(self._world.steps) + 1
-            self._world.report(RecipeTrouble.NO_RESULT, step, message, hint)
+            step = len(self._situation.steps) + 1
+            self._situation.report(RecipeTrouble.NO_RESULT, step, message, hint)
         return with_results(plain, self._numbers)
 
     def _missing(self, value: Value) -> Iterator[int]:

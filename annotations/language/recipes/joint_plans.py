@@ -24,6 +24,13 @@ from annotations.language.errors import Refusal
 from annotations.language.plans import Named, Operator
 from annotations.language.recipes.book import RecipeBook
 from annotations.language.recipes.rows import OPERATOR_WORD, EffectKind, Primitive
+from annotations.language.recipes.situation import (
+    Place,
+    Situation,
+    Somewhere,
+    are_equal,
+    with_texts,
+)
 from annotations.language.recipes.speaking import step_texts
 from annotations.language.recipes.task_plan import (
     RecipeTrouble,
@@ -33,7 +40,6 @@ from annotations.language.recipes.task_plan import (
     task_plan_schema,
 )
 from annotations.language.recipes.values import TaskValue, ids_in, with_results
-from annotations.language.recipes.world import Place, Somewhere, World, are_equal, with_texts
 
 MOST_COMMANDS = 3
 MOST_STATES = 20_000  # about half a second; longer commands are done one after the other
@@ -469,7 +475,7 @@ class _Writer:
         self._commands = commands
         self._mover = mover
         self._next = [0 for _ in commands]
-        self._world = World(
+        self._situation = Situation(
             commands={
                 each: command.number
                 for command in commands
@@ -486,12 +492,12 @@ class _Writer:
         command = self._commands[number]
         visit = command.visits[self._next[number]]
         self._next[number] += 1
-        first = len(self._world.steps) + 1
+        first = len(self._situation.steps) + 1
         self._return_to(visit, command.number)
-        arrival = self._world.moved_by
+        arrival = self._situation.moved_by
         for step in visit.steps:
             values = dict(_with_names(step, self._numbers).arguments)
-            done = self._world.add(step.primitive, values, step.source)
+            done = self._situation.add(step.primitive, values, step.source)
             if done is not None:
                 self._numbers[step.number] = done.number
                 self._serves.append({command.number})
@@ -499,7 +505,7 @@ class _Writer:
                 self._numbers[step.number] = shared
                 self._serves[shared - 1].add(command.number)
             if step is visit.steps[0] and _has(step, EffectKind.MOVES):
-                arrival = self._world.moved_by
+                arrival = self._situation.moved_by
         self._stops.append(_Stop(visit.start, command.number, arrival, first))
 
     def _return_to(self, visit: _Visit, command: int) -> None:
@@ -511,7 +517,7 @@ class _Writer:
         if self._mover is None or moves is None:
             return
         place = with_results(start, self._numbers)
-        if self._world.add(self._mover, {moves.subject: place}, visit.steps[0].source):
+        if self._situation.add(self._mover, {moves.subject: place}, visit.steps[0].source):
             self._serves.append({command})
 
     def _doer(self, step: TaskStep, values: Mapping[str, TaskValue]) -> int:
@@ -519,17 +525,17 @@ class _Writer:
         finds = step.primitive.effect(EffectKind.FINDS)
         value = values.get(finds.subject) if finds else None
         if value is None or _has(step, EffectKind.MOVES):
-            return self._world.moved_by
-        return self._world.step_that_found(self._world.known(value))
+            return self._situation.moved_by
+        return self._situation.step_that_found(self._situation.known(value))
 
     def serves(self) -> tuple[tuple[int, ...], ...]:
         return tuple(tuple(sorted(each)) for each in self._serves)
 
     def plan(self, plans: Sequence[TaskPlan]) -> TaskPlan:
         """Return the steps with ids in the order of mention, and the problems of all commands."""
-        ids = {old: f"x{number}" for number, old in enumerate(_ids(self._world.steps), start=1)}
-        same = {step.number: step.number for step in self._world.steps}
-        steps = [_with_names(step, same, ids) for step in self._world.steps]
+        ids = {old: f"x{number}" for number, old in enumerate(_ids(self._situation.steps), start=1)}
+        same = {step.number: step.number for step in self._situation.steps}
+        steps = [_with_names(step, same, ids) for step in self._situation.steps]
         problems = [
             replace(each, step=self._numbers.get(_unique(each.step, command), 0))
             for command, plan in enumerate(plans, start=1)
@@ -539,7 +545,7 @@ class _Writer:
         hint = "do one of the commands later"
         added = (
             TaskProblem(each.code, each.step, each.message, hint)
-            for each in self._world.problems
+            for each in self._situation.problems
             if each.code == RecipeTrouble.HANDS_FULL and (each.code, each.step) not in known
         )
         return TaskPlan(with_texts(steps, step_texts(steps)), (*problems, *added))

@@ -29,7 +29,7 @@ from annotations.language.recipes import (
     joint_plan_schema_text,
     spoken,
 )
-from annotations.language.recipes.world import Place, Somewhere
+from annotations.language.recipes.situation import Place, Somewhere
 from tests.annotations.language.random_commands import commands
 from tests.annotations.language.recipes.task_plans import calls, codes, task_plan
 

@@ -38,7 +38,7 @@ from annotations.language.recipes import (
     task_plan_schema,
     usual_places,
 )
-from annotations.language.recipes.world import World
+from annotations.language.recipes.situation import Situation
 from annotations.language.templates import (
     Balance,
     Language,
@@ -261,9 +261,9 @@ def test_every_command_has_consistent_effects(text):
 @given(commands())
 def test_doing_a_task_plan_again_leaves_nothing_out_and_adds_nothing(text):
     plan = task_plan(text)
-    world = World()
+    situation = Situation()
     for step in plan.steps:
-        assert world.add(step.primitive, dict(step.arguments), step.source) == step
+        assert situation.add(step.primitive, dict(step.arguments), step.source) == step
 
 
 @given(commands())

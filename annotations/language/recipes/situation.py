@@ -33,7 +33,7 @@ Arguments: TypeAlias = Mapping[str, TaskValue]
 
 
 @dataclass
-class World:
+class Situation:
     """Adds steps one by one, leaves out those whose effects hold already, and says what each requires.
 
     The robot starts where the operator is, with nothing in its gripper.
@@ -43,7 +43,7 @@ class World:
     problems: list[TaskProblem] = field(default_factory=list)
     place: Place = field(default_factory=Operator)
     held: TaskValue | None = None
-    # id → the command that describes it, where several commands share the world: equal words of two
+    # id → the command that describes it, where several commands share the situation: equal words of two
     # commands mean the same person if they name one, and two things.
     commands: Mapping[str, int] = field(default_factory=dict)
     usual: UsualPlaces = field(default_factory=dict)
