@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from annotations.language.paraphrases.known_words import KnownWords
+from annotations.language.paraphrases.misspelt_names import MisspeltNames
 from annotations.language.paraphrases.model_replies import rewrites_in
 from annotations.language.paraphrases.prompt_entities import entities_in, entities_of
 from annotations.language.paraphrases.rewrite_checks import (
@@ -39,6 +40,7 @@ __all__ = [
     "FlagCode",
     "FreeCommand",
     "KnownWords",
+    "MisspeltNames",
     "Named",
     "Rewrite",
     "RewriteFault",

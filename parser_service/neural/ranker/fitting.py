@@ -16,7 +16,6 @@ from parser_service.neural.ranker.calibration import (
     DecisionRule,
     best_novelty,
 )
-from parser_service.neural.ranker.closed_classes import ClosedClasses
 from parser_service.neural.ranker.holding_out import HeldOut, hold_out
 from parser_service.neural.ranker.model import RankerModel
 from parser_service.neural.ranker.ranked_forms import RankedForms, collect
@@ -30,6 +29,7 @@ from parser_service.neural.ranker.steps import (
     reduced_precision,
     save_training,
 )
+from parser_service.neural.ranker.unlisted_names import UnlistedNames
 from parser_service.neural.ranker.weighing import Report, weigh_by
 from parser_service.neural.sentence_encoder import SentenceEncoder
 from parser_service.neural.training import TRAINING, Clock, resume
@@ -260,8 +260,8 @@ def make_model(encoder: SentenceEncoder, ranked: RankedForms, knowledge: Knowled
     ontology = knowledge.ontology
     if ontology is None:
         return RankerModel(encoder, ranked).to(processor())
-    slots, closed = SlotTerm(ranked.forms, ontology), ClosedClasses(ontology)
-    return RankerModel(encoder, ranked, slots, closed).to(processor())
+    slots, unlisted = SlotTerm(ranked.forms, ontology), UnlistedNames(ontology)
+    return RankerModel(encoder, ranked, slots, unlisted).to(processor())
 
 
 def is_due(epoch: int, epochs: int) -> bool:

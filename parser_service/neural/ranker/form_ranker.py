@@ -42,6 +42,9 @@ FORMS = "forms.json"
 SAVED = (FORMS, ENCODER, TOKENIZER, WEIGHTS)
 PREDICTION_BATCH = 64
 MOST_HEARD = 5  # forms whose slots an utterance may fill in words of its own
+NEARLY = 2.0  # nats by which a form may be less probable that leaves nothing out
+# Nats by which an utterance that names nothing of the world has to be nearer to what was learned.
+UNNAMED = 2.0
 
 
 class FormRanker(Parser):
@@ -115,15 +118,14 @@ class FormRanker(Parser):
             members = self._hear(asked, scores, check)
             heard = {number: (asked[number], said.keys()) for number, said in members.items()}
             is_cut = model.encoder.cut(asked)
-            ranked_forms = self._rank(model.rescored(scores, heard), members, beam_width)
+            number = max(beam_width, MOST_HEARD) if self._is_hesitant else beam_width
+            ranked_forms = self._rank(model.rescored(scores, heard), members, number)
             near = scores.nearness.tolist()
             for text, ranked, nearness, is_long in zip(
                 asked, ranked_forms, near, is_cut, strict=True
             ):
                 if self._is_hesitant and ranked[0].form != UNKNOWN:
-                    is_unlike = not text.strip() or nearness < self._decision.least_nearness
-                    if is_unlike or self._is_other(text, ranked[0].form):
-                        ranked = refuse(ranked, ranked[0].score)
+                    ranked = self._hesitate(text, ranked, nearness)
                 if ranked[0].score < least:
                     ranked = refuse(ranked, least)
                 if is_long:
@@ -144,10 +146,24 @@ class FormRanker(Parser):
         )
         return other
 
-    def _is_other(self, text: str, form: str) -> bool:
-        """Return whether an utterance asks for something else than ``form``, or for more."""
+    def _hesitate(self, text: str, ranked: list[Candidate], nearness: float) -> list[Candidate]:
+        """Return the candidates of an utterance, UNKNOWN first where it is like nothing that was learned, or asks for
+        something else or for more than the best of them.
+
+        A form that is nearly as probable comes first where it leaves nothing out.
+        """
         slots = self._model_or_refuse().slots
-        return is_qualified(text) or (slots is not None and slots.asks_for_more(text, form))
+        bound = self._decision.least_nearness
+        if slots is not None and not slots.named(text):
+            bound += UNNAMED
+        if not text.strip() or nearness < bound or is_qualified(text):
+            return refuse(ranked, ranked[0].score)
+        if slots is None:
+            return ranked
+        whole = next((each for each in ranked if not slots.asks_for_more(text, each.form)), None)
+        if whole is None or whole.score < ranked[0].score - NEARLY:
+            return refuse(ranked, ranked[0].score)
+        return [whole, *(each for each in ranked if each is not whole)]
 
     def _hear(
         self, utterances: Sequence[str], scores: Scores, check: Check

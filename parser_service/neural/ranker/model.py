@@ -10,9 +10,9 @@ from torch.nn.functional import normalize
 
 from annotations.language.forms import CLASS_TOKEN
 from parser_service.neural.ranker.calibration import EXPERTS, Scores
-from parser_service.neural.ranker.closed_classes import ClosedClasses
 from parser_service.neural.ranker.ranked_forms import RankedForms
 from parser_service.neural.ranker.slots import SlotTerm
+from parser_service.neural.ranker.unlisted_names import UnlistedNames
 from parser_service.neural.sentence_encoder import SentenceEncoder
 from parser_service.parsers.interface import Check, keep_going
 
@@ -126,14 +126,14 @@ class RankerModel(nn.Module):
         encoder: SentenceEncoder,
         ranked: RankedForms,
         slots: SlotTerm | None = None,
-        closed: ClosedClasses | None = None,
+        unlisted: UnlistedNames | None = None,
     ):
-        """``slots`` and ``closed`` are given where the ontology is known."""
+        """``slots`` and ``unlisted`` are given where the ontology is known."""
         super().__init__()
         self.encoder = encoder
         self.nearest = NearestExamples(ranked.examples, encoder.width)
         self.glosses = GlossHead(ranked.glosses, encoder.width)
-        self.slots, self.closed = slots, closed
+        self.slots, self.unlisted = slots, unlisted
         self.known = ranked.known
         self.refused = ranked.refused
         self.support = torch.tensor(ranked.support, dtype=torch.float)  # [new forms]
@@ -162,13 +162,13 @@ class RankerModel(nn.Module):
         self.nearest.encode(self.encoder, utterances, check)
 
     def hear(self, utterance: str, forms: Iterable[str], check: Check) -> Mapping[str, str]:
-        """Return the members of closed classes that ``forms`` have slots for and that the utterance names in other
-        words than the ontology."""
-        if self.slots is None or self.closed is None:
+        """Return the entities, by class, that ``forms`` have slots for and that the utterance names in other words than
+        the ontology."""
+        if self.slots is None or self.unlisted is None:
             return {}
         asked = {name.rstrip("0123456789") for form in forms for name in CLASS_TOKEN.findall(form)}
-        unnamed = sorted(asked.intersection(self.closed.tokens) - self.slots.named(utterance))
-        return self.closed.find(self.encoder, utterance, unnamed, check) if unnamed else {}
+        unnamed = sorted(asked.intersection(self.unlisted.tokens) - self.slots.named(utterance))
+        return self.unlisted.find(self.encoder, utterance, unnamed, check) if unnamed else {}
 
     def rescored(self, scores: Scores, heard: Mapping[int, tuple[str, Collection[str]]]) -> Scores:
         """Return ``scores`` with the slots of some utterances, by number, scored with more entities of classes."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
 from random import Random
 from re import Match
@@ -40,6 +40,10 @@ class SlotTerm:
         # Many forms have the same slots. [kinds of form, classes] and [forms]
         self._kinds, self._kind_of = torch.unique(counts, dim=0, return_inverse=True)
         self._anonymizer = Anonymizer(ontology)
+        self._classes_of: defaultdict[str, set[str]] = defaultdict(set)
+        for entity in ontology.entities:
+            for text in (entity.text, *entity.aliases):
+                self._classes_of[text.casefold()].add(entity.entity_class)
 
     def scores(self, utterances: Sequence[str]) -> Tensor:
         """Return scores [utterances, forms]; 0 where all slots fit."""
@@ -79,6 +83,7 @@ class SlotTerm:
         for span in heard.spans:
             entities = (span.entity, *span.others)
             classes = {span.entity_class, *(each.entity_class for each in entities)}
+            classes |= self._classes_of.get(utterance[span.start : span.end].casefold(), set())
             if not any(map(self._classes.is_closed, classes)):
                 named[span.value] = frozenset(classes)
         for wanted in sorted(named.values(), key=len):

@@ -6,11 +6,8 @@ as a class token without an entity, so that somebody is asked.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-
-from rapidfuzz.distance import OSA
 
 from annotations.language.forms import (
     UNKNOWN,
@@ -25,7 +22,7 @@ from annotations.language.forms import (
 )
 from annotations.language.grounding import Anonymizer
 from annotations.language.ontology import Ontology
-from annotations.language.paraphrases import KnownWords
+from annotations.language.paraphrases import MisspeltNames
 from annotations.language.predicates import (
     ArgumentKind,
     Predicate,
@@ -34,12 +31,6 @@ from annotations.language.predicates import (
     admits,
     signature_of,
 )
-
-# A misspelt name differs by one edit, or by two where it is long. Every other name is clearly further away.
-LETTERS_AN_EDIT = 4
-MOST_EDITS = 2
-CLEARLY = 2
-_BETWEEN_WORDS = re.compile(r"[\s_-]+")
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +77,7 @@ class Mender:
             for each in walk(form)
             if isinstance(each, Constant) and isinstance(each.value, str)
         }
-        self._english = KnownWords()
+        self._misspelt = MisspeltNames()
 
     def mend(self, form: Form, utterance: str) -> Mended:
         """Return ``form`` with what the world has. Only entities that ``utterance`` names are among the values."""
@@ -153,7 +144,7 @@ class Mender:
             if each.is_action is is_action
             and any(len(known.arguments) == len(form.arguments) for known in each.signatures)
         ]
-        meant = self._meant(name, alike)
+        meant = self._misspelt.meant(name, alike)
         if meant is None:
             raise _Lost
         return self._predicates[meant]
@@ -180,7 +171,7 @@ class Mender:
             return work.token(token, None)
         if token in ontology.classes:
             raise _Lost
-        if token and (meant := self._meant(token, classes)):
+        if token and (meant := self._misspelt.meant(token, classes)):
             return work.token(meant, None)
         if text in self._texts and ArgumentKind.TEXT in kinds:
             return constant
@@ -208,23 +199,8 @@ class Mender:
         for entity_class in classes:
             for name in ontology.texts_of(entity_class):
                 by_name.setdefault(name, []).append((entity_class, name))
-        meant = self._meant(text, by_name)
+        meant = self._misspelt.meant(text, by_name)
         return [] if meant is None else by_name[meant]
-
-    def _meant(self, name: str, names: Iterable[str]) -> str | None:
-        """Return the one of ``names`` that a misspelt ``name`` surely is; None where it is not sure.
-
-        What is an English word is no misspelt other one: "make" is not "take".
-        """
-        folded = _fold(name)
-        near = sorted((OSA.distance(folded, _fold(each)), each) for each in names)
-        if not near:
-            return None
-        edits, nearest = near[0]
-        most = min(MOST_EDITS, len(folded) // LETTERS_AN_EDIT)
-        is_clear = len(near) == 1 or near[1][0] >= edits + CLEARLY
-        is_word = all(word in self._english for word in folded.split())
-        return nearest if not edits or (edits <= most and is_clear and not is_word) else None
 
 
 def tokens_in(form: Form) -> int:
@@ -255,7 +231,3 @@ def _without(form: Form, references: Collection[str]) -> Form:
     if isinstance(form, Application):
         return replace(form, arguments=tuple(_without(each, references) for each in form.arguments))
     return form
-
-
-def _fold(name: str) -> str:
-    return _BETWEEN_WORDS.sub(" ", name).strip().casefold()
