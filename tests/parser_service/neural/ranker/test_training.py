@@ -66,7 +66,7 @@ def texts_of_a_training(pairs, knowledge, config, monkeypatch):
     seen = []
     read = RankerTraining._text
     monkeypatch.setattr(RankerTraining, "_text", lambda *args: seen.append(read(*args)) or seen[-1])
-    FormRanker(replace(config, steps=80), 0, knowledge).fit(pairs)
+    FormRanker(replace(config, steps=400), 0, knowledge).fit(pairs)
     return set(seen)
 
 
