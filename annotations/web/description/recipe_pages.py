@@ -48,7 +48,12 @@ def recipes(request: WorldRequest, world: World) -> HttpResponse:
             for row in world.primitives.all()
         ],
         "shipped": shipped,
-        "others": [each for each in shipped_books().values() if each != shipped],
+        # A world without rows may copy the book that it uses already.
+        "offered": [
+            each
+            for each in shipped_books().values()
+            if each != shipped or not world.recipes.exists()
+        ],
         "version": version_of(world),
     }
     return render(request, "annotations/description/recipes.html", context)
