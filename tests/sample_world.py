@@ -14,6 +14,7 @@ from annotations.models import (
     Guidelines,
     LogicalForm,
     Paraphrase,
+    Primitive,
     SemanticTemplate,
     Split,
     World,
@@ -120,6 +121,14 @@ def own_class_in(world: World) -> EntityClass:
     """Return a class of ``world`` that not every world has, made where there is none."""
     words = {"singular": "pose", "plural": "poses", "said": "pose", "hue": 20, "position": 90}
     return EntityClass.objects.get_or_create(world=world, token="pose", defaults=words)[0]
+
+
+def unused_primitive_in(world: World) -> Primitive:
+    """Return a primitive of ``world`` that no recipe uses, the last one, made where there is none."""
+    columns = Primitive.columns_of('dance() "dance"')
+    return Primitive.objects.get_or_create(
+        world=world, name=columns["name"], defaults={**columns, "position": 990}
+    )[0]
 
 
 def comment_in(world: World) -> Comment:

@@ -17,7 +17,7 @@ from annotations.language.recipes import RecipeBook, apply_recipes, plan_key
 MOST_KEPT = 50_000  # plans; the forms of a run come again and again
 # The plan of a form that says nothing to do is the same as no other.
 _NOTHING_TO_DO = frozenset(map(str, (Trouble.NOT_UNDERSTOOD, Trouble.NO_ACTION)))
-_STAND_IN = re.compile(r"⟨(\w*?)[\d.]*⟩")
+_STAND_IN = re.compile(r"⟨([^\W\d]*+)[\d.]*+⟩")
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,10 @@ COME_BACK = "come back to you"
 NOTHING = "I have nothing to do."
 _PRONOUNS = {PERSON: "them", THING: "it"}
 _OWNERS = {"them": "their", "it": "its"}
-_OF_PRONOUN = re.compile(r"\bthe (?P<what>[\w ]+?(?: “[^”]*”)?) of (?P<owner>them|it)\b")
+# Bounded, so that long texts take linear time.
+_OF_PRONOUN = re.compile(
+    r"\bthe (?P<what>\w+(?: (?!of\b)\w+){0,5}(?: “[^”]{0,200}”)?) of (?P<owner>them|it)\b"
+)
 _AT_HERE = re.compile(r" (?:on|to|at|in) here\b")
 _CLAUSE = re.compile(r" (who|that) is ")
 _CAPITAL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")

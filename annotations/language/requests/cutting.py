@@ -23,13 +23,16 @@ def _phrases(phrases: Iterable[str]) -> str:
     return "|".join(re.escape(each) for each in sorted(phrases, key=len, reverse=True))
 
 
-_SIGN = r"\s*[.;:,!?]+\s+"
-_WORDS = rf"(?:(?:{_phrases(JOINTS)})\b(?:,?\s+))"
-_NUMBER = r"(?:\(?[1-9][.)]\s+)"
+# Possessive, and only from where blanks or signs begin: linear for every text.
+_SIGN = r"(?<![\s.;:,!?])\s*+[.;:,!?]++\s++"
+_WORDS = rf"(?:(?:{_phrases(JOINTS)})\b(?:,?\s++))"
+_NUMBER = r"(?:\(?[1-9][.)]\s++)"
 _JOINT = re.compile(
-    rf"(?:{_SIGN}(?:{_WORDS}|{_NUMBER})*|\s+(?:{_WORDS}|{_NUMBER})+)", re.IGNORECASE
+    rf"(?:{_SIGN}(?:{_WORDS}|{_NUMBER})*+|(?<!\s)\s++(?:{_WORDS}|{_NUMBER})++)", re.IGNORECASE
 )
-_OPENING = re.compile(rf"\s*(?:(?:{_phrases(JOINT_OPENINGS)})\b[\s,:.]*|{_NUMBER})+", re.IGNORECASE)
+_OPENING = re.compile(
+    rf"\s*+(?:(?:{_phrases(JOINT_OPENINGS)})\b[\s,:.]*+|{_NUMBER})++", re.IGNORECASE
+)
 _SIGNS = " .,;:!?"  # of the end of a command
 
 

@@ -42,7 +42,7 @@ _THE = re.compile(r"\bthe (?=[^\W\d_]|<)")
 _PRONOUN = re.compile(r"\b(?:it|them)\b")
 _WHO_IS = re.compile(r"\bthe (?:person|one|individual) (?:who|that) is\b")
 _BEFORE_SOMEONE = re.compile(r"\b(?:the|an?|some) (?=(?:someone|somebody|whoever)\b)")
-_BEFORE_SIGN = re.compile(r"\s+(?=[.,;])")
+_BEFORE_SIGN = re.compile(r" (?=[.,;])")
 
 
 class Rewording:

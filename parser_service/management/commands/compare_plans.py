@@ -19,6 +19,7 @@ class Command(ReportingCommand):
         "Says of each answer whether it has the plan of its label, by the recipes that the world has now: for runs "
         "that were scored before plans were compared, and after recipes have changed."
     )
+    audited = "compare plans"
 
     def add_options(self, parser: CommandParser) -> None:
         parser.add_argument("world")

@@ -25,7 +25,7 @@ PACKAGES = (annotations, gpsr_site, parser_service)
 # Commands that change nothing that others see, or serve what writes the log itself.
 READING = {
     *("audit_labels", "benchmark", "backup", "expand_grammar", "export_split", "export_world"),
-    *("leakage", "parse", "parse_server", "serve", "work"),
+    *("export_rephrased", "export_vocabulary", "leakage", "parse", "parse_server", "serve", "work"),
 }
 # It makes an installation from a backup, whose log it becomes.
 RESTORING = {"restore"}

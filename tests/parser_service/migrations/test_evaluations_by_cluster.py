@@ -19,11 +19,19 @@ def run(world, transactional_db):
     return trained(make_split(world), train_sources="gen+para")
 
 
+def scores_of(run):
+    """The scores of a run. Plans were not compared then, so the last figure of an outcome is left out."""
+    scores = list(run.evaluations.values())
+    for score in scores:
+        score["outcomes"] = {key: counts[:4] for key, counts in score["outcomes"].items()}
+    return scores
+
+
 def test_older_scores_get_what_a_run_stores(run):
-    before = list(run.evaluations.values())
+    before = scores_of(run)
     run.evaluations.update(outcomes={}, interval_low=0.1, interval_high=0.2)
     migration.count(apps, None)
-    assert list(run.evaluations.values()) == before
+    assert scores_of(run) == before
 
 
 def test_a_score_whose_predictions_are_gone_stays_as_it_is(run):

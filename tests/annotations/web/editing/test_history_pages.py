@@ -10,7 +10,7 @@ from annotations.labelling.collecting import collect
 from annotations.models import Entity, Predicate, Production, SemanticTemplate
 from annotations.rows.row_kinds import KINDS
 from tests.notices import levels
-from tests.sample_world import guidelines_in, own_class_in, paraphrase_in
+from tests.sample_world import guidelines_in, own_class_in, paraphrase_in, unused_primitive_in
 
 
 def address(row, kind="template"):
@@ -55,6 +55,7 @@ def test_what_was_deleted_is_listed_and_restored(kind, sample, anna, admin):
     paraphrase_in(sample.world)
     collect(sample.world, ["find the tea"])
     own_class_in(sample.world)
+    unused_primitive_in(sample.world)
     row = kind.rows_of(sample.world).last()
     listed = f"/w/home/history/{kind.name}/deleted/"
     assert not anna.get(listed).context["entries"]
@@ -78,6 +79,8 @@ LISTS = {
     "paraphrase": "paraphrases",
     "utterance": "utterances",
     "guidelines": "guidelines",
+    "recipe": "recipes",
+    "primitive": "recipes",
 }
 
 
