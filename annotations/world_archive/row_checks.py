@@ -15,6 +15,7 @@ from annotations.language.forms import read_template_form
 from annotations.language.predicates import is_entity_kind
 from annotations.language.symbols import is_token
 from annotations.language.templates import SampleNote
+from annotations.models import Primitive, Recipe
 from annotations.rows.stored_problems import is_stored_problems
 from annotations.world_archive.archive_tables import ArchiveTable
 
@@ -223,3 +224,16 @@ SHAPES: Shapes = {
     "spans": _is_spans,
     "proportions": _is_shares,
 }
+
+
+def check_book_row(
+    model: type[Primitive | Recipe], values: Mapping[str, Any], place: Position
+) -> None:
+    """Raise LanguageError where a row of an archive cannot be read, or where its columns do not fit its text."""
+    try:
+        columns = model.columns_of(values["text"])
+    except LanguageError as error:
+        raise LanguageError(error.message, place, error.hint) from error
+    for name, value in columns.items():
+        if values[name] != value:
+            raise LanguageError(f"{name} is not “{value[:40]}”, as the text says", place)

@@ -38,8 +38,7 @@ from annotations.rows.synchronise import BATCH, batches
 from annotations.splits.freezing import content_hash_of
 from annotations.world_archive.archive_tables import ArchiveTable, tables
 from annotations.world_archive.class_checks import check_classes, check_token
-from annotations.world_archive.recipe_checks import check_book_row
-from annotations.world_archive.row_checks import check_row, parse_object
+from annotations.world_archive.row_checks import check_book_row, check_row, parse_object
 from annotations.world_archive.row_texts import equal_row, normalise_columns
 from annotations.world_archive.world_manifest import WorldManifest, read_manifest
 from annotations.worlds.world_deletion import delete_world

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Sequence
 from annotations.language.english import JOINT_OPENINGS, JOINTS
 
 MOST_COMMANDS = 3  # as many as a referee gives at once
-MOST_JOINTS = 24  # in an utterance; one with more is not cut
+MOST_JOINTS = 16  # in an utterance, so at most 153 pieces; one with more is not cut
 
 Judge = Callable[[Sequence[str]], Sequence[float | None]]
 """Returns for each piece how well it is understood as one command; None for one that is not."""
