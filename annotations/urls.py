@@ -37,6 +37,7 @@ urlpatterns = [
     path(
         "people/invitations/<int:pk>/withdraw/", member_pages.withdraw, name="invitation_withdraw"
     ),
+    path("world/", world_pages.world_edit, name="world_edit"),
     path("delete/", world_pages.world_delete, name="world_delete"),
     path("import/", import_pages.import_files, name="import"),
     path("import/competition/", import_pages.import_competition_files, name="import_competition"),

@@ -54,6 +54,7 @@ WHAT = {
     "invitation_withdraw": "withdraw an invitation",
     "world_new": "create a world",
     "world_import": "import a world",
+    "world_edit": "describe the world",
     "world_delete": "delete the world",
     "import": "import files",
     "import_competition": "import a competition",

@@ -51,9 +51,21 @@ PLACE = ("source", "line", "column")
 PATTERN_TOKEN = re.compile(r"(\$\w+|\{[^{}]*\})")
 
 
+@register.simple_block_tag(takes_context=True, end_name="end_page_title")
+def page_title(context: Any, content: str) -> str:
+    """Keep ``content`` as ``page_title``, the one name of a page: title, heading and last step of the breadcrumb."""
+    context["page_title"] = mark_safe(content.strip())  # rendered, so escaped already
+    return ""
+
+
 @register.simple_block_tag(takes_context=True, end_name="end_page_head")
-def page_head(context: Any, content: str, title: str, aside: str = "", actions: str = "") -> str:
-    """Render the head of a page (see ``_page_head.html``) with ``content`` as its sentence."""
+def page_head(
+    context: Any, content: str, title: str = "", aside: str = "", actions: str = ""
+) -> str:
+    """Render the head of a page (see ``_page_head.html``) with ``content`` as its sentence.
+
+    ``title`` is for a name that is shown with marks, such as the chips of a command.
+    """
     # The content was rendered by the template, so it is escaped already.
     values = {
         "title": title,

@@ -11,10 +11,8 @@ from django.utils import timezone
 from annotations.models import StoredProblem, World
 from gpsr_site.overview.counts import counts_of, counts_of_all
 from gpsr_site.overview.workers import workers_now
-from gpsr_site.pages.frame import PLACES
-from parser_service.models import Worker
+from parser_service.models import Promotion, Worker
 from parser_service.runs.requests import run_requests
-from tests.gpsr_site.routes.listing import ROUTES_OF_WORLDS
 
 
 def worker(seconds_ago: float) -> Worker:
@@ -62,75 +60,84 @@ def test_the_banner_never_comes_from_a_cache(annotator, client):
     assert "no-store" in client.get("/banner/")["Cache-Control"]
 
 
+def entries_of(answer) -> dict[str, object]:
+    return {entry.label: entry for group in answer.context["rail"] for entry in group.entries}
+
+
+def current_entries(answer) -> list[str]:
+    return [label for label, entry in entries_of(answer).items() if entry.is_current]
+
+
 def test_the_rail_shows_counts_the_current_page_and_what_waits(sample, annotator, client):
     StoredProblem.objects.create(
         world=sample.world, subject="grammar", severity="warning", message="m"
     )
     client.force_login(annotator)
-    rail = client.get("/w/home/templates/").context["rail"]
-    entries = {entry.label: entry for entry in rail}
-    assert [entry.label for entry in rail if entry.is_current] == ["Templates"]
+    page = client.get("/w/home/templates/")
+    entries = entries_of(page)
+    assert current_entries(page) == ["Templates"]
     assert entries["Commands"].count == 3
     assert entries["Grammar"].dot.startswith("1 ")
     assert entries["Templates"].dot == ""
 
 
+def test_the_groups_of_the_rail_follow_the_flow(sample, annotator, client):
+    client.force_login(annotator)
+    groups = client.get("/w/home/").context["rail"]
+    assert [(group.heading, [entry.label for entry in group.entries]) for group in groups] == [
+        ("", ["Overview"]),
+        ("Describe", ["Ontology", "Grammar", "Templates", "Coverage", "Recipes"]),
+        ("Collect", ["Commands", "Paraphrases", "Utterances", "Queue"]),
+        ("Train and judge", ["Splits", "Runs", "Results", "Review"]),
+        ("Use", ["Parse"]),
+        ("", ["Settings"]),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("path", "tabs"),
+    [
+        ("results/", ["Results", "Compare", "Slices", "Learning curves"]),
+        ("runs/", ["Runs", "Promotion"]),
+        ("parse/", ["Parse", "Try a text", "Dialogue", "Several commands", "Robot"]),
+        ("people/", ["People", "Import and export", "Jobs", "Audit log", "World"]),
+    ],
+)
+def test_what_belongs_together_is_one_place_with_tabs(path, tabs, sample, admin, client):
+    client.force_login(admin)
+    (row,) = client.get(f"/w/home/{path}").context["tabs"]
+    assert [tab.label for tab in row] == tabs
+    for tab in row:
+        page = client.get(tab.url)
+        assert [each.label for each in page.context["tabs"][0] if each.is_current] == [tab.label]
+
+
+def test_one_sees_only_the_tabs_that_one_may_open(sample, annotator, client):
+    client.force_login(annotator)
+    (row,) = client.get("/w/home/people/").context["tabs"]
+    assert [tab.label for tab in row] == ["People", "Jobs"]
+
+
+def test_what_waits_on_a_tab_is_told_at_its_place_too(sample, admin, client):
+    Promotion.objects.create(world=sample.world, run=sample.run, state="proposed", reason="r")
+    client.force_login(admin)
+    page = client.get("/w/home/runs/")
+    assert "1 run proposed" in entries_of(page)["Runs"].dot
+    (promotion,) = [tab for tab in page.context["tabs"][0] if tab.label == "Promotion"]
+    assert promotion.dot.startswith("1 run")
+
+
 def test_a_page_below_belongs_to_its_entry(sample, annotator, client):
     client.force_login(annotator)
     page = client.get(f"/w/home/runs/{sample.run.pk}/predictions/")
-    assert [entry.label for entry in page.context["rail"] if entry.is_current] == ["Results"]
+    assert current_entries(page) == ["Runs"]
 
 
 def test_a_page_about_any_row_belongs_to_the_list_of_its_kind(sample, annotator, client):
     client.force_login(annotator)
     for kind, label in (("template", "Templates"), ("entity", "Ontology")):
         page = client.get(f"/w/home/history/{kind}/deleted/")
-        assert [entry.label for entry in page.context["rail"] if entry.is_current] == [label]
-
-
-def test_every_page_of_a_world_belongs_to_one_entry():
-    """What is no page of its own: parts of pages, files, actions, and the search over all kinds."""
-    parts = {
-        "coverage",
-        "template_check",
-        "template_preview",
-        "template_consequences",
-        "generate",
-        "near_duplicates",
-    }
-    parts |= {"production_check", "production_preview", "predicate_preview", "class_colours"}
-    parts |= {"download_part", "recipe_book", "recipe_preview", "primitive_preview"}
-    parts |= {"template_completion", "template_suggestions", "template_repair"}
-    parts |= {"template_duplicate", "delete_row"}
-    parts |= {"runs_table", "run_state", "run_charts", "run_curves", "run_cancel", "results_table"}
-    parts |= {"label_item", "label_answer", "label_check", "label_mend", "label_take_back"}
-    parts |= {"history", "deleted", "comments", "draft", "rename"}  # of rows of any kind
-    parts |= {"comment", "comment_delete", "comment_restore"}
-    parts |= {"queue_next", "queue_act", "queue_settle", "queue_ask", "queue_assign"}
-    parts |= {name for name in ROUTES_OF_WORLDS if name.startswith("api:")}
-    parts |= {"audit_start", "audit_item", "audit_decide", "audit_check", "audit_take_back"}
-    parts |= {"label_send"}
-    parts |= {"slice_rename", "slice_delete"}
-    parts |= {"analysis_state", "analysis_start", "analysis_cancel", "tryout_ask"}
-    parts |= {"results_csv", "results_latex", "results_json", "download", "search", "member"}
-    parts |= {"invite", "invitation_withdraw"}
-    parts |= {"review_tag", "review_note", "review_doubt"}
-    parts |= {"error_category_move", "error_category_delete"}
-    parts |= {"results_csv", "download", "search", "member"}
-    parts |= {"example_send", "predictions_send", "paraphrase_label", "paraphrase_check"}
-    parts |= {"split_changes", "split_renew", "split_runs", "run_retrain", "run_report"}
-    parts |= {"compare_report"}
-    parts |= {"dialogue_keep", "offered_entity_decide", "plan_schema"}
-    parts |= {"learning_curves_table", "learning_curves_data", "learning_curve_start"}
-    parts |= {"paraphrase_runs", "paraphrase_runs_start"}
-    parts |= {"playground_ask", "joint_plan_ask", "playground_wrong", "parser_state"}
-    parts |= {"guidelines_preview", "utterances_delete", "utterances_restore"}
-    parts |= {"upload_undo", "upload_redo", "campaign_state", "campaign_act"}
-    parts |= {"submission_decide", "submissions_decide", "submissions_take_back"}
-    parts |= {"promotion_promote", "promotion_roll_back", "promotion_decline"}
-    names = [name for place in PLACES for name in (place.page, *place.pages_below)]
-    assert len(names) == len(set(names))
-    assert set(names) - {"job"} == ROUTES_OF_WORLDS - parts
+        assert current_entries(page) == [label]
 
 
 def test_counts_are_those_of_the_world_alone(sample, other_sample):

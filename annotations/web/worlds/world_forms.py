@@ -15,8 +15,11 @@ def start_choices() -> list[tuple[str, str]]:
     return [("", "You import the files of a command generator next."), *shipped]
 
 
+NAME_TAKEN = "There is a world of this name already. Choose another name."
+
+
 class WorldForm(forms.ModelForm):  # type: ignore[type-arg]  # generic in the stubs alone
-    """A world. Its name is used in URLs and never changes."""
+    """A world. Its name stands in all addresses below it."""
 
     class Meta:
         model = World
@@ -33,9 +36,19 @@ class WorldForm(forms.ModelForm):  # type: ignore[type-arg]  # generic in the st
             with transaction.atomic():
                 created: World = self.save()
         except IntegrityError:
-            self.add_error("name", "There is a world of this name already. Choose another name.")
+            self.add_error("name", NAME_TAKEN)
             return None
         return created
+
+    def change(self) -> bool:
+        """Save the world of a valid form, its own columns alone. Return False, with an error, if the name is taken."""
+        try:
+            with transaction.atomic():
+                self.instance.save(update_fields=self.changed_data)
+        except IntegrityError:
+            self.add_error("name", NAME_TAKEN)
+            return False
+        return True
 
 
 class NewWorldForm(WorldForm):

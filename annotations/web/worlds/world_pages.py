@@ -1,7 +1,8 @@
-"""Create a world, empty or from an archive; download one, whole or a part; delete one."""
+"""Create a world, empty or from an archive; rename and describe one; download one, whole or a part; delete one."""
 
 from __future__ import annotations
 
+from copy import copy
 from typing import Any
 
 from django import forms
@@ -21,11 +22,12 @@ from annotations.people.access import (
     world_view,
 )
 from annotations.people.allowances import may_take_long, takes_files
+from annotations.people.audit_log import note
 from annotations.web.forms import posted
 from annotations.web.sent_texts import MOST_NAMED
 from annotations.web.worlds.downloads import archive_of, file_of
 from annotations.web.worlds.import_forms import WorldArchiveForm
-from annotations.web.worlds.world_forms import NewWorldForm
+from annotations.web.worlds.world_forms import NewWorldForm, WorldForm
 from annotations.world_archive.import_job import start_world_import
 from annotations.worlds.world_deletion import count_below, start_deletion
 
@@ -96,6 +98,23 @@ def download(request: WorldRequest, world: World) -> StreamingHttpResponse:
 def download_part(request: WorldRequest, world: World, part: str) -> HttpResponse:
     """Download a part of a world."""
     return file_of(world, part)
+
+
+@world_view(Duty.MANAGE, READ_AND_WRITE)
+def world_edit(request: WorldRequest, world: World) -> HttpResponse:
+    """Rename a world, and describe it."""
+    before = world.name
+    form = WorldForm(
+        posted(request), instance=copy(world)
+    )  # the frame goes on showing what is stored
+    if form.is_bound and form.is_valid() and form.change():
+        now = form.cleaned_data["name"]
+        if now != before:
+            note(request, f"{before} is called {now} now")
+        messages.success(request, f"Saved {now}.")
+        return redirect("world_edit", world=now)
+    status = 422 if form.errors else 200
+    return render(request, "annotations/worlds/world_edit.html", {"form": form}, status=status)
 
 
 @world_view(Duty.MANAGE, READ_AND_WRITE)

@@ -45,8 +45,9 @@ class WorldSerializer(serializers.ModelSerializer[World]):
 
 
 class WorldChange(Fields):
-    """The name of a world is in addresses and never changes."""
+    """The name of a world is in all addresses below it: after a change they begin with the new one."""
 
+    name = serializers.CharField(max_length=60)
     description = serializers.CharField(max_length=10_000, allow_blank=True)
 
 
@@ -103,7 +104,7 @@ class Worlds(WorldShowing, ManyRows):
 
 
 class OneWorld(WorldShowing, RowRoute):
-    """Shows a world; its admins describe it, administrators of the site delete it."""
+    """Shows a world; its admins rename and describe it, administrators of the site delete it."""
 
     duties = {"PATCH": Duty.MANAGE, "DELETE": Duty.MANAGE}
     conditional = ("PATCH", "DELETE")
@@ -118,9 +119,8 @@ class OneWorld(WorldShowing, RowRoute):
             form = WorldForm(
                 {"name": row.name, "description": row.description, **sent}, instance=row
             )
-            if not form.is_valid():
+            if not (form.is_valid() and form.change()):
                 raise refusal_of_form(form)
-            form.save()
         return self.show(row)
 
     @extend_schema(request=None, responses={202: JobSerializer, 204: None})

@@ -84,8 +84,7 @@ def state_of(world: World, pk: int) -> dict[str, Any]:
     entry = PARSERS.get(run.parser)
     return {
         "run": run,
-        "title": marked(title_of(run.parser), run.parser),
-        "aside": f"run {run.pk}",
+        "aside": marked(title_of(run.parser), run.parser),
         "curves_url": curves_url(world, run),
         "loss_title": f"Loss by epoch, {entry.loss_unit if entry else 'nats'}",
         "evaluations": sorted(run.evaluations.all(), key=order_of),

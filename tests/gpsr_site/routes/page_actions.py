@@ -54,6 +54,7 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "account_link": "post account-link",
     "world_new": "post worlds",
     "world_import": "post import-world",
+    "world_edit": "patch world",
     "world_delete": "delete world",
     # Who is in a world
     "people": "post member-list",

@@ -63,6 +63,8 @@ POLICY = [
     Rule("world_new", LOG_IN, NO, NO, NO, NO, method="post"),
     Rule("world_import", LOG_IN, NO, NO, NO, NO),
     Rule("world_import", LOG_IN, NO, NO, NO, NO, method="post"),
+    Rule("world_edit", LOG_IN, NOWHERE, NO, NO, YES),
+    Rule("world_edit", LOG_IN, NOWHERE, NO, NO, 422, method="post"),
     Rule("world_delete", LOG_IN, NOWHERE, NO, NO, NO),
     Rule("world_delete", LOG_IN, NOWHERE, NO, NO, NO, method="post"),
     Rule("campaign_model", *ADMINS),

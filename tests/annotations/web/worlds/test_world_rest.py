@@ -39,12 +39,21 @@ def test_a_world_is_made_described_and_deleted(call_as, superuser):
     assert changed.json()["description"] == "Dry."
     overtaken = call_as(superuser, "patch", address, {"description": ""}, if_match=made["ETag"])
     assert (overtaken.status_code, overtaken.json()["current"]["description"]) == (412, "Dry.")
-    assert call_as(superuser, "patch", address, {"name": "x"}, if_match="*").status_code == 400
     assert call_as(superuser, "delete", address).status_code == 428
     assert call_as(superuser, "delete", address, if_match=changed["ETag"]).status_code == 204
     assert not World.objects.exists()
     whats = ["create worlds", "change world", "delete world"]
     assert [each.what for each in AuditEntry.objects.order_by("pk")] == [whats[0], *whats]
+
+
+def test_a_renamed_world_is_found_by_its_new_name(call_as, world, other_world, admin):
+    address = "worlds/home/"
+    for name in (other_world.name, "Not a name", ""):
+        assert call_as(admin, "patch", address, {"name": name}, if_match="*").status_code == 400
+    renamed = call_as(admin, "patch", address, {"name": "garden"}, if_match="*")
+    assert (renamed.status_code, renamed.json()["name"]) == (200, "garden")
+    assert call_as(admin, "get", address).status_code == 404
+    assert call_as(admin, "get", "worlds/garden/").json()["duties"]
 
 
 def test_admins_of_a_world_describe_it_and_delete_none(call_as, world, admin):

@@ -1,0 +1,287 @@
+"""The pages of a world in the order of the flow: groups of the rail, their places, and the tabs of a place."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from annotations.language.english import say_count
+from annotations.models import Duty
+from annotations.rows.row_kinds import KINDS
+from gpsr_site.overview.counts import Counts
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Waiting:
+    """What the dot of an entry says, such as ``3 templates not ready``: a count, its noun, a reason.
+
+    ``count`` is a field of ``Counts``; 0 of it is no dot. Without a noun the reason stands alone.
+    """
+
+    count: str
+    noun: str = ""
+    reason: str
+
+    def sentence(self, counts: Counts) -> str:
+        """Say what waits; empty for nothing."""
+        number = getattr(counts, self.count)
+        if not number:
+            return ""
+        return f"{say_count(number, self.noun)} {self.reason}" if self.noun else self.reason
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Place:
+    """A page that the rail or a row of tabs leads to.
+
+    ``label`` is its one name: in the rail or on its tab, as its heading, in the breadcrumb and as its title.
+    ``page`` and ``pages_below`` are URL names; the pages below have names of their own. The first tab of a place
+    with tabs is the place itself. ``query`` is the filter with which its tab opens. ``count`` is a field of ``Counts``
+    that stands beside the label. Only people with ``duty`` see the tab.
+    """
+
+    label: str
+    page: str
+    query: str = ""
+    count: str = ""
+    waiting: Waiting | None = None
+    duty: Duty = Duty.VIEW
+    pages_below: tuple[str, ...] = ()
+    tabs: tuple[Place, ...] = ()
+
+    @property
+    def has_page(self) -> bool:
+        """Whether a page bears its label: ``Settings`` has tabs alone, and leads to the first of them."""
+        return all(tab.page != self.page for tab in self.tabs)
+
+    def way_to(self, page: str) -> tuple[Place, ...]:
+        """Return the places on the way to a page, from this one on; empty where it is not here."""
+        for tab in self.tabs:
+            if way := tab.way_to(page):
+                return (self, *way)
+        return (self,) if page in (self.page, *self.pages_below) else ()
+
+    def waiting_here(self, counts: Counts) -> str:
+        """Say what waits on this page; empty for nothing."""
+        return self.waiting.sentence(counts) if self.waiting else ""
+
+    def sentence(self, counts: Counts) -> str:
+        """Say what waits here and on the tabs; empty for nothing."""
+        below = (tab.sentence(counts) for tab in self.tabs)
+        return ", ".join(filter(None, (self.waiting_here(counts), *below)))
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Places of the rail below one heading; the first and the last group need none."""
+
+    heading: str
+    places: tuple[Place, ...]
+
+
+DESCRIBE = (
+    Place(
+        label="Ontology",
+        page="ontology",
+        count="entities",
+        waiting=Waiting(count="ontology_problems", noun="warning", reason="to read"),
+        pages_below=("entity", "entity_new", "entities_new", "location_rooms"),
+        tabs=(
+            Place(
+                label="Classes",
+                page="entity_classes",
+                pages_below=("entity_class", "entity_class_new"),
+            ),
+            Place(
+                label="Predicates", page="predicates", pages_below=("predicate", "predicate_new")
+            ),
+            Place(label="Words from dialogues", page="offered_entities"),
+        ),
+    ),
+    Place(
+        label="Grammar",
+        page="grammar",
+        count="productions",
+        waiting=Waiting(count="grammar_problems", noun="warning", reason="to read"),
+        pages_below=("production", "production_new"),
+    ),
+    Place(
+        label="Templates",
+        page="templates",
+        count="templates",
+        waiting=Waiting(count="templates_waiting", noun="template", reason="not ready"),
+        pages_below=("template", "template_new"),
+    ),
+    Place(
+        label="Coverage",
+        page="uncovered",
+        tabs=(
+            Place(label="Templates without effect", page="unmatched"),
+            Place(label="Conflicts", page="conflicts"),
+            Place(label="Outside the grammar", page="outside_grammar"),
+        ),
+    ),
+    Place(
+        label="Recipes",
+        page="recipes",
+        pages_below=("recipe", "recipe_new", "primitive", "primitive_new"),
+    ),
+)
+
+COLLECT = (
+    Place(
+        label="Commands",
+        page="commands",
+        count="commands",
+        waiting=Waiting(count="stale", reason="out of date"),
+        pages_below=("command", "generation"),
+        tabs=(
+            Place(label="Logical forms", page="logical_forms", pages_below=("logical_form",)),
+            Place(label="Complexity", page="complexity"),
+        ),
+    ),
+    Place(
+        label="Paraphrases",
+        page="paraphrases",
+        count="paraphrases",
+        pages_below=("paraphrase",),
+        tabs=(
+            Place(
+                label="Campaigns",
+                page="campaigns",
+                duty=Duty.MANAGE,
+                pages_below=(
+                    *("campaign_new", "campaign_page", "campaign_edit", "campaign_results"),
+                    *("campaign_model", "contributor_forget"),
+                ),
+            ),
+            Place(
+                label="Moderation",
+                page="submissions",
+                query="?status=pending",
+                duty=Duty.REVIEW,
+                waiting=Waiting(count="paraphrases_waiting", noun="paraphrase", reason="to judge"),
+                pages_below=("submission", "submission_decide"),
+            ),
+            Place(label="Figures", page="paraphrase_figures"),
+            Place(label="Figures by form", page="paraphrase_forms"),
+            Place(label="Contributors", page="paraphrase_contributors", duty=Duty.REVIEW),
+        ),
+    ),
+    Place(
+        label="Utterances",
+        page="utterances",
+        count="utterances",
+        waiting=Waiting(count="utterances_waiting", noun="utterance", reason="without a form"),
+        pages_below=("utterance", "utterances_new", "utterances_delete"),
+        tabs=(Place(label="Uploads", page="uploads", pages_below=("upload", "upload_undo")),),
+    ),
+    Place(
+        label="Queue",
+        page="queue",
+        count="work_items",
+        waiting=Waiting(count="work_items_free", noun="item", reason="to do"),
+        pages_below=("queue_item", "label"),
+        tabs=(
+            Place(label="Label audit", page="audit"),
+            Place(label="Agreement", page="agreement"),
+            Place(label="Progress", page="progress"),
+            Place(label="Guidelines", page="guidelines"),
+            Place(label="Double labelling", page="queue_settings", duty=Duty.MANAGE),
+        ),
+    ),
+)
+
+TRAIN_AND_JUDGE = (
+    Place(
+        label="Splits", page="splits", count="splits", pages_below=("split", "split_new", "example")
+    ),
+    Place(
+        label="Runs",
+        page="runs",
+        count="runs",
+        waiting=Waiting(count="runs_active", noun="run", reason="queued or running"),
+        pages_below=("run", "run_new", "predictions", "defaults", "sensitivity", "probes"),
+        tabs=(
+            Place(
+                label="Promotion",
+                page="promotions",
+                waiting=Waiting(
+                    count="promotions_proposed", noun="run", reason="proposed for promotion"
+                ),
+            ),
+        ),
+    ),
+    Place(
+        label="Results",
+        page="results",
+        count="evaluated",
+        tabs=(
+            Place(label="Compare", page="compare"),
+            Place(label="Slices", page="slices"),
+            Place(label="Learning curves", page="learning_curves"),
+        ),
+    ),
+    Place(label="Review", page="review", pages_below=("error_categories", "error_category")),
+)
+
+USE = (
+    Place(
+        label="Parse",
+        page="playground",
+        tabs=(
+            Place(label="Try a text", page="tryout"),
+            Place(label="Dialogue", page="dialogues", pages_below=("dialogue",)),
+            Place(label="Several commands", page="joint_plan"),
+            Place(label="Robot", page="robot"),
+        ),
+    ),
+)
+
+SETTINGS = Place(
+    label="Settings",
+    page="people",
+    tabs=(
+        Place(label="People", page="people", pages_below=("invite",)),
+        Place(
+            label="Import and export",
+            page="import",
+            duty=Duty.MANAGE,
+            tabs=(
+                Place(label="Competition folder", page="import_competition", duty=Duty.MANAGE),
+                Place(label="Published pairs", page="import_pairs", duty=Duty.MANAGE),
+            ),
+        ),
+        Place(label="Jobs", page="jobs", pages_below=("job",)),
+        Place(label="Audit log", page="audit_log", duty=Duty.MANAGE),
+        Place(label="World", page="world_edit", duty=Duty.MANAGE, pages_below=("world_delete",)),
+    ),
+)
+
+GROUPS = (
+    Group("", (Place(label="Overview", page="world"),)),
+    Group("Describe", DESCRIBE),
+    Group("Collect", COLLECT),
+    Group("Train and judge", TRAIN_AND_JUDGE),
+    Group("Use", USE),
+    Group("", (SETTINGS,)),
+)
+
+# Kind of row → the route of the list that holds it.
+LISTS = {kind.name: kind.list_page for kind in KINDS.values()}
+LISTS |= {"form": "logical_forms"}
+
+
+def way_to(page: str) -> tuple[Place, ...]:
+    """Return the places on the way to a page of a world, the one of the rail first; empty for a page of no place."""
+    ways = (place.way_to(page) for group in GROUPS for place in group.places)
+    return next(filter(None, ways), ())
+
+
+def all_places() -> Iterator[Place]:
+    """Yield every place of the rail and every tab, each after the place that holds it."""
+    waiting = [place for group in reversed(GROUPS) for place in reversed(group.places)]
+    while waiting:
+        place = waiting.pop()
+        yield place
+        waiting += reversed(place.tabs)

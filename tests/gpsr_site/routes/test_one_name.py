@@ -1,0 +1,116 @@
+"""One page, one name: rail, breadcrumb, heading and title call it the same."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from html.parser import HTMLParser
+
+import pytest
+
+from gpsr_site.pages.places import all_places, way_to
+from tests.gpsr_site.routes.addresses import address
+from tests.gpsr_site.routes.listing import ALL_ROUTES, API_ROUTES, ROUTES_OF_WORLDS
+from tests.gpsr_site.routes.policy import POLICY
+
+METHODS = sorted({(rule.name, rule.method) for rule in POLICY if rule.name not in API_ROUTES})
+# The list of all worlds and what is about no kind of work have no entry in the rail of a world.
+WITHOUT_PLACE = {"search", "comment"}
+DOCUMENTS = {"documents", "document"}  # their heading is that of the text
+
+
+@dataclass
+class Names(HTMLParser):
+    """What a page calls itself: the texts of its title, headings and breadcrumb, and the entry of the rail."""
+
+    title: str = ""
+    headings: list[str] = field(default_factory=list)
+    crumbs: list[str] = field(default_factory=list)
+    marked: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        super().__init__()
+        self.inside: list[tuple[str, dict[str, str | None]]] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        if tag in {"input", "meta", "link", "br", "img", "source", "hr", "wbr"}:
+            return
+        self.inside.append((tag, dict(attrs)))
+        if tag == "h1":
+            self.headings.append("")
+        if tag == "li" and self.is_in("class", "breadcrumb"):
+            self.crumbs.append("")
+        if tag == "a" and self.is_in("id", "rail") and dict(attrs).get("aria-current") == "page":
+            self.marked.append("")
+
+    def handle_endtag(self, tag: str) -> None:
+        while self.inside and self.inside.pop()[0] != tag:
+            pass
+
+    def handle_data(self, data: str) -> None:
+        tags = [tag for tag, _ in self.inside]
+        if "svg" in tags or self.is_in("class", "count") or self.is_in("class", "rail-count"):
+            return
+        if tags[-1:] == ["title"]:
+            self.title += data
+        elif "h1" in tags:
+            self.headings[-1] += data
+        elif self.is_in("class", "breadcrumb") and "li" in tags:
+            self.crumbs[-1] += data
+        elif self.marked and self.is_in("id", "rail") and self.is_in("aria-current", "page"):
+            self.marked[-1] += data if not self.is_in("class", "visually-hidden") else ""
+
+    def is_in(self, name: str, value: str) -> bool:
+        return any(attributes.get(name) == value for _, attributes in self.inside)
+
+
+def names_of(answer) -> Names | None:
+    """Return the names of a page with the frame; None for parts of pages, files, redirects and refusals."""
+    if answer.status_code not in (200, 422) or "text/html" not in answer["Content-Type"]:
+        return None
+    text = answer.getvalue().decode()
+    if 'class="topbar"' not in text:
+        return None
+    names = Names()
+    names.feed(text)
+    return names
+
+
+def plain(text: str) -> str:
+    """Without the brackets of class tokens, which a heading shows as chips."""
+    return " ".join(text.replace("<", "").replace(">", "").split())
+
+
+@pytest.mark.parametrize(("name", "method"), METHODS)
+def test_a_page_has_one_name(name, method, sample, client_as):
+    names = names_of(getattr(client_as("superuser"), method)(address(name, sample)))
+    if names is None:
+        return
+    called = plain(names.crumbs[-1])
+    assert called, names
+    if name not in DOCUMENTS:
+        assert [plain(heading) for heading in names.headings] == [called], names
+    assert plain(names.title).startswith(called), names
+    if name in ROUTES_OF_WORLDS - WITHOUT_PLACE:
+        (entry,) = names.marked
+        assert plain(entry) in map(plain, names.crumbs), names
+
+
+@pytest.mark.parametrize("place", list(all_places()), ids=lambda place: place.label)
+def test_a_place_has_the_name_of_its_entry(place, sample, client_as):
+    if not place.has_page:
+        return
+    names = names_of(client_as("superuser").get(address(place.page, sample)))
+    assert plain(names.crumbs[-1]) == place.label
+
+
+def test_every_place_is_the_way_to_its_own_page():
+    for place in all_places():
+        *_, last = way_to(place.page)
+        assert last.page == place.page and place.page in ALL_ROUTES
+        for page in place.pages_below:
+            assert way_to(page)[-1] is place and page in ALL_ROUTES
+
+
+def test_no_place_has_the_name_of_another():
+    labels = [place.label for place in all_places()]
+    assert len(labels) == len(set(labels))
