@@ -23,11 +23,11 @@ from django.contrib.auth.views import (
 from django.core.exceptions import ValidationError
 from django.db import transaction
 from django.http import HttpRequest, HttpResponse, HttpResponseRedirect
-from django.urls import reverse_lazy
+from django.urls import reverse, reverse_lazy
 from django.utils.decorators import method_decorator
 from django.views.decorators.http import require_http_methods
 
-from annotations.models import User
+from annotations.models import User, World
 from annotations.people.access import READ_AND_WRITE
 from annotations.people.accounts import remember_device
 from annotations.people.password_fields import MOST_CHARACTERS, ask_twice
@@ -85,6 +85,16 @@ class LogIn(LoginView):
 
     redirect_authenticated_user = True
     authentication_form = LogInForm
+
+    def get_redirect_url(self) -> str:
+        """Return the page that somebody asked for before they logged in; the list of worlds is asked for by nobody."""
+        address = super().get_redirect_url()
+        return "" if address == reverse("home") else address
+
+    def get_default_redirect_url(self) -> str:
+        """Return the only world of somebody who has one; others choose from the list."""
+        worlds = World.objects.visible_to(self.request.user)[:2]
+        return reverse("world", args=[worlds[0].name]) if len(worlds) == 1 else reverse("home")
 
     def post(self, request: HttpRequest, *args: object, **kwargs: object) -> HttpResponse:
         """Take a place under each limit before the password is looked at; a success returns them."""

@@ -17,7 +17,7 @@ WHO = {
 @dataclass(frozen=True, slots=True)
 class FirstStep:
     """One step. ``name`` is the URL of its page, or of the action where ``is_action``; ``who`` says
-    who takes it where the reader may not."""
+    who takes it where the reader may not. The steps after an ``is_optional`` one do not wait for it."""
 
     sentence: str
     label: str
@@ -25,8 +25,14 @@ class FirstStep:
     duty: Duty
     is_done: bool
     is_action: bool = False
+    is_optional: bool = False
     is_next: bool = False
     is_allowed: bool = False
+
+    @property
+    def is_ready(self) -> bool:
+        """Whether it can be taken now."""
+        return not self.is_done and (self.is_next or self.is_optional)
 
     @property
     def who(self) -> str:
@@ -45,6 +51,14 @@ def first_steps(counts: Counts, duties: frozenset[Duty]) -> list[FirstStep]:
             "import",
             Duty.MANAGE,
             bool(counts.productions),
+        ),
+        FirstStep(
+            "Invite the people who work on it with you.",
+            "Invite people",
+            "people",
+            Duty.MANAGE,
+            counts.members > 1,
+            is_optional=True,
         ),
         FirstStep(
             "Write templates: each gives the commands of a pattern their logical form.",
@@ -73,7 +87,7 @@ def first_steps(counts: Counts, duties: frozenset[Duty]) -> list[FirstStep]:
         ),
         FirstStep("Read its wrong answers.", "Watch the runs", "runs", Duty.VIEW, False),
     ]
-    first_open = next((step for step in steps if not step.is_done), None)
+    first_open = next((step for step in steps if not (step.is_done or step.is_optional)), None)
     return [
         replace(step, is_next=step is first_open, is_allowed=step.duty in duties) for step in steps
     ]

@@ -164,9 +164,7 @@ class WorkList:
             yield from self._stale()
             yield from self._queued_runs()
             yield from self._waiting(FOR_ADMINS)
-            if self.counts.members == 1:
-                sentence = "Only one person belongs to this world"
-                yield Task(1, sentence, "Add people", self._address("people"))
+            yield from self._missing_people()
         elif role == Role.ANNOTATOR:
             yield from self._waiting(FOR_ANNOTATORS)
             yield from self._stale()
@@ -181,6 +179,13 @@ class WorkList:
                     sentence = f"{answers} of {run.title} on {source}"
                     yield Task(run.wrong, sentence, "Read", run.wrong_url)
             yield from self._waiting(FOR_REVIEWERS)
+
+    def _missing_people(self) -> Iterator[Task]:
+        """Yield an item for whoever may add people; before the first parser it is one of the first steps."""
+        is_alone = self.counts.members <= 1 and self.counts.evaluated
+        if is_alone and Duty.MANAGE in self.duties:
+            sentence = "Only one person belongs to this world"
+            yield Task(1, sentence, "Add people", self._address("people"))
 
     def _waiting(self, declared: Iterable[WaitingRows]) -> Iterator[Task]:
         for waiting in declared:

@@ -102,17 +102,14 @@ def _rail(world: World, counts: Counts, way: tuple[Place, ...]) -> list[RailGrou
 
 def _tabs(
     world: World, counts: Counts, duties: frozenset[Duty], way: tuple[Place, ...]
-) -> Iterator[list[Entry]]:
-    """Yield the rows of tabs, the outer one first. A place whose page bears its name is the first tab itself."""
-    for depth, place in enumerate(way):
-        tabs = [tab for tab in place.tabs if tab.duty in duties]
-        if not tabs:
-            continue
-        below = way[depth + 1 :]
-        row = [_entry(tab, world, counts, tab in below) for tab in tabs]
-        if place.has_page:
-            row.insert(0, _entry(place, world, counts, not below, is_tab=True))
-        yield row
+) -> Iterator[Entry]:
+    """Yield the tabs of a place. A place whose page bears its name is the first of them."""
+    place, here = way[0], way[-1]
+    tabs = [tab for tab in place.tabs if tab.duty in duties]
+    if tabs and place.has_page:
+        yield _entry(place, world, counts, here is place, is_tab=True)
+    for tab in tabs:
+        yield _entry(tab, world, counts, here is tab)
 
 
 def _entry(

@@ -247,10 +247,7 @@ SETTINGS = Place(
             label="Import and export",
             page="import",
             duty=Duty.MANAGE,
-            tabs=(
-                Place(label="Competition folder", page="import_competition", duty=Duty.MANAGE),
-                Place(label="Published pairs", page="import_pairs", duty=Duty.MANAGE),
-            ),
+            pages_below=("import_competition", "import_pairs"),
         ),
         Place(label="Jobs", page="jobs", pages_below=("job",)),
         Place(label="Audit log", page="audit_log", duty=Duty.MANAGE),

@@ -15,8 +15,10 @@ from annotations.lists.listing import Listing, Sort, render_list
 from annotations.lists.paging import number_in
 from annotations.models import Duty, SemanticTemplate, TaskCategory, World
 from annotations.people.access import WRITE, WorldRequest, world_view
+from annotations.rows.row_kinds import KINDS
 from annotations.suggesting import moved_form
 from annotations.web.description.description_filters import TemplateFilters, with_counts
+from annotations.web.editing.undo import say_deleted
 
 SORTS = {
     "position": Sort("Task category", "position"),
@@ -68,7 +70,7 @@ def template_repair(request: WorldRequest, world: World, pk: int) -> HttpRespons
             return redirect("template", world=world.name, pk=pk)
         else:
             delete(row, request.user, version)
-            messages.success(request, "Deleted. You can restore it from its history.")
+            say_deleted(request, world, KINDS["template"], pk)
     except Overtaken as error:
         messages.error(request, f"{error.sentence} Nothing was changed here.")
     except ValidationError as error:

@@ -26,6 +26,7 @@ from annotations.models import Comment, Duty, Notice, World
 from annotations.people.access import READ_AND_WRITE, WRITE, PageRequest, WorldRequest, world_view
 from annotations.rows.row_kinds import KINDS
 from annotations.web.editing.comment_forms import COMMENTS, TOO_MANY, CommentEditForm, CommentForm
+from annotations.web.editing.undo import say_with_undo
 from annotations.web.forms import posted
 
 INBOX_SHOWN = 50
@@ -92,7 +93,8 @@ def comment_delete(request: WorldRequest, world: World, pk: int) -> HttpResponse
     if not row.may_be_deleted_by(request.user, request.duties):
         raise PermissionDenied("Only its author and the admins of this world delete a comment.")
     delete_comment(row, request.user)
-    messages.success(request, "Deleted. “Restore” stands in its place.")
+    restore = reverse("comment_restore", kwargs={"world": world.name, "pk": pk})
+    say_with_undo(request, "Deleted. “Restore” stands in its place.", restore)
     return redirect(address_of(row) or "inbox")
 
 

@@ -15,7 +15,7 @@ from annotations.models import Duty, World
 from annotations.people.access import READ_AND_WRITE, WorldRequest, world_view
 from annotations.web.editing.consequence_presentation import groups_of
 from annotations.web.editing.kinds_of_rows import DELETING, kind_named
-from annotations.web.editing.undo import say_with_undo
+from annotations.web.editing.undo import say_deleted
 
 
 @world_view(Duty.ANNOTATE, READ_AND_WRITE)
@@ -44,7 +44,5 @@ def delete_row(request: WorldRequest, world: World, kind: str, pk: int) -> HttpR
     except Refusal as error:
         messages.error(request, f"Not deleted. {error.message}")
         return redirect(of_kind.page, world=world.name, pk=pk)
-    entry = of_kind.entries_of(world).filter(id=pk).first()
-    sentence = f"Deleted. “Deleted {of_kind.plural}” below the list brings it back."
-    say_with_undo(request, sentence, here.url, entry=entry and entry.history_id)
+    say_deleted(request, world, of_kind, pk)
     return redirect(of_kind.list_page, world=world.name)

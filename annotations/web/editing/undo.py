@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from django.contrib import messages
 from django.middleware.csrf import get_token
+from django.urls import reverse
 from django.utils.html import format_html, format_html_join
 
+from annotations.models import World
 from annotations.people.access import PageRequest
+from annotations.rows.row_kinds import EditableKind
 
 
 def say_with_undo(request: PageRequest, sentence: str, address: str, **fields: object) -> None:
@@ -20,3 +23,11 @@ def say_with_undo(request: PageRequest, sentence: str, address: str, **fields: o
         hidden,
     )
     messages.success(request, format_html("{} {}", sentence, undo))
+
+
+def say_deleted(request: PageRequest, world: World, kind: EditableKind, pk: int) -> None:
+    """Show that a row was deleted, with a button that restores it, and where it stands later."""
+    entry = kind.entries_of(world).filter(id=pk).first()
+    history = reverse("history", kwargs={"world": world.name, "kind": kind.name, "pk": pk})
+    sentence = f"Deleted. “Deleted {kind.plural}” below the list brings it back."
+    say_with_undo(request, sentence, history, entry=entry and entry.history_id)

@@ -6,6 +6,8 @@ from django import forms
 from django.db import IntegrityError, transaction
 
 from annotations.models import Job, User, World
+from annotations.models.worlds import Role
+from annotations.people.members import add_roles
 from annotations.worlds.shipped_worlds import SHIPPED_WORLDS, request_load
 
 
@@ -30,11 +32,13 @@ class WorldForm(forms.ModelForm):  # type: ignore[type-arg]  # generic in the st
             "description": "One sentence, shown in the list of worlds.",
         }
 
-    def create(self) -> World | None:
-        """Create the world of a valid form. Return None, with an error, if the name was taken meanwhile."""
+    def create(self, by: User) -> World | None:
+        """Create the world of a valid form, with ``by`` as its admin. Return None, with an error, if the name was
+        taken meanwhile."""
         try:
             with transaction.atomic():
                 created: World = self.save()
+                add_roles(created, by, [Role.ADMIN])
         except IntegrityError:
             self.add_error("name", NAME_TAKEN)
             return None

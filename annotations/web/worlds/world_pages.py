@@ -56,7 +56,7 @@ class NameForm(forms.Form):
 def world_new(request: PageRequest) -> HttpResponse:
     """Create a world, empty or with what comes with this project; files are imported into an empty one next."""
     form = NewWorldForm(posted(request))
-    if form.is_bound and form.is_valid() and (created := form.create()):
+    if form.is_bound and form.is_valid() and (created := form.create(request.user)):
         if (job := form.load(created, request.user)) is not None:
             return redirect("job", pk=job.pk)
         return redirect("import", world=created.name)

@@ -92,7 +92,7 @@ class Worlds(WorldShowing, ManyRows):
     def post(self, request: ApiRequest) -> Response:
         """Make a world; where it starts with a shipped one, the answer is the job that loads it (202)."""
         form = NewWorldForm(self.read(NewWorld))
-        created = form.create() if form.is_valid() else None
+        created = form.create(request.user) if form.is_valid() else None
         if created is None:
             raise refusal_of_form(form)
         if (job := form.load(created, request.user)) is not None:

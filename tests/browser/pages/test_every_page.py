@@ -30,7 +30,7 @@ from tests.sample_world import SampleWorld
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
-WIDTHS = (1200, 1000, 820, 640, 320)  # 640 is a window of 1280 at a zoom of 200 %
+WIDTHS = (1200, 1000, 820, 768, 640, 360, 320)  # 640 is a window of 1280 at a zoom of 200 %
 
 
 @pytest.fixture

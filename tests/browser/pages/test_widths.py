@@ -6,19 +6,20 @@ from datetime import timedelta
 
 import pytest
 from django.utils import timezone
-from playwright.sync_api import expect
+from playwright.sync_api import Page, expect
 
 from annotations.models.background import Queue
+from gpsr_site.pages.places import all_places
 from parser_service.models import Worker
 from tests.browser.faults import SETTLED
+from tests.gpsr_site.routes.addresses import address
 
-WIDTHS = (360, 390, 640, 768, 1280)
-PAGES = (
-    *("", "ontology/", "ontology/new/", "grammar/", "templates/", "templates/new/", "commands/"),
-    *("paraphrases/", "utterances/", "utterances/new/", "queue/", "queue/settings/", "label/"),
-    *("splits/", "runs/", "runs/new/", "results/", "review/", "parse/", "promotion/", "people/"),
-    *("import/", "jobs/"),
-)
+WIDTHS = (320, 360, 768, 1280)
+STATES = {
+    "no worker": [],
+    "one that trains nothing": [Queue.QUICK],  # the longest sentence
+    "all workers": [Queue.QUICK, Queue.CPU, Queue.GPU],
+}
 
 TOO_WIDE = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
 
@@ -33,29 +34,61 @@ COVERED = """() => [...document.querySelectorAll("[data-notice], #connection")].
     .map((each) => each.outerHTML.slice(0, 80)))"""
 
 
-@pytest.fixture
-def quick_worker(transactional_db):
-    """A worker that trains nothing, so that the longest state stands in the top bar."""
+def work(queue: str) -> Worker:
+    """Make a worker that lives as long as a test."""
     later = timezone.now() + timedelta(hours=1)
     return Worker.objects.create(
-        name="quick", host="here", process_id=1, queue=Queue.QUICK, last_seen=later
+        name=queue, host="here", process_id=1, queue=queue, last_seen=later
     )
 
 
-def test_no_page_scrolls_sideways(page_of, live_server, sample, admin, quick_worker):
+@pytest.fixture
+def quick_worker(transactional_db):
+    """A worker that trains nothing."""
+    return work(Queue.QUICK)
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_no_page_scrolls_sideways(state, page_of, live_server, sample, admin):
+    """The places and tabs of the rail, the banner open and closed; pages/test_every_page.py has all other pages."""
+    for queue in STATES[state]:
+        work(queue)
     page = page_of(admin)
     faults = []
-    for path in PAGES:
-        answer = page.goto(f"{live_server.url}/w/home/{path}")
-        assert answer.status < 400, path
-        expect(page.locator("#banner")).to_contain_text("No training worker is running.")
+    for place in all_places():
+        page.context.clear_cookies(name="closed_notice")
+        answer = page.goto(live_server.url + address(place.page, sample))
+        assert answer.status < 400, place
+        banner = page.locator("#banner [data-notice]")
+        expect(banner).to_have_count(0 if state == "all workers" else 1)
         page.evaluate(SETTLED)
-        for width in WIDTHS:
-            page.set_viewport_size({"width": width, "height": 800})
-            wider, covered = page.evaluate(TOO_WIDE), page.evaluate(COVERED)
-            if wider > 0 or covered:
-                faults.append((path, width, wider, covered))
+        faults += [(place.label, "open", *fault) for fault in faults_of(page)]
+        if state != "all workers":
+            page.set_viewport_size({"width": WIDTHS[0], "height": 800})
+            banner.get_by_role("button", name="Close this notice").click()
+            faults += [(place.label, "closed", *fault) for fault in faults_of(page)]
     assert faults == []
+
+
+def faults_of(page: Page) -> list[tuple[object, ...]]:
+    """Return the widths at which a page is wider than its window or a notice covers a control, with by how much."""
+    found = []
+    for width in WIDTHS:
+        page.set_viewport_size({"width": width, "height": 800})
+        wider, covered = page.evaluate(TOO_WIDE), page.evaluate(COVERED)
+        if wider > 0 or covered:
+            found.append((width, wider, covered))
+    return found
+
+
+def test_a_missing_worker_is_told_once(page_of, live_server, sample, admin, quick_worker):
+    page = page_of(admin)
+    page.goto(f"{live_server.url}/w/home/")
+    told = page.get_by_text("No training worker").filter(visible=True)
+    expect(told).to_have_count(1)
+    page.get_by_role("button", name="Close this notice").click()
+    expect(page.locator("#worker-state")).to_be_visible()
+    expect(told).to_have_count(1)
 
 
 def test_a_closed_notice_stays_away_until_another_one_comes(

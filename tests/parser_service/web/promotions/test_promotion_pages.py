@@ -76,7 +76,7 @@ def test_a_proposal_is_shown_counted_and_decided(runs, adam, world):
     )
     page = adam.get(PAGE)
     assert "The corpus changed." in page.content.decode()
-    (entry,) = [each for each in page.context["tabs"][0] if each.label == "Promotion"]
+    (entry,) = [each for each in page.context["tabs"] if each.label == "Promotion"]
     assert entry.dot.startswith("1 run ")
     assert entry.dot in adam.get("/w/home/").content.decode()
     adam.post(f"{PAGE}{row.pk}/decline/")
