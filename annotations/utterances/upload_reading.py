@@ -238,7 +238,7 @@ def _refuse_other_files(text: str, source: str) -> None:
     if start.startswith(("<!doctype html", "<html")):
         raise LanguageError("this is a web page", place, "copy its text and paste it")
     if start.startswith(("<?xml", "<!")) or (tag and f"</{tag[1]}" in text[-2_000:].lower()):
-        hint = "objects.xml, locations.xml, names.xml … belong on Import files"
+        hint = "objects.xml, locations.xml, names.xml … belong on Import and export"
         raise LanguageError("this is XML, not utterances", place, hint)
     if _CROWD_HEAD.match(_without_mark_line(text)):
         hint = "import them under Paraphrases → Campaigns, where rewrites keep their forms"
@@ -249,9 +249,11 @@ def _refuse_other_files(text: str, source: str) -> None:
         1 for line in lines if re.search(r"=\s*\(\w", line) and line.rstrip()[-1:] == ")"
     )
     if rules and 2 * rules >= sum(1 for line in lines if line.lstrip()[:1] not in "#;%/"):
-        raise LanguageError("this is a grammar", place, "grammars belong on Import files")
+        raise LanguageError("this is a grammar", place, "grammars belong on Import and export")
     if templates and 2 * templates >= sum(1 for line in lines if line.lstrip()[:1] != "#"):
-        raise LanguageError("these are semantic templates", place, "they belong on Import files")
+        raise LanguageError(
+            "these are semantic templates", place, "they belong on Import and export"
+        )
 
 
 def recognise(text: str) -> UploadFormat:

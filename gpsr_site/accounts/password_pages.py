@@ -27,11 +27,12 @@ from django.urls import reverse, reverse_lazy
 from django.utils.decorators import method_decorator
 from django.views.decorators.http import require_http_methods
 
-from annotations.models import User, World
+from annotations.models import User
 from annotations.people.access import READ_AND_WRITE
 from annotations.people.accounts import remember_device
 from annotations.people.password_fields import MOST_CHARACTERS, ask_twice
 from annotations.people.rate_limits import Rate
+from gpsr_site.accounts.landing import landing_page_of
 
 # For one name from one address; beyond it even the right password waits.
 BY_NAME_AND_ADDRESS = Rate("log-in", limit=10, seconds=600)
@@ -92,9 +93,7 @@ class LogIn(LoginView):
         return "" if address == reverse("home") else address
 
     def get_default_redirect_url(self) -> str:
-        """Return the only world of somebody who has one; others choose from the list."""
-        worlds = World.objects.visible_to(self.request.user)[:2]
-        return reverse("world", args=[worlds[0].name]) if len(worlds) == 1 else reverse("home")
+        return landing_page_of(self.request.user)
 
     def post(self, request: HttpRequest, *args: object, **kwargs: object) -> HttpResponse:
         """Take a place under each limit before the password is looked at; a success returns them."""

@@ -21,6 +21,7 @@ from annotations.models import AuditEntry, Invitation, User
 from annotations.people.accounts import remember_device
 from annotations.people.invitations import InvitationOver, join
 from annotations.people.members import role_names
+from gpsr_site.accounts.landing import landing_page_of
 
 NO_ACCOUNT = (
     "Nobody here is connected to this sign-on. If you have an account, log in with its password and "
@@ -42,6 +43,9 @@ class Accounts(DefaultAccountAdapter):
         remember_device(request)
         name = user.get_username()
         AuditEntry.objects.create(who=user, who_name=name, what="log in", subject="single sign-on")
+
+    def get_login_redirect_url(self, request: HttpRequest) -> str:
+        return landing_page_of(request.user)
 
     def respond_user_inactive(self, request: HttpRequest, user: User) -> HttpResponse:
         return refusal(request, CLOSED)

@@ -118,7 +118,7 @@ def tag_and_doubt(page: Page, run: TrainingRun, example: Example, form: str) -> 
 
 def take_from_the_queue(page: Page, example: Example) -> None:
     page.keyboard.press("q")
-    arrive(page, "Work queue")
+    arrive(page, "Queue")
     page.keyboard.press("j")
     enter(page, example.utterance)
     expect(page.locator("main")).to_contain_text(REASON)

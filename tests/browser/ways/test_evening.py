@@ -108,7 +108,7 @@ def load_world(evening: Evening) -> None:
 
 def import_folder(evening: Evening, folder: bytes) -> None:
     page = evening.page
-    evening.go("/w/robocup/import/competition/", "Import files")
+    evening.go("/w/robocup/import/competition/", "Import a competition folder")
     upload = {"name": "Incheon2026.zip", "mimeType": "application/zip", "buffer": folder}
     page.set_input_files("#id_files", upload)
     evening.look("05-import")
@@ -140,7 +140,7 @@ def look_around(evening: Evening) -> None:
     """Through the pages on which the world is described."""
     page = evening.page
     for path, title, name in (
-        ("ontology/classes/", "Ontology", "09-classes"),
+        ("ontology/classes/", "Classes", "09-classes"),
         ("templates/", "Templates", "10-templates"),
         ("templates/?nonterminal=person", "Templates", "11-lines"),
         ("grammar/?nonterminal=person", "Grammar", "12-grammar"),

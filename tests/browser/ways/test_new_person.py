@@ -33,7 +33,7 @@ def sign_up(noras: Page, link: str) -> None:
     noras.get_by_label("Password", exact=True).fill(PASSWORD)
     noras.get_by_label("Password again").fill(PASSWORD)
     noras.keyboard.press("Enter")
-    arrive(noras, "home")
+    arrive(noras, "Overview")
 
 
 def make_token(noras: Page) -> str:
@@ -76,7 +76,7 @@ def test_the_way_of_a_new_person(logged_in, sample, live_server, admin):
     expect(adams.locator(".message")).to_contain_text("nora is no longer a member of home.")
     assert noras.goto(f"{url}/w/home/").status == 404
     assert program.get(items, headers=headers).status == 404
-    adams.get_by_role("button", name="Audit log").click()
+    adams.get_by_role("link", name="Audit log").click()
     arrive(adams, "Audit log")
     done = adams.locator("tbody tr td:nth-child(3)").all_inner_texts()
     assert done == ["change roles", "change roles", "join", "invite"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import threading
 from ipaddress import ip_network
 from itertools import cycle, islice
@@ -10,6 +11,7 @@ from types import SimpleNamespace
 import pytest
 
 from annotations.models import User
+from annotations.people.members import add_roles
 from gpsr_site.accounts import password_pages
 from gpsr_site.accounts.password_pages import BY_ADDRESS, BY_NAME, BY_NAME_AND_ADDRESS, TOO_OFTEN
 from tests.waiting import PATIENCE_SECONDS
@@ -43,7 +45,7 @@ def test_the_right_password_leads_to_the_page_that_was_asked_for(client):
 )
 def test_one_is_not_led_to_another_site(elsewhere, client):
     answer = client.post("/login/", {**RIGHT, "next": elsewhere})
-    assert answer.url == "/"
+    assert answer.url == "/w/home/"
 
 
 def test_a_wrong_password_is_told_on_the_page(client):
@@ -168,3 +170,22 @@ def test_logging_out_takes_a_post(client, annotator):
     assert client.get("/logout/").status_code == 405
     assert client.post("/logout/").url == "/login/"
     assert client.get("/").status_code == 302
+
+
+def test_whoever_has_one_world_lands_in_it(annotator, world, other_world, client):
+    assert client.post("/login/", {**RIGHT, "next": "/"}).url == f"/w/{world.name}/"
+    client.logout()
+    add_roles(other_world, annotator, ["annotator"])
+    assert client.post("/login/", RIGHT).url == "/"
+
+
+def test_nobody_asked_for_the_list_of_worlds(annotator, client):
+    assert client.get("/login/?next=/").context["next"] == ""
+    assert client.get("/login/?next=/w/home/commands/").context["next"] == "/w/home/commands/"
+
+
+def test_after_a_wrong_password_the_cursor_stands_in_its_field(annotator, client):
+    page = client.post("/login/", WRONG).content.decode()
+    assert re.findall(r"<input[^>]*autofocus", page) == re.findall(
+        r'<input[^>]*type="password"[^>]*autofocus', page
+    )

@@ -21,7 +21,7 @@ from gpsr_site.overview.best_runs import best_runs
 from gpsr_site.overview.counts import counts_of
 from gpsr_site.overview.first_steps import first_steps
 from gpsr_site.overview.work_list import WorkList
-from gpsr_site.overview.workers import Workers
+from gpsr_site.overview.workers import Workers, workers_now
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.models.runs import Status
 from parser_service.runs.requests import run_requests
@@ -224,8 +224,8 @@ def test_a_world_without_scores_has_no_best_run(world):
 
 def test_an_empty_world_says_what_to_do_first_in_order(world, adam, rene):
     steps = first_steps(counts_of(world), DUTIES[Role.ADMIN])
-    assert [step.name for step in steps][:2] == ["import", "template_new"]
-    assert [step.is_next for step in steps] == [True] + [False] * 5
+    assert [step.name for step in steps][:3] == ["import", "people", "template_new"]
+    assert [step.is_next for step in steps] == [True] + [False] * 6
     page = adam.get("/w/home/").content.decode()
     assert 'class="first-steps"' in page and 'href="/w/home/import/"' in page
     theirs = rene.get("/w/home/").content.decode()
@@ -237,7 +237,25 @@ def test_first_steps_are_over_with_the_first_score(sample):
     SemanticTemplate.objects.all().delete()
     TrainingRun.objects.all().delete()
     steps = first_steps(counts_of(sample.world), DUTIES[Role.ANNOTATOR])
-    assert [(step.is_done, step.is_next) for step in steps][:2] == [(True, False), (False, True)]
+    imported, _, written, *_ = ((step.is_done, step.is_next) for step in steps)
+    assert (imported, written) == ((True, False), (False, True))
+
+
+def test_people_are_invited_at_any_time_and_nothing_waits_for_it(world, admin, client):
+    world.memberships.exclude(user=admin).delete()
+    counts, duties = counts_of(world), DUTIES[Role.ADMIN]
+    (people,) = [step for step in first_steps(counts, duties) if step.name == "people"]
+    assert (people.is_ready, people.is_next, people.is_done) == (True, False, False)
+    client.force_login(admin)
+    assert 'href="/w/home/people/"' in client.get("/w/home/").content.decode().partition("<main")[2]
+
+
+def test_only_who_may_add_people_is_told_that_somebody_is_alone(sample, admin, annotator):
+    sample.world.memberships.exclude(user=annotator).delete()
+    counts = counts_of(sample.world)
+    for role, is_told in ((Role.ADMIN, True), (Role.ANNOTATOR, False), (Role.REVIEWER, False)):
+        work = WorkList(sample.world, counts, DUTIES[role], workers_now())
+        assert any(item.url == "/w/home/people/" for item in work.items) is is_told
 
 
 def test_the_list_of_worlds_says_what_waits_in_each(busy, other_world, adam):
