@@ -87,7 +87,7 @@ class LogIn(LoginView):
     redirect_authenticated_user = True
     authentication_form = LogInForm
 
-    def get_redirect_url(self) -> str:
+    def get_redirect_url(self) -> str:  # type: ignore[override]  # the stubs have an argument that Django has not
         """Return the page that somebody asked for before they logged in; the list of worlds is asked for by nobody."""
         address = super().get_redirect_url()
         return "" if address == reverse("home") else address

@@ -69,7 +69,8 @@ def _frame_of_world(request: HttpRequest) -> dict[str, Any]:
     can = {duty.value: duty in duties for duty in Duty}
     if world is None:
         return {"world": None, "can": can, "rail": [], "tabs": [], "trail": [], "page_name": ""}
-    counts = SimpleLazyObject(lambda: getattr(request, "counts", None) or counts_of(world))
+    # One count for the rail and the tabs, once one of them is drawn.
+    counts: Any = SimpleLazyObject(lambda: getattr(request, "counts", None) or counts_of(world))
     page, way = _place_of(request)
     here = way[-1] if way and way[-1].page == page else None
     return {
