@@ -105,7 +105,8 @@ def doubts_about(slots: Sequence[Slot]) -> tuple[PlanProblem, ...]:
         if slot.value is None and slot.likely is not None:
             message = f"It is not certain that the {slot.entity_class} is “{slot.likely}”."
             offered = (*slot.candidates, *(slot.phrases if slot.is_choice else ()))
-            hint = f"ask: {' or '.join(offered)}?"
+            asked = " or ".join(f"“{each}”" for each in offered or (slot.likely,))
+            hint = f"ask whether it is {asked}"
             doubts.append(PlanProblem(Trouble.AMBIGUOUS, 0, message, hint))
     return tuple(dict.fromkeys(doubts))
 
@@ -286,7 +287,10 @@ class _Planner:
 
     def ask(self, question: str, expects: str) -> StepResult:
         """Add a question to the operator; return its answer."""
-        arguments: dict[str, Value] = {"question": Words(question), "expects": Words(expects)}
+        arguments: dict[str, Value] = {
+            "question": Words(question, is_of_robot=True),
+            "expects": Words(expects),
+        }
         return StepResult(self._append(ASK, arguments, f"ask: {question}", gives_result=True))
 
     def report(self, trouble: Trouble, message: str, hint: str, step: int) -> None:
