@@ -26,11 +26,17 @@ def plural(noun: str) -> str:
         plural_of_last = stand_in(read_stand_in(last)[0], is_plural=True)
     elif last in PLURALS:
         plural_of_last = PLURALS[last]
-    elif last.lower().endswith("s") and not last.lower().endswith(_SINGULAR_ENDS):
+    elif looks_plural(last):
         plural_of_last = last
     else:
         plural_of_last = f"{last[:-1]}ies" if _ends_in_consonant_y(last) else _add_s(last)
     return before + space + plural_of_last + of + rest
+
+
+def looks_plural(noun: str) -> bool:
+    """Return whether a noun phrase looks like a plural: ``chips``, but not ``glass``."""
+    last = noun.lower().rpartition(" ")[2]
+    return last.endswith("s") and not last.endswith(_SINGULAR_ENDS)
 
 
 def article(noun: str) -> str:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
 
+from annotations.language.english import say_count
 from annotations.language.errors import (
     LanguageError,
     Position,
@@ -104,7 +105,7 @@ class RecipeBook:
                 continue
             needed = sum(not each.is_optional for each in primitive.parameters)
             if not needed <= len(call.arguments) <= len(primitive.parameters):
-                message = f"{call.primitive} does not take {len(call.arguments)} arguments"
+                message = f"{call.primitive} does not take {say_count(len(call.arguments), 'argument')}"
                 yield error_at(call.position, message, f"its row is {primitive}")
             if call.result and not primitive.gives_result:
                 message = f"{call.primitive} gives no result"

@@ -132,12 +132,14 @@ class Distances:
         """Return the distances of a table with two places and their distance a row.
 
         Raises:
-            WrongDistance: a distance is negative or no number, or a pair has two.
+            WrongDistance: a distance is negative or no number, a pair has two, or a place is away from itself.
         """
         table: dict[tuple[str, str], float] = {}
         for one, other, distance in rows:
             if not (isfinite(distance) and distance >= 0):
                 raise WrongDistance(f"From {one} to {other} is no distance: {distance}.")
+            if one == other and distance:
+                raise WrongDistance(f"From {one} to itself is no distance: {distance}.")
             if table.get((other, one), table.get((one, other), distance)) != distance:
                 raise WrongDistance(f"There are two distances from {one} to {other}.")
             table[one, other] = distance
@@ -537,7 +539,7 @@ class _Writer:
         same = {step.number: step.number for step in self._situation.steps}
         steps = [_with_names(step, same, ids) for step in self._situation.steps]
         problems = [
-            replace(each, step=self._numbers.get(_unique(each.step, command), 0))
+            replace(each, step=self._step_of(each, command))
             for command, plan in enumerate(plans, start=1)
             for each in plan.problems
         ]
@@ -549,6 +551,11 @@ class _Writer:
             if each.code == RecipeTrouble.HANDS_FULL and (each.code, each.step) not in known
         )
         return TaskPlan(with_texts(steps, step_texts(steps)), (*problems, *added))
+
+    def _step_of(self, problem: TaskProblem, command: int) -> int:
+        """Return the step that a problem is about: the first of its command where it is about all of that one."""
+        of_command = (at for at, each in enumerate(self._serves, start=1) if command in each)
+        return self._numbers.get(_unique(problem.step, command)) or next(of_command, 0)
 
     def interleavings(self, before: _Cost, after: _Cost) -> Iterator[Interleaving]:
         """Yield what comes together and why."""

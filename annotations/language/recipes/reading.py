@@ -122,6 +122,9 @@ class _Row:
             token = self._take()
             said = tuple(part.strip() for part in _unquoted(token.text).split("|"))
             for pattern in said:
+                if not pattern:
+                    hint = "write words between the signs |, or leave the text out"
+                    raise LanguageError("a way of saying it is empty", token.position, hint)
                 self._require_placeholders(pattern, parameters, token.position)
         effects: list[Effect] = []
         if self._skip(":"):

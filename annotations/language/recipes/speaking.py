@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from annotations.language.english import article, plural
+from annotations.language.english import article, looks_plural, plural
 from annotations.language.forms import PERSON, THING, THINGS, kind_of_class
 from annotations.language.grounding import QUESTION_WORD
 from annotations.language.plans import (
@@ -26,6 +26,7 @@ YOU = "you"
 COME_BACK = "come back to you"
 NOTHING = "I have nothing to do."
 _PRONOUNS = {PERSON: "them", THING: "it"}
+_ANSWER = "answer"  # what the operator has named
 _OWNERS = {"them": "their", "it": "its"}
 # Bounded, so that long texts take linear time.
 _OF_PRONOUN = re.compile(
@@ -137,8 +138,14 @@ class _Clauses:
         def words(name: str, is_plural: bool) -> str:
             value = values.get(name)
             if isinstance(value, StepResult):
+                if last.get(_ANSWER) == value.step:
+                    is_person = PERSON in self._result(value.step, {})
+                    return _PRONOUNS[PERSON if is_person else THING]
                 return self._result(value.step, {} if is_heard else last)
-            said = _say_value(value, {} if is_plural else last, name == new, is_plural)
+            # "give them to them" says nothing of chips and of people.
+            is_unclear = is_heard and looks_plural(_only(value, "is_a", THING))
+            pronouns = {} if is_plural or is_unclear else last
+            said = _say_value(value, pronouns, name == new, is_plural)
             return self._other(said, value) if name == new and value is not None else said
 
         text = _AT_HERE.sub(" here", _fill(pattern or _pattern(step.primitive, values), words))
@@ -195,6 +202,17 @@ class _Clauses:
             for kind in kinds_of(value) & _PRONOUNS.keys():
                 self._last[kind] = _identity(value)
                 self._since[kind] = 0
+            is_of_step = isinstance(value, StepResult) and not step.primitive.effect(
+                EffectKind.MOVES
+            )
+            if is_of_step and self._is_answer(value.step):
+                self._last[_ANSWER] = value.step
+                self._since[_ANSWER] = 0
+
+    def _is_answer(self, number: int) -> bool:
+        """Return whether a step asks the operator something."""
+        asking = [each.primitive for each in self.steps if each.number == number]
+        return any(each.effect(EffectKind.SPEAKS) and each.gives_result for each in asking)
 
 
 def _learnt(step: TaskStep, last: Mapping[str, object]) -> str:
@@ -243,7 +261,8 @@ def _mention(value: TaskValue | None, last: Mapping[str, object]) -> str:
     if value is None:
         return ""
     kinds = sorted(kinds_of(value) & _PRONOUNS.keys())
-    return next((_PRONOUNS[each] for each in kinds if last.get(each) == _identity(value)), "")
+    pronoun = next((_PRONOUNS[each] for each in kinds if last.get(each) == _identity(value)), "")
+    return "them" if pronoun and looks_plural(_only(value, "is_a", THING)) else pronoun
 
 
 def _noun_phrase(value: TaskValue | None, is_new: bool, is_plural: bool) -> str:
@@ -271,7 +290,7 @@ def _noun_phrase(value: TaskValue | None, is_new: bool, is_plural: bool) -> str:
     if name:
         return name
     thing = _only(value, "is_a", THING, THINGS) if is_new else ""
-    if thing and not thing.endswith("s"):
+    if thing and not looks_plural(thing):
         return f"{article(thing)} {thing}"
     return value.text or "it"
 
@@ -290,8 +309,10 @@ def _plural_phrase(text: str) -> str:
     return f"the {plural(head)} {_IS.sub(lambda match: f'{match[1]} are', clauses)}"
 
 
-def _only(value: Described, predicate: str, *kinds: str) -> str:
+def _only(value: TaskValue | None, predicate: str, *kinds: str) -> str:
     """Return the one entity that describes a value; empty where more is said of it."""
+    if not isinstance(value, Described):
+        return ""
     conditions = [each for each in value.conditions if each.values]
     others = [each for each in value.conditions if not each.values and each.predicate not in kinds]
     if others or len(conditions) != 1 or conditions[0].predicate != predicate:

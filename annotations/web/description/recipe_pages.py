@@ -20,7 +20,7 @@ from annotations.checking.recipe_check import (
 from annotations.editing.edits import Overtaken, add
 from annotations.editing.recipe_books import replace_book, shipped_book_of, version_of
 from annotations.language.errors import Refusal
-from annotations.language.recipes import read_primitive, read_recipe, shipped_books
+from annotations.language.recipes import default_book, read_primitive, read_recipe, shipped_books
 from annotations.lists.paging import number_in
 from annotations.models import Duty, Primitive, Recipe, World
 from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
@@ -38,21 +38,25 @@ def recipes(request: WorldRequest, world: World) -> HttpResponse:
     """List recipes and primitives, with what is wrong with them."""
     problems = problems_by_row(world)
     shipped = shipped_book_of(world)
+    own_recipes = [
+        (row, read_recipe(row.text), problems.get(("recipe", row.pk), []))
+        for row in world.recipes.all()
+    ]
+    own_primitives = [
+        (row, read_primitive(row.text), problems.get(("primitive", row.pk), []))
+        for row in world.primitives.all()
+    ]
+    book = default_book()
     context = {
-        "recipes": [
-            (row, read_recipe(row.text), problems.get(("recipe", row.pk), []))
-            for row in world.recipes.all()
-        ],
-        "primitives": [
-            (row, read_primitive(row.text), problems.get(("primitive", row.pk), []))
-            for row in world.primitives.all()
-        ],
+        "recipes": own_recipes or [(None, each, []) for each in book.recipes],
+        "primitives": own_primitives
+        if own_recipes
+        else [(None, each, []) for each in book.primitives],
+        "has_own": bool(own_recipes),
         "shipped": shipped,
         # A world without rows may copy the book that it uses already.
         "offered": [
-            each
-            for each in shipped_books().values()
-            if each != shipped or not world.recipes.exists()
+            each for each in shipped_books().values() if each != shipped or not own_recipes
         ],
         "version": version_of(world),
     }
