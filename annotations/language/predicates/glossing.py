@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TypeGuard
 
-from annotations.language.english import NUMBERS, RELATIONS, article, plural
+from annotations.language.english import NUMBERS, RELATIONS, article, looks_plural, plural
 from annotations.language.forms import (
     CONJUNCTION,
     Application,
@@ -122,7 +122,7 @@ class NounPhrase:
         is_person = bool(self.name) or noun.endswith("person") or (not self.noun and self.is_person)
         noun = plural(noun) if is_plural and not self.name else noun
         # Fit clauses like ``that is at …`` to people and to plurals; join a second one with "and".
-        verb = "are" if is_plural else "is"
+        verb = "are" if is_plural or (looks_plural(noun) and not is_person) else "is"
         pronoun = "who" if is_person else "that"
         joined: list[str] = []
         has_clause = False

@@ -100,12 +100,14 @@ class RecipeBook:
             primitive = self.primitive(call.primitive)
             if primitive is None:
                 names = ", ".join(each.name for each in self.primitives)
-                hint = f"there are {names}" if names else "add a row for it"
+                hint = f"the book has {names}" if names else "add a row for it"
                 yield error_at(call.position, f"there is no primitive {call.primitive}", hint)
                 continue
             needed = sum(not each.is_optional for each in primitive.parameters)
             if not needed <= len(call.arguments) <= len(primitive.parameters):
-                message = f"{call.primitive} does not take {say_count(len(call.arguments), 'argument')}"
+                message = (
+                    f"{call.primitive} does not take {say_count(len(call.arguments), 'argument')}"
+                )
                 yield error_at(call.position, message, f"its row is {primitive}")
             if call.result and not primitive.gives_result:
                 message = f"{call.primitive} gives no result"

@@ -107,6 +107,9 @@ class JointPlan:
         plan = self.plan.as_json()
         for step, commands in zip(plan["steps"], self.serves, strict=True):
             step["commands"] = list(commands)
+        for problem in plan["problems"]:
+            at = problem["step"]
+            problem["commands"] = list(self.serves[at - 1]) if at else []
         return {
             **plan,
             "interleavings": [each.as_json() for each in self.interleavings],
@@ -212,6 +215,9 @@ def joint_plan_schema() -> dict[str, Any]:
     step = schema["$defs"]["step"]
     step["required"].append("commands")
     step["properties"]["commands"] = {"description": "The commands that it is for.", **numbers}
+    problem = schema["$defs"]["problem"]
+    problem["required"].append("commands")
+    problem["properties"]["commands"] = {"description": "Those that it is about.", **numbers}
     length = {"type": "number", "minimum": 0}
     schema["required"] += ["interleavings", "length_before", "length"]
     schema["properties"] |= {

@@ -62,7 +62,12 @@ def spoken(plan: TaskPlan) -> str:
 
     >>> spoken(plan)
     'I will go to the kitchen, find a coke, and bring it to you.'
+
+    A plan that only asks is said as it asks.
     """
+    questions = [_question_of(each) for each in plan.steps]
+    if questions and all(questions):
+        return " ".join(dict.fromkeys(questions))
     clauses = _Clauses(plan.steps).all()
     if not clauses:
         return NOTHING
@@ -99,11 +104,19 @@ class _Clauses:
                 is_to_you = isinstance(_value(step, effect.target), Operator)
                 pattern = f"bring {{{effect.subject}}} to {YOU}" if is_to_you else ""
                 clauses.append(self.say(step, self._last, pattern))
+            elif at and (asked := self._further_question(at)) and clauses[-1].endswith("”"):
+                clauses[-1] += asked
             else:
                 clauses.append(self.say(step, self._last))
             at += 1 + delivery
             self._remember(step)
         return clauses
+
+    def _further_question(self, at: int) -> str:
+        """Return what a step asks after another question, to be said with it: ``and “Where is it?”``."""
+        before, asked = (_question_of(each) for each in self.steps[at - 1 : at + 1])
+        is_last = at + 1 == len(self.steps) or not _question_of(self.steps[at + 1])
+        return f"{' and' if is_last else ','} “{asked}”" if before and asked else ""
 
     def _delivery(self, at: int) -> int:
         """Return how many steps further on the thing that is taken now is left, if nothing but a move comes between.
@@ -213,6 +226,14 @@ class _Clauses:
         """Return whether a step asks the operator something."""
         asking = [each.primitive for each in self.steps if each.number == number]
         return any(each.effect(EffectKind.SPEAKS) and each.gives_result for each in asking)
+
+
+def _question_of(step: TaskStep) -> str:
+    """Return what a step asks the operator; empty where it does something else."""
+    if not (step.gives_result and step.primitive.effect(EffectKind.SPEAKS)):
+        return ""
+    own = (each for _, each in step.arguments if isinstance(each, Words) and each.is_of_robot)
+    return next((each.text for each in own), "")
 
 
 def _learnt(step: TaskStep, last: Mapping[str, object]) -> str:

@@ -350,3 +350,4 @@ def test_what_is_wrong_with_one_command_is_said_of_its_steps():
     joint = joined('(go "attic")', "UNKNOWN")
     (problem,) = joint.plan.problems
     assert joint.serves[problem.step - 1] == (2,)
+    assert [each["commands"] for each in joint.as_json()["problems"]] == [[2]]

@@ -68,6 +68,8 @@ def test_what_is_printed_reads_back(name):
         ("go(x, x)", 7),
         ("go(x?, y)", 8),
         ("go(x): flies to x", 8),
+        ('go(x) "go|": moves to x', 7),
+        ('go(x) "": moves to x', 7),
         ("go(x): moves to y", 17),
         ("go(x): moves x", 14),
         ("go(x): moves to x, moves to x", 20),

@@ -115,6 +115,17 @@ def test_a_primitive_without_words_is_said_by_its_name():
     assert spoken(task_plan('(go "attic")', book)) == "I will move base to the attic."
 
 
+def test_a_plan_that_only_asks_is_its_question():
+    assert spoken(task_plan("UNKNOWN")) == "I did not understand that. What shall I do?"
+
+
+def test_several_questions_are_asked_together():
+    form = '(meet (λ$1:e (person $1) (name $1 "<name>") (at $1 "<room>")))'
+    assert spoken(task_plan(form)).startswith(
+        "I will ask you “Who shall I meet?” and “Which room is the person in?”, go to the room"
+    )
+
+
 def test_nothing_to_do_is_said():
     assert spoken(TaskPlan(())) == "I have nothing to do."
 
