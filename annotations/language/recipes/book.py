@@ -67,7 +67,7 @@ class RecipeBook:
         seen: set[str] = set()
         for each in self.primitives:
             if each.name in seen:
-                yield error_at(each.position, f"{each.name} is there twice", "remove one row")
+                yield error_at(each.position, f"“{each.name}” is there twice", "remove one row")
             seen.add(each.name)
         used = {call.primitive for recipe in self.recipes for call in recipe.calls}
         for each in self.primitives:
@@ -82,7 +82,7 @@ class RecipeBook:
         shapes = set()
         for recipe in self.recipes:
             if recipe.pattern.shape() in shapes:
-                message = f"{recipe.pattern} has a recipe already"
+                message = f"“{recipe.pattern}” has a recipe already"
                 yield error_at(recipe.position, message, "remove one of the two")
             shapes.add(recipe.pattern.shape())
             if actions is not None and recipe.pattern.action not in actions:
@@ -106,15 +106,15 @@ class RecipeBook:
             needed = sum(not each.is_optional for each in primitive.parameters)
             if not needed <= len(call.arguments) <= len(primitive.parameters):
                 message = (
-                    f"{call.primitive} does not take {say_count(len(call.arguments), 'argument')}"
+                    f"“{call.primitive}” does not take {say_count(len(call.arguments), 'argument')}"
                 )
                 yield error_at(call.position, message, f"its row is {primitive}")
             if call.result and not primitive.gives_result:
-                message = f"{call.primitive} gives no result"
+                message = f"“{call.primitive}” gives no result"
                 yield error_at(call.position, message, "only a primitive that learns gives one")
             for argument in call.arguments:
                 if isinstance(argument, Name) and argument.part and argument.name in results:
-                    message = f"{argument.name} is a result, which has no {argument.part}"
+                    message = f"“{argument.name}” is a result, which has no {argument.part}"
                     yield error_at(argument.position, message, "use the result as it is")
             results |= {call.result} - {""}
 
