@@ -439,6 +439,13 @@ def place_of_argument(action: str, name: str) -> int:
     return next((place for place, is_it in enumerate(known) if is_it), 0)
 
 
+def argument_names(action: str) -> tuple[str, ...]:
+    """Return what plans call the arguments of an action; empty for one that is not known."""
+    names = ARGUMENT_NAMES.get(action, ())
+    lists = ([each] if isinstance(each, str) else each.values() for each in names)
+    return tuple(dict.fromkeys(name for each in lists for name in each))
+
+
 def argument_name(action: str, place: int, argument: Form, entity_class: str = "") -> str:
     """Return the name of an argument: ``destination`` for the second one of ``guide``.
 
