@@ -37,7 +37,7 @@ _AT_HERE = re.compile(r" (?:on|to|at|in) here\b")
 _AFTER_NOUN = re.compile(r" (?=(?:who|that|in|at|on|with|wearing|near|from|named)\b)")
 _IS = re.compile(r"\b(who|that|and) is\b")
 _WITH_ONE = re.compile(
-    r"\b(?P<how>in|with|wearing) an? (?P<what>[\w-]+(?: (?!(?:who|that|and|at|in)\b)[\w-]+){0,3})"
+    r"\b(?P<how>in|with|wearing) an? (?P<what>[\w-]++(?: (?!(?:who|that|and|at|in)\b)[\w-]++){0,3})"
 )
 _CAPITAL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 # What a person says about the robot, as the robot says it.
