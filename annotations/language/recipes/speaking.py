@@ -215,10 +215,8 @@ class _Clauses:
             for kind in kinds_of(value) & _PRONOUNS.keys():
                 self._last[kind] = _identity(value)
                 self._since[kind] = 0
-            is_of_step = isinstance(value, StepResult) and not step.primitive.effect(
-                EffectKind.MOVES
-            )
-            if is_of_step and self._is_answer(value.step):
+            is_move = step.primitive.effect(EffectKind.MOVES) is not None
+            if isinstance(value, StepResult) and not is_move and self._is_answer(value.step):
                 self._last[_ANSWER] = value.step
                 self._since[_ANSWER] = 0
 
