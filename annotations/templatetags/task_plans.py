@@ -15,8 +15,11 @@ register = template.Library()
 
 @register.filter
 def call(step: Mapping[str, Any]) -> str:
-    """Write the primitive of a step with its arguments: ``give(coke, operator)``."""
-    values = ", ".join(value_text(each) for each in step["arguments"].values())
+    """Write the primitive of a step with its arguments: ``give(coke, operator)``, ``say("a joke")``."""
+    values = ", ".join(
+        f'"{each["text"]}"' if each["kind"] == "text" else value_text(each)
+        for each in step["arguments"].values()
+    )
     return f"{step['primitive']}({values})"
 
 

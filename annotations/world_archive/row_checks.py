@@ -21,9 +21,10 @@ from annotations.world_archive.archive_tables import ArchiveTable
 
 Shapes = Mapping[str, Callable[[Any], bool]]
 
-# Columns that name a file, by table; and those that hold a logical form.
+# Columns that name a file, by table; those that name one below a folder, as of a competition's; and those that
+# hold a logical form.
+FILE_PATHS = {"entities": ("source",)}
 FILE_NAMES = {
-    "entities": ("source",),
     "productions": ("source",),
     "templates": ("source",),
 }
@@ -95,6 +96,9 @@ def check_row(table: ArchiveTable, values: Mapping[str, Any], place: Position) -
         raise LanguageError(f"kind cannot be “{values['kind'][:40]}”", place)
     for name in FILE_NAMES.get(table.name, ()):
         _check_file_name(values[name], place)
+    for name in FILE_PATHS.get(table.name, ()):
+        for part in values[name].split("/"):
+            _check_file_name(part, place)
     for name in FORMS.get(table.name, ()):
         if values[name] and not _is_form(values[name]):
             raise LanguageError(f"{name} is not a logical form", place)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from django.conf import settings
@@ -21,7 +22,8 @@ def parse_batch(job: Job, progress: Progress) -> dict[str, Any]:
     Raises Refusal where nothing answers in the world.
     """
     progress.report(0, "loading the parser")
-    shelf = Shelf(settings.PARSER_MEMORY_MB * 1_000_000, Metrics())
+    # Nobody waits for one answer: a language model may take as long as it needs.
+    shelf = Shelf(settings.PARSER_MEMORY_MB * 1_000_000, Metrics(), patience=math.inf)
     service = shelf.load(job.world_name, job.arguments["run"], job.arguments.get("parser", ""))
     with kept_uploads(job) as (upload,):
         lines = upload.read()

@@ -27,6 +27,8 @@ from parser_service.serving.parser_client import client
 from parser_service.serving.preparing import WorldLanguage, require_utterance
 
 _ENDS = re.compile(r"[.;!?]\s+|\n+")  # of a command that others follow in one utterance
+_SIGNS = " .;!?\n"  # around a command
+_NUMBER = re.compile(r"(?<!\S)\(?([1-9])[.)]\s")  # of an item of a list
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +73,7 @@ class JointAnswer:
 
 
 def commands_in(world: World, utterance: str, run: int | None = None) -> tuple[str, ...]:
-    """Return the commands of one utterance: its sentences, its lines, and what semicolons tell apart.
+    """Return the commands of one utterance: its sentences, its lines, and what semicolons or numbers tell apart.
 
     A piece that the parser does not understand as one command is cut where it understands the pieces
     (``language.requests.cut_commands``).
@@ -80,7 +82,8 @@ def commands_in(world: World, utterance: str, run: int | None = None) -> tuple[s
         TooManyCommands: there are more than ``MOST_COMMANDS``.
         ParserAway, ParserRefused: as ``ParserClient.parse``.
     """
-    sentences = [each.strip(" .;") for each in _ENDS.split(utterance) if each.strip(" .;")]
+    sentences = _items(utterance) or _ENDS.split(utterance)
+    sentences = [each.strip(_SIGNS) for each in sentences if each.strip(_SIGNS)]
     _require_few(sentences)
 
     def judge(pieces: Sequence[str]) -> list[float | None]:
@@ -116,6 +119,16 @@ def plan_together(
     )
     plans = [each.task_plan for each in commands]
     return JointAnswer(commands, join(plans, language.recipes, distances))
+
+
+def _items(utterance: str) -> list[str]:
+    """Return the items of a numbered list, ``1. … 2. …``; none where an utterance is no such list."""
+    numbers = list(_NUMBER.finditer(utterance))
+    is_list = [int(each[1]) for each in numbers] == list(range(1, len(numbers) + 1))
+    if not numbers or not is_list or utterance[: numbers[0].start()].strip():
+        return []
+    ends = [*(each.start() for each in numbers[1:]), len(utterance)]
+    return [utterance[each.end() : end] for each, end in zip(numbers, ends, strict=True)]
 
 
 def _score_of(answer: Mapping[str, Any]) -> float | None:

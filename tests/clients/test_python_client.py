@@ -54,6 +54,17 @@ def test_a_form_becomes_a_plan_and_a_behaviour_tree(home):
     assert refused.value.status == 400
 
 
+def test_several_commands_become_one_plan(home):
+    joint = home.joint_plan(
+        ["find the red cup", "bring me the flurb"], {("kitchen", "operator"): 3.0}
+    )
+    assert {number for commands in joint.serves for number in commands} == {1, 2}
+    assert joint.length <= joint.length_before and joint.spoken
+    assert [each.commands for each in joint.plan.problems] == [(2,)]
+    with pytest.raises(Refused):
+        home.joint_plan(["find the red cup"] * 4)
+
+
 def test_many_utterances_are_parsed_in_order(home):
     said = ["find the red cup", "bring me the bowl", "bring me the flurb"]
     parses = list(home.parse_many(said))

@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
-from annotations.language.english.inflection import plural, say_count, spellings
+from annotations.language.english.inflection import (
+    article,
+    looks_plural,
+    plural,
+    say_count,
+    spellings,
+)
 from annotations.language.english.stand_ins import (
     MOST_STAND_INS,
     STAND_IN,
@@ -144,6 +150,8 @@ __all__ = [
     "YES_WORDS",
     "EnglishError",
     "RequestGroup",
+    "article",
+    "looks_plural",
     "other_request_groups",
     "plural",
     "read_stand_in",

@@ -9,6 +9,9 @@ from annotations.language.english.word_lists import PLURALS
 
 _VOWELS = "aeiou"
 _SIBILANTS = ("s", "x", "z", "ch", "sh")
+# Words that are said with another first sound than their first letter has.
+_AFTER_A = ("uni", "use", "usu", "euro", "one ", "ewe")
+_AFTER_AN = ("hour", "honest", "honour", "heir")
 _SINGULAR_ENDS = ("ss", "us", "is")  # of words with an s that is no plural's: glass, bus, iris
 
 
@@ -23,11 +26,26 @@ def plural(noun: str) -> str:
         plural_of_last = stand_in(read_stand_in(last)[0], is_plural=True)
     elif last in PLURALS:
         plural_of_last = PLURALS[last]
-    elif last.lower().endswith("s") and not last.lower().endswith(_SINGULAR_ENDS):
+    elif looks_plural(last):
         plural_of_last = last
     else:
         plural_of_last = f"{last[:-1]}ies" if _ends_in_consonant_y(last) else _add_s(last)
     return before + space + plural_of_last + of + rest
+
+
+def looks_plural(noun: str) -> bool:
+    """Return whether a noun phrase looks like a plural: ``chips``, but not ``glass``."""
+    last = noun.lower().rpartition(" ")[2]
+    return last.endswith("s") and not last.endswith(_SINGULAR_ENDS)
+
+
+def article(noun: str) -> str:
+    """Return ``a`` or ``an``, whichever a noun phrase begins with."""
+    begin = noun.lower()
+    is_vowel = begin.startswith(_AFTER_AN) or (
+        begin.startswith(tuple(_VOWELS)) and not begin.startswith(_AFTER_A)
+    )
+    return "an" if is_vowel else "a"
 
 
 def say_count(count: int, noun: str) -> str:

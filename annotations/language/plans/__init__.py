@@ -26,7 +26,7 @@ from annotations.language.plans.plan import (
     plan_schema,
     plan_schema_text,
 )
-from annotations.language.plans.planning import doubts_about, make_plan
+from annotations.language.plans.planning import argument_names, doubts_about, make_plan
 
 __all__ = [
     "ASK",
@@ -47,6 +47,7 @@ __all__ = [
     "Trouble",
     "Value",
     "Words",
+    "argument_names",
     "behavior_tree_schema_text",
     "doubts_about",
     "make_plan",

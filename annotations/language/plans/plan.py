@@ -121,9 +121,13 @@ class Named:
 
 @dataclass(frozen=True, slots=True)
 class Words:
-    """A text that is no entity: words to say, ``current``."""
+    """A text that is no entity: words to say, ``current``.
+
+    ``is_of_robot`` marks the robot's own words, such as a question: it says them as they are.
+    """
 
     text: str
+    is_of_robot: bool = field(default=False, compare=False)
 
     def as_json(self) -> dict[str, Any]:
         return {"kind": "text", "text": self.text}

@@ -105,7 +105,8 @@ def doubts_about(slots: Sequence[Slot]) -> tuple[PlanProblem, ...]:
         if slot.value is None and slot.likely is not None:
             message = f"It is not certain that the {slot.entity_class} is “{slot.likely}”."
             offered = (*slot.candidates, *(slot.phrases if slot.is_choice else ()))
-            hint = f"ask: {' or '.join(offered)}?"
+            asked = " or ".join(f"“{each}”" for each in offered or (slot.likely,))
+            hint = f"ask whether it is {asked}"
             doubts.append(PlanProblem(Trouble.AMBIGUOUS, 0, message, hint))
     return tuple(dict.fromkeys(doubts))
 
@@ -286,7 +287,10 @@ class _Planner:
 
     def ask(self, question: str, expects: str) -> StepResult:
         """Add a question to the operator; return its answer."""
-        arguments: dict[str, Value] = {"question": Words(question), "expects": Words(expects)}
+        arguments: dict[str, Value] = {
+            "question": Words(question, is_of_robot=True),
+            "expects": Words(expects),
+        }
         return StepResult(self._append(ASK, arguments, f"ask: {question}", gives_result=True))
 
     def report(self, trouble: Trouble, message: str, hint: str, step: int) -> None:
@@ -433,6 +437,13 @@ def place_of_argument(action: str, name: str) -> int:
     names = ARGUMENT_NAMES.get(action, ())
     known = (each == name if isinstance(each, str) else name in each.values() for each in names)
     return next((place for place, is_it in enumerate(known) if is_it), 0)
+
+
+def argument_names(action: str) -> tuple[str, ...]:
+    """Return what plans call the arguments of an action; empty for one that is not known."""
+    names = ARGUMENT_NAMES.get(action, ())
+    lists = ([each] if isinstance(each, str) else each.values() for each in names)
+    return tuple(dict.fromkeys(name for each in lists for name in each))
 
 
 def argument_name(action: str, place: int, argument: Form, entity_class: str = "") -> str:

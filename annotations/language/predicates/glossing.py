@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TypeGuard
 
-from annotations.language.english import NUMBERS, RELATIONS, plural
+from annotations.language.english import NUMBERS, RELATIONS, article, looks_plural, plural
 from annotations.language.forms import (
     CONJUNCTION,
     Application,
@@ -31,6 +31,7 @@ from annotations.language.symbols import EntityClasses, Wildcard
 
 NAMING = "name"  # the predicate that says how somebody is called
 _RELATIVE = re.compile(rf"_ that is (?=(?:{'|'.join(sorted(RELATIONS))})\b)")
+_A = " a "  # of a pattern, before what may begin with a vowel
 NOT_UNDERSTOOD = "a command that the robot does not understand"
 
 
@@ -121,7 +122,7 @@ class NounPhrase:
         is_person = bool(self.name) or noun.endswith("person") or (not self.noun and self.is_person)
         noun = plural(noun) if is_plural and not self.name else noun
         # Fit clauses like ``that is at …`` to people and to plurals; join a second one with "and".
-        verb = "are" if is_plural else "is"
+        verb = "are" if is_plural or (looks_plural(noun) and not is_person) else "is"
         pronoun = "who" if is_person else "that"
         joined: list[str] = []
         has_clause = False
@@ -235,11 +236,13 @@ def _fits(slot: PatternSlot, arguments: tuple[Form, ...], scope: Scope) -> bool:
 
 def _fill(alternative: GlossAlternative, arguments: tuple[Form, ...], scope: Scope) -> str:
     """Return the text of an alternative with its slots filled."""
-    texts = (
-        piece if isinstance(piece, str) else say_slot(piece, arguments, scope)
-        for piece in alternative.pieces
-    )
-    return " ".join("".join(texts).split())
+    said = ""
+    for piece in alternative.pieces:
+        text = piece if isinstance(piece, str) else say_slot(piece, arguments, scope)
+        if said.endswith(_A) and text.strip() and not isinstance(piece, str):
+            said = f"{said.removesuffix(_A)} {article(text)} "
+        said += text
+    return " ".join(said.split())
 
 
 def say_slot(slot: PatternSlot, arguments: tuple[Form, ...], scope: Scope) -> str:

@@ -173,7 +173,7 @@ class _Applier:
         parameter: str,
     ) -> TaskValue:
         if isinstance(argument, Literal):
-            return Words(argument.text)
+            return Words(argument.text, is_of_robot=True)
         if not isinstance(argument, Name):
             return Operator()
         value = names.get(argument.name, OpenValue(""))

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
 
+from annotations.language.english import say_count
 from annotations.language.errors import (
     LanguageError,
     Position,
@@ -16,11 +18,13 @@ from annotations.language.errors import (
     error_at,
     warning_at,
 )
+from annotations.language.plans import ASK, argument_names
 from annotations.language.recipes.reading import read_primitive, read_recipe
-from annotations.language.recipes.rows import Name, Primitive, Recipe
+from annotations.language.recipes.rows import ActionPattern, Name, Primitive, Recipe
 from annotations.language.recipes.values import KINDS
 
 DEFAULT_BOOK = "primitives"
+_NUMBER = re.compile(r"_\d+$")  # of a second argument of the same name
 _FOLDER = Path(__file__).parent / "books"
 
 
@@ -66,7 +70,7 @@ class RecipeBook:
         seen: set[str] = set()
         for each in self.primitives:
             if each.name in seen:
-                yield error_at(each.position, f"{each.name} is there twice", "remove one row")
+                yield error_at(each.position, f"“{each.name}” is there twice", "remove one row")
             seen.add(each.name)
         used = {call.primitive for recipe in self.recipes for call in recipe.calls}
         for each in self.primitives:
@@ -81,12 +85,13 @@ class RecipeBook:
         shapes = set()
         for recipe in self.recipes:
             if recipe.pattern.shape() in shapes:
-                message = f"{recipe.pattern} has a recipe already"
+                message = f"“{recipe.pattern}” has a recipe already"
                 yield error_at(recipe.position, message, "remove one of the two")
             shapes.add(recipe.pattern.shape())
             if actions is not None and recipe.pattern.action not in actions:
                 message = f"no form has the action {recipe.pattern.action}"
                 yield warning_at(recipe.position, message, "check its spelling")
+            yield from _argument_problems(recipe)
             for kind in _kinds(recipe):
                 if classes and kind not in KINDS and kind not in classes:
                     hint = f"use a class of the world, or {', '.join(sorted(KINDS))}"
@@ -99,19 +104,21 @@ class RecipeBook:
             primitive = self.primitive(call.primitive)
             if primitive is None:
                 names = ", ".join(each.name for each in self.primitives)
-                hint = f"there are {names}" if names else "add a row for it"
+                hint = f"the book has {names}" if names else "add a row for it"
                 yield error_at(call.position, f"there is no primitive {call.primitive}", hint)
                 continue
             needed = sum(not each.is_optional for each in primitive.parameters)
             if not needed <= len(call.arguments) <= len(primitive.parameters):
-                message = f"{call.primitive} does not take {len(call.arguments)} arguments"
+                message = (
+                    f"“{call.primitive}” does not take {say_count(len(call.arguments), 'argument')}"
+                )
                 yield error_at(call.position, message, f"its row is {primitive}")
             if call.result and not primitive.gives_result:
-                message = f"{call.primitive} gives no result"
+                message = f"“{call.primitive}” gives no result"
                 yield error_at(call.position, message, "only a primitive that learns gives one")
             for argument in call.arguments:
                 if isinstance(argument, Name) and argument.part and argument.name in results:
-                    message = f"{argument.name} is a result, which has no {argument.part}"
+                    message = f"“{argument.name}” is a result, which has no {argument.part}"
                     yield error_at(argument.position, message, "use the result as it is")
             results |= {call.result} - {""}
 
@@ -183,11 +190,29 @@ def _rows(text: str, source: str) -> Iterator[tuple[str, Position]]:
             yield row, Position(source, number, line.index(row) + 1)
 
 
-def _kinds(recipe: Recipe) -> Iterable[str]:
+def _argument_problems(recipe: Recipe) -> Iterator[Problem]:
+    """Yield a warning for each argument that no plan has, so that the recipe is never used."""
+    for pattern in _patterns(recipe):
+        if pattern.action == ASK:
+            continue
+        known = argument_names(pattern.action)
+        for each in pattern.parameters:
+            name = _NUMBER.sub("", each.name)
+            if name not in (known or ("argument",)):
+                said = ", ".join(known) or "argument_1, argument_2 and so on"
+                message = f"no plan has an argument “{each.name}” of {pattern.action}"
+                yield warning_at(recipe.position, message, f"plans have {said}")
+
+
+def _kinds(recipe: Recipe) -> Iterator[str]:
+    for pattern in _patterns(recipe):
+        yield from (each.kind for each in pattern.parameters if each.kind)
+
+
+def _patterns(recipe: Recipe) -> Iterator[ActionPattern]:
+    """Yield the action of a recipe, and those that stand in the place of its arguments."""
     patterns = [recipe.pattern]
     while patterns:
-        for each in patterns.pop().parameters:
-            if each.kind:
-                yield each.kind
-            if each.action:
-                patterns.append(each.action)
+        pattern = patterns.pop()
+        yield pattern
+        patterns += [each.action for each in pattern.parameters if each.action]

@@ -107,6 +107,9 @@ class JointPlan:
         plan = self.plan.as_json()
         for step, commands in zip(plan["steps"], self.serves, strict=True):
             step["commands"] = list(commands)
+        for problem in plan["problems"]:
+            at = problem["step"]
+            problem["commands"] = list(self.serves[at - 1]) if at else []
         return {
             **plan,
             "interleavings": [each.as_json() for each in self.interleavings],
@@ -132,12 +135,14 @@ class Distances:
         """Return the distances of a table with two places and their distance a row.
 
         Raises:
-            WrongDistance: a distance is negative or no number, or a pair has two.
+            WrongDistance: a distance is negative or no number, a pair has two, or a place is away from itself.
         """
         table: dict[tuple[str, str], float] = {}
         for one, other, distance in rows:
             if not (isfinite(distance) and distance >= 0):
                 raise WrongDistance(f"From {one} to {other} is no distance: {distance}.")
+            if one == other and distance:
+                raise WrongDistance(f"From {one} to itself is no distance: {distance}.")
             if table.get((other, one), table.get((one, other), distance)) != distance:
                 raise WrongDistance(f"There are two distances from {one} to {other}.")
             table[one, other] = distance
@@ -210,6 +215,9 @@ def joint_plan_schema() -> dict[str, Any]:
     step = schema["$defs"]["step"]
     step["required"].append("commands")
     step["properties"]["commands"] = {"description": "The commands that it is for.", **numbers}
+    problem = schema["$defs"]["problem"]
+    problem["required"].append("commands")
+    problem["properties"]["commands"] = {"description": "Those that it is about.", **numbers}
     length = {"type": "number", "minimum": 0}
     schema["required"] += ["interleavings", "length_before", "length"]
     schema["properties"] |= {
@@ -537,7 +545,7 @@ class _Writer:
         same = {step.number: step.number for step in self._situation.steps}
         steps = [_with_names(step, same, ids) for step in self._situation.steps]
         problems = [
-            replace(each, step=self._numbers.get(_unique(each.step, command), 0))
+            replace(each, step=self._step_of(each, command))
             for command, plan in enumerate(plans, start=1)
             for each in plan.problems
         ]
@@ -549,6 +557,11 @@ class _Writer:
             if each.code == RecipeTrouble.HANDS_FULL and (each.code, each.step) not in known
         )
         return TaskPlan(with_texts(steps, step_texts(steps)), (*problems, *added))
+
+    def _step_of(self, problem: TaskProblem, command: int) -> int:
+        """Return the step that a problem is about: the first of its command where it is about all of that one."""
+        of_command = (at for at, each in enumerate(self._serves, start=1) if command in each)
+        return self._numbers.get(_unique(problem.step, command)) or next(of_command, 0)
 
     def interleavings(self, before: _Cost, after: _Cost) -> Iterator[Interleaving]:
         """Yield what comes together and why."""

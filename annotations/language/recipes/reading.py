@@ -122,6 +122,9 @@ class _Row:
             token = self._take()
             said = tuple(part.strip() for part in _unquoted(token.text).split("|"))
             for pattern in said:
+                if not pattern:
+                    hint = "write words between the signs |, or leave the text out"
+                    raise LanguageError("a way of saying it is empty", token.position, hint)
                 self._require_placeholders(pattern, parameters, token.position)
         effects: list[Effect] = []
         if self._skip(":"):
@@ -175,7 +178,7 @@ class _Row:
                 raise LanguageError(f"two parameters are called {name}", place, "rename one")
             if not is_optional and any(each.is_optional for each in parameters.values()):
                 raise LanguageError(
-                    f"{name} comes after a parameter that can be left out",
+                    f"“{name}” comes after a parameter that can be left out",
                     place,
                     "put those with a question mark last",
                 )
@@ -269,7 +272,7 @@ class _Row:
             result = name
             if result in known or result == OPERATOR_WORD:
                 raise LanguageError(
-                    f"{result} is already a name", place, "give the result another one"
+                    f"“{result}” is already a name", place, "give the result another one"
                 )
             name = self._name("a primitive")
         self._expect("(", "after the primitive")
@@ -325,7 +328,7 @@ class _Row:
         if not self._skip(text):
             token = self._here
             raise LanguageError(
-                f"{text} is missing before {_shown(token)}", token.position, f"put it {where}"
+                f"“{text}” is missing before {_shown(token)}", token.position, f"put it {where}"
             )
 
     def _name(self, what: str) -> str:

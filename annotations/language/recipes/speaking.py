@@ -6,8 +6,8 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from annotations.language.english import plural
-from annotations.language.forms import PERSON, THING, kind_of_class
+from annotations.language.english import article, looks_plural, plural
+from annotations.language.forms import PERSON, THING, THINGS, kind_of_class
 from annotations.language.grounding import QUESTION_WORD
 from annotations.language.plans import (
     Described,
@@ -26,17 +26,35 @@ YOU = "you"
 COME_BACK = "come back to you"
 NOTHING = "I have nothing to do."
 _PRONOUNS = {PERSON: "them", THING: "it"}
+_ANSWER = "answer"  # what the operator has named
 _OWNERS = {"them": "their", "it": "its"}
 # Bounded, so that long texts take linear time.
 _OF_PRONOUN = re.compile(
     r"\bthe (?P<what>\w+(?: (?!of\b)\w+){0,5}(?: “[^”]{0,200}”)?) of (?P<owner>them|it)\b"
 )
 _AT_HERE = re.compile(r" (?:on|to|at|in) here\b")
-_CLAUSE = re.compile(r" (who|that) is ")
+# What follows the noun of a description: "the person in a red coat who is waving".
+_AFTER_NOUN = re.compile(r" (?=(?:who|that|in|at|on|with|wearing|near|from|named)\b)")
+_IS = re.compile(r"\b(who|that|and) is\b")
+_WITH_ONE = re.compile(
+    r"\b(?P<how>in|with|wearing) an? (?P<what>[\w-]++(?: (?!(?:who|that|and|at|in)\b)[\w-]++){0,3})"
+)
 _CAPITAL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 # What a person says about the robot, as the robot says it.
-_TURNED = {"yourself": "myself", "your": "my", "you": "me"}
-_TO_TURN = re.compile(rf"\b({'|'.join(_TURNED)})\b")
+_TURNED = {
+    "you are": "I am",
+    "are you": "am I",
+    "you can": "I can",
+    "you do": "I do",
+    "you have": "I have",
+    "you like": "I like",
+    "yourself": "myself",
+    "yours": "mine",
+    "your": "my",
+    "you": "me",
+}
+_TO_TURN = re.compile(rf"\b({'|'.join(_TURNED)})\b", re.IGNORECASE)
+_MOST_CLAUSES = 3  # after which "it" and "them" may stand for something else
 
 
 def spoken(plan: TaskPlan) -> str:
@@ -44,7 +62,12 @@ def spoken(plan: TaskPlan) -> str:
 
     >>> spoken(plan)
     'I will go to the kitchen, find a coke, and bring it to you.'
+
+    A plan that only asks is said as it asks.
     """
+    questions = [_question_of(each) for each in plan.steps]
+    if questions and all(questions):
+        return " ".join(dict.fromkeys(questions))
     clauses = _Clauses(plan.steps).all()
     if not clauses:
         return NOTHING
@@ -65,6 +88,8 @@ class _Clauses:
 
     steps: Sequence[TaskStep]
     _last: dict[str, object] = field(default_factory=dict)  # person or thing → the last mentioned
+    _since: dict[str, int] = field(default_factory=dict)  # person or thing → clauses since then
+    _found: dict[str, object] = field(default_factory=dict)  # words → what has been found by them
 
     def all(self) -> list[str]:
         clauses = []
@@ -79,11 +104,19 @@ class _Clauses:
                 is_to_you = isinstance(_value(step, effect.target), Operator)
                 pattern = f"bring {{{effect.subject}}} to {YOU}" if is_to_you else ""
                 clauses.append(self.say(step, self._last, pattern))
+            elif at and (asked := self._further_question(at)) and clauses[-1].endswith("”"):
+                clauses[-1] += asked
             else:
                 clauses.append(self.say(step, self._last))
             at += 1 + delivery
             self._remember(step)
         return clauses
+
+    def _further_question(self, at: int) -> str:
+        """Return what a step asks after another question, to be said with it: ``and “Where is it?”``."""
+        before, asked = (_question_of(each) for each in self.steps[at - 1 : at + 1])
+        is_last = at + 1 == len(self.steps) or not _question_of(self.steps[at + 1])
+        return f"{' and' if is_last else ','} “{asked}”" if before and asked else ""
 
     def _delivery(self, at: int) -> int:
         """Return how many steps further on the thing that is taken now is left, if nothing but a move comes between.
@@ -118,8 +151,15 @@ class _Clauses:
         def words(name: str, is_plural: bool) -> str:
             value = values.get(name)
             if isinstance(value, StepResult):
+                if last.get(_ANSWER) == value.step:
+                    is_person = PERSON in self._result(value.step, {})
+                    return _PRONOUNS[PERSON if is_person else THING]
                 return self._result(value.step, {} if is_heard else last)
-            return _say_value(value, {} if is_plural else last, name == new, is_plural)
+            # "give them to them" says nothing of chips and of people.
+            is_unclear = is_heard and looks_plural(_only(value, "is_a", THING))
+            pronouns = {} if is_plural or is_unclear else last
+            said = _say_value(value, pronouns, name == new, is_plural)
+            return self._other(said, value) if name == new and value is not None else said
 
         text = _AT_HERE.sub(" here", _fill(pattern or _pattern(step.primitive, values), words))
         return _OF_PRONOUN.sub(lambda match: f"{_OWNERS[match['owner']]} {match['what']}", text)
@@ -131,14 +171,67 @@ class _Clauses:
             return f"the result of step {number}"
         words = _learnt(step, {})
         is_one_of_many = sum(_learnt(each, {}) == words for each in self.steps) > 1
+        is_one_of_many |= self._has_namesake(step)
         if is_one_of_many and step.place is not None:
             return f"{words} {_preposition(step.place)} {_noun_phrase(step.place, False, False)}"
         return _learnt(step, last)
 
+    def _other(self, said: str, value: TaskValue) -> str:
+        """Return ``another cup`` for ``a cup`` where the robot has found one before."""
+        begin, _, noun = said.partition(" ")
+        if begin not in ("a", "an"):
+            return said
+        is_other = self._found.setdefault(noun, _identity(value)) != _identity(value)
+        return f"another {noun}" if is_other else said
+
+    def _has_namesake(self, step: TaskStep) -> bool:
+        """Return whether the plan is about somebody or something else that the same words describe."""
+        owners = [each for _, each in step.arguments if isinstance(each, Described)]
+        words = {_noun_phrase(each, False, False): _identity(each) for each in owners}
+        others = (
+            each
+            for other in self.steps
+            for _, each in other.arguments
+            if isinstance(each, Described) and each.of is None
+        )
+        return any(
+            words.get(_noun_phrase(each, False, False), _identity(each)) != _identity(each)
+            for each in others
+        )
+
     def _remember(self, step: TaskStep) -> None:
-        for _, value in step.arguments:
+        """Remember whom and what a step has mentioned, and forget what was mentioned long before.
+
+        What the robot has learnt can be called "it" too, so then nothing else is.
+        """
+        values = [value for _, value in step.arguments]
+        for kind in list(self._last):
+            self._since[kind] += 1
+            if self._since[kind] > _MOST_CLAUSES:
+                del self._last[kind]
+        if any(isinstance(each, StepResult) for each in values):
+            self._last.pop(THING, None)
+        for value in values:
             for kind in kinds_of(value) & _PRONOUNS.keys():
                 self._last[kind] = _identity(value)
+                self._since[kind] = 0
+            is_move = step.primitive.effect(EffectKind.MOVES) is not None
+            if isinstance(value, StepResult) and not is_move and self._is_answer(value.step):
+                self._last[_ANSWER] = value.step
+                self._since[_ANSWER] = 0
+
+    def _is_answer(self, number: int) -> bool:
+        """Return whether a step asks the operator something."""
+        asking = [each.primitive for each in self.steps if each.number == number]
+        return any(each.effect(EffectKind.SPEAKS) and each.gives_result for each in asking)
+
+
+def _question_of(step: TaskStep) -> str:
+    """Return what a step asks the operator; empty where it does something else."""
+    if not (step.gives_result and step.primitive.effect(EffectKind.SPEAKS)):
+        return ""
+    own = (each for _, each in step.arguments if isinstance(each, Words) and each.is_of_robot)
+    return next((each.text for each in own), "")
 
 
 def _learnt(step: TaskStep, last: Mapping[str, object]) -> str:
@@ -187,7 +280,8 @@ def _mention(value: TaskValue | None, last: Mapping[str, object]) -> str:
     if value is None:
         return ""
     kinds = sorted(kinds_of(value) & _PRONOUNS.keys())
-    return next((_PRONOUNS[each] for each in kinds if last.get(each) == _identity(value)), "")
+    pronoun = next((_PRONOUNS[each] for each in kinds if last.get(each) == _identity(value)), "")
+    return "them" if pronoun and looks_plural(_only(value, "is_a", THING)) else pronoun
 
 
 def _noun_phrase(value: TaskValue | None, is_new: bool, is_plural: bool) -> str:
@@ -200,36 +294,50 @@ def _noun_phrase(value: TaskValue | None, is_new: bool, is_plural: bool) -> str:
     if isinstance(value, Words):
         if value.text == QUESTION_WORD:
             return f"the {value.text}"
-        return _TO_TURN.sub(lambda match: _TURNED[match[0]], value.text)
+        return value.text if value.is_of_robot else _turned(value.text)
     if isinstance(value, Named):
         if kind_of_class(value.entity_class) not in ("", PERSON) or PLACE in kinds_of(value):
             return f"the {value.text}"
         if value.text.endswith("?"):
             return f"the question “{value.text}”"
-        return _TO_TURN.sub(lambda match: _TURNED[match[0]], value.text)
+        return _turned(value.text)
     if not isinstance(value, Described):
         return "something"
     if is_plural:
-        head, *clause = _CLAUSE.split(value.text.removeprefix("the "), maxsplit=1)
-        nouns = f"the {plural(head)}"
-        return f"{nouns} {clause[0]} are {clause[1]}" if clause else nouns
+        return _plural_phrase(value.text)
     name = _only(value, "name", PERSON)
     if name:
         return name
-    thing = _only(value, "is_a", THING) if is_new else ""
-    if thing and not thing.endswith("s"):
-        return f"{'an' if thing[0] in 'aeiouAEIOU' else 'a'} {thing}"
+    thing = _only(value, "is_a", THING, THINGS) if is_new else ""
+    if thing and not looks_plural(thing):
+        return f"{article(thing)} {thing}"
     return value.text or "it"
 
 
-def _only(value: Described, predicate: str, kind: str) -> str:
+def _turned(text: str) -> str:
+    """Return what a person says about the robot, as the robot says it."""
+    return _TO_TURN.sub(lambda match: _TURNED[match[0].lower()], text)
+
+
+def _plural_phrase(text: str) -> str:
+    """Return ``the people in red coats who are waving`` for ``the person in a red coat who is waving``."""
+    head, *rest = _AFTER_NOUN.split(text.removeprefix("the "), maxsplit=1)
+    if not rest:
+        return f"the {plural(head)}"
+    clauses = _WITH_ONE.sub(lambda match: f"{match['how']} {plural(match['what'])}", rest[0])
+    return f"the {plural(head)} {_IS.sub(lambda match: f'{match[1]} are', clauses)}"
+
+
+def _only(value: TaskValue | None, predicate: str, *kinds: str) -> str:
     """Return the one entity that describes a value; empty where more is said of it."""
+    if not isinstance(value, Described):
+        return ""
     conditions = [each for each in value.conditions if each.values]
-    others = [each for each in value.conditions if not each.values and each.predicate != kind]
+    others = [each for each in value.conditions if not each.values and each.predicate not in kinds]
     if others or len(conditions) != 1 or conditions[0].predicate != predicate:
         return ""
     (entity, *_) = conditions[0].values
-    is_entity = isinstance(entity, Named) and kind_of_class(entity.entity_class) == kind
+    is_entity = isinstance(entity, Named) and kind_of_class(entity.entity_class) in kinds
     return entity.text if is_entity and isinstance(entity, Named) else ""
 
 

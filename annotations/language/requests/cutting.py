@@ -31,7 +31,7 @@ _JOINT = re.compile(
     rf"(?:{_SIGN}(?:{_WORDS}|{_NUMBER})*+|(?<!\s)\s++(?:{_WORDS}|{_NUMBER})++)", re.IGNORECASE
 )
 _OPENING = re.compile(
-    rf"\s*+(?:(?:{_phrases(JOINT_OPENINGS)})\b[\s,:.]*+|{_NUMBER})++", re.IGNORECASE
+    rf"\s*+(?:(?:{_phrases((*JOINT_OPENINGS, *JOINTS))})\b[\s,:.]*+|{_NUMBER})++", re.IGNORECASE
 )
 _SIGNS = " .,;:!?"  # of the end of a command
 

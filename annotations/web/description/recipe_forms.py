@@ -55,7 +55,10 @@ class BookRowForm(forms.Form):
 
 
 class RecipeBookForm(forms.Form):
-    """A whole book: one that ships by its name, or the rows of another, one a line."""
+    """A whole book: one that ships by its name, or the rows of another, one a line.
+
+    Without rows the world has no book of its own.
+    """
 
     shipped = forms.ChoiceField(required=False)
     primitives = forms.CharField(required=False, max_length=MOST_OF_A_BOOK)
@@ -75,8 +78,8 @@ class RecipeBookForm(forms.Form):
             self.book, self.problems = read_book(sent["primitives"], sent["recipes"])
             if error := next((each for each in self.problems if each.is_error), None):
                 raise forms.ValidationError(f"{error.position}: {_say(error)}")
-            if not self.book.recipes:
-                raise forms.ValidationError("The book has no recipe.")
+            if self.book.primitives and not self.book.recipes:
+                raise forms.ValidationError("The book has primitives, but no recipe.")
         elif not self.errors:
             self.book = shipped_books()[sent["shipped"]].book
         return sent

@@ -19,8 +19,8 @@ from annotations.checking.recipe_check import (
 )
 from annotations.editing.edits import Overtaken, add
 from annotations.editing.recipe_books import replace_book, shipped_book_of, version_of
-from annotations.language.errors import Refusal
-from annotations.language.recipes import read_primitive, read_recipe, shipped_books
+from annotations.language.errors import Problem, Refusal
+from annotations.language.recipes import default_book, read_primitive, read_recipe, shipped_books
 from annotations.lists.paging import number_in
 from annotations.models import Duty, Primitive, Recipe, World
 from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
@@ -38,21 +38,25 @@ def recipes(request: WorldRequest, world: World) -> HttpResponse:
     """List recipes and primitives, with what is wrong with them."""
     problems = problems_by_row(world)
     shipped = shipped_book_of(world)
-    context = {
-        "recipes": [
-            (row, read_recipe(row.text), problems.get(("recipe", row.pk), []))
-            for row in world.recipes.all()
-        ],
-        "primitives": [
-            (row, read_primitive(row.text), problems.get(("primitive", row.pk), []))
-            for row in world.primitives.all()
-        ],
+    own_recipes: list[Any] = [
+        (row, read_recipe(row.text), problems.get(("recipe", row.pk), []))
+        for row in world.recipes.all()
+    ]
+    own_primitives: list[Any] = [
+        (row, read_primitive(row.text), problems.get(("primitive", row.pk), []))
+        for row in world.primitives.all()
+    ]
+    book = default_book()
+    context: dict[str, Any] = {
+        "recipes": own_recipes or [_shipped(each) for each in book.recipes],
+        "primitives": own_primitives
+        if own_recipes
+        else [_shipped(each) for each in book.primitives],
+        "has_own": bool(own_recipes),
         "shipped": shipped,
         # A world without rows may copy the book that it uses already.
         "offered": [
-            each
-            for each in shipped_books().values()
-            if each != shipped or not world.recipes.exists()
+            each for each in shipped_books().values() if each != shipped or not own_recipes
         ],
         "version": version_of(world),
     }
@@ -189,6 +193,11 @@ def _preview(request: WorldRequest, world: World, kind: str) -> HttpResponse:
         chosen = request.POST.get("example", "")
         context["checked"] = try_row(world, MODELS[kind], text, row, chosen)  # type: ignore[arg-type]  # of that kind
     return render(request, "annotations/description/_recipe_preview.html", context)
+
+
+def _shipped(value: Any) -> tuple[None, Any, list[Problem]]:
+    """Return what the list shows of a value of a shipped book: it has no row."""
+    return None, value, []
 
 
 def _name_of(row: BookRow) -> str:

@@ -183,6 +183,11 @@ class BookFields(Fields):
     primitives = serializers.ListField(child=LineField(max_length=MAX_ROW), max_length=MOST_ROWS)
     recipes = serializers.ListField(child=LineField(max_length=MAX_ROW), max_length=MOST_ROWS)
 
+    def validate(self, sent: dict[str, Any]) -> dict[str, Any]:
+        if "shipped" in sent and sent.keys() & set(ROWS):
+            raise serializers.ValidationError("Send the name of a book or rows, not both.")
+        return sent
+
 
 class RecipeBookSerializer(serializers.Serializer[Any]):
     """The rows in order. ``shipped`` names the book that ships where the world has not changed it."""

@@ -17,15 +17,40 @@ class Step:
     arguments: dict[str, dict[str, Any]]
     gives_result: bool
 
+    @classmethod
+    def from_json(cls, value: dict[str, Any]) -> Step:
+        return cls(
+            value["number"],
+            value["action"],
+            value["predicate"],
+            value["text"],
+            value["arguments"],
+            value["gives_result"],
+        )
+
 
 @dataclass(frozen=True)
 class PlanProblem:
-    """What stands in the way of a plan; ``step`` 0 is the whole plan."""
+    """What stands in the way of a plan; ``step`` 0 is the whole plan.
+
+    In a joint plan ``commands`` are those that it is about.
+    """
 
     code: str
     step: int
     message: str
     hint: str
+    commands: tuple[int, ...] = ()
+
+    @classmethod
+    def from_json(cls, value: dict[str, Any]) -> PlanProblem:
+        return cls(
+            value["code"],
+            value["step"],
+            value["message"],
+            value["hint"],
+            tuple(value.get("commands", ())),
+        )
 
 
 @dataclass(frozen=True)
@@ -40,8 +65,8 @@ class Plan:
     def from_json(cls, value: dict[str, Any]) -> Plan:
         return cls(
             value["is_executable"],
-            tuple(Step(**step) for step in value["steps"]),
-            tuple(PlanProblem(**problem) for problem in value["problems"]),
+            tuple(map(Step.from_json, value["steps"])),
+            tuple(map(PlanProblem.from_json, value["problems"])),
         )
 
 
@@ -94,7 +119,7 @@ class TaskPlan:
         return cls(
             value["is_executable"],
             tuple(map(TaskStep.from_json, value["steps"])),
-            tuple(PlanProblem(**problem) for problem in value["problems"]),
+            tuple(map(PlanProblem.from_json, value["problems"])),
         )
 
 

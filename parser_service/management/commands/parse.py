@@ -16,6 +16,7 @@ from django.core.management.base import CommandParser
 from annotations.language.errors import Refusal
 from annotations.management.base import ReportingCommand, find_world
 from annotations.models import World
+from annotations.templatetags.task_plans import call
 from parser_service.models import TrainingRun
 from parser_service.parsers.registry import untrained
 from parser_service.runs.training.evaluating import BEAM_WIDTH
@@ -119,11 +120,20 @@ class Command(ReportingCommand):
             shown = candidate["reading"] or f"{candidate['form']}   (no well-formed form)"
             lines.append(f"{candidate['score']:8.3f}  {shown}")
         best = report["candidates"][0]["remarks"] if report["candidates"] else ["no answer"]
-        if report["candidates"] and report["candidates"][0]["spoken"]:
-            lines.append(report["candidates"][0]["spoken"])
+        if report["candidates"]:
+            lines += _say_plan(report["candidates"][0])
         if report["is_cut"]:
             lines.append("The text is longer than the parser reads: it read only the beginning.")
         return "\n".join([*lines, *report["remarks"], *best])
+
+
+def _say_plan(candidate: Mapping[str, Any]) -> list[str]:
+    """Return the sentence that a robot speaks, the steps of the task plan, and what is wrong with it."""
+    plan = candidate["task_plan"]
+    if not plan:
+        return []
+    steps = [f"{each['number']:8}  {call(each)}" for each in plan["steps"]]
+    return [candidate["spoken"], *steps, *(each["message"] for each in plan["problems"])]
 
 
 def find_run(world: World, number: int | None) -> TrainingRun:

@@ -19,6 +19,7 @@ from annotations.people.access import WRITE, WorldRequest, world_view
 from parser_service.serving.joint_answers import commands_in, plan_together
 from parser_service.serving.parser_client import ParserAway
 
+MOST_TEXT = MOST_COMMANDS * MOST_CHARACTERS  # of a field, which may hold all commands
 FIELDS = [f"command{number}" for number in range(1, MOST_COMMANDS + 1)]
 
 
@@ -28,7 +29,7 @@ def joint_plan(request: WorldRequest, world: World) -> HttpResponse:
     context = {
         "commands": [(name, _text_of(request.GET, name)) for name in FIELDS],
         "has_text": any(_text_of(request.GET, name) for name in FIELDS),
-        "most_text": MOST_CHARACTERS,
+        "most_text": MOST_TEXT,
     }
     return render(request, "parser_service/serving/joint_plan.html", context)
 
@@ -55,4 +56,4 @@ def joint_plan_ask(request: WorldRequest, world: World) -> HttpResponse:
 
 
 def _text_of(query: QueryDict, name: str) -> str:
-    return " ".join(query.get(name, "").replace("\0", "").split())[:MOST_CHARACTERS]
+    return " ".join(query.get(name, "").replace("\0", "").split())[:MOST_TEXT]

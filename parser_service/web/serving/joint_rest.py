@@ -52,6 +52,11 @@ class JointQuery(Fields):
         child=DistanceSerializer(), max_length=MOST_DISTANCES, default=list
     )
 
+    def validate(self, sent: dict[str, Any]) -> dict[str, Any]:
+        if sent["utterances"] and sent["utterance"]:
+            raise serializers.ValidationError("Send utterance or utterances, not both.")
+        return sent
+
     def get_fields(self) -> dict[str, Any]:
         as_ = serializers.ChoiceField(choices=["json", "xml"], default="json")
         return {**super().get_fields(), "as": as_}
@@ -93,8 +98,10 @@ class JointPlanRoute(WorldRoute):
     def post(self, request: ApiRequest, world: str) -> HttpResponseBase:
         sent = self.read(JointQuery)
         utterances = sent["utterances"] or commands_in(self.world, sent["utterance"], sent["run"])
-        table = {(each["one"], each["other"]): each["distance"] for each in sent["distances"]}
-        answer = plan_together(self.world, utterances, sent["run"], Distances(table))
+        distances = Distances.of_rows(
+            (each["one"], each["other"], each["distance"]) for each in sent["distances"]
+        )
+        answer = plan_together(self.world, utterances, sent["run"], distances)
         if sent["as"] == "xml":
             tree = to_behavior_tree(answer.plan.plan)
             return HttpResponse(tree, content_type="application/xml")

@@ -16,6 +16,7 @@ from annotations.campaigns.tasks import begin
 from annotations.commenting import SUBJECTS, add_comment
 from annotations.editing.edits import change, delete
 from annotations.generation.generating import generate_pairs
+from annotations.importing.competition_import import import_competition
 from annotations.importing.generator_import import import_generator
 from annotations.importing.pair_import import import_pairs
 from annotations.label_audit.audit_findings import store_findings
@@ -72,6 +73,12 @@ def test_the_generator_of_2018_with_the_published_pairs(db, shared_data):
     again = same_again(world)
     assert again.commands.count() == 1211
     assert again.splits.count() == 2
+
+
+def test_the_folder_of_a_competition(db, shared_data):
+    import_competition("c25", shared_data / "competition-2025")
+    again = same_again(World.objects.get(name="c25"))
+    assert {"/" in each.source for each in again.ontology.entities.all()} == {True}
 
 
 def test_a_world_without_anything(world):

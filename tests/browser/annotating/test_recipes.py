@@ -24,7 +24,7 @@ def test_the_example_follows_what_is_typed(page_of, live_server, sample, annotat
     expect(preview.locator(".severity")).to_have_text("error")
     page.keyboard.press("ControlOrMeta+a")
     page.keyboard.insert_text('go(destination) -> say("on my way") go_to(destination)')
-    expect(preview).to_contain_text("say(on my way)")
+    expect(preview).to_contain_text('say("on my way")')
     page.keyboard.press("ControlOrMeta+Enter")
     expect(page.locator(".message")).to_contain_text("Saved as version 2")
     row.refresh_from_db()

@@ -136,6 +136,14 @@ def test_remarks_are_printed_for_a_person(split):
     assert out.getvalue().endswith("the utterance names no object of this world.\n")
 
 
+def test_the_steps_of_the_task_plan_are_printed_for_a_person(split):
+    trained(split, train_sources="gen")
+    out = StringIO()
+    call_command("parse", "bring me the red cup", "--world", "home", stdout=out)
+    assert "       1  find_object(the red cup)\n" in out.getvalue()
+    assert "       4  give(" in out.getvalue() or "       3  give(" in out.getvalue()
+
+
 def test_an_utterance_without_an_answer_has_no_candidates(split):
     trained(split, config={"least_overlap": 0.9})
     assert ask("sing a song")["candidates"] == []

@@ -194,4 +194,4 @@ def test_members_are_found_in_the_order_of_the_text() -> None:
 def test_a_plan_says_what_to_ask_an_operator() -> None:
     result = hear("bring me the tea or the flurb", BRING)
     (doubt,) = make_plan(result.form, TABLE, {}, {}, result.slots).problems
-    assert doubt.hint == "ask: tea or flurb?"
+    assert doubt.hint == "ask whether it is “tea” or “flurb”"

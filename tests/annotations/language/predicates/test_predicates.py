@@ -121,6 +121,10 @@ def test_a_nonterminal_as_predicate_or_argument_is_not_judged() -> None:
         ),
         ('(bring (λ$1:e (is $1 "<gesture>")))', "bring me the one who is making the gesture"),
         ("(find (λ$1:e (heaviest $1 3) (is_a $1 {kobject})))", "find the three heaviest objects"),
+        (
+            '(bring (λ$1:e (is_a $1 "chips") (at $1 "<location>")))',
+            "bring me the chips that are at the location",
+        ),
         ("(bring (λ$1:e (is_a $1)))", "bring me the object"),  # a parser may write it
     ],
 )
@@ -144,6 +148,14 @@ def test_a_pattern_of_ones_own_overrides_the_default() -> None:
     signature = Signature(("room",))
     mine = {"go": Predicate("go", PredicateKind.ACTION, (signature,), "drive | drive into {1}")}
     assert gloss(read_form('(go "<room>")'), mine) == "drive into the room"
+
+
+def test_a_pattern_has_the_article_of_what_it_says() -> None:
+    mine = {"wears": Predicate("wears", PredicateKind.DESCRIPTION, (), "_ in a {2:text} {3:text}")}
+    form = '(find (λ$1:e (person $1) (wears $1 "{}" "coat")))'
+    for colour, said in (("orange", "an orange"), ("red", "a red")):
+        expected = f"find the person in {said} coat"
+        assert gloss(read_form(form.format(colour)), mine) == expected
 
 
 def test_a_predicate_of_nothing_but_actions_is_a_sequence() -> None:

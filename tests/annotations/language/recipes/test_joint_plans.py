@@ -150,7 +150,13 @@ def test_the_table_of_distances_decides():
 
 
 @pytest.mark.parametrize(
-    "rows", [[("a", "b", -1.0)], [("a", "b", float("nan"))], [("a", "b", 1.0), ("b", "a", 2.0)]]
+    "rows",
+    [
+        [("a", "b", -1.0)],
+        [("a", "b", float("nan"))],
+        [("a", "b", 1.0), ("b", "a", 2.0)],
+        [("a", "a", 1.0)],
+    ],
 )
 def test_a_table_without_sense_is_refused(rows):
     with pytest.raises(WrongDistance):
@@ -338,3 +344,10 @@ def test_very_long_commands_are_done_one_after_the_other():
     joint = joined(form, form, form)
     assert time.process_time() - started < 5
     assert joint.length == joint.length_before
+
+
+def test_what_is_wrong_with_one_command_is_said_of_its_steps():
+    joint = joined('(go "attic")', "UNKNOWN")
+    (problem,) = joint.plan.problems
+    assert joint.serves[problem.step - 1] == (2,)
+    assert [each["commands"] for each in joint.as_json()["problems"]] == [[2]]

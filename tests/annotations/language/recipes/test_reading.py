@@ -68,6 +68,8 @@ def test_what_is_printed_reads_back(name):
         ("go(x, x)", 7),
         ("go(x?, y)", 8),
         ("go(x): flies to x", 8),
+        ('go(x) "go|": moves to x', 7),
+        ('go(x) "": moves to x', 7),
         ("go(x): moves to y", 17),
         ("go(x): moves x", 14),
         ("go(x): moves to x, moves to x", 20),
@@ -143,12 +145,43 @@ def test_a_book_is_checked_as_a_whole():
         "recipes:4:11",
         "recipes:5:11",
     ]
-    assert [str(each.position) for each in problems if not each.is_error] == ["primitives:4:1"]
+    warned = [str(each.position) for each in problems if not each.is_error]
+    # Nothing uses sing; no plan calls an argument x or y.
+    assert warned == [
+        "primitives:4:1",
+        *(f"recipes:{line}:{1 + 2 * (line == 3)}" for line in range(1, 6)),
+    ]
     assert len(book.primitives) == 4 and len(book.recipes) == 5
 
 
+@pytest.mark.parametrize(
+    ("recipe", "count"),
+    [
+        ("go(destination) -> move(destination)", 0),
+        ("go(place) -> move(place)", 1),
+        ("take(thing, thing_2) -> move(thing)", 0),
+        ("dance(style) -> move(style)", 1),
+        ("dance(argument_1) -> move(argument_1)", 0),
+        ("say(text: answer(what), who) -> move(what)", 2),
+        ("ask_operator(question, expects) -> move(question)", 0),
+    ],
+)
+def test_an_argument_that_no_plan_has_is_a_warning(recipe, count):
+    book, _ = read_book("move(place): moves to place", recipe)
+    warnings = book.problems()
+    assert len(warnings) == count and not any(each.is_error for each in warnings)
+
+
+@pytest.mark.parametrize("name", shipped_books())
+def test_a_book_that_ships_has_no_problem(name):
+    assert shipped_books()[name].book.problems() == ()
+
+
 def test_a_recipe_of_an_action_or_a_kind_that_a_world_lacks_is_a_warning():
-    book, problems = read_book("go_to(place)", "go(x: persn) -> go_to(x)\nfly(x: room) -> go_to(x)")
+    book, problems = read_book(
+        "go_to(place)",
+        "go(destination: persn) -> go_to(destination)\nfly(argument_1: room) -> go_to(argument_1)",
+    )
     assert not problems
     warnings = book.problems(actions={"go"}, classes={"room"})
     assert [each.position.line for each in warnings] == [1, 2]

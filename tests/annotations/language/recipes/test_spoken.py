@@ -2,9 +2,13 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.language.recipes import read_book, spoken
+from annotations.language.forms import read_form
+from annotations.language.plans import make_plan
+from annotations.language.predicates import Predicate, PredicateKind, read_signatures
+from annotations.language.recipes import apply_recipes, default_book, join, read_book, spoken
 from annotations.language.recipes.task_plan import TaskPlan
 from tests.annotations.language.recipes.task_plans import task_plan
+from tests.annotations.language.sample_ontology import HOME
 
 TEA = '(λ$1:e (is_a $1 "tea") (at $1 "attic"))'
 ADA = '(λ$1:e (person $1) (name $1 "Ada") (at $1 "stool"))'
@@ -41,6 +45,24 @@ ADA = '(λ$1:e (person $1) (name $1 "Ada") (at $1 "stool"))'
             f'(answer "What is up?" {ADA})',
             "go to the stool, find Ada, and answer their question “What is up?”.",
         ),
+        (
+            '(sequence (find (λ$1:e (is_a $1 "drinks") (at $1 "attic"))) (take it))',
+            "go to the attic, find the drinks, and take it.",
+        ),
+        (
+            f'(sequence (take (λ$1:e (is_a $1 "cookies"))) (go "attic") (bring it {ADA}))',
+            "find the cookies, take them, go to the attic, go to the stool, find Ada, and give the cookies to them.",
+        ),
+        ('(say "what you are called")', "say what I am called."),
+        (
+            '(say (λ$1:e (λ$2:e (person $2) (name $2 $1) (at $2 "attic"))) (λ$3:e (person $3) (at $3 "stool")))',
+            "go to the attic, find the person, find out their name, go to the stool, find the person, and tell "
+            "them the name of the person in the attic.",
+        ),
+        (
+            "(bring UNKNOWN)",
+            "ask you “What shall I bring you?”, find the thing that you name, and bring it to you.",
+        ),
         ("(go UNKNOWN)", "ask you “Where shall I go?” and go to the destination that you name."),
         ('(say "something about yourself")', "say something about myself."),
     ],
@@ -49,9 +71,59 @@ def test_a_plan_is_one_sentence(form, sentence):
     assert spoken(task_plan(form)) == f"I will {sentence}"
 
 
+@pytest.mark.parametrize(
+    ("forms", "sentence"),
+    [
+        ((f"(take {TEA})", f"(take {TEA})"), "find a tea, take it, find another tea, and take it."),
+        (  # what the robot tells could be "it" too
+            ('(say (count (λ$1:e (is_a $1 "cookies") (at $1 "attic"))))', f"(bring {TEA})"),
+            "tell you the number of the cookies, and give the tea to you.",
+        ),
+    ],
+)
+def test_a_joint_plan_says_what_it_means(forms, sentence):
+    joint = join([task_plan(each) for each in forms], default_book())
+    assert spoken(joint.plan).endswith(sentence)
+
+
+def test_the_words_of_the_robot_stay_as_they_are():
+    book, _ = read_book(
+        'say(text) "say “{text}”": speaks', 'go(destination) -> say("I will come to you")'
+    )
+    assert spoken(task_plan('(go "attic")', book)) == "I will say “I will come to you”."
+
+
+WORN = Predicate(
+    "wears",
+    PredicateKind.DESCRIPTION,
+    read_signatures("(variable, text, text)"),
+    gloss="_ in a {2:text} {3:text}",
+)
+
+
+def test_what_many_people_wear_is_a_plural():
+    worn = '(λ$1:e (person $1) (wears $1 "orange" "coat") (at $1 "attic"))'
+    plan = make_plan(read_form(f"(say (count {worn}))"), HOME, {"wears": WORN})
+    said = spoken(apply_recipes(plan, default_book()))
+    assert "count the people in orange coats," in said
+    plan = make_plan(read_form(f"(find {worn})"), HOME, {"wears": WORN})
+    assert "find the person in an orange coat" in spoken(apply_recipes(plan, default_book()))
+
+
 def test_a_primitive_without_words_is_said_by_its_name():
     book, _ = read_book("MoveBaseTo(goal)", "go(destination) -> MoveBaseTo(destination)")
     assert spoken(task_plan('(go "attic")', book)) == "I will move base to the attic."
+
+
+def test_a_plan_that_only_asks_is_its_question():
+    assert spoken(task_plan("UNKNOWN")) == "I did not understand that. What shall I do?"
+
+
+def test_several_questions_are_asked_together():
+    form = '(meet (λ$1:e (person $1) (name $1 "<name>") (at $1 "<room>")))'
+    assert spoken(task_plan(form)).startswith(
+        "I will ask you “Who shall I meet?” and “Which room is the person in?”, go to the room"
+    )
 
 
 def test_nothing_to_do_is_said():

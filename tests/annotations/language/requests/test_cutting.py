@@ -24,6 +24,7 @@ JUDGE = knows(GO, TAKE, GREET)
         f"First {GO}, then {TAKE}, and after that {GREET}.",
         f"1. {GO} 2. {TAKE} 3. {GREET}",
         f"{GO}; also {TAKE}; {GREET}!",
+        f"Then {GO}. Second, {TAKE}; finally {GREET}",
         f"I have three tasks for you: {GO}, {TAKE} and {GREET}",
         f"Your first task is to {GO}. Your second task is to {TAKE}. When you are done, {GREET}.",
     ],

@@ -38,9 +38,24 @@ def test_a_world_without_recipes_uses_the_book_that_ships(browse, world):
     world.primitives.all().delete()
     assert recipe_book_of(world) == default_book()
     page = browse.get(PAGE)
-    assert page.context["shipped"].name == DEFAULT_BOOK and not page.context["recipes"]
-    browse.post(f"{PAGE}book/", {"shipped": DEFAULT_BOOK, "version": page.context["version"]})
+    assert page.context["shipped"].name == DEFAULT_BOOK and not page.context["has_own"]
+    shown = [value for row, value, _ in page.context["recipes"] if row is None]
+    assert shown == list(default_book().recipes) and f"{PAGE}new/" not in page.content.decode()
+    page = browse.post(
+        f"{PAGE}book/",
+        {"shipped": DEFAULT_BOOK, "version": page.context["version"]},
+        follow=True,
+    )
     assert world.recipes.count() == len(default_book().recipes)
+    undo = {"primitives": "", "recipes": "", "version": page.context["version"]}
+    browse.post(f"{PAGE}book/", undo)
+    assert not world.recipes.exists() and not world.primitives.exists()
+
+
+def test_primitives_without_recipes_are_no_book(browse, world):
+    sent = {"primitives": "fly(place): moves to place", "recipes": ""}
+    page = browse.post(f"{PAGE}book/", sent, follow=True)
+    assert levels(page) == ["error"] and recipe_book_of(world) == default_book()
 
 
 def test_another_book_is_taken_and_undone(browse, world, go):

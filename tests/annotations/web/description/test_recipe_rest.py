@@ -82,6 +82,13 @@ def test_a_whole_book_is_replaced(browse, world):
     assert world.recipes.count() == 1
 
 
+def test_a_name_and_rows_are_refused_together(browse):
+    tag = browse.get(f"{API}recipe-book/")["ETag"]
+    sent = {"shipped": DEFAULT_BOOK, "recipes": ["go(destination) -> go_to(destination)"]}
+    answer = browse.patch(f"{API}recipe-book/", sent, JSON, headers={"If-Match": tag})
+    assert answer.status_code == 400
+
+
 def test_a_form_becomes_a_task_plan(browse):
     sent = {"form": '( go " kitchen " )'}
     answer = browse.post(f"{API}task-plan/", sent, JSON).json()

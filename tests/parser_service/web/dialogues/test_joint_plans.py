@@ -31,6 +31,13 @@ def browse(parse_server, client, annotator):
         ("go to the kitchen\nfind the bowl", ("go to the kitchen", "find the bowl")),
         ("bring me the 7.5 cm bowl", ("bring me the 7.5 cm bowl",)),
         (" . ", ()),
+        ("...;;; !!!", ()),
+        (
+            "1. Go to the kitchen. 2. find the bowl 3. wave",
+            ("Go to the kitchen", "find the bowl", "wave"),
+        ),
+        ("(1) go to the kitchen (2) wave", ("go to the kitchen", "wave")),
+        ("go to the kitchen 2. wave", ("go to the kitchen 2", "wave")),
     ],
 )
 def test_sentences_are_commands(browse, utterance, commands):
@@ -69,6 +76,24 @@ def test_a_table_of_distances_is_used(browse):
     answer = browse.post(API, {"utterances": TWO, "distances": [far]}, JSON).json()
     assert answer["joint_plan"]["length"] == 81  # there and back
     assert answer["joint_plan"]["length_before"] == 81
+
+
+@pytest.mark.parametrize(
+    "sent",
+    [
+        {"utterances": TWO, "utterance": TWO[0]},
+        {
+            "utterances": TWO,
+            "distances": [
+                {"one": "kitchen", "other": "operator", "distance": 1},
+                {"one": "operator", "other": "kitchen", "distance": 2},
+            ],
+        },
+    ],
+)
+def test_what_contradicts_itself_is_refused(browse, sent):
+    answer = browse.post(API, sent, JSON)
+    assert answer.status_code == 400 and answer.json()["detail"]
 
 
 def test_a_joint_plan_is_a_behaviour_tree_too(browse):

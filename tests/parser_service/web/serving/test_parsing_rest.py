@@ -18,10 +18,12 @@ from annotations.models import ApiToken, Job
 from annotations.web.rest.streaming import BrokenOff
 from parser_service.promotions.promoting import promote
 from parser_service.serving.batch_requests import MOST_AT_ONCE
+from parser_service.serving.shelf import Shelf
 from parser_service.web.serving import parsing_rest
 from parser_service.web.serving.parsing_rest import MOST_LINES
 from tests.annotations.conftest import TINY, as_bytes
 from tests.parser_service.live_server import parse_server  # noqa: F401  a fixture
+from tests.parser_service.llm_server import MODEL, installed_tiny_server
 from tests.parser_service.served import make_home, trained_run
 
 PARSE = "/api/v1/worlds/home/parse/"
@@ -115,6 +117,19 @@ def test_a_worker_parses_a_batch_and_its_answers_are_downloaded(world, ask):
     answers = answers_of(ask("get", f"{path}result/"))
     assert len(answers) == 102 and answers[100]["line"] == 101
     assert len(answers[101]["candidates"]) == 2
+
+
+def test_a_language_model_may_take_its_time_for_a_batch(world, ask, tmp_path, monkeypatch):
+    with installed_tiny_server(tmp_path) as tiny:
+        run = trained_run(
+            make_home(world), parser="llm", config={"model": MODEL}, train_sources="gen"
+        )
+        tiny.seconds = 0.5
+        monkeypatch.setattr(Shelf.__init__, "__defaults__", (0.1,))  # as long as requests wait
+        asked = ask("post", f"parse/jobs/?beam=1&run={run.pk}", BOWL)
+        assert carry_out_next().status == "succeeded"
+        (answer,) = answers_of(ask("get", f"jobs/{asked.json()['id']}/result/"))
+        assert answer["utterance"] == "find the bowl" and answer["candidates"]
 
 
 def test_a_worker_answers_as_the_parse_server_does(world, ask, send):
