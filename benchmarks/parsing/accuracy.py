@@ -8,7 +8,7 @@ harmonic mean of both, which is the headline. ± is how far the 95 % interval re
 form, else source commands) and trainings are drawn with replacement. A figure is bold where it is better
 than every other one of its column, by a paired bootstrap with Holm's correction. New splits are rows of
 their own. The standard deviations between trainings stand in a second table. The paper's figure, always
-on the test parts, is in parentheses.
+on the test parts, is in parentheses. Where plans were compared, tables of the answers with the same plan follow.
 
 ``--csv`` prints a row for each cell instead, with its conditions and figures.
 """
@@ -38,6 +38,7 @@ from benchmarks.parsing.accuracy_figures import (  # noqa: E402
     ROW,
     UNSEEN,
     as_csv,
+    by_plan,
     counts_in_words,
     is_current,
     read_figures,
@@ -76,7 +77,7 @@ class AccuracyFigure:
 class AccuracyTable:
     """One protocol. ``rows`` name, then a figure or None for each of ``columns``."""
 
-    protocol: str
+    title: str
     columns: tuple[Column, ...]
     rows: tuple[tuple[str, tuple[AccuracyFigure | None, ...]], ...]
 
@@ -85,16 +86,19 @@ class AccuracyTable:
         return any(each and each.spread is not None for _, row in self.rows for each in row)
 
 
-def tables(figures: pd.DataFrame) -> list[AccuracyTable]:
-    """The tables in the order of the protocols, each with the columns that were measured in it."""
+def tables(figures: pd.DataFrame, of_plans: bool = False) -> list[AccuracyTable]:
+    """The tables in the order of the protocols, each with the columns that were measured in it.
+
+    ``of_plans`` says that they count answers with the same plan, of which the paper has no figures.
+    """
     return [
-        _table(protocol, figures[figures["protocol"] == protocol])
+        _table(protocol, figures[figures["protocol"] == protocol], of_plans)
         for protocol in Protocol
         if protocol in set(figures["protocol"])
     ]
 
 
-def _table(protocol: str, figures: pd.DataFrame) -> AccuracyTable:
+def _table(protocol: str, figures: pd.DataFrame, of_plans: bool) -> AccuracyTable:
     measured = set(zip(figures["setting"], figures["criterion"], strict=True))
     columns = tuple(
         (setting, by, figure)
@@ -107,11 +111,12 @@ def _table(protocol: str, figures: pd.DataFrame) -> AccuracyTable:
     for key in order:
         own = by_row[key].set_index(["setting", "criterion", "figure"])
         row = [
-            _figure(key[0], column, own.loc[column]) if column in own.index else None
+            _figure(key[0], column, own.loc[column], of_plans) if column in own.index else None
             for column in columns
         ]
         rows.append((_row_name(key, order), tuple(row)))
-    return AccuracyTable(protocol, columns, tuple(rows))
+    title = f"{protocol}, same plan" if of_plans else protocol
+    return AccuracyTable(title, columns, tuple(rows))
 
 
 def _row_name(row: tuple[str, str, str, bool], rows: Sequence[tuple[str, str, str, bool]]) -> str:
@@ -127,13 +132,13 @@ def _row_name(row: tuple[str, str, str, bool], rows: Sequence[tuple[str, str, st
     return name + (", new splits" if on_new else "")
 
 
-def _figure(parser: str, column: Column, row: pd.Series) -> AccuracyFigure:
+def _figure(parser: str, column: Column, row: pd.Series, of_plans: bool) -> AccuracyFigure:
     setting, criterion, figure = column
     train, _, test = setting.rpartition("-")
     mean, low, high = (float(row[name]) for name in ("mean", "low", "high"))
     reach = None if pd.isna(low) else max(high - mean, mean - low)
     spread = None if pd.isna(row["std"]) else float(row["std"])
-    is_papers = figure in (ACCURACY, UNSEEN) and not row["on_new"]
+    is_papers = figure in (ACCURACY, UNSEEN) and not row["on_new"] and not of_plans
     published = published_accuracy(parser, (train, test), criterion) if is_papers else None
     return AccuracyFigure(mean, reach, spread, published, bool(row["is_best"]))
 
@@ -149,7 +154,7 @@ def to_markdown(table: AccuracyTable) -> str:
     settings = (setting for setting, _, _ in table.columns)
     head = ["parser", *map(" ".join, zip(settings, _heads(table), strict=True))]
     rule = ["---", *["---:"] * len(table.columns)]
-    text = f"### {table.protocol}\n\n" + _lines([head, rule, *_cells(table, _in_markdown)])
+    text = f"### {table.title}\n\n" + _lines([head, rule, *_cells(table, _in_markdown)])
     if not table.has_spread:
         return text
 
@@ -177,7 +182,7 @@ def to_latex(table: AccuracyTable) -> str:
         for setting, span in zip(settings, spans, strict=True)
     ]
     lines = [
-        [table.protocol, *heads],
+        [table.title, *heads],
         ["", *_heads(table)],
         *(
             [rf"\texttt{{{name.translate(ESCAPED)}}}", *map(_in_latex, row)]
@@ -263,11 +268,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
             print(as_csv([cell for cell in cells if cell["parser"] in names]), end="")
             return
         figures = read_figures(cells, given.part, names)
+        of_plans = [cell for cell in by_plan(cells) if cell["parser"] in names]
+        shown = tables(figures)
+        if any(is_current(cell) and f"same_plan_{given.part}" in cell for cell in of_plans):
+            shown += tables(read_figures(of_plans, given.part, names), of_plans=True)
     except ValueError as error:
         sys.exit(str(error))
     left_out = sum(cell["parser"] in names and not is_current(cell) for cell in cells)
     comment = "% " if show is to_latex else ""
-    print(*map(show, tables(figures)), comment + note(figures, given.part, left_out), sep="\n\n")
+    print(*map(show, shown), comment + note(figures, given.part, left_out), sep="\n\n")
 
 
 if __name__ == "__main__":

@@ -34,6 +34,20 @@ SAME_CELL = [
 ]
 
 
+def by_plan(cells: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return the cells whose plans were compared, with the answers of the same plan in place of the exact ones."""
+    parts = ("validation", "test", KNOWN)
+    return [
+        {
+            **cell,
+            **{f"accuracy_{part}": cell.get(f"same_plan_{part}") for part in parts},
+            "outcomes": cell.get("outcomes_same_plan"),
+        }
+        for cell in cells
+        if any(cell.get(f"same_plan_{part}") is not None for part in parts)
+    ]
+
+
 def read_figures(
     cells: Sequence[dict[str, Any]], part: str, parsers: Sequence[str]
 ) -> pd.DataFrame:

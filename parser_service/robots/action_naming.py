@@ -10,7 +10,7 @@ from django.db import IntegrityError, transaction
 from django.utils import timezone
 
 from annotations.language.errors import Refusal
-from annotations.language.plans import ASK, ActionName
+from annotations.language.plans import ASK, TAKEN_NAMES, ActionName
 from annotations.models import Predicate, User, World
 from parser_service.models import ActionNames
 
@@ -77,6 +77,9 @@ def read_name(action: str, name: str, arguments: str) -> ActionName | None:
     name = name.strip() or action
     if name != action:
         _require_name(name)
+        if name in TAKEN_NAMES:
+            sentence = f"BehaviorTree.CPP has a “{name}” of its own. Choose another name."
+            raise Refusal(sentence, "taken_robot_name")
     renamed: dict[str, str] = {}
     for part in filter(str.strip, arguments.split(",")):
         pair = _PAIR.fullmatch(part)

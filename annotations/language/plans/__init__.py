@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from annotations.language.plans.behavior_tree import to_behavior_tree
+from annotations.language.plans.behavior_tree import TAKEN_NAMES, to_behavior_tree
 from annotations.language.plans.descriptions import AT
 from annotations.language.plans.lookup import Lookup
 from annotations.language.plans.plan import (
@@ -31,6 +31,7 @@ from annotations.language.plans.planning import argument_names, doubts_about, ma
 __all__ = [
     "ASK",
     "AT",
+    "TAKEN_NAMES",
     "ActionName",
     "Condition",
     "Described",

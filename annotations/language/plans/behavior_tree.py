@@ -31,6 +31,26 @@ RESULT = "result"
 OPERATOR = "operator"
 _NO_NAME = re.compile(r"[^A-Za-z0-9_]")
 _RESERVED = frozenset(("name", "id", RESULT))
+# The nodes of BehaviorTree.CPP 4.9 and of its predecessors, the tags of its XML, and the name of our tree: an action
+# of one of these names would be taken for something else, or not be registered.
+TAKEN_NAMES = frozenset(
+    (
+        *("Sequence", "SequenceStar", "SequenceWithMemory", "AsyncSequence", "ReactiveSequence"),
+        *("Fallback", "AsyncFallback", "ReactiveFallback", "Parallel", "ParallelAll"),
+        *("IfThenElse", "WhileDoElse", "TryCatch", "ManualSelector"),
+        *("Switch2", "Switch3", "Switch4", "Switch5", "Switch6"),
+        *("Inverter", "ForceSuccess", "ForceFailure", "Repeat", "RunOnce", "Timeout", "Delay"),
+        *("RetryUntilSuccessful", "RetryUntilSuccesful", "KeepRunningUntilFailure"),
+        *("Precondition", "SkipUnlessUpdated", "WaitValueUpdate", "WasEntryUpdated"),
+        *("LoopInt", "LoopBool", "LoopDouble", "LoopString", "ConsumeQueue"),
+        *("BlackboardCheckInt", "BlackboardCheckDouble", "BlackboardCheckString"),
+        *("BlackboardCheckBool", "AlwaysSuccess", "AlwaysFailure", "Sleep", "TestNode"),
+        *("Script", "ScriptCondition", "SetBlackboard", "UnsetBlackboard", "SubTreePlus"),
+        *("root", "Root", "BehaviorTree", "TreeNodesModel", "include", "MetadataFields"),
+        *("Action", "Condition", "Control", "Decorator", "SubTree"),
+        *("input_port", "output_port", "inout_port", TREE),
+    )
+)
 
 
 class TreeStep(Protocol):
@@ -83,9 +103,9 @@ def to_behavior_tree(plan: Steps) -> str:
 
 
 def node_name(action: str) -> str:
-    """Return a name that BehaviorTree.CPP takes for a node."""
+    """Return a name that BehaviorTree.CPP takes for a node: none that it has itself."""
     name = _NO_NAME.sub("_", action)
-    return name if name[:1].isalpha() else f"a_{name}"
+    return name if name[:1].isalpha() and name not in TAKEN_NAMES else f"a_{name}"
 
 
 def port_name(argument: str) -> str:

@@ -19,6 +19,7 @@ from annotations.language.limits import (
     require_name,
     require_writable,
 )
+from annotations.language.plans import TAKEN_NAMES
 from annotations.language.recipes.rows import (
     OPERATOR_WORD,
     PLACEHOLDER,
@@ -116,6 +117,9 @@ class _Row:
 
     def primitive(self) -> Primitive:
         name = self._name("the name of a primitive")
+        if name in TAKEN_NAMES:
+            message = f"BehaviorTree.CPP has a {name} of its own"
+            raise LanguageError(message, self._start, "choose another name")
         parameters = self._parameters()
         said: tuple[str, ...] = ()
         if self._here.kind == "text":

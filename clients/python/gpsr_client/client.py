@@ -127,18 +127,52 @@ class Workbench:
         ``part`` is train, validation or test; ``source`` generated or paraphrased. By default all
         examples are written.
         """
-        if isinstance(split, str):
-            rows = self._transport.get(f"{self._path}splits/", q=split, limit=1000)["results"]
-            keys = [int(row["id"]) for row in rows if row["name"] == split]
-            if not keys:
-                raise Refused(404, f"This world has no split called {split!r}.", [])
-            split = keys[0]
-        path = f"{self._path}splits/{split}/export/"
         query = {"as": format, "part": part, "source": source}
+        return self._download(f"splits/{self._split(split)}/export/", query, file)
+
+    def export_vocabulary(
+        self, file: str | Path, format: str = "txt", only: str | None = None
+    ) -> Path:
+        """Write the words of the world for a speech recogniser to a file and return its path.
+
+        ``format`` is txt, jsonl or vosk; ``only`` is names or words. By default both are written.
+        """
+        return self._download("vocabulary/", {"as": format, "only": only}, file)
+
+    def export_rephrased(
+        self,
+        file: str | Path,
+        format: str = "chat",
+        split: int | str | None = None,
+        part: str | None = None,
+    ) -> Path:
+        """Write accepted paraphrases with their plans in primitives to a file and return its path.
+
+        ``format`` is chat, pairs or tests. With a ``split``, named or by its number, only what is in its
+        ``part`` is written: train by default.
+        """
+        query = {"as": format, "split": self._split(split) if split else None, "part": part}
+        return self._download("paraphrases/export/", query, file)
+
+    def _split(self, split: int | str) -> int:
+        """Return the number of a split, which may be named. Raises Refused if there is none of the name."""
+        if not isinstance(split, str):
+            return split
+        rows = self._transport.get(f"{self._path}splits/", q=split, limit=1000)["results"]
+        for row in rows:
+            if row["name"] == split:
+                return int(row["id"])
+        raise Refused(404, f"This world has no split called {split!r}.", [])
+
+    def _download(self, path: str, query: Mapping[str, object], file: str | Path) -> Path:
+        """Write an answer to a file, under another name until it is complete; return its path."""
         target = Path(file)
         beside = target.with_name(f".{target.name}.part")
         try:
-            with self._transport.open("GET", path, query=query) as answer, beside.open("wb") as out:
+            with (
+                self._transport.open("GET", f"{self._path}{path}", query=query) as answer,
+                beside.open("wb") as out,
+            ):
                 shutil.copyfileobj(answer, out)
             beside.replace(target)
         except HTTPException as error:

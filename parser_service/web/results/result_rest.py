@@ -7,7 +7,7 @@ from typing import Any
 import django_filters
 from django.db.models import Case, OuterRef, Q, QuerySet, Subquery, When
 from drf_spectacular.types import OpenApiTypes
-from drf_spectacular.utils import extend_schema
+from drf_spectacular.utils import extend_schema, extend_schema_field
 from rest_framework import serializers
 from rest_framework.response import Response
 
@@ -18,30 +18,47 @@ from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import RowsViewSet, WorldRoute
 from parser_service.models import Evaluation
 from parser_service.results.export import as_json
+from parser_service.results.measures import Measure, interval_of, is_known
 from parser_service.results.result_choices import read_choices, scored_splits
+
+IntervalField = serializers.ListField(child=serializers.FloatField(), min_length=2, max_length=2)
+MaybeIntervalField = serializers.ListField(
+    child=serializers.FloatField(), min_length=2, max_length=2, allow_null=True
+)
 
 
 class EvaluationSerializer(serializers.ModelSerializer[Evaluation]):
     """Exact match of a run on one source of one part; fractions of 1, the interval at 95 %. On a split by
     form ``accuracy`` is that on unseen forms, except for the part ``known``; ``harmonic_mean`` combines it
-    with ``accuracy_known``. Both are null for other splits, and if known forms were not held out. ``same_plan`` is
-    null where plans were not compared."""
+    with ``accuracy_known``. Both are null for other splits, and if known forms were not held out. ``same_plan`` and
+    its interval are null where plans were not compared. Intervals are low and high."""
 
     run = serializers.IntegerField(source="run_id")
     accuracy_known = serializers.FloatField(allow_null=True)
     harmonic_mean = serializers.SerializerMethodField()
+    equivalent_interval = serializers.SerializerMethodField()
+    same_plan_interval = serializers.SerializerMethodField()
 
     class Meta:
         model = Evaluation
         fields = [
             *("id", "run", "part", "test_source", "count", "correct", "accuracy"),
             *("interval_low", "interval_high", "equivalent", "well_formed", "same_plan"),
-            *("accuracy_known", "harmonic_mean"),
+            *("equivalent_interval", "same_plan_interval", "accuracy_known", "harmonic_mean"),
         ]
 
     def get_harmonic_mean(self, score: Any) -> float | None:
         known = score.accuracy_known
         return None if known is None else harmonic_mean(score.accuracy, known)
+
+    @extend_schema_field(IntervalField)
+    def get_equivalent_interval(self, score: Evaluation) -> tuple[float, float]:
+        return interval_of(score, Measure.EQUIVALENT)
+
+    @extend_schema_field(MaybeIntervalField)
+    def get_same_plan_interval(self, score: Evaluation) -> tuple[float, float] | None:
+        is_compared = is_known(score, Measure.SAME_PLAN)
+        return interval_of(score, Measure.SAME_PLAN) if is_compared else None
 
 
 class EvaluationQuery(django_filters.FilterSet):

@@ -67,6 +67,16 @@ def test_one_seed_has_an_interval_and_no_spread(printed):
     assert "Standard deviations" not in text
 
 
+def test_answers_with_the_same_plan_stand_in_a_table_of_their_own(printed):
+    right = {"validation": outcomes(20)}
+    by_plan = {"same_plan_validation": 0.75, "outcomes_same_plan": {"validation": outcomes(30)}}
+    exact, _, plans = printed([cell(outcomes=right, **by_plan)]).partition(", same plan")
+    assert "| `knn` | 50.0 ± " in exact and "(42.8)" in exact
+    assert "| `knn` | 75.0 ± " in plans and "(42.8)" not in plans
+    not_compared = {"same_plan_validation": None, "outcomes_same_plan": right}
+    assert "same plan" not in printed([cell(outcomes=right, **not_compared)])
+
+
 def test_a_cell_from_before_outcomes_has_no_interval_and_says_so(printed):
     text = printed([cell()])
     assert "| `knn` | 50.0 (42.8) |" in text

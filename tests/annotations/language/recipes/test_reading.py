@@ -62,6 +62,8 @@ def test_what_is_printed_reads_back(name):
     [
         ("", 1),
         ("(x)", 1),
+        ("Sequence(x)", 1),
+        ("root(x)", 1),
         ("go to(x)", 4),
         ("go(x", 5),
         ("go(x y)", 6),

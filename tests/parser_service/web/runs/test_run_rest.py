@@ -82,6 +82,13 @@ def test_what_a_run_answers(call, sample):
     assert call("get", f"{path}predictions/?outcome=late").status_code == 400
     (score,) = call("get", f"evaluations/?run={sample.run.pk}").json()["results"]
     assert score["correct"] == 3
+    for measure in ("equivalent", "same_plan"):
+        low, high = score[f"{measure}_interval"]
+        assert 0 <= low < score[measure] < high < 1
+    sample.run.evaluations.update(same_plan=None, outcomes={})
+    (score,) = call("get", f"evaluations/?run={sample.run.pk}").json()["results"]
+    assert score["same_plan"] is score["same_plan_interval"] is None
+    assert len(score["equivalent_interval"]) == 2
     (epoch,) = call("get", f"{path}curves/").json()["results"]
     assert epoch["train_loss"] == 2.5
     assert call("get", f"{path}candidates/?rank=1&limit=3").json()["next"]
