@@ -37,7 +37,9 @@ class ExpectedWait:
         elif self.starts_in is None:
             place = f"{self.ahead} ahead of it."
         else:
-            place = f"{self.ahead} ahead of it; likely to start in {rough_duration(self.starts_in)}."
+            place = (
+                f"{self.ahead} ahead of it; likely to start in {rough_duration(self.starts_in)}."
+            )
         parts = [place]
         if self.takes is not None:
             parts.append(f"It takes {rough_duration(self.takes)}, by earlier runs of this parser.")
