@@ -6,7 +6,7 @@ The rules and the figures are those of docs/design/parsers.md, "Which row to tak
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from annotations.language.corpus import Criterion
 from parser_service.parsers.conditions import Protocol
@@ -114,6 +114,7 @@ EXPECTED = {
     "t5": Expectation("that of the weights you bring", "depends on them", "8 GB or a GPU"),
     "llm": Expectation("that of the model", "no training; seconds an answer"),
 }
+KNOWN_FORMS_ALONE = ("knn", "linear")  # they never answer with another form
 RANKER = {
     "few paraphrases": "65 % of paraphrases",
     "many paraphrases": "86 to 89 % of paraphrases; 92 % of paraphrases and generated commands together",
@@ -125,6 +126,8 @@ RANKER = {
 def expectation_of(parser: str, material: TrainingMaterial) -> Expectation | None:
     """Return what to expect of a parser with this material; None where nobody has measured it."""
     if parser != "ranker":
+        if material.asks_new_forms and parser in KNOWN_FORMS_ALONE:
+            return replace(EXPECTED[parser], accuracy="0 % on unseen forms")
         return EXPECTED.get(parser)
     if material.asks_new_forms:
         case = "new forms"

@@ -11,7 +11,7 @@ from django.utils.http import urlencode
 from annotations.language.corpus import Criterion
 from annotations.models import Split
 from parser_service.models import TrainingRun
-from parser_service.parsers.conditions import Protocol, in_words
+from parser_service.parsers.conditions import Protocol, in_short, in_words
 from parser_service.parsers.registry import PARSERS, title_of
 from parser_service.results.accuracy_cells import Cell
 from parser_service.results.measures import Measure
@@ -107,13 +107,14 @@ class AccuracyTable:
         return WHAT_IT_KNOWS[Protocol(self.protocol)]
 
     @property
-    def settings(self) -> list[tuple[str, str, int]]:
-        """Each setting as a head, in words, and its number of columns."""
+    def settings(self) -> list[tuple[str, str, str, int]]:
+        """Each setting as the two lines of a head, in full words with its notation, and its number of columns."""
         grouped = groupby(self.columns, key=lambda column: column.setting)
         return [
             (
-                f"{train} → {test}",
-                f"Trained on {in_words(train)}, tested on {in_words(test)}",
+                f"trained on {in_short(train)},",
+                f"tested on {in_short(test)}",
+                f"Trained on {in_words(train)}, tested on {in_words(test)}: {train} → {test}",
                 len(list(columns)),
             )
             for (train, test), columns in grouped
