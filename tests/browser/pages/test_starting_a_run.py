@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from playwright.sync_api import expect
 
 from annotations.models import Split
+from tests.parser_service.made_up import make_split
+from tests.parser_service.web.results.test_result_pages import by_form
 from tests.sample_world import scored_run
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
@@ -13,7 +17,9 @@ pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
 @pytest.mark.parametrize("size", [(1280, 800), (640, 400), (390, 844)], ids=str)
 def test_the_button_is_always_in_view(size, page_of, live_server, sample, admin):
-    Split.objects.update(name="a-very-long-name-of-a-split-that-somebody-has-chosen-by-form-and-more")
+    Split.objects.update(
+        name="a-very-long-name-of-a-split-that-somebody-has-chosen-by-form-and-more"
+    )
     page = page_of(admin)
     page.set_viewport_size({"width": size[0], "height": size[1]})
     page.goto(f"{live_server.url}/w/home/runs/new/")
@@ -41,8 +47,6 @@ def test_what_has_the_focus_is_never_below_the_button(page_of, live_server, samp
 
 
 def test_the_note_follows_the_chosen_split(page_of, live_server, sample, admin):
-    from tests.parser_service.made_up import make_split
-
     other = make_split(sample.world, "second")
     Split.objects.filter(pk=sample.split.pk).update(name="first")
     page = page_of(admin)
@@ -61,10 +65,21 @@ def test_two_ticked_runs_are_compared_with_three_clicks(path, page_of, live_serv
     for run in (sample.run, other):
         page.locator(f"input[name=run][value='{run.pk}']").first.check()
     page.get_by_role("button", name="Compare the ticked runs").click()
-    expect(page).to_have_url(lambda url: "/compare/?" in url)
+    expect(page).to_have_url(re.compile(r"/compare/\?"))
     for run in (sample.run, other):
         assert f"run={run.pk}" in page.url
         expect(page.locator(f"#run-{run.pk}")).to_be_checked()
+
+
+def test_the_evidence_of_a_candidate_is_in_the_window(page_of, live_server, sample, admin):
+    by_form(sample)
+    Split.objects.update(name="walker2019-by-logical_form-and-what-a-team-adds-to-a-name")
+    page = page_of(admin)
+    page.goto(f"{live_server.url}/w/home/promotion/")
+    table = page.locator(".candidates-table")
+    assert table.evaluate("each => each.scrollWidth - each.parentElement.clientWidth") <= 0
+    box = table.get_by_text("Evidence").last.bounding_box()
+    assert box["x"] + box["width"] <= 1280
 
 
 def test_a_tick_survives_the_refreshing_of_the_table(page_of, live_server, sample, admin):
