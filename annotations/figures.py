@@ -50,6 +50,18 @@ def duration(seconds: float | None) -> str:
     return f"{minutes} min {rest} s" if minutes < 60 else f"{minutes // 60} h {minutes % 60} min"
 
 
+def rough_duration(seconds: float | None) -> str:
+    """Write an estimate: ``a few seconds``, ``about 12 min``, ``about 3 h``; nothing for None."""
+    if seconds is None:
+        return ""
+    if seconds < 15:
+        return "a few seconds"
+    if seconds < 90:
+        return "about a minute"
+    minutes = round(seconds / 60)
+    return f"about {minutes} min" if minutes < 90 else f"about {round(minutes / 60)} h"
+
+
 def ago(moment: Any) -> SafeString:
     """Write how long ago a moment was, with the moment itself on hover."""
     if moment is None:

@@ -64,6 +64,7 @@ ROOMS = {
     "parser_service/parsers": (
         "conditions", "hyperparameters", "interface", "storage", "registry", "words", "spreading", "remembering",
         "written_forms", "new_forms", "nearest_pairs", "knn", "linear", "oracle", "llm", "pretrained_files",
+        "recommendation",
     ),
     "parser_service/runs": (
         "checkpoints", "orphan_folders", "lifecycle", "requests", "analysis_requests", "training", "curves", "waiting",

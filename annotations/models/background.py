@@ -18,6 +18,10 @@ from annotations.models.worlds import Duty, World
 
 LEASE = timedelta(seconds=45 / settings.WORK_TEMPO)
 
+# Before a minute, or a twentieth of the work, the progress says little about the time that is left.
+LEAST_SECONDS = 60
+LEAST_PROGRESS = 0.05
+
 
 class Status(models.TextChoices):
     QUEUED = "queued"
@@ -117,6 +121,19 @@ class BackgroundWork(models.Model):
     @property
     def progress_percent(self) -> float:
         return 100 * self.progress
+
+    @property
+    def seconds_left(self) -> float | None:
+        """Estimate the seconds that running work still needs, by its progress so far.
+
+        None where that says nothing: too early, or after an interruption, whose length nobody knows.
+        """
+        if self.status != Status.RUNNING or self.started_at is None or self.attempt > 1:
+            return None
+        passed = (timezone.now() - self.started_at).total_seconds()
+        if passed < LEAST_SECONDS or self.progress < LEAST_PROGRESS:
+            return None
+        return passed * (1 - self.progress) / self.progress
 
     def note(self, message: str) -> None:
         """Add a line to the log of this work. A kind that keeps no log drops it."""

@@ -42,6 +42,7 @@ for written in (
     figures.signed,
     figures.p_value,
     figures.duration,
+    figures.rough_duration,
     figures.ago,
 ):
     register.filter(written)

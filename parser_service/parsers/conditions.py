@@ -20,6 +20,12 @@ SOURCE_WORDS = {
     "model": "paraphrases of a language model",
     "said": "what people said",
 }
+SHORT_SOURCES = {
+    "gen": "generated",
+    "para": "paraphrases",
+    "model": "model paraphrases",
+    "said": "what people said",
+}
 
 
 class Protocol(StrEnum):
@@ -64,6 +70,13 @@ def in_words(sources: str) -> str:
         return f"{in_words('gen+para')} together"
     *names, last = (SOURCE_WORDS[name] for name in sources.split("+"))
     return f"{', '.join(names)} and {last}" if names else last
+
+
+def in_short(sources: str) -> str:
+    """Say the same in the head of a column: ``gen+para``, trained on or tested on, as ``both``."""
+    if sources in ("mixed", "gen+para"):
+        return "both"
+    return ", ".join(SHORT_SOURCES[name] for name in sources.split("+"))
 
 
 def only_source(test_source: str) -> str | None:

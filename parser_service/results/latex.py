@@ -88,8 +88,8 @@ def _caption(choices: ResultsChoices, table: AccuracyTable) -> str:
 def _heads(table: AccuracyTable) -> Iterator[str]:
     """Yield the lines of the head: settings, splits and, if there are several, measures."""
     each = len(table.measures)
-    spans = [each * columns for _, _, columns in table.settings]
-    titles = [escape(head).replace("→", r"$\rightarrow$") for head, _, _ in table.settings]
+    spans = [each * head.width for head in table.settings]
+    titles = [escape(head.notation).replace("→", r"$\rightarrow$") for head in table.settings]
     yield _line("Parser", map(_across, spans, titles))
     ends = list(accumulate(spans, initial=1))
     yield " ".join(rf"\cmidrule(lr){{{before + 1}-{end}}}" for before, end in pairwise(ends))

@@ -11,7 +11,7 @@ from django.utils.http import urlencode
 from annotations.language.corpus import Criterion
 from annotations.models import Split
 from parser_service.models import TrainingRun
-from parser_service.parsers.conditions import Protocol, in_words
+from parser_service.parsers.conditions import Protocol, in_short, in_words
 from parser_service.parsers.registry import PARSERS, title_of
 from parser_service.results.accuracy_cells import Cell
 from parser_service.results.measures import Measure
@@ -94,6 +94,33 @@ class TableRow:
 
 
 @dataclass(frozen=True, slots=True)
+class SettingHead:
+    """The head over the ``width`` columns of one setting."""
+
+    train_sources: str
+    test_source: str
+    width: int
+
+    @property
+    def notation(self) -> str:
+        return f"{self.train_sources} → {self.test_source}"
+
+    @property
+    def trained(self) -> str:
+        return f"trained on {in_short(self.train_sources)},"
+
+    @property
+    def tested(self) -> str:
+        return f"tested on {in_short(self.test_source)}"
+
+    @property
+    def explanation(self) -> str:
+        """In full words, with the notation."""
+        trained, tested = in_words(self.train_sources), in_words(self.test_source)
+        return f"Trained on {trained}, tested on {tested}: {self.notation}"
+
+
+@dataclass(frozen=True, slots=True)
 class AccuracyTable:
     """All rows of one protocol, by one or more measures. The best of a column is the best among them."""
 
@@ -107,17 +134,10 @@ class AccuracyTable:
         return WHAT_IT_KNOWS[Protocol(self.protocol)]
 
     @property
-    def settings(self) -> list[tuple[str, str, int]]:
-        """Each setting as a head, in words, and its number of columns."""
+    def settings(self) -> list[SettingHead]:
+        """The heads over the columns, one for each setting."""
         grouped = groupby(self.columns, key=lambda column: column.setting)
-        return [
-            (
-                f"{train} → {test}",
-                f"Trained on {in_words(train)}, tested on {in_words(test)}",
-                len(list(columns)),
-            )
-            for (train, test), columns in grouped
-        ]
+        return [SettingHead(train, test, len(list(columns))) for (train, test), columns in grouped]
 
     @property
     def is_active(self) -> bool:

@@ -9,10 +9,10 @@ from django.db.models import Q
 from django.utils import timezone
 
 from annotations.background import kinds
+from annotations.figures import rough_duration
 from parser_service.models import TrainingRun, Worker
 
 COUNTED = 20  # the newest runs of a parser that its usual time is taken from
-LEAST_PROGRESS = 0.05  # below it, the time that is left says nothing yet
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,10 +37,12 @@ class ExpectedWait:
         elif self.starts_in is None:
             place = f"{self.ahead} ahead of it."
         else:
-            place = f"{self.ahead} ahead of it; likely to start in {in_words(self.starts_in)}."
+            place = (
+                f"{self.ahead} ahead of it; likely to start in {rough_duration(self.starts_in)}."
+            )
         parts = [place]
         if self.takes is not None:
-            parts.append(f"It takes {in_words(self.takes)}, by earlier runs of this parser.")
+            parts.append(f"It takes {rough_duration(self.takes)}, by earlier runs of this parser.")
         return " ".join(parts)
 
 
@@ -93,17 +95,7 @@ def _seconds_left(run: TrainingRun) -> float | None:
     usual = usual_seconds(run)
     if run.started_at is None or run.status != "running":
         return usual
+    if (left := run.seconds_left) is not None:
+        return left
     passed = (timezone.now() - run.started_at).total_seconds()
-    if run.progress >= LEAST_PROGRESS:
-        return passed * (1 - run.progress) / run.progress
     return None if usual is None else max(usual - passed, 0.0)
-
-
-def in_words(seconds: float) -> str:
-    """Return a rough time: ``a few seconds``, ``about 12 min``, ``about 3 h``."""
-    if seconds < 15:
-        return "a few seconds"
-    if seconds < 90:
-        return "about a minute"
-    minutes = round(seconds / 60)
-    return f"about {minutes} min" if minutes < 90 else f"about {round(minutes / 60)} h"

@@ -25,7 +25,8 @@ from annotations.web.rest.streaming import JSON_LINES
 
 
 class JobSerializer(serializers.ModelSerializer[Job]):
-    """A background job, such as an import. ``report`` is its result, null until it has ended.
+    """A background job, such as an import. ``report`` is its result, null until it has ended, and
+    ``seconds_left`` an estimate by the progress of a running one, null where that says nothing yet.
 
     A job that ``is_waiting_for_answer`` would remove something, or has checked crowd results: POST to ``answer/``
     to allow what the report says, or to ``cancel/`` to drop the job.
@@ -34,11 +35,13 @@ class JobSerializer(serializers.ModelSerializer[Job]):
     report = serializers.DictField(allow_null=True)
     created_by = serializers.CharField(source="created_by.username", default=None)
     is_waiting_for_answer = serializers.BooleanField()
+    seconds_left = serializers.FloatField(read_only=True, allow_null=True)
 
     class Meta:
         model = Job
         fields = [
-            *("id", "kind", "status", "progress", "activity", "failure", "report"),
+            *("id", "kind", "status", "progress", "activity", "seconds_left"),
+            *("failure", "report"),
             *("is_waiting_for_answer", "cancel_requested", "created_by"),
             *("queued_at", "started_at", "finished_at"),
         ]

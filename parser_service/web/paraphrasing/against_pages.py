@@ -23,7 +23,7 @@ from parser_service.paraphrasing.people_against_models import (
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.pretrained_files import find_gaps
 from parser_service.parsers.registry import PARSERS, make_config
-from parser_service.web.runs.new_run_pages import recommended_parser
+from parser_service.runs.requests.recommended import recommendation_for
 
 
 @never_cache
@@ -32,7 +32,7 @@ def paraphrase_runs(request: WorldRequest, world: World) -> HttpResponse:
     """Show the runs on each, and the button that starts them."""
     pairs = run_pairs(world)
     parsers = trainable_parsers()
-    recommended = recommended_parser(world)
+    recommended = recommendation_for(world).parser
     context = {
         "pairs": pairs,
         "first_runs": [pair.people for pair in pairs],

@@ -24,30 +24,22 @@ from annotations.web.forms import posted
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.models.evaluations import ShownScore, shown_scores
 from parser_service.parsers.conditions import SOURCE_WORDS, SOURCES, written_sources
-from parser_service.parsers.pretrained_files import find_gaps
-from parser_service.parsers.registry import (
-    PARSERS,
-    Needs,
-    RegistryEntry,
-    config_fields,
-    make_config,
-)
+from parser_service.parsers.pretrained_files import Gap
+from parser_service.parsers.recommendation import Expectation, expectation_of, recommend
+from parser_service.parsers.registry import PARSERS, RegistryEntry, config_fields
 from parser_service.results.accuracy_tables import seeds_url
+from parser_service.runs.requests.recommended import (
+    SplitContents,
+    contents_of,
+    gaps_of_parsers,
+    material_of,
+    recommendation_for,
+)
 from parser_service.runs.requests.retraining import retrainable
 from parser_service.runs.requests.starting import start_again, start_runs
 from parser_service.web.runs.run_forms import GENERAL, PREFIX, RunForm
 
-# What to train in a world, in this order: good within seconds, then the most accurate one.
-RECOMMENDED = ("linear", "ranker")
-
 MOST_RUNS = 200  # the newest that times are taken from
-TITLES = {
-    Needs.NOTHING: "Needs nothing",
-    Needs.CPU: "Minutes on a CPU",
-    Needs.GPU: "A GPU is recommended",
-    Needs.WEIGHTS: "Weights to bring",
-    Needs.SERVER: "A server to ask",
-}
 
 
 @world_view(Duty.MANAGE, READ_AND_WRITE)
@@ -78,7 +70,7 @@ def context_of(world: World, form: RunForm, choices: RunChoices) -> dict[str, ob
         "chosen": choices.parser,
         "entry": PARSERS[choices.parser],
         "note": choices.note,
-        "groups": parser_groups(world, chosen or splits.first()),
+        "picker": picker_of(world, chosen or splits.first(), choices.parser),
         "has_splits": splits.exists(),
     }
 
@@ -150,14 +142,17 @@ def choices_in(query: QueryDict, world: World) -> RunChoices:
     of the fields; unknown ones are ignored."""
     like = number_in(query.get("like", ""))
     run = world.runs.filter(pk=like).first() if like else None
-    parser = query.get("parser", run.parser if run else recommended_parser(world))
+    split = split_in(query, world)
+    advice = recommendation_for(world, split)
+    parser = query.get("parser", run.parser if run else advice.parser)
     if parser not in PARSERS:
-        return RunChoices(
-            recommended_parser(world), note=f"There is no parser called {parser!r} any more."
-        )
+        note = f"There is no parser called {parser!r} any more."
+        return RunChoices(advice.parser, {"protocol": advice.protocol}, note)
     initial: dict[str, Any] = values_of(run, parser) if run else {}
     if run is None:
-        initial = {"train_sources": all_sources(world, number_in(query.get("split", "")))}
+        initial = {"train_sources": all_sources(split)}
+        if parser == advice.parser:
+            initial["protocol"] = advice.protocol
     names = [*GENERAL, *(PREFIX + each.name for each in config_fields(parser))]
     initial.update({name: query[name] for name in names if name in query})
     protocol, entry, note = initial.get("protocol"), PARSERS[parser], ""
@@ -166,19 +161,18 @@ def choices_in(query: QueryDict, world: World) -> RunChoices:
     return RunChoices(parser, initial, note)
 
 
-def all_sources(world: World, split: int | None) -> str:
-    """Return all that a split can be trained on: the one with the key ``split``, else the newest."""
-    chosen = world.splits.filter(pk=split or 0).first() or world.splits.first()
-    if chosen is None:
+def split_in(query: QueryDict, world: World) -> Split | None:
+    """Return the split that an address names, else the newest one."""
+    key = number_in(query.get("split", ""))
+    return world.splits.filter(pk=key or 0).first() or world.splits.first()
+
+
+def all_sources(split: Split | None) -> str:
+    """Return all that a split can be trained on."""
+    if split is None:
         return "gen"
-    sources = chosen.examples.of(Part.TRAIN).order_by().values_list("source", flat=True)
+    sources = split.examples.of(Part.TRAIN).order_by().values_list("source", flat=True)
     return written_sources(sources.distinct()) or "gen"
-
-
-def recommended_parser(world: World) -> str:
-    """Return the first of ``RECOMMENDED`` that no run of ``world`` has trained or will; else the last one."""
-    there = set(world.runs.scored_or_active().on_all_pairs().values_list("parser", flat=True))
-    return next((name for name in RECOMMENDED if name not in there), RECOMMENDED[-1])
 
 
 def values_of(run: TrainingRun, parser: str) -> dict[str, Any]:
@@ -210,13 +204,14 @@ def query_of(posted: Mapping[str, str], parser: str, shown: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class ParserOption:
-    """One parser. ``seconds`` is the median time of its finished runs here, None before the first;
-    ``scores`` its best accuracies on the validation part, by source; ``missing`` names
+    """One parser. ``expected`` is what was measured of it elsewhere; ``seconds`` the median time of its finished
+    runs here, None before the first; ``scores`` its best accuracies on the validation part, by source; ``gaps``
     the weights, or the server, that are not there."""
 
     name: str
     entry: RegistryEntry
-    missing: tuple[str, ...] = ()
+    expected: Expectation | None = None
+    gaps: tuple[Gap, ...] = ()
     seconds: float | None = None
     scores: tuple[tuple[str, ShownScore], ...] = ()
 
@@ -226,19 +221,34 @@ class ParserOption:
 
 
 @dataclass(frozen=True, slots=True)
-class ParserGroup:
-    title: str
-    options: tuple[ParserOption, ...]
+class ParserPicker:
+    """All parsers, each once: the recommended one and why, others that can be trained now, and those that
+    lack something. ``contents`` says what the split holds; None without a split."""
+
+    recommended: ParserOption
+    reason: str
+    able: tuple[ParserOption, ...]
+    lacking: tuple[ParserOption, ...]
+    contents: SplitContents | None
+    is_lacking_chosen: bool = False
+
+    @property
+    def options(self) -> tuple[ParserOption, ...]:
+        return (self.recommended, *self.able, *self.lacking)
 
 
-def parser_groups(world: World, split: Split | None) -> list[ParserGroup]:
-    """Return all parsers by what they need; accuracies are those on ``split``. Two queries."""
+def picker_of(world: World, split: Split | None, chosen: str = "") -> ParserPicker:
+    """Return the parsers to choose from for ``split``, on which accuracies are. Five queries."""
     seconds, scores = _seconds(world), _scores(world, split)
+    contents = contents_of(split) if split else None
+    material, gaps = material_of(world, contents), gaps_of_parsers()
+    advice = recommend(material, {name for name, of_parser in gaps.items() if of_parser})
     options = [
         ParserOption(
             name,
             entry,
-            tuple(gap.name for gap in find_gaps(make_config(name), anywhere=False)),
+            expectation_of(name, material),
+            tuple(gaps[name]),
             seconds.get(name),
             tuple(
                 (words, scores[name][source])
@@ -248,11 +258,15 @@ def parser_groups(world: World, split: Split | None) -> list[ParserGroup]:
         )
         for name, entry in PARSERS.items()
     ]
-    by_need = {
-        title: tuple(each for each in options if each.entry.needs == needs)
-        for needs, title in TITLES.items()
-    }
-    return [ParserGroup(title, of_group) for title, of_group in by_need.items() if of_group]
+    others = [each for each in options if each.name != advice.parser]
+    return ParserPicker(
+        recommended=next(each for each in options if each.name == advice.parser),
+        reason=advice.reason,
+        able=tuple(each for each in others if not each.gaps),
+        lacking=tuple(each for each in others if each.gaps),
+        contents=contents,
+        is_lacking_chosen=bool(gaps.get(chosen)) and chosen != advice.parser,
+    )
 
 
 def _seconds(world: World) -> dict[str, float]:

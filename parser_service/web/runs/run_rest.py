@@ -38,19 +38,24 @@ from parser_service.web.runs.run_forms import PREFIX, RunForm
 
 
 class RunSerializer(serializers.ModelSerializer[TrainingRun]):
-    """One parser trained once. ``config`` holds every hyperparameter."""
+    """One parser trained once. ``config`` holds every hyperparameter.
+
+    ``seconds_left`` is estimated by the progress of a running one, null where that says nothing yet.
+    """
 
     config = serializers.DictField()
     split = serializers.IntegerField(source="split_id")
     split_name = serializers.CharField(source="split.name")
     created_by = serializers.CharField(source="created_by.username", default=None)
+    seconds_left = serializers.FloatField(read_only=True, allow_null=True)
 
     class Meta:
         model = TrainingRun
         fields = [
             *("id", "parser", "parser_version", "config", "protocol", "train_sources"),
             *("train_share", "train_pairs", "seed", "split", "split_name", "status", "progress"),
-            *("activity", "failure", "cancel_requested", "parameters", "seconds_trained"),
+            *("activity", "seconds_left", "failure", "cancel_requested", "parameters"),
+            "seconds_trained",
             *("score_kind", "answered_by", "content_key", "created_by"),
             *("queued_at", "started_at", "finished_at"),
         ]

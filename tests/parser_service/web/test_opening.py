@@ -10,7 +10,6 @@ from parser_service.models import Evaluation, TrainingRun, Worker
 from parser_service.models.runs import Status
 from parser_service.promotions.promoting import promote
 from parser_service.serving.default_runs import opening_run
-from parser_service.web.runs.new_run_pages import RECOMMENDED
 from tests.parser_service.made_up import make_split
 from tests.parser_service.served import score
 from tests.sample_world import scored_run
@@ -77,9 +76,13 @@ def test_of_several_splits_compare_opens_on_that_of_the_opening_run(better, by_f
 
 
 def test_a_new_run_is_of_the_parser_that_is_recommended_next(sample, adam):
+    """Few pairs: the nearest neighbour has a run here, so the next two follow."""
     asked = []
-    for name in (*RECOMMENDED, RECOMMENDED[-1]):
-        asked.append(adam.get("/w/home/runs/new/").context["chosen"])
+    for name in ("linear", "ranker", "ranker"):
+        page = adam.get("/w/home/runs/new/")
+        asked.append(page.context["chosen"])
+        assert page.context["picker"].recommended.name == page.context["chosen"]
+        assert "recommended" in page.content.decode()
         run = scored_run(sample.world, sample.split, parser="knn", seed=10 + len(asked))
         TrainingRun.objects.filter(pk=run.pk).update(parser=name)
     assert asked == ["linear", "ranker", "ranker"]

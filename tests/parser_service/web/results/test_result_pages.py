@@ -50,8 +50,9 @@ def test_the_interval_is_shown_as_it_is_and_not_as_if_it_were_symmetric(sample, 
 
 def test_every_head_explains_itself(sample, anna):
     page = anna.get("/w/home/results/").content.decode()
-    words = "Trained on generated commands, tested on generated commands"
-    assert f'<abbr title="{words}">gen → gen</abbr>' in page
+    words = "Trained on generated commands, tested on generated commands: gen → gen"
+    assert f'<abbr title="{words}">' in page
+    assert "<span>trained on generated,</span> <span>tested on generated</span>" in page
     assert all(table.sentence in page for table in anna.get("/w/home/results/").context["tables"])
 
 

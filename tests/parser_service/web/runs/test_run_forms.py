@@ -10,9 +10,9 @@ import pytest
 
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.parsers import pretrained_files
-from parser_service.parsers.registry import PARSERS, Needs
+from parser_service.parsers.registry import PARSERS
 from parser_service.runs.requests import run_requests
-from parser_service.web.runs.new_run_pages import parser_groups
+from parser_service.web.runs.new_run_pages import picker_of
 from tests.parser_service.made_up import make_split
 from tests.parser_service.web.runs.forms_of_pages import PageForm
 
@@ -30,25 +30,39 @@ def second_split(sample):
 
 
 def options_of(world, split=None):
-    return {each.name: each for group in parser_groups(world, split) for each in group.options}
+    return {each.name: each for each in picker_of(world, split).options}
 
 
 def test_every_parser_is_offered_once_with_a_sentence(sample):
-    groups = parser_groups(sample.world, sample.split)
-    names = [option.name for group in groups for option in group.options]
-    assert sorted(names) == sorted(PARSERS)
-    assert groups[0].title == "Needs nothing"
-    assert [option.name for option in groups[0].options] == ["grammar-oracle", "knn", "linear"]
+    picker = picker_of(sample.world, sample.split)
+    assert sorted(each.name for each in picker.options) == sorted(PARSERS)
+    assert not picker.recommended.gaps and not any(each.gaps for each in picker.able)
+    assert all(each.gaps for each in picker.lacking)
     for entry in PARSERS.values():
         assert entry.in_short.endswith("."), entry.title
 
 
-def test_a_parser_whose_weights_are_missing_names_them(sample, adam, tmp_path, monkeypatch):
+def test_a_parser_that_lacks_weights_is_folded_away_and_says_what_to_do(
+    sample, adam, tmp_path, monkeypatch
+):
     monkeypatch.setattr(pretrained_files, "_encoders", tmp_path)
-    option = options_of(sample.world)["seq2seq-glove-elmo"]
-    assert option.missing == ("glove.6B.100d.txt", "elmo")
-    assert "Missing: glove.6B.100d.txt, elmo" in adam.get(NEW).content.decode()
-    assert option.entry.needs == Needs.WEIGHTS
+    gaps = options_of(sample.world)["seq2seq-glove-elmo"].gaps
+    assert [gap.name for gap in gaps] == ["glove.6B.100d.txt", "elmo"]
+    page = unescape(adam.get(NEW).content.decode())
+    folded = page.partition('<details class="parser-group">')[2].partition("</details>")[0]
+    assert all(gap.sentence in folded for gap in gaps)
+    assert page.count('id="parser-seq2seq-glove-elmo"') == 1
+    page = adam.get(NEW, {"parser": "seq2seq-glove-elmo"}).content.decode()
+    assert '<details class="parser-group" open>' in page
+
+
+def test_the_page_says_what_the_split_holds(sample, second_split, adam):
+    page = adam.get(NEW, {"split": second_split.pk})
+    contents = page.context["picker"].contents
+    assert contents.split == second_split
+    assert contents.by_source == [("generated commands", 24), ("paraphrases", 24)]
+    assert (contents.validation, contents.test) == (12, 12)
+    assert "24 generated commands and 24 paraphrases to train on" in words_of(page)
 
 
 def test_a_parser_says_how_long_it_took_and_how_well_it_did_here(sample, other_sample, adam):
@@ -63,9 +77,9 @@ def test_a_parser_says_how_long_it_took_and_how_well_it_did_here(sample, other_s
     assert options_of(sample.world, sample.split)["seq2seq"].seconds is None
 
 
-def test_the_picker_costs_two_queries(sample, django_assert_num_queries):
-    with django_assert_num_queries(2):
-        parser_groups(sample.world, sample.split)
+def test_the_picker_costs_five_queries(sample, django_assert_num_queries):
+    with django_assert_num_queries(5):
+        picker_of(sample.world, sample.split)
 
 
 def test_choices_survive_a_change_of_parser_without_scripts(sample, second_split, adam):
@@ -115,7 +129,6 @@ def test_what_has_to_be_named_is_not_folded_away(sample, adam):
 
 def test_a_parser_that_asks_a_server_says_that_it_has_none(sample, adam):
     page = adam.get(NEW, {"parser": "llm"}).content.decode()
-    assert "Missing: GPSR_LLM_URL" in page
     assert page.count("GPSR_LLM_URL") > 1
     made = {**PageForm(page).values, "config-model": "tiny"}
     answer = adam.post(f"{NEW}?parser=llm", made)
