@@ -5,6 +5,7 @@ One order says it all: ``Standing`` has the runs of one split, the surest to be 
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from http import HTTPStatus
@@ -48,15 +49,16 @@ def standings(world: World) -> Iterator[Standing]:
     were tested on the source, of several the newest; where there is none, one by form. Runs on a share of the
     training pairs do not count.
     """
-    tested = _tested().filter(run__world=world)
-    by_command = tested.filter(run__split__criterion__in=BY_COMMAND)
+    rows = _tested().filter(run__world=world).order_by()
+    counted = rows.values_list("test_source", "run__split__criterion", "run__split")
+    ranked: dict[str, list[tuple[bool, int, int]]] = defaultdict(list)
+    for source, criterion, split, runs in counted.annotate(Count("run", distinct=True)):
+        ranked[source].append((criterion in BY_COMMAND, runs, split))
     for source in EVIDENCE:
-        for comparable in (by_command, tested):
-            split = _with_most_runs(comparable.filter(test_source=source))
-            if split is not None:
-                scores = _surest_first(split, source)
-                yield Standing(scores[0].score.run.split, source, scores)
-                break
+        if ranked[source]:
+            _, _, split = max(ranked[source])
+            scores = _surest_first(split, source)
+            yield Standing(scores[0].score.run.split, source, scores)
 
 
 def best_run(world: World) -> TrainingRun:
@@ -125,22 +127,16 @@ def _tested() -> QuerySet[Evaluation]:
     )
 
 
-def _with_most_runs(tested: QuerySet[Evaluation]) -> int | None:
-    by_split = tested.order_by().values("run__split").annotate(runs=Count("run", distinct=True))
-    found = by_split.order_by("-runs", "-run__split").first()
-    return found["run__split"] if found else None
-
-
 def _surest_first(split: int, source: str) -> tuple[ShownScore, ...]:
     """Return the scores on the validation part of a split, that with the highest lower end of its interval first.
     By form those on unseen forms alone come last."""
-    of_runs: dict[int, list[Evaluation]] = {}
+    of_runs: dict[int, list[Evaluation]] = defaultdict(list)
     tested = _tested().filter(run__split=split, test_source=source).values("run")
     rows = Evaluation.objects.filter(
         run__in=tested, test_source=source, part__in=(Part.VALIDATION, KNOWN)
     )
     for row in rows.select_related("run__split").order_by():
-        of_runs.setdefault(row.run_id, []).append(row)
+        of_runs[row.run_id].append(row)
     scores = [
         shown_scores(each, each[0].run.split.criterion)[Part.VALIDATION, source]
         for each in of_runs.values()

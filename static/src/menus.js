@@ -13,6 +13,6 @@ document.addEventListener("keydown", (event) => {
   if (keyOf(event) !== "Escape") return;
   openMenus().forEach((menu) => {
     menu.open = false;
-    if (menu.contains(document.activeElement)) menu.querySelector("summary").focus();
+    if (menu.contains(event.target)) menu.querySelector("summary").focus();
   });
 });
