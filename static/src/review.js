@@ -64,7 +64,7 @@ function mark() {
   const isWrong = "wrong" in answer.dataset;
   palette.querySelector("[data-palette-title]").textContent = isWrong
     ? `Why is the answer of ${answer.dataset.title} wrong?`
-    : `The answer of ${answer.dataset.title} is right.`;
+    : `The answer of ${answer.dataset.title} has no error to tag.`;
   palette.querySelectorAll("button").forEach((button) => {
     button.disabled = !isWrong;
     button.setAttribute("aria-pressed", String(button.value === answer.dataset.own));

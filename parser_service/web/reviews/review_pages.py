@@ -188,8 +188,8 @@ def _context_of(
 def opening_query(run: TrainingRun) -> str:
     """Return the address of what ``run`` answers wrongly on the validation part; that of all answers where there is
     nothing of this kind. The test part is left alone: who reads its errors tests on it no more."""
-    chosen: dict[str, str | int] = {"run": run.pk}
-    wrong = {"outcome": "wrong", "part": Part.VALIDATION}
+    chosen = {"run": str(run.pk)}
+    wrong = {"outcome": "wrong", "part": str(Part.VALIDATION)}
     rows = run.predictions.best().filter(is_exact_match=False, example__part=Part.VALIDATION)
     return urlencode(chosen | wrong if rows.exists() else chosen)
 
