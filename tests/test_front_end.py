@@ -106,3 +106,15 @@ def test_every_colour_and_measure_that_a_style_names_is_there():
 def test_figures_are_rounded_by_one_filter(template):
     """Pages, reports and downloads round 66.25 alike, which Django's ``floatformat`` does not."""
     assert not re.findall(r"floatformat:[1-9]", read(template))
+
+
+# One place reads keys, so that each shortcut obeys on every keyboard and none in a composition.
+KEY_READ = re.compile(r"\b(?:event|e)\??\.(?:key|code|keyCode|which|isComposing)\b")
+# The key of what a browser stores is none of a keyboard.
+READERS_OF_KEYS = {"typing.js", "theme.js"}
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.name)
+def test_one_script_alone_reads_the_keyboard(script):
+    reads = bool(KEY_READ.search(read(script)))
+    assert reads == (script.name in READERS_OF_KEYS), "ask keyOf of typing.js"

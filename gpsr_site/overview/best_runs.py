@@ -2,24 +2,17 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from dataclasses import dataclass
 
-from django.db.models import BooleanField, ExpressionWrapper, Q
 from django.urls import reverse
 from django.utils.http import urlencode
 
-from annotations.language.corpus import KNOWN, Criterion
 from annotations.models import Split, World
-from annotations.models.background import Status
 from parser_service.models import Evaluation
-from parser_service.models.evaluations import ShownScore, shown_scores
+from parser_service.models.evaluations import ShownScore
 from parser_service.parsers.conditions import Protocol, in_words, only_source
 from parser_service.parsers.registry import PARSERS
-
-PART = "validation"
-# The harder source first: people say things as no grammar does.
-SOURCES = ("para", "said", "gen", "model", "mixed")  # the first that is tested counts
+from parser_service.serving.default_runs import standings
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,34 +72,15 @@ class BestRuns:
 
 
 def best_runs(world: World) -> BestRuns | None:
-    """Find the best runs on the validation part of a split, on paraphrases where it has any.
+    """Find the best run of each protocol on the validation part of the split that pages open on.
 
-    The split is the one that was scored last. One by logical form is taken only if there is no other, because
-    most parsers cannot answer a form that training never showed. The best run there has the highest harmonic
-    mean of unseen and known forms. Two queries; None if nothing has been scored.
+    Split, source and order are those of ``serving.default_runs``. None if nothing has been scored.
     """
-    scores = Evaluation.objects.filter(
-        run__world=world,
-        run__status=Status.SUCCEEDED,
-        run__train_share=1,
-        part__in=[PART, KNOWN],
-        count__gt=0,
-    )
-    is_by_form = Q(run__split__criterion=Criterion.LOGICAL_FORM)
-    order = (ExpressionWrapper(is_by_form, BooleanField()), "-run_id")
-    newest = scores.filter(part=PART).select_related("run__split").order_by(*order).first()
-    if newest is None:
+    standing = next(standings(world), None)
+    if standing is None:
         return None
-    on_split = list(scores.filter(run__split=newest.run.split_id).select_related("run"))
-    tested = {score.test_source for score in on_split if score.part == PART}
-    source = next(each for each in SOURCES if each in tested)
-    of_runs: dict[int, list[Evaluation]] = defaultdict(list)
-    for score in on_split:
-        of_runs[score.run_id].append(score)
-    shown = (shown_scores(each, newest.run.split.criterion) for each in of_runs.values())
-    comparable = [each[PART, source] for each in shown if (PART, source) in each]
-    # The best comes last: figures on unseen forms alone come first, and the newer of two equal ones later.
-    comparable.sort(key=lambda each: (not each.alone, each.accuracy, each.score.run_id))
-    best = {each.score.run.protocol: each for each in comparable}
+    best: dict[str, ShownScore] = {}
+    for each in standing.scores:
+        best.setdefault(each.score.run.protocol, each)
     runs = tuple(BestRun(world, best[each]) for each in Protocol if each in best)
-    return BestRuns(newest.run.split, in_words(source), runs)
+    return BestRuns(standing.split, in_words(standing.source), runs)

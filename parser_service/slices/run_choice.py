@@ -16,7 +16,7 @@ from annotations.models import Split, World
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.models.evaluations import ShownScore, shown_scores
 from parser_service.parsers import registry
-from parser_service.serving.default_runs import opening_split
+from parser_service.serving.default_runs import best_two, opening_split
 
 PARTS = (Part.VALIDATION, Part.TEST)
 MOST_RUNS = 12  # at once
@@ -54,6 +54,11 @@ class RunChoice:
     runs: tuple[TrainingRun, ...]
     offered: Sequence[OfferedRun]
     notes: list[str] = field(default_factory=list)
+
+    @cached_property
+    def opening(self) -> list[TrainingRun]:
+        """The two runs to compare where the address names none; none where the split has fewer."""
+        return best_two(self.split, [each.run for each in self.offered]) if self.split else []
 
     @cached_property
     def suggested(self) -> list[TrainingRun]:

@@ -1,6 +1,6 @@
 // The label audit by keyboard: the row that has the focus is shown, and one key decides about it.
 import { enhanceBy } from "./modules.js";
-import { isPlain, READING, TYPING } from "./typing.js";
+import { keyOf, READING, TYPING } from "./typing.js";
 
 const ROW = "tr[data-finding]";
 
@@ -46,9 +46,9 @@ async function openEditor() {
   panel.querySelector(".cm-content")?.focus();
 }
 
-function leaveField(event) {
-  if (event.target.id !== "audit-reason" && event.key !== "Escape") return;
-  if (event.key === "Escape") shown()?.querySelector("[data-audit-write]")?.removeAttribute("open");
+function leaveField(event, key) {
+  if (event.target.id !== "audit-reason" && key !== "Escape") return;
+  if (key === "Escape") shown()?.querySelector("[data-audit-write]")?.removeAttribute("open");
   event.preventDefault();
   focusRow();
 }
@@ -74,14 +74,15 @@ const actions = {
 
 // A key that comes while the next label is on its way is not for that one: nobody has read it yet.
 function onKey(event) {
-  if (!isPlain(event) || document.querySelector("dialog[open]")) return;
+  const key = keyOf(event);
+  if (!key || document.querySelector("dialog[open]")) return;
   if (!document.querySelector("[data-audit-page]")) return;
   if (event.target.closest(TYPING)) {
-    if (event.key === "Enter" || event.key === "Escape") leaveField(event);
+    if (key === "Enter" || key === "Escape") leaveField(event, key);
     return;
   }
-  if ("jk".includes(event.key) && !event.target.matches(ROW)) focusRow();
-  if (event.repeat || !Object.hasOwn(actions, event.key)) return;
+  if ("jk".includes(key) && !event.target.matches(ROW)) focusRow();
+  if (event.repeat || !Object.hasOwn(actions, key)) return;
   event.preventDefault();
-  if (!isBusy()) actions[event.key]();
+  if (!isBusy()) actions[key]();
 }

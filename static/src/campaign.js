@@ -2,7 +2,7 @@
 // survives a reload and a server that is away. Without this script the advice comes after saving.
 import "./copying.js";
 import { csrfToken } from "./csrf.js";
-import { isPlain } from "./typing.js";
+import { isCtrlEnter, keyOf } from "./typing.js";
 
 const PAUSE_MS = 700;
 // What is missing, or too far, is told once most of the sentence may be there, or when the field is left.
@@ -28,8 +28,7 @@ function watch(form) {
   field.addEventListener("change", () => advise(true));
   field.addEventListener("paste", () => (form.elements.pasted.value = "on"));
   field.addEventListener("keydown", (event) => {
-    const isEnter = event.key === "Enter" && !event.shiftKey && !event.altKey;
-    if (!isEnter || !(isPlain(event) || event.ctrlKey || event.metaKey)) return;
+    if (event.shiftKey || !(keyOf(event) === "Enter" || isCtrlEnter(event))) return;
     event.preventDefault();
     form.requestSubmit();
   });

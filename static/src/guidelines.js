@@ -1,7 +1,7 @@
 // The guidelines beside the item (`[data-guidelines]`): g opens and folds them, and the browser remembers which.
 import { onContent } from "./content.js";
 import { isTyping } from "./keys.js";
-import { isPlain } from "./typing.js";
+import { keyOf } from "./typing.js";
 
 const KEY = "guidelines-open";
 
@@ -28,8 +28,8 @@ onContent((root) => {
 
 document.addEventListener("keydown", (event) => {
   const panel = document.querySelector("[data-guidelines]");
-  if (!panel || event.key !== "g" || event.repeat || event.defaultPrevented) return;
-  if (!isPlain(event) || isTyping(event)) return;
+  if (!panel || keyOf(event) !== "g" || event.repeat || event.defaultPrevented) return;
+  if (isTyping(event)) return;
   event.preventDefault();
   panel.open = !panel.open;
 });

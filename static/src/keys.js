@@ -1,7 +1,7 @@
 // Keys: j and k move through the rows of a table, Enter opens, n and p turn the page, / searches, ? lists the keys,
 // Ctrl+Enter sends a form.
 import { copyForm } from "./forms.js";
-import { isPlain } from "./typing.js";
+import { isCtrlEnter, keyOf } from "./typing.js";
 
 const TYPING = "input:not([type=checkbox], [type=radio]), textarea, select, [contenteditable], .cm-editor";
 
@@ -52,25 +52,26 @@ const actions = {
 export const isTyping = (event) => Boolean(event.target.closest(TYPING) || document.querySelector("dialog[open]"));
 
 function onKey(event) {
-  if (event.defaultPrevented || !isPlain(event)) return;
-  if (event.key === "Escape" && event.target.matches("input[type=search]")) event.target.blur();
+  const key = keyOf(event);
+  if (event.defaultPrevented || !key) return;
+  if (key === "Escape" && event.target.matches("input[type=search]")) event.target.blur();
   if (isTyping(event)) return;
-  if (event.key === "Enter" && event.target === currentRow()) {
+  if (key === "Enter" && event.target === currentRow()) {
     event.preventDefault();
     open(event.target);
-  } else if (event.key === "x" && currentRow()?.querySelector("input[type=checkbox]")) {
+  } else if (key === "x" && currentRow()?.querySelector("input[type=checkbox]")) {
     currentRow().querySelector("input[type=checkbox]").click();
-  } else if (document.querySelector(`[data-page-key="${CSS.escape(event.key)}"]`)) {
-    document.querySelector(`[data-page-key="${CSS.escape(event.key)}"]`).click();
-  } else if (Object.hasOwn(actions, event.key)) {
+  } else if (document.querySelector(`[data-page-key="${CSS.escape(key)}"]`)) {
+    document.querySelector(`[data-page-key="${CSS.escape(key)}"]`).click();
+  } else if (Object.hasOwn(actions, key)) {
     event.preventDefault();
-    actions[event.key]();
+    actions[key]();
   }
 }
 
 /** Ctrl+Enter in a plain field presses the button that says so; an editor does it by itself. */
 function onSend(event) {
-  if (event.defaultPrevented || event.key !== "Enter" || !(event.ctrlKey || event.metaKey)) return;
+  if (event.defaultPrevented || !isCtrlEnter(event)) return;
   const button = event.target.form?.querySelector('button[title="Ctrl+Enter"]');
   if (!button) return;
   event.preventDefault();

@@ -4,7 +4,7 @@ import { enhanceBy } from "./modules.js";
 import { onFormText } from "./notation.js";
 import { readDraft } from "./draft-storage.js";
 import { AnswerQueue } from "./label-queue.js";
-import { isPlain, READING, TYPING } from "./typing.js";
+import { keyOf, READING, TYPING } from "./typing.js";
 
 // The page's other modules look at what came in, as they do after a swap of htmx.
 function fill(place, html) {
@@ -247,14 +247,15 @@ class LabelPage {
   }
 
   onKey(event) {
-    if (!isPlain(event) || document.querySelector("dialog[open]")) return;
-    if (event.key === "Escape") return event.defaultPrevented || this.closePanel();
+    const key = keyOf(event);
+    if (!key || document.querySelector("dialog[open]")) return;
+    if (key === "Escape") return event.defaultPrevented || this.closePanel();
     if (event.repeat || event.defaultPrevented || event.target.closest(TYPING)) return;
-    const opens = this.isAsking && { e: "edit", d: "dispute", m: "mend" }[event.key];
-    const button = this.isAsking && /^[1-9us]$/.test(event.key) && this.item.querySelector(`[data-key="${event.key}"]`);
+    const opens = this.isAsking && { e: "edit", d: "dispute", m: "mend" }[key];
+    const button = this.isAsking && /^[1-9us]$/.test(key) && this.item.querySelector(`[data-key="${key}"]`);
     if (opens) this.openPanel(opens);
     else if (button) button.click();
-    else if (event.key === "z") this.takeLastBack();
+    else if (key === "z") this.takeLastBack();
     else return;
     event.preventDefault();
   }

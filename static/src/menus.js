@@ -1,4 +1,6 @@
 // A menu (`details[data-menu]`) closes when one clicks elsewhere or presses Escape.
+import { keyOf } from "./typing.js";
+
 const openMenus = () => document.querySelectorAll("details[data-menu][open]");
 
 document.addEventListener("click", (event) => {
@@ -8,9 +10,9 @@ document.addEventListener("click", (event) => {
 });
 
 document.addEventListener("keydown", (event) => {
-  if (event.key !== "Escape" || event.isComposing) return;
+  if (keyOf(event) !== "Escape") return;
   openMenus().forEach((menu) => {
     menu.open = false;
-    if (menu.contains(document.activeElement)) menu.querySelector("summary").focus();
+    if (menu.contains(event.target)) menu.querySelector("summary").focus();
   });
 });

@@ -1,5 +1,5 @@
 // The review page by keyboard: one answer of the example has the focus, and one key says why it is wrong.
-import { isPlain, TYPING } from "./typing.js";
+import { keyOf, TYPING } from "./typing.js";
 
 const FOLDS = { t: "tree", b: "beam" };
 
@@ -68,6 +68,7 @@ function mark() {
   palette.querySelectorAll("button").forEach((button) => {
     button.disabled = !isWrong;
     button.setAttribute("aria-pressed", String(button.value === answer.dataset.own));
+    button.toggleAttribute("data-is-proposed", isWrong && button.value === answer.dataset.proposed);
   });
 }
 
@@ -103,6 +104,12 @@ function openDoubt() {
   panel.querySelector("[name=reason]").focus();
 }
 
+function openFilters() {
+  const filters = document.querySelector(".review-filters");
+  filters.open = true;
+  filters.querySelector("input:not([type=hidden])").focus();
+}
+
 const actions = {
   j: () => press("j"),
   k: () => press("k"),
@@ -119,24 +126,25 @@ const actions = {
   t: () => unfold(FOLDS.t),
   b: () => unfold(FOLDS.b),
   a: () => document.getElementById("review-add")?.focus(),
+  f: openFilters,
   e: () => press("e", current()),
   q: () => press("q", current()),
 };
 
-function actionOf(event) {
+function actionOf(event, key) {
   const isOnControl = event.target.closest("a, button, summary");
-  if (event.key === "Enter" && isOnControl) return null;
-  if (Object.hasOwn(actions, event.key)) return actions[event.key];
+  if (key === "Enter" && isOnControl) return null;
+  if (Object.hasOwn(actions, key)) return actions[key];
   const palette = document.querySelector("[data-review-palette]");
-  const hasKey = /^[0-9=-]$/.test(event.key) && palette?.querySelector(`[data-key="${event.key}"]`);
-  return hasKey ? () => press(event.key, palette) : null;
+  const hasKey = /^[0-9=-]$/.test(key) && palette?.querySelector(`[data-key="${key}"]`);
+  return hasKey ? () => press(key, palette) : null;
 }
 
-function leaveField(event) {
+function leaveField(event, key) {
   const isNote = event.target.matches("[data-note]");
-  if (event.key === "Enter" && isNote) {
+  if (key === "Enter" && isNote) {
     event.target.form.requestSubmit();
-  } else if (event.key !== "Escape" || !event.target.closest("#case")) {
+  } else if (key !== "Escape" || !event.target.closest("#case")) {
     return;
   }
   event.preventDefault();
@@ -145,19 +153,19 @@ function leaveField(event) {
 }
 
 function onKey(event) {
-  if (!isPlain(event) || document.querySelector("dialog[open]")) return;
-  if (!current()) return;
+  const key = keyOf(event);
+  if (!key || !current() || document.querySelector("dialog[open]")) return;
   if (event.target.closest(TYPING)) {
-    if (event.key === "Enter" || event.key === "Escape") leaveField(event);
+    if (key === "Enter" || key === "Escape") leaveField(event, key);
     return;
   }
-  const action = actionOf(event);
+  const action = actionOf(event, key);
   if (!action) return;
   event.preventDefault();
-  if (event.repeat && !"jk".includes(event.key)) return;
+  if (event.repeat && !"jk".includes(key)) return;
   if (!busy()) action();
   // A tag that comes while the next example is on its way is not for that one: nobody has read it yet.
-  else if (!isStepping() || "jk".includes(event.key)) waiting.push(action);
+  else if (!isStepping() || "jk".includes(key)) waiting.push(action);
 }
 
 function goOn() {

@@ -1,4 +1,6 @@
 // A search field ([data-row-search]) hides the rows of the table beside it that do not have its words.
+import { isCtrlEnter, keyOf } from "./typing.js";
+
 document.addEventListener("input", (event) => {
   if (!event.target.matches?.("[data-row-search]")) return;
   const words = event.target.value.toLowerCase().split(/\s+/).filter(Boolean);
@@ -12,5 +14,6 @@ document.addEventListener("input", (event) => {
 
 // Enter looks for the row; it does not send the form.
 document.addEventListener("keydown", (event) => {
-  if (event.key === "Enter" && event.target.matches?.("[data-row-search]")) event.preventDefault();
+  const isEnter = keyOf(event) === "Enter" || isCtrlEnter(event);
+  if (isEnter && event.target.matches?.("[data-row-search]")) event.preventDefault();
 });

@@ -1,4 +1,6 @@
 // Below 800 px the rail is a bottom sheet: all else is inert while it is open, Escape closes it.
+import { keyOf } from "./typing.js";
+
 const rail = document.getElementById("rail");
 const button = document.querySelector("[data-sheet-toggle]");
 const veil = document.querySelector("[data-sheet-close]");
@@ -21,7 +23,7 @@ if (rail && button && veil) {
   button.addEventListener("click", () => show(!isOpen()));
   veil.addEventListener("click", () => show(false));
   document.addEventListener("keydown", (event) => {
-    if (event.key === "Escape" && !event.isComposing && isOpen()) show(false);
+    if (keyOf(event) === "Escape" && isOpen()) show(false);
   });
   matchMedia("(width >= 800px)").addEventListener("change", (event) => event.matches && show(false));
 }

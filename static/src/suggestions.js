@@ -1,6 +1,6 @@
 // Suggested texts for a field: choosing one writes it there. The digits choose while nobody types.
 import { isTyping } from "./keys.js";
-import { isPlain } from "./typing.js";
+import { keyOf } from "./typing.js";
 
 function write(radio) {
   const field = document.getElementById(radio.closest("[data-suggestions]").dataset.suggestions);
@@ -25,9 +25,9 @@ document.addEventListener("change", (event) => {
 });
 
 document.addEventListener("keydown", (event) => {
-  if (event.defaultPrevented || !isPlain(event) || isTyping(event)) return;
-  if (!/^[1-9]$/.test(event.key)) return;
-  const radio = document.querySelectorAll("[data-suggestions] input[type=radio]")[Number(event.key) - 1];
+  const key = keyOf(event);
+  if (event.defaultPrevented || !/^[1-9]$/.test(key) || isTyping(event)) return;
+  const radio = document.querySelectorAll("[data-suggestions] input[type=radio]")[Number(key) - 1];
   if (!radio) return;
   event.preventDefault();
   radio.focus();

@@ -59,7 +59,9 @@ def read_structure(gold: Form, predicted: Form) -> tuple[CategoryProposal, ...]:
     ranked = sorted(
         by_category, key=lambda kind: (-len(by_category[kind]), OF_DIFFERENCES.index(kind))
     )
-    proposals = {kind: CategoryProposal(kind, " ".join(by_category[kind])) for kind in ranked}
+    proposals = {
+        kind: CategoryProposal(kind, " ".join(dict.fromkeys(by_category[kind]))) for kind in ranked
+    }
     exchange = _compare_predicates(left, right)
     if exchange is not None:
         proposals = {exchange.category: exchange} | proposals

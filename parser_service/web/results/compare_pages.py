@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from django.http import HttpResponse
-from django.shortcuts import render
+from django.shortcuts import redirect, render
 
 from annotations.language.corpus import Criterion
 from annotations.lists.listing import FilteredList
@@ -61,10 +61,15 @@ class ComparedFilters(FilteredList):
 
 @world_view(Duty.VIEW)
 def compare(request: WorldRequest, world: World) -> HttpResponse:
-    """Compare the runs that the URL names on the slice that it chooses, or offer runs to choose from."""
+    """Compare the runs that the URL names on the slice that it chooses, or offer runs to choose from.
+
+    A URL that names no run leads to that of the two best.
+    """
     part = request.GET.get("part", "")
     part = part if part in PARTS else default_part(world, named_keys(request.GET))
     choice = choose_runs(world, request.GET, part)
+    if "run" not in request.GET and choice.opening:
+        return redirect(f"{request.path}{url_with_runs(request, choice.opening)}")
     filters = ComparedFilters(request)
     measure = measure_of(request)
     context = {

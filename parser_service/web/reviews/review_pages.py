@@ -12,8 +12,10 @@ from django.db.models import Count, Exists, Max, Min, OuterRef, Q, QuerySet
 from django.http import Http404, HttpResponse, QueryDict
 from django.shortcuts import get_object_or_404, redirect, render
 from django.urls import reverse
+from django.utils.http import urlencode
 from django.views.decorators.cache import never_cache
 
+from annotations.language.corpus import Part
 from annotations.language.errors import Refusal
 from annotations.lists.listing import Listing, Sort, render_list
 from annotations.lists.paging import number_in
@@ -37,6 +39,7 @@ KEYS = (
     ("Enter", "accept the category that is proposed"),
     ("u", "take your tag back; z too"),
     ("n", "write a note on the answer"),
+    ("f", "open the filters"),
     ("w", "only where the runs differ, or everywhere again"),
     ("g", "the label is wrong: send it to the work queue"),
     ("q", "open the work queue, once something was sent there"),
@@ -54,10 +57,15 @@ SORTS = {"position": Sort("No.", "example_id", is_number=True)}
 @never_cache
 @world_view(Duty.VIEW)
 def review(request: WorldRequest, world: World) -> HttpResponse:
-    """Show the example that the address names, or the first that its filters leave."""
+    """Show the example that the address names, or the first that its filters leave.
+
+    An address that asks for nothing leads to the first wrong answer of the run that pages open on.
+    """
     runs = runs_asked(request, world)
     if not runs:
         return render_list(request, "parser_service/reviews/review.html", {"runs": []})
+    if not request.GET:
+        return redirect(f"{request.path}?{opening_query(runs[0])}")
     listing = ReviewListing(request, runs)
     if start := request.GET.get("from"):
         found = listing.first_from(number_in(start))
@@ -66,12 +74,6 @@ def review(request: WorldRequest, world: World) -> HttpResponse:
     context = {
         "runs": runs,
         "listing": listing,
-        "removals": [
-            (run, listing.url([key for key in listing.runs if key != str(run.pk)]))
-            for run in runs
-            if len(runs) > 1
-        ],
-        "addable": runs_to_add(runs),
         "page_keys": KEYS,
         "case": None,
     }
@@ -161,9 +163,16 @@ def _context_of(
     asked = number_in(request.GET.get("focus", ""))
     keys = [run.pk for run in runs]
     address = reverse("review", kwargs={"world": request.world.name})
+    here = str(example.pk)
     return {
         "case": case,
-        "here": f"{address}{listing.url(example=str(example.pk))}",
+        "runs": runs,
+        "answers": [
+            (each, listing.url(listing.runs_without(each.run), example=here))
+            for each in case.answers
+        ],
+        "addable": runs_to_add(runs),
+        "here": f"{address}{listing.url(example=here)}",
         "listing": listing,
         "state": listing.url(),
         "categories": [
@@ -174,6 +183,15 @@ def _context_of(
         "longest_note": LONGEST_NOTE,
         "longest_doubt": LONGEST_DOUBT,
     }
+
+
+def opening_query(run: TrainingRun) -> str:
+    """Return the address of what ``run`` answers wrongly on the validation part; that of all answers where there is
+    nothing of this kind. The test part is left alone: who reads its errors tests on it no more."""
+    chosen = {"run": str(run.pk)}
+    wrong = {"outcome": "wrong", "part": str(Part.VALIDATION)}
+    rows = run.predictions.best().filter(is_exact_match=False, example__part=Part.VALIDATION)
+    return urlencode(chosen | wrong if rows.exists() else chosen)
 
 
 def runs_asked(request: WorldRequest, world: World) -> list[TrainingRun]:
@@ -228,15 +246,17 @@ class ReviewListing(Listing):
                 query.setlist(name, values)
         return f"?{query.urlencode(safe='/')}"
 
+    def runs_without(self, run: TrainingRun) -> list[str]:
+        return [key for key in self.runs if key != str(run.pk)]
+
     @property
     def clear_url(self) -> str:
         return self.url(**dict.fromkeys(self.form.fields, ""))
 
     @property
-    def first_fields(self) -> list[Any]:
-        """The filters that are always in sight; ``where the runs differ`` is not among them, since it has a
-        button."""
-        return [field for field in super().first_fields if field.name != "differ"]
+    def fields(self) -> list[Any]:
+        """The filters behind the button; ``where the runs differ`` is not among them, since it has its own."""
+        return [field for field in self.form if field.name != "differ"]
 
     @cached_property
     def differ_url(self) -> str:

@@ -230,3 +230,18 @@ def test_keys_of_an_input_method_are_no_commands(label_page):
     assert not Label.objects.exists()
     page.keyboard.press("Escape")
     expect(reason).to_have_count(0)
+
+
+@pytest.mark.parametrize(
+    ("key", "code"),
+    [("&", "Digit1"), ("U", "KeyU"), ("г", "KeyU"), ("ы", "KeyS")],
+    ids=["AZERTY", "Caps Lock", "Russian u", "Russian s"],
+)
+def test_shortcuts_obey_on_keyboards_of_any_layout(label_page, key, code):
+    page = label_page
+    event = {"key": key, "code": code, "bubbles": True, "cancelable": True}
+    expect_utterance(page, SAID[0])
+    page.evaluate(
+        "event => document.body.dispatchEvent(new KeyboardEvent('keydown', event))", event
+    )
+    expect_utterance(page, SAID[1])

@@ -140,3 +140,65 @@ def test_trees_and_candidates_stay_open_and_the_keys_are_listed(review_page, run
     expect(page.locator(f"#answer-{runs[0].pk} .tree svg")).to_be_visible()
     keys.press("?")
     expect(page.get_by_role("dialog")).to_contain_text("accept the category that is proposed")
+
+
+def press(page: Page, key: str, code: str, **more: bool) -> None:
+    """Press a key as the layout of a keyboard has it: what it writes, and where it lies."""
+    event = {"key": key, "code": code, "bubbles": True, "cancelable": True, **more}
+    page.evaluate(
+        "event => document.activeElement.dispatchEvent(new KeyboardEvent('keydown', event))", event
+    )
+
+
+@pytest.mark.parametrize(
+    ("key", "code", "category"),
+    [
+        ("&", "Digit1", "1"),  # AZERTY
+        ("-", "Digit6", "6"),
+        (")", "Minus", "-"),
+        ("+", "Digit1", "1"),  # Czech
+        ("ß", "Minus", "-"),  # German
+        ("-", "Slash", "-"),
+        ("8", "Numpad8", "8"),
+    ],
+)
+def test_categories_are_tagged_on_keyboards_of_any_layout(review_page, key, code, category):
+    press(review_page, key, code)
+    button = review_page.locator(f'[data-review-palette] [data-key="{category}"]')
+    expect(button).to_have_attribute("aria-pressed", "true")
+
+
+@pytest.mark.parametrize(
+    ("key", "code", "more"),
+    [
+        ("J", "KeyJ", {}),  # Caps Lock
+        ("j", "KeyJ", {"shiftKey": True}),  # and Shift with it is none of it: see below
+        ("о", "KeyJ", {}),  # Russian
+        ("ξ", "KeyJ", {}),  # Greek
+        ("j", "KeyC", {}),  # Dvorak
+    ],
+)
+def test_letters_count_as_they_are_printed_or_else_by_their_place(
+    review_page, runs, key, code, more
+):
+    first, second = examples_of(runs[0])[:2]
+    press(review_page, key, code, **more)
+    wanted = first if more else second
+    expect_answer(review_page, runs[0])
+    expect(review_page.locator("#case")).to_have_attribute("data-case", str(wanted))
+
+
+def test_the_enter_that_ends_a_composition_sends_no_note(review_page):
+    page = review_page
+    page.keyboard.press("n")
+    note = page.locator("[data-note]:focus")
+    note.fill("へや")
+    press(page, "Enter", "Enter", isComposing=True)
+    press(page, "Process", "Enter", keyCode=229)
+    press(page, "Escape", "Escape", isComposing=True)
+    expect(note).to_have_value("へや")
+    expect(note).to_be_focused()
+    assert not Review.objects.by_people().exists()
+    page.keyboard.press("Enter")
+    wait_for(lambda: Review.objects.by_people().exists(), "the note is stored")
+    assert Review.objects.by_people().get().note == "へや"

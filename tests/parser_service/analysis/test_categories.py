@@ -97,6 +97,13 @@ def test_what_is_no_form_is_ill_formed_and_nothing_else():
     assert proposals.runners_up == ()
 
 
+def test_what_differs_twice_alike_is_said_once():
+    gold = read_form('(sequence (go "<room>") (go "<room>"))')
+    answer = read_form('(sequence (go "<location>") (go "<location>"))')
+    reason = propose_category(gold, answer).first.reason
+    assert reason == "The answer gives go ⟨location⟩ instead of ⟨room⟩ as argument 1."
+
+
 def test_a_part_of_the_label_is_a_wrong_structure():
     gold = read_form('(say (count (λ$1:e (is_a $1 "<object>"))))')
     first = propose_category(gold, read_form('(count (λ$1:e (is_a $1 "<object>")))')).first

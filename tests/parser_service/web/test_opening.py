@@ -6,10 +6,12 @@ import pytest
 from django.utils import timezone
 
 from annotations.models import Split
+from gpsr_site.overview.best_runs import best_runs
 from parser_service.models import Evaluation, TrainingRun, Worker
 from parser_service.models.runs import Status
+from parser_service.parsers.conditions import in_words
 from parser_service.promotions.promoting import promote
-from parser_service.serving.default_runs import opening_run
+from parser_service.serving.default_runs import best_two, opening_run
 from tests.parser_service.made_up import make_split
 from tests.parser_service.served import score
 from tests.sample_world import scored_run
@@ -44,9 +46,28 @@ def test_a_world_without_runs_opens_on_none(world):
 
 
 def test_review_opens_on_it(better, by_form, anna, sample):
-    assert anna.get("/w/home/review/").context["runs"] == [better]
+    assert anna.get("/w/home/review/", follow=True).context["runs"] == [better]
     promote(sample.run, None)
-    assert anna.get("/w/home/review/").context["runs"] == [sample.run]
+    assert anna.get("/w/home/review/", follow=True).context["runs"] == [sample.run]
+
+
+def test_the_overview_names_it(better, by_form, sample):
+    best = best_runs(sample.world)
+    assert (best.split, best.source) == (sample.split, in_words("para"))
+    assert [each.score.run for each in best.runs] == [better]
+
+
+def test_surer_is_better_than_more_often_right(better, sample):
+    Evaluation.objects.filter(run=better).update(interval_low=0.2, accuracy=0.9)
+    assert opening_run(sample.world) == sample.run
+    assert best_runs(sample.world).runs[0].score.run == sample.run
+    assert best_two(sample.split, [better, sample.run]) == [sample.run, better]
+
+
+def test_a_run_that_asks_a_server_is_shown_but_not_asked(better, sample):
+    TrainingRun.objects.filter(pk=better.pk).update(parser="llm")
+    assert opening_run(sample.world) == sample.run
+    assert best_runs(sample.world).runs[0].score.run == better
 
 
 def test_parse_opens_on_it(better, by_form, anna, sample):
@@ -61,18 +82,34 @@ def test_the_try_out_opens_on_it(better, by_form, anna):
 
 
 def test_compare_opens_on_the_split_with_runs_to_compare(better, by_form, anna, sample):
-    page = anna.get("/w/home/compare/", {"part": "validation"})
+    page = anna.get("/w/home/compare/", {"part": "validation"}, follow=True)
     assert page.context["choice"].split == sample.split
-    assert len(page.context["choice"].suggested or page.context["choice"].offered) == 2
+    assert page.context["choice"].runs == (better, sample.run)
+    assert page.context["pairs"]
     named = anna.get("/w/home/compare/", {"part": "validation", "split": "by-form"})
     assert named.context["choice"].split == by_form.split
 
 
-def test_of_several_splits_compare_opens_on_that_of_the_opening_run(better, by_form, anna, sample):
-    for seed in (1, 2):
-        scored_run(sample.world, by_form.split, seed=seed, right=0)
-    page = anna.get("/w/home/compare/", {"part": "validation"})
-    assert page.context["choice"].split == sample.split
+def test_of_several_splits_compare_opens_on_that_with_most_runs(better, by_form, anna, sample):
+    def opened():
+        page = anna.get("/w/home/compare/", {"part": "validation"}, follow=True)
+        return page.context["choice"].split
+
+    scored_run(sample.world, by_form.split, seed=1, right=0)
+    assert opened() == sample.split  # of two with as many that of the best run
+    scored_run(sample.world, by_form.split, seed=2, right=0)
+    assert opened() == by_form.split
+
+
+def test_compare_opens_on_the_two_best_of_the_split(better, anna, sample):
+    worst = scored_run(sample.world, sample.split, seed=2, right=1)
+    Evaluation.objects.filter(run=worst).exclude(test_source="para").delete()
+    page = anna.get("/w/home/compare/?part=validation&outcome=wrong", follow=True)
+    assert page.redirect_chain == [
+        (f"/w/home/compare/?part=validation&outcome=wrong&run={better.pk}&run={sample.run.pk}", 302)
+    ]
+    ticked = [each.run for each in page.context["choice"].offered if each.is_chosen]
+    assert ticked == [better, sample.run]
 
 
 def test_a_new_run_is_of_the_parser_that_is_recommended_next(sample, adam):

@@ -69,7 +69,7 @@ def test_the_form_sends_the_runs_in_their_order(sample, second, third, anna):
 
 def test_without_a_part_the_runs_say_which(sample, second, third, anna):
     third.evaluations.update(part="test")  # so that the page begins with the test part
-    assert anna.get(PAGE).context["choice"].part == "test"
+    assert anna.get(PAGE, follow=True).context["choice"].part == "test"
     page = anna.get(PAGE, {"run": [sample.run.pk, second.pk]})
     assert page.context["choice"].part == "validation"
     assert page.context["pairs"]
@@ -238,7 +238,7 @@ def test_without_two_runs_the_page_says_what_to_do(sample, anna):
     page = anna.get(PAGE, {"part": "validation"})
     assert not page.context["choice"].suggested and '<div class="empty">' in page.content.decode()
     scored_run(sample.world, sample.split, parser="seq2seq", right=5)
-    answer = anna.get(PAGE, {"part": "validation"})
+    answer = anna.get(PAGE, {"part": "validation", "run": sample.run.pk})
     suggestion = answer.context["suggestion_url"].replace("&", "&amp;")
     assert f'class="primary" href="{suggestion}"' in answer.content.decode()
     suggested = anna.get(PAGE + answer.context["suggestion_url"]).context
@@ -267,7 +267,7 @@ def test_a_run_of_another_split_or_world_is_left_out_and_named(sample, second, o
      "run=%00", "split=nowhere", "min_words=x&head=%ED%A0%80&slice=5"],
 )  # fmt: skip
 def test_an_odd_address_is_answered(query, sample, second, anna):
-    assert anna.get(f"{PAGE}?{query}").status_code == 200
+    assert anna.get(f"{PAGE}?{query}", follow=True).status_code == 200
 
 
 def test_a_slice_without_examples_says_so(sample, second, anna):

@@ -28,7 +28,7 @@ def model(sample) -> TrainingRun:
 
 
 def text_of(client, path: str) -> str:
-    answer = client.get(f"/w/home/{path}")
+    answer = client.get(f"/w/home/{path}", follow=True)
     assert answer.status_code == 200
     body = answer.streaming_content if answer.streaming else [answer.content]
     return b"".join(body).decode()

@@ -57,7 +57,24 @@ def act(client, verb, example, run, query="", **values):
 
 
 def test_without_a_run_the_newest_one_with_answers_is_shown(other, anna):
-    assert [run.pk for run in look(anna).context["runs"]] == [other.pk]
+    page = anna.get("/w/home/review/", {"outcome": "wrong"})
+    assert [run.pk for run in page.context["runs"]] == [other.pk]
+
+
+def test_an_address_that_asks_for_nothing_leads_to_the_first_wrong_answer(other, anna):
+    page = anna.get("/w/home/review/", follow=True)
+    address, status = page.redirect_chain[-1]
+    assert status == 302
+    assert address == f"/w/home/review/?run={other.pk}&outcome=wrong&part=validation"
+    assert shown(page) == wrong_of(other)[0]
+    assert page.context["listing"].total == len(wrong_of(other))
+
+
+def test_the_test_part_is_not_opened_by_itself(run, anna):
+    run.split.examples.update(part="test")
+    page = anna.get("/w/home/review/", follow=True)
+    assert page.redirect_chain[-1][0] == f"/w/home/review/?run={run.pk}"
+    assert page.context["listing"].total == 12
 
 
 def test_a_world_without_answers_says_so(world, anna):
@@ -154,7 +171,33 @@ def test_the_diff_does_not_mind_the_order_of_conjuncts(run, anna):
     run.predictions.filter(example=example).update(logical_form=turned, is_exact_match=False)
     page = look(anna, run, example=example.pk).content.decode()
     changed = re.findall(r"<(?:mark|ins|del)>(.*?)</", page)
-    assert set(changed) == {"⟨category⟩"}
+    assert set(changed) == {"⟨object⟩", "⟨category⟩"}  # in the annotated form, and in the answer
+
+
+def test_what_an_answer_lacks_is_marked_in_the_annotated_form_beside_one_run_alone(
+    run, other, anna
+):
+    example = run.split.examples.get(pk=wrong_of(run)[0])
+    label = '( find ( lambda $1 e ( is_a $1 " <object> " ) ( at $1 " <room> " ) ) )'
+    run.split.examples.filter(pk=example.pk).update(logical_form=label)
+    lacking = '( find ( lambda $1 e ( is_a $1 " <object> " ) ) )'
+    Prediction.objects.filter(example=example).update(logical_form=lacking, is_exact_match=False)
+    page = look(anna, run, example=example.pk).content.decode()
+    assert "at(x, ⟨room⟩)" in "".join(re.findall(r"<del>(.*?)</del>", page))
+    assert "<del>" not in look(anna, run, other, example=example.pk).content.decode()
+
+
+def test_a_run_is_put_away_and_another_one_shown_beside(run, other, anna):
+    third = scored_run(run.world, run.split, seed=2)
+    page = look(anna, run, other, outcome="wrong")
+    here = f"outcome=wrong&example={shown(page)}"
+    assert [url for _, url in page.context["answers"]] == [
+        f"?run={other.pk}&{here}",
+        f"?run={run.pk}&{here}",
+    ]
+    assert [key for key, _ in page.context["addable"]] == [third.pk]
+    alone = look(anna, run)
+    assert "review-remove" not in alone.content.decode()
 
 
 def test_all_candidates_are_shown_in_order(run, anna):
