@@ -73,7 +73,8 @@ function onKey(event) {
  * Outside of any form it is the one that the page is about. */
 function onSend(event) {
   if (event.defaultPrevented || event.key !== "Enter" || !(event.ctrlKey || event.metaKey)) return;
-  if (event.isComposing || event.keyCode === 229) return;
+  // A key that is held down sends one form, not the next one too.
+  if (event.isComposing || event.keyCode === 229 || event.repeat) return;
   const ofPage = document.querySelector("body:not(:has(dialog[open])) form[data-keys-of-page]");
   const form = event.target.form ?? ofPage;
   if (pressSend(form, event.shiftKey)) event.preventDefault();
