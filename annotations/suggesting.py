@@ -60,14 +60,14 @@ class ParserAnswer:
 class SuggestedForm:
     """A form in the notation of templates, its English sentence, and the pattern that it was made from.
 
-    ``is_guess`` where no template says what one of the words means. ``answers`` are those of the parsers
-    that give it; a form from a parser alone was made from no pattern.
+    ``is_sure`` where a page may fill it in (docs/design/suggestions.md, Filled in or offered). ``answers`` are
+    those of the parsers that give it; a form from a parser alone was made from no pattern.
     """
 
     text: str
     gloss: str
     made_from: str
-    is_guess: bool = False
+    is_sure: bool = False
     answers: tuple[ParserAnswer, ...] = ()
 
     def answered_by(self, answer: ParserAnswer) -> SuggestedForm:
@@ -133,7 +133,7 @@ def suggest_forms(
             to_template(suggestion.form),
             gloss(suggestion.form, declared, classes),
             suggestion.template.pattern_text,
-            suggestion.is_guess,
+            suggestion.is_sure,
         )
         for suggestion in suggestions
     ]
@@ -167,6 +167,19 @@ def command_for(category: StoredCategory, pattern: str, wanted: str = "") -> str
         return ""
     commands = [command for command in looked_at if len(command) <= MOST_COMMAND]
     return wanted if wanted in commands else next(iter(commands), "")
+
+
+def commands_of(row: StoredTemplate) -> frozenset[str]:
+    """Return the first commands that a template makes, at most ``MOST_LOOKED_AT``; none where it has an error."""
+    category = StoredCategory.objects.filter(grammar=row.grammar_id, name=row.task_category).first()
+    if category is None:
+        return frozenset()
+    try:
+        expander = TemplateExpander(grammar_of(category), composition_of(category))
+        pairs = expander.pairs(template_of(row), Budget(CHECK_STEPS))
+        return frozenset(command for command, _ in islice(pairs, MOST_LOOKED_AT))
+    except LanguageError:
+        return frozenset()
 
 
 def add_answers(

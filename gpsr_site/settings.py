@@ -215,6 +215,7 @@ MIDDLEWARE = [
     "django.contrib.auth.middleware.LoginRequiredMiddleware",
     "django.contrib.messages.middleware.MessageMiddleware",
     "gpsr_site.web.normalised_texts.NormaliseTexts",
+    "gpsr_site.web.time_zones.ReaderTimeZone",
     "django.middleware.clickjacking.XFrameOptionsMiddleware",
     "django_htmx.middleware.HtmxMiddleware",
     "gpsr_site.web.audit_middleware.AuditLog",
@@ -249,7 +250,9 @@ TEMPLATES = [
 ]
 
 LANGUAGE_CODE = "en"
-TIME_ZONE = "UTC"
+TIME_ZONE = (
+    "UTC"  # of what nobody reads in a browser: the API, commands, logs, the days of campaigns
+)
 USE_I18N = False
 USE_TZ = True
 

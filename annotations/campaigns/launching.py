@@ -95,10 +95,9 @@ def draw_prompts(world: World, choice: PromptChoice) -> list[DrawnPrompt]:
     drawn = []
     for key in random.sample(list(groups), len(groups)):
         for expansion, grounded in _draw(groups[key], sources, ontology, choice, random):
-            is_english = choice.wording == Wording.ENGLISH
-            shown = (
-                gloss(grounded.form, declared, ontology.classes) if is_english else grounded.text
-            )
+            shown = grounded.text
+            if choice.wording == Wording.ENGLISH:
+                shown = gloss(grounded.form, declared, ontology.classes, ontology.class_of_text)
             grounded_form = canonical_text(grounded.form)
             entities = entities_of(grounded, ontology)
             line = patterns[expansion.task_category][expansion.template_index]

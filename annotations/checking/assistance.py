@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import asdict
 from functools import partial
@@ -11,7 +11,7 @@ from typing import Any
 
 from django.core.cache import cache
 
-from annotations.checking.template_check import check_template
+from annotations.checking.template_check import CheckedTemplate, check_template
 from annotations.language.assistance import (
     Sides,
     Usage,
@@ -47,14 +47,17 @@ def assist(world: World, category: TaskCategory | None, pattern: str, form: str)
 
     Returns:
         JSON: ``problems`` (``field``, ``line``, ``column``, ``at``, ``severity``, ``message``, ``hint``,
-        ``repairs``), ``slots`` that both sides have (places by field), the ``formatted`` fields, the
-        ``reading`` and the ``gloss`` of the form. Offsets count UTF-16 units, as browsers do.
+        ``repairs``, the ``declaration`` of a predicate that is missing), ``slots`` that both sides have (places
+        by field), the ``formatted`` fields, the ``reading`` and the ``gloss`` of the form. Offsets count UTF-16
+        units, as browsers do.
     """
     checked = check_template(world, category, pattern, form)
     sides = Sides(pattern, form)
     slots: list[dict[str, Any]] = []
     problems = checked.problems
+    declarations: Mapping[str, Any] = {}
     if checked.checker is not None:
+        declarations = _declarations(world, checked)
         usage = partial(_usage, world, checked.checker.grammar)
         problems = with_repairs(problems, sides, checked.checker, usage, classes_of(world))
         slots = [
@@ -65,11 +68,37 @@ def assist(world: World, category: TaskCategory | None, pattern: str, form: str)
             for each in correspondences(sides.pattern, sides.form, checked.checker.grammar)
         ]
     return {
-        "problems": [shown_problem(each, sides) for each in problems],
+        "problems": [
+            {
+                **shown_problem(each, sides),
+                "declaration": declarations.get(each.undeclared),
+            }
+            for each in problems
+        ],
         "slots": slots,
         "formatted": {"pattern": format_pattern(pattern), "form": format_form(form)},
         "reading": to_reading(checked.template.form) if checked.template else "",
         "gloss": checked.gloss,
+    }
+
+
+def _declarations(world: World, checked: CheckedTemplate) -> dict[str, Any]:
+    """Return the predicates that the form uses and nothing declares, by name, as the API takes new ones."""
+    names = {each.undeclared for each in checked.problems} - {""}
+    if not names or checked.checker is None or checked.template is None:
+        return {}
+    classes = classes_of(world)
+    used = checked.checker.predicates_used(checked.template)
+    return {
+        name: {
+            "name": name,
+            "kind": str(predicate.kind),
+            "signatures": [
+                list(map(str, s.within(classes).arguments)) for s in predicate.signatures
+            ],
+        }
+        for name, predicate in used.items()
+        if name in names
     }
 
 

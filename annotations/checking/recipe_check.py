@@ -201,7 +201,9 @@ class _Examples:
         """Return the example of a command, which has this form."""
         said, plan, grounded = self._grounded(command, form)
         task_plan = self._apply(plan, self.book)
-        english = gloss(read_form(grounded), self._predicates, self._ontology.classes)
+        ontology = self._ontology
+        named = ontology.class_of_text
+        english = gloss(read_form(grounded), self._predicates, ontology.classes, named)
         return RecipeExample(said, english, grounded, task_plan, spoken(task_plan))
 
     def _apply(self, plan: Plan, book: RecipeBook) -> TaskPlan:

@@ -151,10 +151,8 @@ def samples_of(world: World, checked: CheckedTemplate, seed: int = 0) -> Grounde
         except LanguageError as error:
             missing = error.message
             continue
-        rows.setdefault(
-            grounded.text,
-            GroundedSample(grounded.text, gloss(grounded.form, declared, ontology.classes)),
-        )
+        said = gloss(grounded.form, declared, ontology.classes, ontology.class_of_text)
+        rows.setdefault(grounded.text, GroundedSample(grounded.text, said))
     shown = tuple(islice(rows.values(), SHOWN_SAMPLES))
     return GroundedSamples(shown, (seed + 1) % LARGEST_SEED, missing)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
 from annotations import models
@@ -106,6 +106,37 @@ def uncovered_of(world: models.World, task_category: str = "") -> UncoveredRepor
     ]
     shares.sort(key=lambda share: (share.covered_percent, -share.uncovered, share.nonterminal))
     return UncoveredReport(tuple(commands), tuple(shares), tuple(cut), tuple(problems))
+
+
+def next_uncovered(
+    world: models.World, category: str, command: str, made: Collection[str] = ()
+) -> UncoveredCommand | None:
+    """Return the command without a form that follows ``command`` in its task category, or else the first one.
+
+    Those of the other task categories come when this one has none left.
+
+    Args:
+        made: commands that count as having a form, whether or not they are generated yet.
+    """
+    order = _order_of_commands(world, category)
+    at = order.get(command, -1)
+    left = (
+        (each.task_category != category, order.get(each.text, 0) <= at, place, each)
+        for place, each in enumerate(uncovered_of(world).commands)
+        if each.text != command and each.text not in made
+    )
+    first = min(left, default=None)
+    return first[-1] if first else None
+
+
+def _order_of_commands(world: models.World, category: str) -> Mapping[str, int]:
+    """Return the place of each command of a task category, those with a form included."""
+    try:
+        grammars = {each.name: each.grammar for each in task_categories(world)}
+        commands = _passages(grammars[category]) if category in grammars else ()
+    except LanguageError:
+        return {}
+    return {command: place for place, command in enumerate(commands)}
 
 
 def _passages(grammar: Grammar) -> Mapping[str, frozenset[str]]:

@@ -104,8 +104,8 @@ class Repair:
 class Problem:
     """One problem: where it is, how serious, what is wrong and what to do about it.
 
-    ``repairs`` are for an editor; ``task_category`` names the one whose productions the hint is about.
-    Neither plays a part in equality.
+    ``repairs`` are for an editor; ``task_category`` names the one whose productions the hint is about;
+    ``undeclared`` names a predicate that could be declared. None of them plays a part in equality.
     """
 
     position: Position
@@ -114,6 +114,7 @@ class Problem:
     hint: str = ""
     repairs: tuple[Repair, ...] = field(default=(), compare=False, repr=False)
     task_category: str = field(default="", compare=False, repr=False)
+    undeclared: str = field(default="", compare=False, repr=False)
 
     def __str__(self) -> str:
         place = f"{self.position}: " if str(self.position) else ""

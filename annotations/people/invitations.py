@@ -32,7 +32,7 @@ class NameTaken(Refusal):
     status = HTTPStatus.CONFLICT
 
     def __init__(self) -> None:
-        super().__init__("A user with that username already exists.")
+        super().__init__("Somebody has this name already. Choose another one.")
 
 
 def has_joined(invitation: Invitation, user: User) -> bool:

@@ -51,8 +51,7 @@ def finish(assignment: Assignment, label: Label | None = None) -> ItemDecision:
             said = "You have done this already. Take your answer back to change it."
             raise NoLongerYours(said, "already_done")
         elif stored.outcome != Outcome.HELD:
-            said = "Somebody else is doing this now. Your answer was not counted."
-            raise NoLongerYours(said, "done_by_another")
+            raise _why_lost(item, stored)
         stored.outcome, stored.label = Outcome.DONE, label
         stored.done_at, stored.leased_until = timezone.now(), None
         stored.save(update_fields=["outcome", "label", "done_at", "leased_until"])
@@ -65,6 +64,16 @@ def finish(assignment: Assignment, label: Label | None = None) -> ItemDecision:
         item.save(update_fields=["places", "closed_at"])
         labels = [each.label for each in done if each.label is not None]
         return _decide(item, labels) if is_complete else ItemDecision(item)
+
+
+def _why_lost(item: WorkItem, stored: Assignment) -> NoLongerYours:
+    """Return why an answer to an item comes too late: another person, or a closed item. It is never oneself."""
+    others = item.assignments.filter(outcome__in=OCCUPYING).exclude(person=stored.person)
+    if item.is_open and others.exists():
+        said = "Somebody else is doing this now. Your answer was not counted."
+        return NoLongerYours(said, "done_by_another")
+    said = "This item is no longer open. Your answer was not counted."
+    return NoLongerYours(said, "already_done")
 
 
 def skip(assignment: Assignment) -> None:

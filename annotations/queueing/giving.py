@@ -210,8 +210,10 @@ def _give(
     item.assignments.expired().exclude(person=person).release()
     rows = WorkItem.objects.filter(pk=item.pk)
     if not rows.free().exists():
-        said = "Somebody is doing this now. Withdraw it from them first."
-        raise NotForThem(said, "done_by_another")
+        is_theirs = item.assignments.held().filter(person=person).exists()
+        other = "Somebody is doing this now. Withdraw it from them first."
+        said = f"{person} is doing this already." if is_theirs else other
+        raise NotForThem(said, "held_by_them" if is_theirs else "done_by_another")
     for_them = rows.takeable_by(person) | rows.returned_by(person)
     if not (rows.not_answered_by(person) if after_skip else for_them).exists():
         said = f"{person} has answered this already, so somebody else has to do it."

@@ -9,6 +9,9 @@ now without a form gets a pattern, which gets a form. Equality is exact match of
 those of the templates that are left; with ``--declared`` those of all templates, as in a world whose predicates
 were declared first. With ``--apart`` every template goes too whose pattern reads the same to the suggester, such as
 one that only begins with ``$polite`` or has another name for its slot.
+
+Last comes a table of how often the first form is right by its share of the weight of all candidates. A page fills the
+form in above ``SURE_SHARE``.
 """
 
 from __future__ import annotations
@@ -23,7 +26,7 @@ from statistics import median
 from annotations.language.errors import Position
 from annotations.language.forms import canonical_text, equivalent, to_template
 from annotations.language.predicates import Predicate
-from annotations.language.suggestions import FormSuggester, PatternMaker, Suggestion
+from annotations.language.suggestions import SURE_SHARE, FormSuggester, PatternMaker, Suggestion
 from annotations.language.symbols import Symbols, print_sequence
 from annotations.language.templates import (
     SemanticTemplate,
@@ -35,6 +38,9 @@ from annotations.language.templates import (
     template_checker,
 )
 from benchmarks.fresh_site import DATA
+from parser_service.analysis.intervals import wilson_interval
+
+SHARES = (0.0, 0.5, 0.6, 0.7, SURE_SHARE, 0.8, 0.9)
 
 
 @dataclass(frozen=True)
@@ -63,6 +69,7 @@ class FromCommand:
 
     is_same_set: bool
     is_right: bool
+    share: float
 
 
 def leave_out(
@@ -142,15 +149,32 @@ def from_command(
         return None
     made = {" ".join(words) for words, _ in category.grammar.expander.stream(pattern)}
     suggestions = suggester.suggest(pattern, category.grammar)
-    is_right = False
+    is_right, share = False, 0.0
     if suggestions:
+        share = suggestions[0].share
         text = print_sequence(pattern), to_template(suggestions[0].form)
         suggested = dict(expander.pairs(make_template(*text)))
         is_right = suggested[uncovered[0]] == forms[uncovered[0]]
-    return FromCommand(made == set(uncovered), is_right)
+    return FromCommand(made == set(uncovered), is_right, share)
 
 
-def share(count: int, total: int) -> str:
+def print_by_share(title: str, firsts: Sequence[tuple[float, bool]]) -> None:
+    """Print how many first suggestions are above a share, how many of them are right, and the 95 % interval.
+
+    Args:
+        firsts: of each pattern with a suggestion, the share of the first one and whether it is right.
+    """
+    print(title)
+    for least in SHARES:
+        above = [is_right for share, is_right in firsts if share > least]
+        low, high = wilson_interval(sum(above), len(above)) if above else (0.0, 1.0)
+        mark = "filled in" if least == SURE_SHARE else ""
+        print(
+            f"  share above {least:.2f}:    {part(sum(above), len(above))}, {low:.3f} to {high:.3f} {mark}"
+        )
+
+
+def part(count: int, total: int) -> str:
     return f"{count} of {total} ({100 * count / max(total, 1):.1f} %)"
 
 
@@ -185,14 +209,19 @@ def main() -> None:
             show(outcomes[-1])
     typed = [one for each in outcomes for one in each.is_typed]
     judged = [each for each in answers if each]
-    print(f"equal at first:        {share(sum(o.rank == 1 for o in outcomes), len(outcomes))}")
-    print(f"equivalent at first:   {share(sum(o.is_equivalent for o in outcomes), len(outcomes))}")
-    print(f"among the first nine:  {share(sum(o.rank > 0 for o in outcomes), len(outcomes))}")
-    print(f"well-typed:            {share(sum(typed), len(typed))} suggestions")
+    print(f"equal at first:        {part(sum(o.rank == 1 for o in outcomes), len(outcomes))}")
+    print(f"equivalent at first:   {part(sum(o.is_equivalent for o in outcomes), len(outcomes))}")
+    print(f"among the first nine:  {part(sum(o.rank > 0 for o in outcomes), len(outcomes))}")
+    print(f"well-typed:            {part(sum(typed), len(typed))} suggestions")
     print(f"without a suggestion:  {sum(not o.suggestions for o in outcomes)}")
     print(f"seconds for one:       {median(o.seconds for o in outcomes):.2f} (median)")
-    print(f"same set of commands:  {share(sum(a.is_same_set for a in judged), len(judged))}")
-    print(f"right from a command:  {share(sum(a.is_right for a in judged), len(judged))}")
+    print(f"same set of commands:  {part(sum(a.is_same_set for a in judged), len(judged))}")
+    print(f"right from a command:  {part(sum(a.is_right for a in judged), len(judged))}")
+    firsts = [(o.suggestions[0].share, o.rank == 1) for o in outcomes if o.suggestions]
+    print_by_share("right at first, by share of the weight:", firsts)
+    print_by_share(
+        "right from a command, by share of the weight:", [(a.share, a.is_right) for a in judged]
+    )
 
 
 if __name__ == "__main__":

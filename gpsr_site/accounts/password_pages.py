@@ -60,6 +60,10 @@ class LogInForm(AuthenticationForm):
     """Name and password, of a length that is cheap to hash."""
 
     password = forms.CharField(strip=False, max_length=MOST_CHARACTERS, widget=forms.PasswordInput)
+    error_messages = {
+        "invalid_login": "No account has this name and this password.",
+        "inactive": "This account is closed. Ask an admin of the site.",
+    }
 
 
 if TYPE_CHECKING:

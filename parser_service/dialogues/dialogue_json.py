@@ -45,7 +45,12 @@ def as_json(row: Dialogue) -> dict[str, Any]:
         "form": to_corpus(state.parsed),
         "grounded": to_corpus(state.form),
         "reading": to_reading(state.form),
-        "english": gloss(state.form, language.predicates, language.ontology.classes),
+        "english": gloss(
+            state.form,
+            language.predicates,
+            language.ontology.classes,
+            language.ontology.class_of_text,
+        ),
         "plan": plan_of(state, language).as_json(),
         "task_plan": task_plan.as_json(),
         "spoken": spoken(task_plan),

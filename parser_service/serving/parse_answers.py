@@ -256,7 +256,12 @@ def answer_with(
         is_unknown=isinstance(given.form, Unknown),
         grounded=to_corpus(given.form),
         reading=to_reading(given.form),
-        english=gloss(given.form, language.predicates, language.ontology.classes),
+        english=gloss(
+            given.form,
+            language.predicates,
+            language.ontology.classes,
+            language.ontology.class_of_text,
+        ),
         open_slots=tuple(questions_of(given, language)),
         remarks=remarks_on(given, language.ontology),
         plan=plan.as_json(),

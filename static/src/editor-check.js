@@ -1,5 +1,6 @@
 // Asks the server what it thinks of a form's fields and shows the answer under each editor.
 import { setDiagnostics } from "@codemirror/lint";
+import { declareButton } from "./editor-declare.js";
 import { format } from "./editor-format.js";
 import { applyRepair, repairButtons } from "./editor-repairs.js";
 import { lightSlot, showSlots } from "./editor-slots.js";
@@ -88,6 +89,11 @@ class Checker {
     if (problem) this.repair(problem.repairs[0]);
   }
 
+  /** Everything that looks at the form looks again: something outside of it has changed. */
+  look() {
+    this.form.dispatchEvent(new Event("input", { bubbles: true }));
+  }
+
   /** Light a slot (its number in the answer, -1 for none) in every editor. */
   light(slot) {
     this.editors.forEach(({ view }) => lightSlot(view, slot));
@@ -133,6 +139,7 @@ class Checker {
     line.append(piece(`${problem.line}:${problem.column} ${problem.message}`, problem.severity));
     if (problem.hint) line.append(" ", this.hint(problem));
     line.append(...repairButtons(problem, (repair) => this.repair(repair)));
+    if (problem.declaration) line.append(declareButton(this.form, problem.declaration, () => this.look()));
     return line;
   }
 }

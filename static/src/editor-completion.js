@@ -5,6 +5,9 @@ import { autocompletion } from "@codemirror/autocomplete";
 const SLOT = /\$[A-Za-z]\w*|\{[^{}]*\}/g;
 const answers = new Map(); // address → promise of the answer
 
+/** Ask again for what there is: something was declared. */
+export const forgetOffers = () => answers.clear();
+
 function offers(field) {
   const form = field.form;
   const category = form?.elements.namedItem("task_category")?.value;

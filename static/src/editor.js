@@ -12,8 +12,23 @@ import { format } from "./editor-format.js";
 import { highlighting } from "./editor-highlight.js";
 import { slotLighting } from "./editor-slots.js";
 import { grow, shrink } from "./editor-structure.js";
+import { pressSend } from "./sending.js";
 
 const nonce = () => document.querySelector('meta[name="csp-nonce"]')?.nonce ?? "";
+
+// Blanks that only look like one, and what shows nothing: the server writes a plain blank, or nothing, too.
+const ODD_BLANK = /[\u00a0\u1680\u2000-\u200a\u202f\u205f\u2800\u3000]/g;
+const INVISIBLE = /[\u00ad\u200b-\u200f\u202a-\u202e\u2060-\u2064\ufeff]/g;
+const plain = (text) => text.replace(ODD_BLANK, " ").replace(INVISIBLE, "");
+
+const plainBlanks = EditorState.transactionFilter.of((transaction) => {
+  const text = transaction.docChanged ? transaction.newDoc.toString() : "";
+  if (plain(text) === text) return transaction;
+  return {
+    changes: { from: 0, to: transaction.startState.doc.length, insert: plain(text) },
+    selection: { anchor: plain(text.slice(0, transaction.newSelection.main.head)).length },
+  };
+});
 
 // A pattern is one line: a line break in what is pasted becomes a space.
 const oneLine = EditorState.transactionFilter.of((transaction) => {
@@ -26,8 +41,8 @@ const oneLine = EditorState.transactionFilter.of((transaction) => {
   };
 });
 
-function send(field) {
-  field.form?.requestSubmit();
+function send(field, hasShift) {
+  if (!pressSend(field.form, hasShift)) field.form?.requestSubmit();
   return true;
 }
 
@@ -42,7 +57,8 @@ const BRACKETS = EditorState.languageData.of(() => [{ closeBrackets: { brackets:
 
 function keysFor(field, checker) {
   return [
-    { key: "Mod-Enter", run: () => send(field) },
+    { key: "Mod-Enter", run: () => send(field, false) },
+    { key: "Mod-Shift-Enter", run: () => send(field, true) },
     { key: "Mod-.", run: () => Boolean(checker.repairFirst(field)) },
     { key: "Mod-i", run: grow, preventDefault: true },
     { key: "Alt-ArrowUp", run: grow, preventDefault: true },
@@ -68,6 +84,7 @@ function extensionsFor(field, checker) {
     BRACKETS,
     highlighting,
     placeholder(field.placeholder),
+    plainBlanks,
     isPattern ? oneLine : lambdaKey,
     completion(field, checker),
     slotLighting((slot) => checker.light(slot)),

@@ -1,6 +1,7 @@
 // Keys: j and k move through the rows of a table, Enter opens, n and p turn the page, / searches, ? lists the keys,
 // Ctrl+Enter sends a form.
 import { copyForm } from "./forms.js";
+import { pressSend } from "./sending.js";
 import { isCtrlEnter, keyOf } from "./typing.js";
 
 const TYPING = "input:not([type=checkbox], [type=radio]), textarea, select, [contenteditable], .cm-editor";
@@ -69,13 +70,14 @@ function onKey(event) {
   }
 }
 
-/** Ctrl+Enter in a plain field presses the button that says so; an editor does it by itself. */
+/** Ctrl+Enter, with Shift or without, presses the button of the form that says so; an editor does it by itself.
+ * Outside of any form it is the one that the page is about. */
 function onSend(event) {
-  if (event.defaultPrevented || !isCtrlEnter(event)) return;
-  const button = event.target.form?.querySelector('button[title="Ctrl+Enter"]');
-  if (!button) return;
-  event.preventDefault();
-  event.target.form.requestSubmit(button);
+  // A key that is held down sends one form, not the next one too.
+  if (event.defaultPrevented || event.repeat || !isCtrlEnter(event)) return;
+  const ofPage = document.querySelector("body:not(:has(dialog[open])) form[data-keys-of-page]");
+  const form = event.target.form ?? ofPage;
+  if (pressSend(form, event.shiftKey)) event.preventDefault();
 }
 
 document.addEventListener("keydown", onKey);

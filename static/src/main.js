@@ -2,6 +2,8 @@
 import "./requests.js";
 import "./keys.js";
 import "./sheet.js";
+import "./time-zone.js";
+import "./remembered.js";
 import "./guidelines.js";
 import "./menus.js";
 import "./notices.js";

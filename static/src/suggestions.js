@@ -1,33 +1,40 @@
-// Suggested texts for a field: choosing one writes it there. The digits choose while nobody types.
+// Suggested texts for a field: choosing one writes it there, and what is written there shows which one is chosen.
+// The digits choose while nobody types.
 import { isTyping } from "./keys.js";
 import { keyOf } from "./typing.js";
 
+const RADIOS = "[data-suggestions] input[type=radio]";
+const fieldOf = (radio) => document.getElementById(radio.closest("[data-suggestions]").dataset.suggestions);
+
 function write(radio) {
-  const field = document.getElementById(radio.closest("[data-suggestions]").dataset.suggestions);
+  const field = fieldOf(radio);
   if (!field) return;
   field.value = radio.value;
   field.dispatchEvent(new CustomEvent("draft:restored")); // its editor shows the new text
-  const { status } = field.form.elements;
-  if (status?.value === "draft") status.value = "ready"; // somebody has read this form and takes it
   field.dispatchEvent(new Event("input", { bubbles: true })); // checker, preview and draft look again
 }
 
-// Suggestions that come while somebody works: the one that is written stays chosen.
-document.addEventListener("htmx:afterSwap", () => {
-  for (const radio of document.querySelectorAll("[data-suggestions] input[type=radio]")) {
-    const field = document.getElementById(radio.closest("[data-suggestions]").dataset.suggestions);
-    if (field && field.value.trim() === radio.value) radio.checked = true;
+/** The suggestion that is written is the chosen one; a text of one's own clears the choice. */
+function showChoice() {
+  for (const radio of document.querySelectorAll(RADIOS)) {
+    radio.checked = fieldOf(radio)?.value.trim() === radio.value;
   }
+}
+
+document.addEventListener("htmx:afterSwap", showChoice);
+document.addEventListener("input", (event) => {
+  const isSuggestedFor = (radio) => event.target === fieldOf(radio) || event.target === fieldOf(radio)?.form;
+  if ([...document.querySelectorAll(RADIOS)].some(isSuggestedFor)) showChoice();
 });
 
 document.addEventListener("change", (event) => {
-  if (event.target.matches("[data-suggestions] input[type=radio]")) write(event.target);
+  if (event.target.matches(RADIOS)) write(event.target);
 });
 
 document.addEventListener("keydown", (event) => {
   const key = keyOf(event);
   if (event.defaultPrevented || !/^[1-9]$/.test(key) || isTyping(event)) return;
-  const radio = document.querySelectorAll("[data-suggestions] input[type=radio]")[Number(key) - 1];
+  const radio = document.querySelectorAll(RADIOS)[Number(key) - 1];
   if (!radio) return;
   event.preventDefault();
   radio.focus();

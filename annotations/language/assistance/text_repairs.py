@@ -31,6 +31,8 @@ _BARE = re.compile(r"[^\s(){}\",]+")
 _NAMES = re.compile(r"[^\W\d][\w-]*(?: +[^\W\d][\w-]*)*")
 _BOUND = re.compile(r"(λ|lambda\s)\s*+(\$\d++)(?!\s*+(?::\s*+)?[^\W\d])")
 _BINDER = re.compile(r"\(\s*+([^\s(){}$\"]*+)\s*+(\$\d++)\s*+[:.]")
+_SINGLE = "‘’‚‛‹›`´"
+_CURLY = re.compile(f"[“”„‟«»{_SINGLE}]")
 MOST_PLACES = 80  # tried for one bracket
 MOST_WORDS = 4  # that a quotation mark or a brace is closed after
 
@@ -81,6 +83,25 @@ def _bare_word(form: str, pattern: str, offset: int) -> Iterator[RepairCandidate
             yield candidate(
                 f"Write {shorten(slot)}", [TextEdit(FORM, offset, match.end(), slot)], rank
             )
+
+
+def plain_quotes(text: str, source: str) -> Iterator[RepairCandidate]:
+    """Yield candidates that write plain quotation marks for those that word processors put in, or remove them."""
+    marks = list(_CURLY.finditer(text))
+    if not marks:
+        return
+
+    def write(single: str, double: str) -> list[TextEdit]:
+        return [
+            TextEdit(source, each.start(), each.end(), single if each[0] in _SINGLE else double)
+            for each in marks
+        ]
+
+    yield candidate("Write plain quotation marks", write("'", '"'))
+    if source == FORM:  # where every quotation mark is a double one
+        yield candidate("Write plain quotation marks", write('"', '"'))
+    else:
+        yield candidate("Remove the quotation marks", write("'", ""), 0.1)
 
 
 def wildcards(

@@ -290,7 +290,8 @@ def state_with_prompt(
     if state.phase is Phase.REPHRASING:
         prompt = "Please say it another way."
     elif slot is None:
-        said = gloss(state.form, dialogue.predicates, classes)
+        named = dialogue.ontology.class_of_text
+        said = gloss(state.form, dialogue.predicates, classes, named)
         words = re.sub(r"\bme\b", "you", said)
         prompt = f"Did you mean: {said}?" if state.phase is Phase.CHECKING else f"Shall I {words}?"
     elif state.phase is Phase.LEARNING:

@@ -71,6 +71,14 @@ class Ontology:
         }
 
     @cached_property
+    def class_of_text(self) -> Mapping[str, str]:
+        """Text → its class, for the texts that are of one class alone."""
+        classes: dict[str, set[str]] = {}
+        for each in self.entities:
+            classes.setdefault(each.text, set()).add(each.entity_class)
+        return {text: next(iter(names)) for text, names in classes.items() if len(names) == 1}
+
+    @cached_property
     def singulars(self) -> Mapping[str, str]:
         """Category name → its singular, for the categories that declare one."""
         pairs = ((each.text, each.attribute("singular")) for each in self.of_class("category"))

@@ -388,8 +388,8 @@ class _Planner:
         """Return the answer of the operator in place of an argument that is open."""
         if not isinstance(value, OpenValue):
             return value
-        message = f"{self.acting.action} has no {name.replace('_', ' ')}"
-        self.waiting.append((Trouble.MISSING_ARGUMENT, message, "say it in the command"))
+        message = f"nothing says the {name.replace('_', ' ')} of “{self.acting.action}”"
+        self.waiting.append((Trouble.MISSING_ARGUMENT, message, "name it, or answer the question"))
         return self.ask(self._question("", self.acting.place_of(place)), name)
 
     def _question(self, entity_class: str, path: tuple[int, ...]) -> str:

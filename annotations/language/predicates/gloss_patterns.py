@@ -15,6 +15,7 @@ wins, then the one that says most about their kinds, then the first. In an alter
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -22,6 +23,7 @@ from annotations.language.english import KNOWN_PATTERNS, PREPOSITIONS, RELATIONS
 from annotations.language.predicates.signatures import Signature
 
 SUPERLATIVES = ("est", "most")  # how the names of predicates end that choose one among several
+_PLAIN_SLOT = re.compile(r"\{[1-9][0-9]?\}")
 ALL_IN_ORDER = "{*}"  # how a sequence is said
 _SLOT = re.compile(r"\{(?P<place>[1-9][0-9]?|\*)(?::(?P<kind>\w+)|=(?P<value>[^{}]*))?\}")
 
@@ -66,8 +68,38 @@ def read_pattern(pattern: str) -> tuple[GlossAlternative, ...]:
 
 
 def default_pattern(name: str, is_action: bool, signatures: tuple[Signature, ...]) -> str:
-    """Return the pattern of a predicate of the published corpus, or else one made from the name."""
-    return KNOWN_PATTERNS.get(name) or pattern_of_name(name, is_action, signatures)
+    """Return the pattern of a predicate of the published corpus, or else one made from the name.
+
+    It says every argument of the signatures: a known pattern is made longer where it has too few.
+    """
+    pattern = KNOWN_PATTERNS.get(name) or pattern_of_name(name, is_action, signatures)
+    return lengthen(pattern, is_action, signatures)
+
+
+def lengthen(pattern: str, is_action: bool, signatures: Iterable[Signature]) -> str:
+    """Return the pattern with further alternatives, so that it says every argument of the signatures."""
+    return " | ".join([pattern, *_longer_alternatives(pattern, is_action, signatures)])
+
+
+def _longer_alternatives(
+    pattern: str, is_action: bool, signatures: Iterable[Signature]
+) -> Iterator[str]:
+    """Yield an alternative for each signature with an argument that no alternative of ``pattern`` mentions.
+
+    The first argument of a description is what it describes, and is not said.
+    """
+    places = {slot.place for each in read_pattern(pattern) for slot in each.slots}
+    if None in places:  # all arguments, in order
+        return
+    longest = max(pattern.split("|"), key=lambda each: len(_PLAIN_SLOT.findall(each))).strip()
+    for signature in signatures:
+        unsaid = [
+            f"{PREPOSITIONS.get(kind, 'with')} {{{place + 1}}}"
+            for place, kind in enumerate(signature.arguments)
+            if place not in places and (is_action or place > 0)
+        ]
+        if unsaid:
+            yield " ".join([longest, *unsaid])
 
 
 def pattern_of_name(name: str, is_action: bool, signatures: tuple[Signature, ...]) -> str:

@@ -270,7 +270,8 @@ def _phrase(form: Form, scope: Scope, is_plural: bool = False) -> str:
     if isinstance(form, Reference):
         return form.word
     said = _bare(form, scope)
-    return said if argument_kind(form) == ArgumentKind.NUMBER else f"the {said}"
+    is_named = argument_kind(form) == ArgumentKind.TEXT and said[:1].isupper()
+    return said if is_named or argument_kind(form) == ArgumentKind.NUMBER else f"the {said}"
 
 
 def _bare(form: Form, scope: Scope) -> str:

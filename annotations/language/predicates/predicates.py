@@ -24,7 +24,7 @@ from annotations.language.forms import (
 )
 from annotations.language.limits import MAX_GLOSS
 from annotations.language.predicates.asking import question
-from annotations.language.predicates.gloss_patterns import ALL_IN_ORDER, default_pattern
+from annotations.language.predicates.gloss_patterns import ALL_IN_ORDER, default_pattern, lengthen
 from annotations.language.predicates.glossing import Scope, sentence
 from annotations.language.predicates.signatures import (
     ArgumentKind,
@@ -105,12 +105,13 @@ class Misuse:
     """A predicate used as nothing declares it.
 
     ``node`` is the number of the term that is wrong, the application or its argument, in the order
-    of ``walk``.
+    of ``walk``. ``undeclared`` names the predicate if nothing declares it.
     """
 
     node: int
     message: str
     hint: str
+    undeclared: str = ""
 
 
 def check_form(
@@ -132,14 +133,19 @@ def find_misuses(form: Form, predicates: Mapping[str, Predicate]) -> Iterator[Mi
 
 
 def gloss(
-    form: Form, predicates: Mapping[str, Predicate], classes: EntityClasses = DEFAULT_CLASSES
+    form: Form,
+    predicates: Mapping[str, Predicate],
+    classes: EntityClasses = DEFAULT_CLASSES,
+    named: Mapping[str, str] | None = None,
 ) -> str:
     """Return a short English sentence for a form, the same on every call.
 
     ``( bring ( lambda $1 e ( is_a $1 " <object> " ) ) )`` is "bring me the object". Predicates that
-    are not declared are glossed by their names. ``classes`` say how class tokens are called.
+    are not declared are glossed by their names. ``classes`` say how class tokens are called; ``named`` gives
+    the classes of texts that name entities: a thing is in a room, but at a location.
     """
-    return sentence(form, _scope_of(form, declared_or_inferred(predicates, form), classes))
+    scope = _scope_of(form, declared_or_inferred(predicates, form), classes)
+    return sentence(form, replace(scope, named=named or {}))
 
 
 def ask_for(
@@ -169,10 +175,21 @@ def ask_for(
 
 
 def _scope_of(form: Form, declared: Mapping[str, Predicate], classes: EntityClasses) -> Scope:
-    used = {name: declared[name] for name in map(_name_of, _applications(form))}
-    patterns = {name: each.gloss or _default(each) for name, each in used.items()}
+    uses: defaultdict[str, set[Signature]] = defaultdict(set)
+    for application in _applications(form):
+        uses[_name_of(application)].add(signature_of(application))
+    used = {name: declared[name] for name in uses}
+    patterns = {name: _pattern_for(each, uses[name]) for name, each in used.items()}
     actions = frozenset(name for name, each in used.items() if each.is_action)
     return Scope(patterns, actions, classes)
+
+
+def _pattern_for(predicate: Predicate, uses: Iterable[Signature]) -> str:
+    """Return the gloss pattern of a predicate. It says more arguments than are declared too."""
+    pattern = predicate.gloss or _default(predicate)
+    most = max((len(each.arguments) for each in predicate.signatures), default=0)
+    longer = [each for each in uses if len(each.arguments) > most]
+    return lengthen(pattern, predicate.is_action, longer) if longer else pattern
 
 
 def declared_or_inferred(
@@ -226,7 +243,7 @@ def _misuse(node: int, form: Application, predicates: Mapping[str, Predicate]) -
             name, predicates.keys(), scorer=Indel.normalized_similarity, score_cutoff=ALIKE
         )
         hint = f"did you mean {close[0]}?" if close else "declare it, or use one that is declared"
-        return Misuse(node, f"there is no predicate {name}", hint)
+        return Misuse(node, f"there is no predicate {name}", hint, undeclared=name)
     declared = predicates[name].signatures
     given = signature_of(form)
     choices = " or ".join(f"{name}{each}" for each in declared)

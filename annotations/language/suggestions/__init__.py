@@ -4,11 +4,17 @@ from __future__ import annotations
 
 from annotations.language.suggestions.analogy import solve as solve_analogy
 from annotations.language.suggestions.patterns import PatternMaker, nearest_patterns
-from annotations.language.suggestions.suggester import MOST_SUGGESTIONS, FormSuggester, Suggestion
+from annotations.language.suggestions.suggester import (
+    MOST_SUGGESTIONS,
+    SURE_SHARE,
+    FormSuggester,
+    Suggestion,
+)
 from annotations.language.suggestions.transfer import lift_forms, transfer_form
 
 __all__ = [
     "MOST_SUGGESTIONS",
+    "SURE_SHARE",
     "FormSuggester",
     "PatternMaker",
     "Suggestion",

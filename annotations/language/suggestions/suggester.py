@@ -6,7 +6,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import chain
+from itertools import chain, islice
 from math import exp
 
 from annotations.language.forms import (
@@ -65,17 +65,27 @@ SHARPNESS = 2.0
 MOST_ADDED, MOST_CONSTRAINTS = 2, 2
 
 
+# Of templates that were left out, the first form is right for more than nine of ten above this share
+# (docs/design/suggestions.md, Filled in or offered).
+SURE_SHARE = 0.75
+
+
 @dataclass(frozen=True, slots=True)
 class Suggestion:
-    """A form for a pattern. ``template`` is the one that it was mostly made from; a higher score is better.
+    """A form for a pattern. ``template`` is the one that it was mostly made from.
 
-    ``is_guess`` where the pattern has a word that no template has: its meaning cannot be known.
+    ``share`` is what part of the weight of all candidates speaks for the form. It is 0 where the pattern has a
+    word that no template has: its meaning cannot be known.
     """
 
     form: Form
-    score: float
+    share: float
     template: SemanticTemplate
-    is_guess: bool = False
+
+    @property
+    def is_sure(self) -> bool:
+        """Whether to fill the form in, rather than to offer it."""
+        return self.share > SURE_SHARE
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,9 +130,10 @@ class FormSuggester:
                 best[text] = candidate
         ranked = sorted(scores, key=lambda text: -scores[text])
         typed = (text for text in ranked if target.is_well_typed(best[text].form))
+        whole = float("inf") if target.is_new else sum(scores.values())
         return tuple(
-            Suggestion(best[text].form, scores[text], best[text].source.template, target.is_new)
-            for text, _ in zip(typed, range(MOST_SUGGESTIONS), strict=False)
+            Suggestion(best[text].form, scores[text] / whole, best[text].source.template)
+            for text in islice(typed, MOST_SUGGESTIONS)
         )
 
     @cached_property

@@ -30,6 +30,7 @@ from annotations.language.predicates import (
     PredicateKind,
     Signature,
     find_misuses,
+    infer_signatures,
 )
 from annotations.language.symbols import (
     Nonterminal,
@@ -223,7 +224,19 @@ class TemplateChecker:
             span = list(read_spans(template.form_text).walk())[misuse.node]
             start = span.name_start if span.kind == "application" else span.start
             place = Offsets(template.form_text).position(start).inside(template.form_position)
-            yield warning_at(place, misuse.message, misuse.hint)
+            warning = warning_at(place, misuse.message, misuse.hint)
+            yield replace(warning, undeclared=misuse.undeclared)
+
+    def predicates_used(self, template: SemanticTemplate) -> Mapping[str, Predicate]:
+        """Return the predicates of a form as it uses them, with the signatures that its commands show.
+
+        A pattern that is too large, or has an error, shows those of the form as it is written.
+        """
+        try:
+            _, _, forms = self._expand(template, Budget(CHECK_STEPS))
+        except LanguageError:
+            forms = ()
+        return infer_signatures(forms or (template.form,))
 
 
 def template_checker(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from datetime import date, datetime, time, timedelta
+from datetime import UTC, date, datetime, time, timedelta
 from typing import Any
 
 import django_filters
@@ -168,7 +168,8 @@ class CampaignForm(forms.Form):
         if day is None:
             return None
         try:
-            end = timezone.make_aware(datetime.combine(day + timedelta(days=1), time.min))
+            # In UTC, whoever sets it: contributors are anywhere, and their page says UTC.
+            end = datetime.combine(day + timedelta(days=1), time.min, UTC)
         except OverflowError:
             raise forms.ValidationError("Choose an earlier day.") from None
         if end <= timezone.now():
@@ -249,7 +250,7 @@ def last_day_of(campaign: Campaign) -> date | None:
     """Return the last whole day of a campaign; None where it has no end."""
     if campaign.ends_at is None:
         return None
-    return timezone.localdate(campaign.ends_at - timedelta(microseconds=1))
+    return (campaign.ends_at - timedelta(microseconds=1)).astimezone(UTC).date()
 
 
 class ResultsForm(forms.Form):

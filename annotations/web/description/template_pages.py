@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import partial
 from hashlib import sha256
 from typing import Any
+from urllib.parse import urlencode
 
 from django.contrib import messages
 from django.db.models import Count, Q
@@ -25,6 +26,7 @@ from annotations.checking.template_check import (
 )
 from annotations.editing.edits import Overtaken, add
 from annotations.form_presentation import form_of
+from annotations.generation.uncovered import next_uncovered
 from annotations.generation.world_consequences import WorldConsequences, consequences
 from annotations.language.english import say_count
 from annotations.language.forms import head_predicate
@@ -37,6 +39,7 @@ from annotations.people.access import READ_AND_WRITE, WRITE, PageRequest, WorldR
 from annotations.rows.row_kinds import KINDS
 from annotations.suggesting import (
     MOST_COMMAND,
+    commands_of,
     duplicate_of,
     suggest_forms,
     suggest_nearest,
@@ -138,7 +141,7 @@ def template_new(request: WorldRequest, world: World) -> HttpResponse:
         unsaved = SemanticTemplate.for_category(category, **values)
         row = add(unsaved, request.user, form.cleaned_data["once"])
         tell_saved(request, row, "Saved.", expected)
-        return redirect("template", world=world.name, pk=row.pk)
+        return redirect(page_after(request, row))
     checked = form.checked or checked_of(world, form)
     context = {
         "form": form,
@@ -175,7 +178,7 @@ def template(request: WorldRequest, world: World, pk: int) -> HttpResponse:
             shown = partial(initial_of, world)
             return merge_page(request, row, form, clash, shown, **urls)
         tell_saved(request, row, f"Saved as version {row.version}.", expected)
-        return redirect("template", world=world.name, pk=pk)
+        return redirect(page_after(request, row))
     if request.GET.get("nearest") and Duty.ANNOTATE in request.duties:
         context["nearest"] = suggest_nearest(world, row)
     if (
@@ -188,15 +191,40 @@ def template(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     return render(request, "annotations/description/template.html", context)
 
 
+def page_after(request: WorldRequest, row: SemanticTemplate) -> str:
+    """Return the address after a save: of the template, or with "next" of a new one for the next command.
+
+    That is the next command without a form, behind the one in the address. Without one it is the page of coverage.
+    """
+    world = row.grammar.world
+    if "next" not in request.POST:
+        return reverse("template", args=[world.name, row.pk])
+    made = commands_of(row) if row.status == TemplateStatus.READY else frozenset()
+    following = next_uncovered(world, row.task_category, command_in(request), made)
+    if following is None:
+        return reverse("uncovered", args=[world.name])
+    query = {"task_category": following.task_category, "command": following.text}
+    return f"{reverse('template_new', args=[world.name])}?{urlencode(query)}"
+
+
+def command_in(request: WorldRequest) -> str:
+    """Return the command that the address names, with single blanks; empty without one."""
+    return " ".join(request.GET.get("command", "").replace("\0", "").split())[:MOST_COMMAND]
+
+
 def tell_saved(
     request: PageRequest, row: SemanticTemplate, sentence: str, expected: WorldConsequences
 ) -> None:
     """Tell the reader that the template was saved, what changed, and how many problems it has."""
+    is_elsewhere = "next" in request.POST  # the next page is not that of the template
+    if is_elsewhere:
+        url = reverse("template", args=[row.grammar.world.name, row.pk])
+        sentence = format_html('Saved <a href="{}">the template</a>.', url)
     parts = [format_html("{} {}", sentence, what_came_of_it(row, expected))]
     count = len(row.problems)
     if count:
-        found = say_count(count, "problem")
-        parts.append(format_html("The checker sees {} in it, listed below.", found))
+        found, where = say_count(count, "problem"), "" if is_elsewhere else ", listed below"
+        parts.append(format_html("The checker sees {} in it{}.", found, where))
     level = messages.WARNING if count else messages.SUCCESS
     messages.add_message(request, level, format_html_join(" ", "{}", ((part,) for part in parts)))
 
@@ -284,11 +312,11 @@ def template_duplicate(request: WorldRequest, world: World, pk: int) -> HttpResp
 def suggestions_for_command(request: WorldRequest, world: World) -> dict[str, Any]:
     """Return the context of the page of a new template for the command in its URL; empty without one.
 
-    ``initial`` are the values that its fields begin with. The form is left to the writer where it would be a
-    guess; one that is filled in is a draft until somebody takes it. ``draft`` names the place of the draft of
-    what is typed, so that one of another command is not filled in.
+    ``initial`` are the values that its fields begin with. The form is filled in where the first suggestion is
+    sure, and left to the writer elsewhere. ``draft`` names the place of the draft of what is typed, so that one
+    of another command is not filled in.
     """
-    command = " ".join(request.GET.get("command", "").replace("\0", "").split())[:MOST_COMMAND]
+    command = command_in(request)
     if not command:
         return {}
     about = {
@@ -305,10 +333,8 @@ def suggestions_for_command(request: WorldRequest, world: World) -> dict[str, An
         return about
     pattern = suggest_pattern(world, category, command)
     suggestions = suggest_forms(world, category, pattern)
-    likely = [each.text for each in suggestions if not each.is_guess]
-    first = likely[0] if likely else ""
-    status = TemplateStatus.DRAFT if first else TemplateStatus.READY
-    initial = {"task_category": category, "pattern": pattern, "form": first, "status": status}
+    first = suggestions[0].text if suggestions and suggestions[0].is_sure else ""
+    initial = {"task_category": category, "pattern": pattern, "form": first}
     shown = {"suggestions": suggestions, "chosen": first, "is_first": True}
     return {**about, **shown, "initial": initial}
 

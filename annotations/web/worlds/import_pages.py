@@ -157,6 +157,6 @@ def _generated(
         request,
         f"{made.commands:,} commands with {made.forms:,} logical forms: "
         f"{changes.added:,} rows added, {changes.changed:,} changed, {changes.removed:,} removed, "
-        f"{changes.moved:,} only moved.",
+        f"{changes.moved:,} in another place.",
     )
     return redirect("commands", world=world.name)

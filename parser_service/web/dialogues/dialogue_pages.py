@@ -75,7 +75,12 @@ def dialogue(request: WorldRequest, world: World, pk: int) -> HttpResponse:
         "asked": asked_of(state),
         "is_yes_or_no": state.phase in YES_OR_NO,
         "grounded": to_corpus(state.form) if has_form else "",
-        "english": gloss(state.form, language.predicates, language.ontology.classes)
+        "english": gloss(
+            state.form,
+            language.predicates,
+            language.ontology.classes,
+            language.ontology.class_of_text,
+        )
         if has_form
         else "",
         "plan": plan_of(state, language) if has_form else None,

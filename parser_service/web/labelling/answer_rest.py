@@ -78,7 +78,7 @@ class SuggestedFormSerializer(serializers.Serializer[Any]):
     form = serializers.CharField(source="text")
     english = serializers.CharField(source="gloss")
     made_from = serializers.CharField(allow_blank=True)
-    is_guess = serializers.BooleanField()
+    is_sure = serializers.BooleanField()
     parsers = serializers.SerializerMethodField()
 
     def get_parsers(self, form: Any) -> list[str]:

@@ -93,3 +93,33 @@ def test_a_browser_is_told_whether_the_offers_have_changed(completion, sample):
     changed = completion(**{"If-None-Match": tag})
     assert changed.status_code == 200
     assert "look for {1}" in changed.content.decode()
+
+
+def declaration_in(answer):
+    return next(filter(None, (each["declaration"] for each in answer["problems"])), None)
+
+
+@pytest.mark.parametrize(
+    ("form", "kind", "signatures"),
+    [
+        ('(guide {kobject} "sofa" 3)', "action", [["object", "text", "number"]]),
+        ("(find (λ$1:e (guide $1 {kobject})))", "description", [["variable", "object"]]),
+        ("(find (λ$1:e (is_a $1 {kobject}) (guide $1)))", "description", [["variable"]]),
+    ],
+)
+def test_a_missing_predicate_comes_with_its_declaration(form, kind, signatures, ask, anna):
+    wanted = {"name": "guide", "kind": kind, "signatures": signatures}
+    assert declaration_in(ask(form=form)) == wanted
+    route = "/api/v1/worlds/home/predicates/"
+    assert anna.post(route, wanted, content_type="application/json").status_code == 201
+    assert declaration_in(ask(form=form)) is None
+
+
+def test_what_a_nonterminal_stands_for_shows_in_the_declaration(ask):
+    answer = ask(pattern="$vbfind the $object", form="(guide $object)")
+    assert declaration_in(answer)["signatures"] == [["object"]]
+
+
+def test_nothing_is_declared_for_a_declared_predicate_or_an_unreadable_form(ask):
+    assert declaration_in(ask(form="(find {kobject} {kobject})")) is None
+    assert declaration_in(ask(form="(guide {kobject}")) is None

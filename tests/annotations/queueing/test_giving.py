@@ -15,7 +15,15 @@ from annotations.models import Assignment, Label, Verdict, WorkItem, WorkKind
 from annotations.models.queueing import Outcome
 from annotations.queueing.enqueuing import WantedItem, enqueue, refill, set_share
 from annotations.queueing.finishing import finish, give_back, skip
-from annotations.queueing.giving import ItemFilter, NotForThem, assign, next_item, take, withdraw
+from annotations.queueing.giving import (
+    ItemFilter,
+    NotForThem,
+    assign,
+    close_item,
+    next_item,
+    take,
+    withdraw,
+)
 from annotations.queueing.item_answers import answer, take_answer_back
 from tests.annotations.queueing.conftest import kinds, say
 
@@ -75,6 +83,22 @@ def test_an_expired_lease_returns_to_the_queue(world, queue, annotator, berta):
     with pytest.raises(NoLongerYours) as refused:
         finish(lost)
     assert refused.value.code == "done_by_another"
+
+
+def test_nobody_else_is_named_where_an_item_was_closed(world, queue, annotator):
+    lost = next_item(annotator, world)
+    close_item(lost.item)
+    with pytest.raises(NoLongerYours) as refused:
+        finish(lost)
+    assert refused.value.code == "already_done"
+
+
+def test_what_one_holds_already_is_not_somebody_else_s(world, queue, annotator, admin):
+    item = queue.last()
+    assign(item, annotator, by=admin)
+    with pytest.raises(NotForThem) as refused:
+        assign(item, annotator, by=admin)
+    assert refused.value.code == "held_by_them"
 
 
 def test_who_comes_back_before_anybody_else_has_lost_nothing(world, queue, annotator):

@@ -39,16 +39,73 @@ def test_a_suggested_form_is_chosen_by_its_digit_and_covers_the_command(
     expect(page.get_by_text("Every command looked at has a form.")).to_be_visible()
 
 
-def test_a_suggestion_is_ready_once_somebody_takes_it(page_of, live_server, sample, annotator):
-    page = page_of(annotator)
+@pytest.fixture
+def find_me(sample, annotator) -> str:
+    """The form of three templates that say how to find; none covers "find the <object>"."""
     delete(sample.template, annotator, sample.template.version)
-    category = sample.world.grammar.task_categories.get()
-    values = {"pattern": "find me the {kobject}", "status": "ready"}
     form = "(find (λ$1:e (is_a $1 {kobject})))"
-    add(SemanticTemplate.for_category(category, form=form, **values), annotator)
+    category = sample.world.grammar.task_categories.get()
+    for pattern in ("find me the {kobject}", "locate me the {kobject}", "find a {kobject}"):
+        values = {"pattern": pattern, "form": form, "status": "ready"}
+        add(SemanticTemplate.for_category(category, **values), annotator)
+    return form
+
+
+def test_a_sure_form_is_filled_in_and_editing_clears_the_choice(
+    page_of, live_server, annotator, find_me
+):
+    page = page_of(annotator)
     page.goto(f"{live_server.url}/w/home/templates/new/?command=find+the+<object>")
-    expect(page.locator(".cm-content").nth(1)).to_have_text(form)
-    expect(page.get_by_label("Status")).to_have_value("draft")
-    page.locator("h1").click()
-    page.keyboard.press("1")
+    form = page.get_by_role("textbox", name="Logical form")
+    expect(form).to_have_text(find_me)
     expect(page.get_by_label("Status")).to_have_value("ready")
+    first = page.get_by_role("group", name="Suggested forms").get_by_role("radio").first
+    expect(first).to_be_checked()
+    form.press("End")
+    page.keyboard.type("x")
+    expect(first).not_to_be_checked()
+    page.keyboard.press("Backspace")
+    expect(first).to_be_checked()
+
+
+def test_two_clicks_from_a_command_to_a_filled_editor_and_one_key_to_the_next(
+    page_of, live_server, sample, annotator
+):
+    for row in SemanticTemplate.objects.filter(grammar__world=sample.world):
+        delete(row, annotator, row.version)
+    category = sample.world.grammar.task_categories.get()
+    for pattern in ("seek the {kobject}", "fetch the {kobject}"):
+        form = "(find (λ$1:e (is_a $1 {kobject})))"
+        made = SemanticTemplate.for_category(category, pattern=pattern, form=form, status="ready")
+        add(made, annotator)
+    page = page_of(annotator)
+    page.goto(f"{live_server.url}/w/home/coverage/?q=locate")
+    page.get_by_role("button", name="Write a template for locate the").click()
+    expect(page.locator(".cm-editor")).to_have_count(2)
+    page.locator(".suggestion").first.click()
+    form = page.get_by_role("textbox", name="Logical form")
+    expect(form).to_have_text("(find (λ$1:e (is_a $1 {kobject})))")
+    expect(page.get_by_role("textbox", name="Pattern")).to_have_text("$vbfind the {kobject}")
+    page.keyboard.press("Control+Shift+Enter")
+    expect(page.locator(".message")).to_contain_text("Saved")
+    expect(page.locator("h1")).to_have_text("New template")
+    assert page.url.endswith("?task_category=1&command=go+to+the+%3Croom%3E")
+    expect(page.get_by_role("textbox", name="Pattern")).to_have_text("go to the {room}")
+    assert SemanticTemplate.objects.filter(pattern="$vbfind the {kobject}").count() == 1
+
+
+def test_the_page_after_a_save_is_that_of_the_template(page_of, live_server, annotator, find_me):
+    page = page_of(annotator)
+    page.goto(f"{live_server.url}/w/home/templates/new/?command=find+the+<object>")
+    expect(page.locator(".cm-editor")).to_have_count(2)
+    count = SemanticTemplate.objects.count()
+    page.evaluate(
+        "document.body.dispatchEvent(new KeyboardEvent('keydown', "
+        "{ key: 'Enter', ctrlKey: true, shiftKey: true, repeat: true, bubbles: true }))"
+    )  # the key that saved the page before is still held down
+    expect(page.get_by_text("Draft saved")).to_have_count(0)
+    assert SemanticTemplate.objects.count() == count
+    page.keyboard.press("Control+Enter")  # nobody has clicked into a field
+    expect(page.locator(".message")).to_contain_text("Saved")
+    made = SemanticTemplate.objects.latest("pk")
+    assert page.url == f"{live_server.url}/w/home/templates/{made.pk}/"

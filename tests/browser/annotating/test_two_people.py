@@ -10,6 +10,7 @@ from playwright.sync_api import expect
 from annotations.models import SemanticTemplate
 from annotations.rows.row_kinds import KINDS, as_text
 from tests.browser.arriving import arrive
+from tests.browser.writing import save_button
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
@@ -21,12 +22,12 @@ def test_two_browsers_on_one_template(logged_in, sample, live_server, annotator,
         expect(page.locator(".cm-editor")).to_have_count(2)
         expect(page.get_by_label("Status")).to_have_value("ready")
     adams.get_by_role("textbox", name="Pattern").fill("$vbfind a $object")
-    adams.get_by_role("button", name="Save").click()
+    save_button(adams).click()
     expect(adams.locator(".message")).to_contain_text("Saved as version 2")
 
     annas.get_by_role("textbox", name="Pattern").fill("$vbfind my $object")
     annas.get_by_role("combobox", name="Status").select_option("draft")
-    annas.get_by_role("button", name="Save").click()
+    save_button(annas).click()
     expect(annas.get_by_role("alert").first).to_contain_text("adam has saved version 2")
     arrive(annas, "Merge two changes")
     pattern = annas.get_by_role("textbox", name="Pattern")

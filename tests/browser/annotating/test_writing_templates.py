@@ -8,7 +8,7 @@ from playwright.sync_api import expect
 from annotations.models import Draft, SemanticTemplate, TaskCategory
 from tests.browser.arriving import wait_for_swap
 from tests.browser.conftest import give_window
-from tests.browser.writing import open_editor, write
+from tests.browser.writing import open_editor, save_button, write
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
@@ -106,7 +106,7 @@ def test_a_draft_of_an_old_version_overwrites_nobody(page_of, live_server, annot
     )
     open_editor(page, live_server.url, str(sample.template.pk))
     expect(page.get_by_text(RESTORED)).to_be_visible()
-    page.get_by_role("button", name="Save").click()
+    save_button(page).click()
     expect(page.get_by_role("alert").first).to_contain_text("saved version 2 in the meantime")
     sample.template.refresh_from_db()
     assert sample.template.pattern == "find a $object"
@@ -150,7 +150,7 @@ def test_a_draft_is_offered_on_another_device(logged_in, sample, live_server, an
     second.get_by_role("button", name="Restore", exact=True).click()
     expect(second.locator(".cm-content").first).to_have_text("find my $object")
     expect(second.get_by_text("Draft saved")).to_be_visible()  # none is on its way any more
-    second.get_by_role("button", name="Save").click()
+    save_button(second).click()
     expect(second.locator(".message")).to_contain_text("Saved as version 2")
     assert not Draft.objects.exists()
 
@@ -197,7 +197,7 @@ def test_an_expired_session_is_renewed_in_place(page_of, live_server, annotator)
     password = page.get_by_label(f"Password of {annotator}")
     password.fill("wrong")
     password.press("Enter")
-    expect(page.get_by_text("correct username and password")).to_be_visible()
+    expect(page.get_by_text("No account has this name")).to_be_visible()
     password.fill("a long password")
     password.press("Enter")
     expect(page.get_by_text("You are logged in again")).to_be_visible()
@@ -205,7 +205,7 @@ def test_an_expired_session_is_renewed_in_place(page_of, live_server, annotator)
     expect(page.get_by_text("Draft saved")).to_be_visible()
     write(page, "go to the {room}", "(go {room})")
     expect(page.locator("#preview")).to_contain_text("1 command")
-    page.get_by_role("button", name="Save").click()
+    save_button(page).click()
     expect(page.locator(".message")).to_contain_text("Saved")
 
 
@@ -250,3 +250,94 @@ def test_what_replaces_a_pattern_does_not_keep_the_look_of_its_first_word(
     # As Chromium leaves it, now and then, where the text was there before the page was.
     pattern.locator(".cm-line").evaluate("line => { line.style.color = 'rgb(47, 91, 194)'; }")
     assert pattern.locator(".cm-line").evaluate("line => getComputedStyle(line).color") == plain
+
+
+def test_a_missing_predicate_is_declared_as_the_form_uses_it(
+    page_of, live_server, annotator, sample
+):
+    page = page_of(annotator)
+    open_editor(page, live_server.url)
+    write(page, "find the {kobject}", '(guide {kobject} "Sofa" (λ$1:e (is_a $1 {kobject})))')
+    report = page.locator(".editor-report").nth(1)
+    expect(report).to_contain_text("there is no predicate guide")
+    expect(page.locator("#preview")).to_contain_text("Sofa for the object")  # nothing is dropped
+    page.get_by_role("button", name="Declare action guide(object, text, lambda)").click()
+    expect(page.get_by_text("Declared guide.")).to_be_visible()
+    expect(report).not_to_contain_text("there is no predicate")
+    row = sample.world.predicates.get(name="guide")
+    assert (row.kind, row.signatures) == ("action", [["object", "text", "lambda"]])
+    page.get_by_role("link", name="Change or delete guide").click()
+    expect(page.locator("h1")).to_have_text("guide")
+
+
+@pytest.mark.parametrize(
+    "typed, repaired",
+    [
+        ("(say “hello there”)", '(say "hello there")'),
+        ("(say «hello there»)", '(say "hello there")'),
+        ("(say\u00a0“hello\u2009there\u200b”)", '(say "hello there")'),
+    ],
+)
+def test_one_key_repairs_curly_quotes_and_odd_blanks(
+    typed, repaired, page_of, live_server, annotator
+):
+    page = page_of(annotator)
+    open_editor(page, live_server.url)
+    write(page, "go to the\u00a0{room}", typed)
+    report = page.locator(".editor-report").nth(1)
+    expect(report.get_by_role("button", name="Write plain quotation marks")).to_be_visible()
+    page.get_by_role("textbox", name="Logical form").press("Control+.")
+    assert page.locator("#id_form").input_value() == repaired
+    assert page.locator("#id_pattern").input_value() == "go to the {room}"
+
+
+def test_the_help_stays_closed_once_it_is_closed(page_of, live_server, annotator):
+    page = page_of(annotator)
+    open_editor(page, live_server.url)
+    help_text = page.get_by_text("a sentence that people say to the robot")
+    expect(help_text).to_be_visible()  # she has written no template yet
+    page.get_by_text("How to write a template").click()
+    expect(help_text).to_be_hidden()
+    page.reload()
+    expect(page.locator(".cm-editor")).to_have_count(2)
+    expect(help_text).to_be_hidden()
+    page.get_by_text("How to write a template").click()
+    page.reload()
+    expect(help_text).to_be_visible()
+
+
+def test_meaning_and_consequences_stay_in_view_beside_the_fields(
+    page_of, live_server, annotator, sample
+):
+    page = page_of(annotator)
+    page.set_viewport_size({"width": 1280, "height": 800})
+    open_editor(page, live_server.url, str(sample.template.pk))
+    for heading in ("Meaning", "As people say it", "When you save"):
+        expect(page.get_by_role("heading", name=heading)).to_be_in_viewport()
+    page.locator("#template-form").evaluate("form => { form.style.minHeight = '3000px'; }")
+    page.evaluate("scrollTo(0, 1500)")
+    expect(page.get_by_role("heading", name="Meaning")).to_be_in_viewport()
+    page.set_viewport_size({"width": 320, "height": 640})
+    assert page.evaluate("document.documentElement.scrollWidth") <= 320
+
+
+def test_escape_and_the_keys_of_an_input_method_lose_nothing(page_of, live_server, annotator):
+    page = page_of(annotator)
+    open_editor(page, live_server.url)
+    write(page, "go to the {room}", "(go {room})")
+    form = page.get_by_role("textbox", name="Logical form")
+    client = page.context.new_cdp_session(page)
+    client.send("Input.imeSetComposition", {"text": "す", "selectionStart": 1, "selectionEnd": 1})
+    for key in ("Enter", "Escape"):
+        form.evaluate(
+            "(field, key) => field.dispatchEvent(new KeyboardEvent('keydown', "
+            "{ key, ctrlKey: key === 'Enter', isComposing: true, keyCode: 229, bubbles: true }))",
+            key,
+        )
+    client.send("Input.insertText", {"text": "す"})
+    expect(form).to_contain_text("す")
+    form.press("Escape")
+    assert page.url.endswith("/templates/new/")
+    expect(form).to_contain_text("す")
+    page.reload()
+    expect(form).to_contain_text("す")  # the draft has it

@@ -19,7 +19,7 @@ from tests.browser.faults import (
     wide_and_light,
 )
 from tests.browser.variants import NARROW_DARK, WIDE_LIGHT
-from tests.browser.writing import open_editor, write
+from tests.browser.writing import open_editor, save_button, write
 from tests.doubted_labels import doubt, say
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
@@ -62,7 +62,7 @@ def open_merge(page: Page, url: str) -> None:
     open_editor(page, url, str(row.pk))
     page.get_by_role("textbox", name="Pattern").fill("find my $object")
     SemanticTemplate.objects.filter(pk=row.pk).update(pattern="find a $object", version=2)
-    page.get_by_role("button", name="Save").click()
+    save_button(page).click()
     expect(page.get_by_role("heading", name="Merge two changes")).to_be_visible()
 
 

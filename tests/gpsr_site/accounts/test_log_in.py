@@ -39,6 +39,25 @@ def test_the_right_password_leads_to_the_page_that_was_asked_for(client):
     assert answer.url == "/w/home/commands/"
 
 
+@pytest.mark.parametrize(("asked", "is_told"), [("/", False), ("/w/home/commands/", True)])
+def test_only_who_asked_for_a_page_is_told_to_go_on_to_it(asked, is_told, client):
+    page = client.get("/login/", {"next": asked}).content.decode()
+    assert ("to continue" in page) is is_told
+
+
+def test_the_focus_is_where_one_goes_on(client):
+    def focused(answer):
+        return re.search(r'<input\s[^>]*name="(\w+)"[^>]*autofocus', answer.content.decode())[1]
+
+    assert focused(client.get("/login/")) == "username"
+    assert focused(client.post("/login/", WRONG)) == "password"
+
+
+def test_what_the_field_is_called_the_error_calls_it_too(client):
+    page = client.post("/login/", WRONG).content.decode()
+    assert ">Name</label>" in page and "username and" not in page
+
+
 @pytest.mark.parametrize(
     "elsewhere",
     ["https://elsewhere.example/", "//elsewhere.example", "/\\elsewhere.example", "javascript:a"],

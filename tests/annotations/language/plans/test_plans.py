@@ -140,22 +140,22 @@ def test_unknown_asks_the_operator() -> None:
     [
         (
             '(guide (λ$1:e (person $1) (name $1 "Ada")) UNKNOWN)',
-            "Guide has no destination.",
+            "Nothing says the destination of “guide”.",
             "Where shall I guide Ada?",
         ),
         (
             '(guide (λ$1:e (person $1) (name $1 "Ada")))',
-            "Guide has no destination.",
+            "Nothing says the destination of “guide”.",
             "Where shall I guide Ada?",
         ),
-        ("(go UNKNOWN)", "Go has no destination.", "Where shall I go?"),
-        ("(go)", "Go has no destination.", "Where shall I go?"),
+        ("(go UNKNOWN)", "Nothing says the destination of “go”.", "Where shall I go?"),
+        ("(go)", "Nothing says the destination of “go”.", "Where shall I go?"),
         (
             '(put (λ$1:e (is_a $1 "tea")) UNKNOWN)',
-            "Put has no destination.",
+            "Nothing says the destination of “put”.",
             "Where shall I put the tea?",
         ),
-        ("(bring UNKNOWN)", "Bring has no thing.", "What shall I bring you?"),
+        ("(bring UNKNOWN)", "Nothing says the thing of “bring”.", "What shall I bring you?"),
     ],
 )
 def test_a_missing_argument_is_named_and_asked_for_before_the_action(

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from annotations.language.errors import Position, Severity
@@ -181,6 +183,42 @@ def test_the_published_forms_have_38_predicates_and_fit_them() -> None:
 
 
 @needs_corpus
+@pytest.mark.parametrize(
+    "text",
+    [
+        '(guide "Michael" "sofa" "kitchen")',
+        '(hand_over "Michael" "sofa" "kitchen")',
+        '(follow "Michael" "sofa" "kitchen")',
+        '(find (lambda $1 e (beside $1 "Michael" "sofa" "kitchen")))',
+        '(find (lambda $1 e (at $1 "Michael" "sofa" "kitchen")))',
+    ],
+)
+def test_every_argument_is_said_before_the_predicate_is_declared(text: str) -> None:
+    form = read_form(text)
+    one_less = infer_signatures([read_form(text.replace(' "kitchen"', ""))])
+    for known in ({}, infer_signatures([form]), one_less):
+        assert {"Michael", "sofa", "kitchen"} <= set(gloss(form, known).split()), known
+
+
+def test_what_a_gloss_leaves_out_on_purpose_stays_left_out() -> None:
+    form = read_form('(go "kitchen" "fast")')
+    (predicate,) = infer_signatures([form]).values()
+    assert gloss(form, {"go": replace(predicate, gloss="drive to {1}")}) == "drive to the kitchen"
+
+
+@pytest.mark.parametrize(
+    ("named", "said"),
+    [({}, "at"), ({"kitchen": "room"}, "in"), ({"kitchen": "location"}, "at")],
+)
+def test_a_thing_is_in_a_room_and_at_a_location(named: dict[str, str], said: str) -> None:
+    form = read_form('(find (lambda $1 e (is_a $1 "hammer") (at $1 "kitchen")))')
+    assert gloss(form, {}, named=named) == f"find the hammer that is {said} the kitchen"
+
+
+def test_a_name_has_no_article() -> None:
+    assert gloss(read_form('(greet "Michael" "sofa")'), {}) == "greet Michael with the sofa"
+
+
 def test_every_published_form_has_a_gloss_of_its_own() -> None:
     forms = {read_form(line) for line in form_lines("gen", "gen_logical")}
     known = infer_signatures(forms)

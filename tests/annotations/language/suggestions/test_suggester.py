@@ -94,17 +94,17 @@ def test_the_fourth_of_an_analogy_is_suggested_first(left_out):
 
 
 @pytest.mark.parametrize(
-    "pattern, is_guess",
+    "pattern, is_new",
     [
         ("give me the {kobject}", False),
         ("$find the $object", False),
         ("water the {kobject}", True),
     ],
 )
-def test_a_word_that_no_template_has_makes_a_guess(pattern, is_guess):
+def test_a_word_that_no_template_has_makes_a_guess(pattern, is_new):
     symbols = make_template(pattern, "UNKNOWN").pattern
     suggestions = suggester(*LINES).suggest(symbols, GRAMMAR)
-    assert {each.is_guess for each in suggestions} == {is_guess}
+    assert {each.share == 0 for each in suggestions} == {is_new}
 
 
 def test_no_template_no_suggestion():
@@ -131,8 +131,8 @@ def test_whatever_the_pattern_the_suggestions_pass_the_checker(pieces, lines):
     known = suggester(*lines)
     suggestions = known.suggest(make_template(pattern, "UNKNOWN").pattern, GRAMMAR)
     assert len({to_template(each.form) for each in suggestions}) == len(suggestions)
-    assert [each.score for each in suggestions] == sorted(
-        (each.score for each in suggestions), reverse=True
+    assert [each.share for each in suggestions] == sorted(
+        (each.share for each in suggestions), reverse=True
     )
     assert_well_typed(known, pattern, suggestions[:2])
 

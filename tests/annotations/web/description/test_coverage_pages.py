@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from urllib.parse import quote
+from urllib.parse import parse_qs, quote, urlsplit
 
 import pytest
 
@@ -122,12 +122,60 @@ def test_forms_are_suggested_for_the_typed_pattern(sample, anna):
     assert 'type="radio"' not in unreadable.content.decode()
 
 
-@pytest.mark.parametrize(("verb", "status"), [("go at once", "draft"), ("walk", "ready")])
-def test_a_form_that_is_filled_in_is_a_draft_until_somebody_takes_it(
-    verb, status, without_go, anna, annotator
-):
-    category = without_go.grammar.task_categories.get()
-    values = {"pattern": f"{verb} to the {{room}}", "form": "(go {room})", "status": "ready"}
-    add(SemanticTemplate.for_category(category, **values), annotator)
-    form = anna.get(NEW, {"task_category": "1", "command": "go to the <room>"}).context["form"]
-    assert (bool(form["form"].value()), form["status"].value()) == (status == "draft", status)
+@pytest.fixture
+def without_all(sample, annotator) -> World:
+    """The sample world without its templates; its three commands have no form."""
+    for row in SemanticTemplate.objects.filter(grammar__world=sample.world):
+        delete(row, annotator, row.version)
+    return sample.world
+
+
+def save_and_go_on(client, world, command: str, **values: str):
+    sent = {
+        "pattern": command.replace("<room>", "{room}").replace("<object>", "{kobject}"),
+        "form": "UNKNOWN",
+        "status": "ready",
+        "task_category": world.grammar.task_categories.get().pk,
+        "next": "",
+        **values,
+    }
+    return client.post(f"{NEW}?command={quote(command)}", sent)
+
+
+def next_of(answer) -> str:
+    """Return the command that the page is for to which a save leads."""
+    (command,) = parse_qs(urlsplit(answer.url).query)["command"]
+    return command
+
+
+def test_save_and_next_goes_through_all_commands_without_a_form(without_all, anna):
+    first, second, third = commands_on(anna)
+    answer = save_and_go_on(anna, without_all, second)
+    assert answer.url.startswith(NEW) and next_of(answer) == third
+    assert next_of(save_and_go_on(anna, without_all, third)) == first
+    answer = save_and_go_on(anna, without_all, first)
+    assert answer.url == PAGE and commands_on(anna) == []
+
+
+def test_what_a_template_covers_is_not_the_next_command(without_all, anna):
+    both = save_and_go_on(anna, without_all, "find the <object>", pattern="$vbfind the {kobject}")
+    assert next_of(both) == "go to the <room>"
+
+
+def test_a_draft_covers_nothing(without_all, anna):
+    args = {"pattern": "$vbfind the {kobject}", "status": "draft"}
+    answer = save_and_go_on(anna, without_all, "find the <object>", **args)
+    assert next_of(answer) == "locate the <object>"
+
+
+def test_a_message_after_save_and_next_leads_back_to_the_template(without_all, anna):
+    answer = save_and_go_on(anna, without_all, "go to the <room>")
+    made = SemanticTemplate.objects.get()
+    assert f'href="/w/home/templates/{made.pk}/"' in str(*anna.get(answer.url).context["messages"])
+
+
+def test_an_edit_goes_on_with_the_first_command_without_a_form(without_go, anna):
+    row = SemanticTemplate.objects.get()
+    values = {"pattern": row.pattern, "form": row.form, "status": "ready", "version": row.version}
+    answer = anna.post(f"/w/home/templates/{row.pk}/", {**values, "next": ""})
+    assert next_of(answer) == "go to the <room>"
