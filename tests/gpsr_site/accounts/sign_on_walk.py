@@ -105,7 +105,7 @@ def sign_on_again() -> None:
     from annotations.models import AuditEntry
 
     again = Client()
-    assert sign_on(again, "n", "nora")["Location"] == "/"
+    assert sign_on(again, "n", "nora")["Location"] == "/w/home/"  # her only world
     assert again.get("/w/home/").status_code == 200
     entry = AuditEntry.objects.latest("pk")
     assert (entry.who_name, entry.subject) == ("nora", "single sign-on")
