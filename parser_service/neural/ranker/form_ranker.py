@@ -59,8 +59,8 @@ class FormRanker(Parser):
     """
 
     name = "ranker"
-    version = 12
-    reads = (10, 11)
+    version = 13
+    reads = (10, 11, 12)
     protocols = (Protocol.STRICT, Protocol.DOMAIN, Protocol.GRAMMAR)
     score_kind = ScoreKind.LOG_PROBABILITY
     Config = RankerConfig

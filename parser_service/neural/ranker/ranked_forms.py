@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from random import Random
@@ -25,6 +26,7 @@ from parser_service.parsers.spreading import spread
 from parser_service.parsers.written_forms import read_or_none
 
 MOST_EXAMPLES = 20_000
+LEAST_PARAPHRASES = 4  # of a form; fewer do not show how else people say it
 MOST_SUPPORT = 4  # kinds of step, above which more of them say no more
 
 
@@ -101,8 +103,8 @@ def collect(
     """Return the forms to choose from, the examples to learn from, and a line for the log.
 
     Where the grammar is known, its commands are examples as well; a command that is the utterance of a
-    pair keeps the form of the pair. There are at most ``MOST_EXAMPLES``, or one of each form. Each form that
-    nobody has paraphrased has ``rewordings`` more examples, where the predicates are declared.
+    pair keeps the form of the pair. There are at most ``MOST_EXAMPLES``, or one of each form. Each form with fewer
+    than ``LEAST_PARAPHRASES`` has ``rewordings`` more examples, where the predicates are declared.
     """
     generated = generate_candidates(pairs, knowledge, is_open, check)
     requests = other_requests(knowledge.predicates) if knowledge.predicates is not None else ()
@@ -147,7 +149,7 @@ def collect(
 def reword(
     pairs: Sequence[Pair], knowledge: Knowledge, number: int, seed: int, check: Check = keep_going
 ) -> list[tuple[str, str]]:
-    """Return ``number`` rewordings of each form of ``pairs`` that nobody has paraphrased, each with its form.
+    """Return ``number`` rewordings of each form of ``pairs`` with fewer than ``LEAST_PARAPHRASES``, each with its form.
 
     They stand in for people: what is learned from generated commands alone is not how people speak. There are none
     where the predicates are not declared.
@@ -156,8 +158,8 @@ def reword(
         return []
     classes = knowledge.ontology.classes if knowledge.ontology else DEFAULT_CLASSES
     rewording = Rewording(knowledge.predicates, classes)
-    paraphrased = {pair.form for pair in pairs if pair.source != GENERATED}
-    others = sorted({pair.form for pair in pairs} - paraphrased)
+    paraphrases = Counter(pair.form for pair in pairs if pair.source != GENERATED)
+    others = sorted({pair.form for pair in pairs if paraphrases[pair.form] < LEAST_PARAPHRASES})
     said: dict[tuple[str, str], None] = {}
     for form in others:
         check()

@@ -28,7 +28,11 @@ def weigh_by(
     check: Check,
 ) -> tuple[DecisionRule, Report]:
     """Return the decision with the weights that ``validation`` tells, and its loss and accuracy there; of very
-    many pairs, some of each form tell."""
+    many pairs, some of each form tell.
+
+    Generated commands alone tell nothing: nearly all of them are answered right, so glosses would count three times
+    as much as examples, and people would be heard worse.
+    """
     most = max(LEAST_VALIDATED, MOST_SCORES // len(ranked.forms))
     asked = spread(validation, most, lambda pair: pair.form)
     if not asked:
@@ -37,7 +41,7 @@ def weigh_by(
     targets = torch.tensor([number.get(pair.form, -1) for pair in asked])
     scores = model.scores([pair.utterance for pair in asked], check)
     spoken = torch.tensor([pair.source != GENERATED for pair in asked])
-    decision = weigh(novelty, scores, targets, spoken)
+    decision = weigh(novelty, scores, targets, spoken) if spoken.any() else DecisionRule(novelty)
     logs = decision.log_probabilities(scores)
     of_targets = logs[targets >= 0].gather(1, targets[targets >= 0, None])
     loss = -float(of_targets.mean()) if len(of_targets) else None

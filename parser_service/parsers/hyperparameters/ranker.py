@@ -75,7 +75,7 @@ class RankerConfig:
     )
     rewordings: int = hyperparameter(
         20,
-        "Other ways to say each form that nobody has paraphrased, to learn from, where glosses are declared "
+        "Other ways to say each form with fewer than four paraphrases, to learn from, where glosses are declared "
         "(domain, grammar).",
         0,
         1_000,

@@ -5,9 +5,9 @@ from math import exp, log
 
 import pytest
 
-from parser_service.neural.ranker.calibration import TERMS
+from parser_service.neural.ranker.calibration import EQUAL, TERMS
 from parser_service.neural.ranker.form_ranker import FormRanker
-from parser_service.neural.ranker.ranked_forms import reword
+from parser_service.neural.ranker.ranked_forms import LEAST_PARAPHRASES, reword
 from parser_service.parsers.interface import Cancelled, Knowledge
 from tests.parser_service.neural.ranker.sample_domain import UNSEEN, domain, utterances
 
@@ -59,7 +59,8 @@ def test_below_the_threshold_the_answer_is_unknown(learned, pairs):
 def test_other_pairs_calibrate_another_parser_and_this_one_stays(learned, pairs):
     asked = utterances(pairs)
     before = learned.predict(asked)
-    other = learned.calibrated(pairs[:4])
+    spoken = [replace(pair, source="paraphrased") for pair in pairs]
+    other = learned.calibrated(spoken[:4])
     assert other.calibrated(pairs).predict(asked) == before
     assert other.predict(asked) != before
     assert learned.predict(asked) == before
@@ -211,11 +212,23 @@ def test_kinds_of_requests_are_no_answers(learned_domain):
     assert all(each.form.startswith("(") for each in answers)
 
 
-def test_a_form_that_nobody_paraphrased_has_rewordings(pairs):
+def test_a_form_with_few_paraphrases_has_rewordings(pairs):
     generated = [replace(pair, source="generated") for pair in pairs]
+    paraphrases = [
+        replace(pairs[0], source="paraphrased", utterance=f"{pairs[0].utterance} {number}")
+        for number in range(LEAST_PARAPHRASES)
+    ]
     knowledge = domain()
-    said = reword([*generated, replace(pairs[0], source="paraphrased")], knowledge, 3, seed=0)
-    forms = {form for _, form in said}
-    assert forms == {pair.form for pair in pairs} - {pairs[0].form}
+    said = reword([*generated, *paraphrases], knowledge, 3, seed=0)
+    assert {form for _, form in said} == {pair.form for pair in pairs} - {pairs[0].form}
+    assert said == reword([*generated, *paraphrases], knowledge, 3, seed=0)
+    few = reword([*generated, *paraphrases[1:]], knowledge, 3, seed=0)
+    assert {form for _, form in few} == {pair.form for pair in pairs}
     assert reword(generated, Knowledge(), 3, seed=0) == []
-    assert said == reword([*generated, replace(pairs[0], source="paraphrased")], knowledge, 3, 0)
+
+
+def test_generated_commands_do_not_weigh_the_experts(learned, pairs):
+    generated = [replace(pair, source="generated") for pair in pairs]
+    spoken = [replace(pair, source="paraphrased") for pair in pairs]
+    assert learned.calibrated(generated)._decision.known == EQUAL
+    assert learned.calibrated([*generated, *spoken])._decision.known != EQUAL
