@@ -175,7 +175,7 @@ PARSERS: dict[str, RegistryEntry] = {
         title="Form ranker",
         description="A fine-tuned sentence encoder chooses among whole forms, by their examples and "
         "by their English glosses; new forms, made from those of the training pairs, are among them.",
-        version=12,
+        version=13,
         protocols=(Protocol.STRICT, Protocol.DOMAIN, Protocol.GRAMMAR),
         in_short="Chooses the form that fits best among known and new ones; the most accurate on new wording.",
         loss_unit="nats an utterance",

@@ -12,7 +12,12 @@ _SIBILANTS = ("s", "x", "z", "ch", "sh")
 # Words that are said with another first sound than their first letter has.
 _AFTER_A = ("uni", "use", "usu", "euro", "one ", "ewe")
 _AFTER_AN = ("hour", "honest", "honour", "heir")
-_SINGULAR_ENDS = ("ss", "us", "is")  # of words with an s that is no plural's: glass, bus, iris
+_SINGULAR_ENDS = (
+    "ss",
+    "us",
+    "is",
+    "mos",
+)  # of words with an s that is no plural's: glass, bus, iris, thermos
 
 
 def plural(noun: str) -> str:

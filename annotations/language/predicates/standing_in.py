@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
-from annotations.language.english import KNOWN_PATTERNS, STAND_IN
+from annotations.language.english import KNOWN_PATTERNS, STAND_IN, article, looks_plural
 from annotations.language.forms import Constant
 from annotations.language.predicates.gloss_patterns import read_pattern
 from annotations.language.predicates.predicates import Predicate
@@ -30,8 +30,8 @@ def texts_of_patterns(predicates: Mapping[str, Predicate]) -> frozenset[str]:
 def can_stand_in(text: str, of_patterns: frozenset[str]) -> bool:
     """Return whether a sign can stand for ``text`` in a gloss.
 
-    It cannot for a class token, for a text that a pattern asks for (``of_patterns``), and for one that looks
-    like a part of a pattern or of a noun phrase.
+    It cannot for a class token, for a text that a pattern asks for (``of_patterns``), for one that looks like a part of
+    a pattern or of a noun phrase, and for one that other words agree with: "an apple", "chips that are".
     """
     constant = Constant(text)
     return not (
@@ -43,6 +43,8 @@ def can_stand_in(text: str, of_patterns: frozenset[str]) -> bool:
         or not text
         or text.split(" ", 1)[0] in _BEGINNINGS
         or text.endswith("person")
+        or looks_plural(text)
+        or article(text) == "an"
     )
 
 

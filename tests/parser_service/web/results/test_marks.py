@@ -48,7 +48,7 @@ def test_pages_without_it_have_neither(path, sample, adam):
 
 def test_its_own_page_and_report_bear_the_mark(model, sample, anna):
     page = text_of(anna, f"runs/{model.pk}/")
-    assert f"<h1>Language model {MARK} <" in page and FOOTNOTE in page
+    assert f">Language model {MARK}</span></h1>" in page and FOOTNOTE in page
     report = "".join(run_report(model, "validation"))
     assert f"<h1>Language model {MARK}, run {model.pk}</h1>" in report and FOOTNOTE in report
     assert MARK not in text_of(anna, f"runs/{sample.run.pk}/")
