@@ -33,7 +33,7 @@ def runs(sample) -> list[TrainingRun]:
 
 def overview(page: Page, url: str) -> Page:
     page.goto(f"{url}/w/home/")
-    arrive(page, "home")
+    arrive(page, "Overview")
     return page
 
 
@@ -89,7 +89,7 @@ def test_two_runs_are_compared_three_clicks_from_the_overview(page_of, live_serv
     page = overview(page_of(reviewer, viewport=WIDE), live_server.url)
     clicks = click(
         page.locator("#rail").get_by_role("link", name="Results"),
-        page.locator("main").get_by_role("button", name="Compare", exact=True),
+        page.locator("main").get_by_role("link", name="Compare", exact=True),
     )
     assert clicks <= 3
     arrive(page, "Compare")

@@ -22,7 +22,7 @@ def test_wrong_answers_are_two_clicks_from_the_log_in(page: Page, live_server, s
     Evaluation.objects.update(test_source="mixed")
     log_in(page, live_server.url, reviewer.username, "correct horse")
     page.click("main a:has-text('home')")
-    expect(page.locator("h1")).to_have_text("home")
+    expect(page.locator("h1")).to_have_text("Overview")
     page.click("text=its 9 wrong answers")
     expect(page.locator("h1")).to_have_text("Review")
     expect(page.locator("[data-review-place]")).to_have_text("No. 1 of 9")
