@@ -18,6 +18,7 @@ def start_choices() -> list[tuple[str, str]]:
 
 
 NAME_TAKEN = "There is a world of this name already. Choose another name."
+AT_WORK = "Jobs wait or run in this world, and find it by its name. Rename it when they have ended, or stop them."
 
 
 class WorldForm(forms.ModelForm):  # type: ignore[type-arg]  # generic in the stubs alone
@@ -45,13 +46,29 @@ class WorldForm(forms.ModelForm):  # type: ignore[type-arg]  # generic in the st
         return created
 
     def change(self) -> bool:
-        """Save the world of a valid form, its own columns alone. Return False, with an error, if the name is taken."""
+        """Save the world of a valid form, its own columns alone. Return False, with an error, if the name is taken, or
+        cannot change now."""
         try:
             with transaction.atomic():
-                self.instance.save(update_fields=self.changed_data)
+                is_changed = "name" not in self.changed_data or self._let_jobs_follow()
+                if is_changed:
+                    self.instance.save(update_fields=self.changed_data)
         except IntegrityError:
             self.add_error("name", NAME_TAKEN)
             return False
+        return is_changed
+
+    def _let_jobs_follow(self) -> bool:
+        """Tell jobs the new name: what was asked is answered in this world, and never in a later one that takes the
+        old name. Return False, with an error, while any is active."""
+        World.objects.select_for_update().get(
+            pk=self.instance.pk
+        )  # an import holds it while it writes
+        jobs = Job.objects.filter(world=self.instance)
+        if jobs.active().exists():
+            self.add_error("name", AT_WORK)
+            return False
+        jobs.update(world_name=self.cleaned_data["name"])
         return True
 
 

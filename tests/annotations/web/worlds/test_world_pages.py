@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.models import World
+from annotations.models import Job, World
+from annotations.models.background import JobKind, Status
 from annotations.people.members import admins_of
 from tests.notices import levels
 
@@ -58,6 +59,39 @@ def test_a_name_that_cannot_be_changes_nothing(name, sample, other_world, admin,
     assert (
         'href="/w/home/templates/"' in answer.content.decode()
     )  # the frame is still that of the world
+
+
+@pytest.mark.parametrize("status", [Status.QUEUED, Status.RUNNING])
+def test_a_world_keeps_its_name_while_jobs_look_for_it(status, sample, admin, client):
+    """An import by the old name would make a world of that name, or change one that has taken it."""
+    job = Job.objects.create(
+        kind=JobKind.GENERATE, world=sample.world, world_name="home", status=status
+    )
+    client.force_login(admin)
+    answer = client.post(PAGE, {"name": "flat", "description": "Two rooms."})
+    assert answer.status_code == 422 and answer.context["form"].has_error("name")
+    assert client.post(PAGE, {"name": "home", "description": "Two rooms."}).status_code == 302
+    job.refresh_from_db()
+    sample.world.refresh_from_db()
+    assert (job.world_name, sample.world.name, sample.world.description) == (
+        "home",
+        "home",
+        "Two rooms.",
+    )
+
+
+def test_a_question_of_a_renamed_world_is_answered_in_it(sample, admin, client):
+    asked = Job.objects.create(
+        kind=JobKind.IMPORT_PAIRS,
+        world=sample.world,
+        world_name="home",
+        status=Status.SUCCEEDED,
+        report={"is_waiting": True},
+    )
+    client.force_login(admin)
+    client.post(PAGE, {"name": "flat", "description": ""})
+    asked.refresh_from_db()
+    assert asked.world_name == "flat"
 
 
 def test_only_who_may_delete_the_world_finds_the_button(sample, admin, superuser, client):
