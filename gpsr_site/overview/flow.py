@@ -23,8 +23,8 @@ class Stage:
 
 def stages(counts: Counts) -> list[Stage]:
     """List the nouns in the order in which people make them."""
-    ontology_note = _remarks(counts.ontology_problems)
-    grammar_note = _remarks(counts.grammar_problems)
+    ontology_note = _warnings(counts.ontology_problems)
+    grammar_note = _warnings(counts.grammar_problems)
     forms = say_count(counts.forms, "form")
     unready = f"{counts.templates_waiting} not ready" if counts.templates_waiting else ""
     stale = "out of date" if counts.stale and counts.commands else ""
@@ -41,5 +41,5 @@ def stages(counts: Counts) -> list[Stage]:
     ]
 
 
-def _remarks(count: int) -> str:
-    return say_count(count, "remark") if count else ""
+def _warnings(count: int) -> str:
+    return say_count(count, "warning") if count else ""

@@ -71,8 +71,8 @@ FOR_ADMINS = (
     WaitingRows(
         "promotions_proposed", "run", "Decide", "promotions", "", "", "proposed for promotion"
     ),
-    WaitingRows("ontology_problems", "remark", "Read", "ontology", "", "warn", "on the ontology"),
-    WaitingRows("grammar_problems", "remark", "Read", "grammar", "", "warn", "on the grammar"),
+    WaitingRows("ontology_problems", "warning", "Read", "ontology", "", "warn", "on the ontology"),
+    WaitingRows("grammar_problems", "warning", "Read", "grammar", "", "warn", "on the grammar"),
     WaitingRows("runs_running", "run", "Watch", "runs", "?status=running", "", "in progress"),
 )
 FOR_ANNOTATORS = (
@@ -98,7 +98,7 @@ FOR_ANNOTATORS = (
         "",
         "without a form",
     ),
-    WaitingRows("command_problems", "remark", "Read", "commands", "", "warn", "on commands"),
+    WaitingRows("command_problems", "warning", "Read", "commands", "", "warn", "on commands"),
     WaitingRows("drafts", "draft template", "Finish", "templates", "?status=draft"),
     WaitingRows("disputed", "disputed template", "Settle", "templates", "?status=disputed"),
 )
@@ -184,7 +184,8 @@ class WorkList:
         """Yield an item for whoever may add people; before the first parser it is one of the first steps."""
         is_alone = self.counts.members <= 1 and self.counts.evaluated
         if is_alone and Duty.MANAGE in self.duties:
-            sentence = "Only one person belongs to this world"
+            who = "Only one person" if self.counts.members else "Nobody"
+            sentence = f"{who} belongs to this world"
             yield Task(1, sentence, "Add people", self._address("people"))
 
     def _waiting(self, declared: Iterable[WaitingRows]) -> Iterator[Task]:
