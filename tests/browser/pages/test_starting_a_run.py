@@ -57,6 +57,21 @@ def test_the_note_follows_the_chosen_split(page_of, live_server, sample, admin):
     expect(page.get_by_label("Seeds")).to_have_value("3")
 
 
+def test_what_is_chosen_while_another_split_is_looked_up_stays(page_of, live_server, sample, admin):
+    other = make_split(sample.world, "second")
+    page = page_of(admin)
+    page.goto(f"{live_server.url}/w/home/runs/new/?parser=seq2seq&split={sample.split.pk}")
+    held = []
+    page.route(f"**/runs/new/?*split={other.pk}*", lambda route: held.append(route))
+    page.get_by_label("Split").select_option(str(other.pk))
+    page.wait_for_function("document.querySelector('.htmx-request')")
+    page.get_by_label("Seeds").fill("3")
+    held[0].continue_()
+    expect(page.locator("#split-contents")).to_contain_text("24 generated commands")
+    expect(page.get_by_label("Seeds")).to_have_value("3")
+    expect(page.locator("#run-start-about")).to_contain_text("second")
+
+
 @pytest.mark.parametrize("path", ["runs/", "results/?part=validation"])
 def test_two_ticked_runs_are_compared_with_three_clicks(path, page_of, live_server, sample, admin):
     other = scored_run(sample.world, sample.split, "seq2seq", seed=1)
