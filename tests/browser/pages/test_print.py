@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from gpsr_site.pages.places import all_places
 from tests.browser.faults import SETTLED
-from tests.browser.pages.test_widths import PAGES
+from tests.gpsr_site.routes.addresses import address
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
@@ -32,16 +33,16 @@ def test_every_page_prints_light_and_without_its_frame(theme, page_of, live_serv
     page.emulate_media(media="print", color_scheme="dark")
     page.set_viewport_size({"width": A4_WIDTH, "height": 900})
     faults = []
-    for path in PAGES:
-        answer = page.goto(f"{live_server.url}/w/home/{path}")
-        assert answer.status < 400, path
+    for place in all_places():
+        answer = page.goto(live_server.url + address(place.page, sample))
+        assert answer.status < 400, place
         if theme == "chosen":
             page.evaluate("document.documentElement.dataset.theme = 'dark'")
         page.evaluate(SETTLED)
         ground, ink = page.evaluate(COLOURS)
         shown = page.evaluate(SHOWN)
         if shown or ground < 250 or ink > 100 or not page.locator("h1").is_visible():
-            faults.append((path, shown, ground, ink))
+            faults.append((place.label, shown, ground, ink))
     assert faults == []
 
 

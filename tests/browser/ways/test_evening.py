@@ -112,7 +112,7 @@ def import_folder(evening: Evening, folder: bytes) -> None:
     upload = {"name": "Incheon2026.zip", "mimeType": "application/zip", "buffer": folder}
     page.set_input_files("#id_files", upload)
     evening.look("05-import")
-    page.click("button:has-text('Import') >> nth=-1")
+    page.click("main button:has-text('Import') >> nth=-1")
     arrive_at(page, page.locator("#job-state"))
     evening.wait_for_job()
     warnings = page.locator(".problem--warning")
