@@ -32,8 +32,7 @@ def signature(primitive: Primitive) -> str:
 @register.filter
 def facts(step: Mapping[str, Any]) -> list[str]:
     """Say where a step happens, what the robot holds and releases, and which steps have to come before it."""
-    place = step["place"]
-    said = ["somewhere" if place is None else f"at {_place_text(place)}"]
+    said = [_where(step["place"])]
     said += [f"{name} {value_text(step[name])}" for name in ("holds", "releases") if step[name]]
     if step["requires"]:
         said.append(f"after {', '.join(map(str, step['requires']))}")
@@ -57,8 +56,15 @@ def value_text(value: Mapping[str, Any] | None) -> str:
     return str(value["text"])
 
 
-def _place_text(place: Mapping[str, Any]) -> str:
-    return "the operator" if place["kind"] == "operator" else value_text(place)
+def _where(place: Mapping[str, Any] | None) -> str:
+    if place is None:
+        return "somewhere"
+    match place["kind"]:
+        case "operator":
+            return "at the operator"
+        case "result":
+            return f"where step {place['step']} says"
+    return f"at {value_text(place)}"
 
 
 @register.filter
