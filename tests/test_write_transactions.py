@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import gc
 import time
 from dataclasses import replace
 
 import pytest
-from django.db import transaction
+from django.db import connection, transaction
 
 from annotations import background
 from annotations.jobs import request_job
@@ -46,6 +47,28 @@ def test_what_a_transaction_of_a_test_does_is_its_own_business():
     with measured_transactions(longer_than=0.01) as lasted, transaction.atomic():
         spin(0.02)
     assert lasted == []
+
+
+def test_collecting_garbage_is_not_what_a_transaction_does(world):
+    heap = [[] for _ in range(1_000_000)]
+    begun = time.thread_time()
+    gc.collect()
+    once = time.thread_time() - begun
+
+    def collect_garbage(execute, *statement):
+        gc.collect()
+        return execute(*statement)
+
+    with (
+        measured_transactions(longer_than=0) as lasted,
+        connection.execute_wrapper(collect_garbage),
+    ):
+        collect(world, ["go home"])
+    assert heap
+    (stored,) = [
+        each for each in lasted if each.place == "annotations/labelling/collecting.py:_store"
+    ]
+    assert stored.seconds < once
 
 
 def test_exceptions_are_functions_that_are_there():

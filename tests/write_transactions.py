@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 import time
 from collections import defaultdict
@@ -20,7 +21,8 @@ ROOT = Path(__file__).resolve().parent.parent
 OURS = tuple(str(ROOT / name) for name in ("annotations", "parser_service", "gpsr_site"))
 OURS_AND_TESTS = (*OURS, str(ROOT / "tests"))
 
-# Seconds of processor time. Waiting for other processes does not count, so that a busy machine changes little.
+# Seconds of processor time. Waiting for other processes does not count, so that a busy machine changes little,
+# nor does collecting garbage: the heap of a whole test run takes long, and any statement can be the one to start it.
 LONGEST_IN_JOBS = 0.2
 LONGEST = 1.0  # in requests and commands
 
@@ -55,25 +57,36 @@ def measured_transactions(longer_than: float = LONGEST_IN_JOBS) -> Iterator[list
     """Yield a list that gets each transaction of ours that takes longer, savepoints left out."""
     lasted: list[Lasted] = []
     begun: dict[int, list[tuple[Atomic, float]]] = defaultdict(list)  # by thread
+    collecting: dict[int, float] = defaultdict(float)  # by thread
     enter, leave = Atomic.__enter__, Atomic.__exit__
+
+    def count_collecting(phase: str, _: object) -> None:
+        collecting[get_ident()] += time.thread_time() * (1 if phase == "stop" else -1)
+
+    def own_time() -> float:
+        return time.thread_time() - collecting[get_ident()]
 
     def begin(atomic: Atomic) -> None:
         around = get_connection(atomic.using).atomic_blocks
         is_outermost = all(block._from_testcase for block in around)
         enter(atomic)
         if is_outermost and not atomic._from_testcase:
-            begun[get_ident()].append((atomic, time.thread_time()))
+            begun[get_ident()].append((atomic, own_time()))
 
     def end(atomic: Atomic, *raised: object) -> None:
         leave(atomic, *raised)
         mine = begun[get_ident()]
         if mine and mine[-1][0] is atomic:
-            seconds = time.thread_time() - mine.pop()[1]
+            seconds = own_time() - mine.pop()[1]
             if seconds > longer_than:
                 lasted.extend(_describe(sys._getframe(1), seconds))
 
-    with patch.multiple(Atomic, __enter__=begin, __exit__=end):
-        yield lasted
+    gc.callbacks.append(count_collecting)
+    try:
+        with patch.multiple(Atomic, __enter__=begin, __exit__=end):
+            yield lasted
+    finally:
+        gc.callbacks.remove(count_collecting)
 
 
 def _describe(frame: FrameType, seconds: float) -> Iterator[Lasted]:
