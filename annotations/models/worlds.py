@@ -162,6 +162,11 @@ class World(models.Model):
             and self.grammar.templates.exists()
         )
 
+    @property
+    def has_commands_to_generate(self) -> bool:
+        """Whether a generation would make commands, or make those anew that are here."""
+        return self.commands_are_stale and (self.commands.exists() or self.awaits_first_commands)
+
     def mark_changed(self) -> None:
         """Record a change of the grammar or of a template that makes commands."""
         World.objects.filter(pk=self.pk).update(revision=models.F("revision") + 1)

@@ -209,12 +209,18 @@ class WorkList:
                     yield Task(1, f"{job.title}: {job.status}", "Watch", url)
 
     def _stale(self) -> Iterator[Task]:
-        """Yield one item: a single button brings all commands up to date."""
-        if self.counts.stale and self.counts.commands and Duty.ANNOTATE in self.duties:
-            sentence = "Commands are out of date: grammar or templates have changed"
-            yield Task(
-                1, sentence, "Generate commands", self._address("generate"), "warn", is_action=True
-            )
+        """Yield one item: a single button generates all commands. Before the first parser it is one of the first steps."""
+        is_first_step = self.counts.awaits_first_commands and not self.counts.evaluated
+        if is_first_step or not self.counts.generation_waiting or Duty.ANNOTATE not in self.duties:
+            return
+        sentence = (
+            "Commands are out of date: grammar or templates have changed"
+            if self.counts.commands
+            else "Commands wait to be generated"
+        )
+        yield Task(
+            1, sentence, "Generate commands", self._address("generate"), "warn", is_action=True
+        )
 
     def _queued_runs(self) -> Iterator[Task]:
         waiting = self.counts.runs_queued

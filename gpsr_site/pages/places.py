@@ -133,7 +133,7 @@ COLLECT = (
         label="Commands",
         page="commands",
         count="commands",
-        waiting=Waiting(count="stale", reason="out of date"),
+        waiting=Waiting(count="generation_waiting", reason="to be generated"),
         pages_below=("command", "generation"),
         tabs=(
             Place(label="Logical forms", page="logical_forms", pages_below=("logical_form",)),
