@@ -209,7 +209,7 @@ class WorkList:
                     yield Task(1, f"{job.title}: {job.status}", "Watch", url)
 
     def _stale(self) -> Iterator[Task]:
-        """Yield one item: a single button generates all commands. Before the first parser it is one of the first steps."""
+        """Yield one item, a button that generates all commands; not where it is one of the first steps."""
         is_first_step = self.counts.awaits_first_commands and not self.counts.evaluated
         if is_first_step or not self.counts.generation_waiting or Duty.ANNOTATE not in self.duties:
             return

@@ -9,7 +9,7 @@ import pytest
 from django.core.files.uploadedfile import SimpleUploadedFile
 
 from annotations.editing.edits import delete
-from annotations.models import Job, SemanticTemplate
+from annotations.models import AuditEntry, Job, SemanticTemplate
 from tests.annotations.conftest import TINY, as_bytes
 
 
@@ -60,16 +60,22 @@ def test_the_same_files_again_change_nothing(world, adam, tiny):
 
 def test_one_error_refuses_everything_and_is_shown_with_its_place(world, adam, tiny):
     tiny["tiny_category_1_semantics.txt"] = b"go to the {room} = (go $1)\n"
-    answer = send(adam, uploads(tiny))
-    page = answer.content.decode()
-    assert answer.status_code == 422
-    assert answer.context["is_refused"]
-    assert "tiny_category_1_semantics.txt:1:" in page
+    sent = send(adam, uploads(tiny))
+    for _ in range(2):  # also after a reload
+        answer = report_of(adam, sent)
+        page = answer.content.decode()
+        assert answer.context["is_refused"]
+        assert "tiny_category_1_semantics.txt:1:" in page
+        assert 'href="/w/home/import/"' in page.partition("<main")[2]
     assert not hasattr(world, "grammar")
+    job = Job.objects.get()
+    assert (job.status, job.failure) == ("failed", "Nothing was imported: 1 error.")
+    assert AuditEntry.objects.latest("pk").subject == job.failure
 
 
 def test_an_error_of_the_files_as_a_whole_has_no_place(world, adam):
-    answer = send(adam, uploads({"names.xml": b"<names><name>Ada</name></names>"}))
+    sent = send(adam, uploads({"names.xml": b"<names><name>Ada</name></names>"}))
+    answer = report_of(adam, sent)
     (problem,) = [each for each in answer.context["problems"] if each["severity"] == "error"]
     assert problem["file"] == "" and problem["message"] in answer.content.decode()
     assert ":1:1" not in answer.content.decode()
@@ -84,7 +90,6 @@ def test_no_file_is_told(world, adam):
     [
         ([SimpleUploadedFile("x.zip", b"PK no archive")], "x.zip"),
         ([archive({f"{n}.txt": b"x" for n in range(80)})], "64"),
-        ([archive({"a/x.txt": b"$Main = a\n", "b/x.txt": b"$Main = b\n"})], "x.txt"),
     ],
 )
 def test_an_upload_that_cannot_be_taken_is_told_at_its_field(files, named, world, adam):
@@ -92,8 +97,12 @@ def test_an_upload_that_cannot_be_taken_is_told_at_its_field(files, named, world
         file.seek(0)
     answer = send(adam, files)
     assert answer.status_code == 422
-    told = f"{answer.context['form'].errors} {answer.context.get('problems')}"
-    assert named in told
+    assert named in str(answer.context["form"].errors)
+
+
+def test_two_files_of_one_name_are_told_in_the_report(world, adam):
+    twice = archive({"a/x.txt": b"$Main = a\n", "b/x.txt": b"$Main = b\n"})
+    assert "x.txt" in str(report_of(adam, send(adam, [twice])).context["problems"])
 
 
 def test_an_archive_that_swells_is_refused_before_it_is_unpacked(world, adam, settings):
@@ -128,15 +137,13 @@ def test_published_pairs_become_a_frozen_split(sample, adam):
 
 
 def test_a_fault_in_the_pairs_refuses_them_with_its_place(sample, adam):
-    answer = send_pairs(adam, {"gen/train.txt": b"go to the <room>\n"})
-    assert answer.status_code == 422
+    answer = report_of(adam, send_pairs(adam, {"gen/train.txt": b"go to the <room>\n"}))
     assert answer.context["is_refused"] and "train.txt:1" in answer.content.decode()
     assert sample.world.splits.count() == 1
 
 
 def test_an_archive_without_pairs_is_told(sample, adam):
-    answer = send_pairs(adam, {"notes/train.txt": b"x"})
-    assert answer.status_code == 422
+    answer = report_of(adam, send_pairs(adam, {"notes/train.txt": b"x"}))
     assert answer.context["is_refused"]
 
 
@@ -247,11 +254,26 @@ def test_warnings_are_there_after_a_reload_and_lead_to_what_they_are_about(world
     assert all(each.get("url") for each in problems)
 
 
+def test_warnings_of_one_kind_are_one_line_with_their_number_and_places(world, adam, tiny):
+    tiny["tiny_category_1_grammar.txt"] += b"$nobody = somebody\n$nothing = something\n"
+    tiny["objects.xml"] = tiny["objects.xml"].replace(b'room="kitchen"', b'room="attic"')
+    answer = report_of(adam, send(adam, uploads(tiny)))
+    groups = answer.context["problem_groups"]
+    assert sum(group.count for group in groups) == len(answer.context["problems"])
+    (unreached,) = [group for group in groups if group.count == 2]
+    assert (unreached.title, unreached.severity) == ("$Main never reaches …", "warning")
+    page = answer.content.decode()
+    for name in ("nobody", "nothing"):
+        row = world.grammar.productions.get(nonterminal=name)
+        assert f'href="/w/home/grammar/{row.pk}/"' in page
+    assert page.count(unreached.hint) == 1
+
+
 def test_errors_lead_to_no_row_of_the_files_before(world, adam, tiny):
     send(adam, uploads(tiny))
     tiny["common_rules.txt"] = b"$new = (a\n" + tiny["common_rules.txt"]
-    answer = send(adam, uploads(tiny))
-    assert answer.status_code == 422
+    answer = report_of(adam, send(adam, uploads(tiny)))
+    assert answer.context["is_refused"]
     problems = answer.context["problems"]
     assert problems and not [each for each in problems if each.get("url")]
 
@@ -268,6 +290,7 @@ def test_after_a_first_import_everything_leads_to_the_commands(world, adam, tiny
     page = report_of(adam, send(adam, uploads(tiny))).content.decode()
     generate = 'action="/w/home/generate/"'
     assert page.count(generate) == 1
+    assert page.partition("<main")[2].partition("</main")[0].count("primary") == 1
     overview = adam.get("/w/home/")
     assert not [
         task
@@ -279,7 +302,13 @@ def test_after_a_first_import_everything_leads_to_the_commands(world, adam, tiny
     assert overview.content.decode().count(generate) == 1
     coverage = adam.get("/w/home/coverage/").content.decode()
     assert generate in coverage and "/w/home/templates/new/" not in coverage
+    commands = adam.get("/w/home/commands/").content.decode()
+    for each in (page, overview.content.decode(), coverage, commands):
+        assert "<strong>3 commands</strong> wait to be generated" in each
+        assert "All 3 commands of the grammar will have a form then." in " ".join(each.split())
+        assert "out of date" not in each and "older than" not in each
     adam.post("/w/home/generate/")
+    assert world.commands.count() == 3
     for address in ("/w/home/", "/w/home/coverage/"):
         page = adam.get(address).content.decode()
         assert generate not in page and "coverage-bar" in page
