@@ -246,7 +246,6 @@ SETTINGS = Place(
         Place(
             label="Import and export",
             page="import",
-            duty=Duty.MANAGE,
             pages_below=("import_competition", "import_pairs"),
         ),
         Place(label="Jobs", page="jobs", pages_below=("job",)),

@@ -26,14 +26,15 @@ from annotations.people.access import READ_AND_WRITE, WRITE, PageRequest, WorldR
 from annotations.people.allowances import may_take_long, takes_files
 from annotations.people.audit_log import note
 from annotations.web.forms import posted
+from annotations.web.worlds.exports import exports_of
 from annotations.web.worlds.generation_forms import GenerationForm
 from annotations.web.worlds.import_forms import CompetitionForm, ImportForm, PairsForm, uploads_of
 
 
 @takes_files
-@world_view(Duty.MANAGE, READ_AND_WRITE)
+@world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.MANAGE)
 def import_files(request: WorldRequest, world: World) -> HttpResponse:
-    """Import the uploaded files of a generator, all of them or nothing."""
+    """List what everybody may export. Import the uploaded files of a generator, all of them or nothing."""
     initial = {"keeps_others": "part" in request.GET}
     form = ImportForm(posted(request), request.FILES or None, initial=initial)
     if form.is_bound and form.is_valid():
@@ -45,7 +46,8 @@ def import_files(request: WorldRequest, world: World) -> HttpResponse:
             form.add_error("files", str(error))
         else:
             return _done(request, world, JobKind.IMPORT_GENERATOR, started)
-    return _page(request, "annotations/worlds/import.html", form)
+    exports = exports_of(world, request.duties)
+    return _page(request, "annotations/worlds/import.html", form, exports=exports)
 
 
 @takes_files
@@ -97,8 +99,9 @@ def _done(
     return redirect("job", pk=started.pk)
 
 
-def _page(request: PageRequest, template: str, form: Any) -> HttpResponse:
-    return render(request, template, {"form": form}, status=422 if form.errors else 200)
+def _page(request: PageRequest, template: str, form: Any, **context: Any) -> HttpResponse:
+    context["form"] = form
+    return render(request, template, context, status=422 if form.errors else 200)
 
 
 @may_take_long

@@ -300,7 +300,8 @@ POLICY = [
     Rule("guidelines_preview", *ADMINS, method="post"),
     Rule("queue_settings", *ADMINS),
     Rule("queue_settings", *ADMINS, method="post"),
-    *(Rule(name, *ADMINS) for name in ("import", "import_competition", "import_pairs")),
+    Rule("import", *MEMBERS),  # where everybody exports
+    *(Rule(name, *ADMINS) for name in ("import_competition", "import_pairs")),
     *(
         Rule(name, LOG_IN, NOWHERE, NO, NO, 422, method="post")
         for name in ("import", "import_competition", "import_pairs")
