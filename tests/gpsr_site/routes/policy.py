@@ -331,5 +331,6 @@ POLICY = [
     Rule("audit_log", *ADMINS),
     Rule("invite", LOG_IN, NOWHERE, NO, NO, 422, method="post"),
     Rule("invitation_withdraw", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
+    Rule("people_take_back", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     *API_POLICY,
 ]
