@@ -13,6 +13,7 @@ from django.urls import reverse
 from annotations.language.english import say_count
 from annotations.models import Duty, Job, World
 from annotations.models.worlds import Role
+from annotations.worlds.shipped_worlds import SHIPPED_WORLDS
 from gpsr_site.overview.best_runs import BestRuns
 from gpsr_site.overview.counts import Counts
 from gpsr_site.overview.workers import Workers
@@ -118,7 +119,10 @@ FOR_REVIEWERS = (
 
 @dataclass(frozen=True, slots=True)
 class WorkList:
-    """What waits in ``world`` for somebody with ``duties``."""
+    """What waits in ``world`` for somebody with ``duties``.
+
+    ``is_only_world`` is true for an administrator of the site, who may make another one, where there is none yet.
+    """
 
     world: World
     counts: Counts
@@ -126,6 +130,7 @@ class WorkList:
     workers: Workers
     best: BestRuns | None = None
     jobs: Iterable[Job] = ()
+    is_only_world: bool = False
 
     @property
     def groups(self) -> list[WorkGroup]:
@@ -165,6 +170,7 @@ class WorkList:
             yield from self._queued_runs()
             yield from self._waiting(FOR_ADMINS)
             yield from self._missing_people()
+            yield from self._missing_world()
         elif role == Role.ANNOTATOR:
             yield from self._waiting(FOR_ANNOTATORS)
             yield from self._stale()
@@ -186,7 +192,13 @@ class WorkList:
         if is_alone and Duty.MANAGE in self.duties:
             who = "Only one person" if self.counts.members else "Nobody"
             sentence = f"{who} belongs to this world"
-            yield Task(1, sentence, "Add people", self._address("people"))
+            yield Task(1, sentence, "Invite people", self._address("people"))
+
+    def _missing_world(self) -> Iterator[Task]:
+        """Yield an item for an administrator of the site whose only world came with the project."""
+        if self.is_only_world and self.world.name in SHIPPED_WORLDS:
+            sentence = "Your own files need a world of their own"
+            yield Task(1, sentence, "New world", reverse("world_new"))
 
     def _waiting(self, declared: Iterable[WaitingRows]) -> Iterator[Task]:
         for waiting in declared:
