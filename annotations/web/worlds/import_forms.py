@@ -125,7 +125,7 @@ class WorldArchiveForm(forms.Form):
     )
     archive = forms.FileField(
         allow_empty_file=True,
-        help_text="The zip archive from “Download” on a world's import page.",
+        help_text="The archive of the whole world, from Settings → Import and export there.",
     )
 
 

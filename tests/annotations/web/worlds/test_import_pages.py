@@ -11,6 +11,8 @@ from django.core.files.uploadedfile import SimpleUploadedFile
 from annotations.editing.edits import delete
 from annotations.models import AuditEntry, Job, SemanticTemplate
 from tests.annotations.conftest import TINY, as_bytes
+from tests.gpsr_site.routes.sample_rows import campaign_row, submission, utterance
+from tests.sample_world import paraphrase_in
 
 
 def uploads(files):
@@ -320,7 +322,49 @@ def test_an_import_without_templates_leads_to_writing_one(world, adam, tiny):
     assert "/w/home/templates/new/" in page and "/w/home/generate/" not in page
 
 
-def test_an_empty_world_is_told_what_to_choose_and_not_what_is_replaced(world, adam, tiny):
-    assert "Replaces" not in adam.get("/w/home/import/").content.decode()
-    send(adam, uploads(tiny))
-    assert "Replaces" in adam.get("/w/home/import/").content.decode()
+def test_the_first_sentence_says_what_to_bring_and_what_becomes_of_it(world, adam, tiny):
+    for _ in range(2):
+        page = adam.get("/w/home/import/").content.decode().partition("<main")[2]
+        sentence = "Bring the files of your command generator"
+        assert (
+            sentence in page
+            and "Replaces" not in page
+            and "replaced" not in page.split(sentence)[0]
+        )
+        assert ("would be removed" in page) is hasattr(world, "grammar")
+        send(adam, uploads(tiny))
+        world.refresh_from_db()
+
+
+def test_everything_that_is_exported_stands_on_one_page_and_is_there(sample, adam, anna, rene):
+    paraphrase_in(sample.world)
+    utterance(sample)
+    titles = {}
+    for client in (adam, anna, rene):
+        answer = client.get("/w/home/import/")
+        listed = answer.context["exports"]
+        titles[client] = [each.title for each in listed]
+        assert ('<form class="fields"' in answer.content.decode()) is (client is adam)
+        for link in (link for each in listed for link in each.links):
+            given = client.get(link.url)
+            assert given.status_code == 200, link.url
+            assert given.has_header("Content-Disposition") is link.is_file
+            assert b"".join(given)
+    assert titles[anna][:2] == ["The whole world", "Files of the generator"]
+    assert {"Vocabulary", "Utterances", "Rephrased data", "Splits", "Reports"} <= {*titles[adam]}
+
+
+def test_an_empty_world_offers_no_empty_file(world, anna):
+    (whole,) = anna.get("/w/home/import/").context["exports"]
+    assert whole.title == "The whole world"
+
+
+def test_submissions_are_offered_to_whoever_may_read_them(sample, rene, anna):
+    campaign_row(sample)
+    submission(sample)
+    assert "Submissions to campaigns" in titles_of(rene)
+    assert "Submissions to campaigns" not in titles_of(anna)
+
+
+def titles_of(client):
+    return [each.title for each in client.get("/w/home/import/").context["exports"]]
