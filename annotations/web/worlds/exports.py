@@ -49,7 +49,7 @@ class Export:
 
 
 def exports_of(world: World, duties: Collection[Duty]) -> list[Export]:
-    """List what the world has to give to somebody with ``duties``; nothing that would be an empty file."""
+    """List what the world has to give to somebody with ``duties``; what there are no rows for is left out."""
     listed = (
         Export(
             "The whole world",
@@ -138,7 +138,7 @@ def _utterance_links(world: World) -> Iterable[ExportLink]:
 
 
 def _rephrased_links(world: World) -> Iterable[ExportLink]:
-    if Paraphrase.objects.filter(world=world).exists():
+    if Paraphrase.objects.filter(world=world).accepted().exists():
         labels = {
             RephrasedFormat.CHAT: "Chat messages",
             RephrasedFormat.PAIRS: "Pairs",
