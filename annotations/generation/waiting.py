@@ -19,7 +19,7 @@ class WaitingCommands:
     """The commands that ``generate`` would make now.
 
     ``count`` is exact unless ``is_estimate``, when it is an upper bound. ``coverage`` are the task categories with
-    what they will have then; empty where nobody can count that in a moment.
+    what they will have then; empty where not all of them can be counted.
     """
 
     count: int
@@ -48,7 +48,7 @@ class WaitingCommands:
 
 
 def waiting_commands(world: models.World) -> WaitingCommands | None:
-    """Count the commands that wait for the first generation; None where none do, or a row cannot be read.
+    """Count the commands that wait for the first generation; None where there are none, or a row cannot be read.
 
     A small language is expanded, which takes a moment and is kept for the generation itself; of a large one only the
     size is told. How many commands a grammar derives is what the import has counted.
@@ -70,4 +70,7 @@ def waiting_commands(world: models.World) -> WaitingCommands | None:
             by_name[each.name].commands_with_form = len(derived)
     except LanguageError:
         return None
-    return WaitingCommands(len(commands), coverage=rows)
+    if not commands:
+        return None
+    is_counted = all(row.commands_in_grammar is not None for row in rows)
+    return WaitingCommands(len(commands), coverage=rows if is_counted else ())
