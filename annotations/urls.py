@@ -34,6 +34,7 @@ urlpatterns = [
     path("people/<int:pk>/", member_pages.member, name="member"),
     path("log/", audit_log_pages.audit_log, name="audit_log"),
     path("people/invite/", member_pages.invite, name="invite"),
+    path("people/undo/", member_pages.take_change_back, name="people_take_back"),
     path(
         "people/invitations/<int:pk>/withdraw/", member_pages.withdraw, name="invitation_withdraw"
     ),

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from annotations import background
 from annotations.jobs.files import forget_files
 from annotations.jobs.kinds import verb_of
+from annotations.jobs.requesting import refusal_in
 from annotations.jobs.sweeping import sweep
 from annotations.jobs.watching import JobProgress
 from annotations.models import Job, JobKind
@@ -26,9 +27,7 @@ def _do(job: Job, lease: background.Lease) -> None:
     report = verb_of(JobKind(job.kind))(job, progress)
     if progress.is_concluded:
         return
-    errors = sum(problem["severity"] == "error" for problem in report.get("problems", ()))
-    if errors:
-        sentence = f"Nothing was imported: {errors} error{'s' if errors > 1 else ''}."
-        background.fail(job, sentence, report=report)
+    if refusal := refusal_in(report):
+        background.fail(job, refusal, report=report)
     else:
         background.finish(job, report=report)

@@ -12,6 +12,7 @@ from django.utils import timezone
 
 from annotations import background
 from annotations.jobs.files import folder_of, forget_files, keep_uploads
+from annotations.language.english import say_count
 from annotations.language.errors import Refusal
 from annotations.models import Job, JobKind, User, World
 from annotations.models.background import JobQuerySet, Queue, Status
@@ -82,12 +83,21 @@ def keep_report(
     arguments: Mapping[str, Any],
     report: Mapping[str, Any],
 ) -> Job:
-    """Keep what came of work that was quick enough to be done at once, as a job that has ended."""
+    """Keep what came of work that was quick enough to be done at once, as a job that has ended: a failed one where
+    the report refuses it."""
     job = _new_job(kind, world_name, by, arguments, ())
-    job.status, job.progress, job.report = Status.SUCCEEDED, 1.0, dict(report)
+    job.failure = refusal_in(report)
+    job.status = Status.FAILED if job.failure else Status.SUCCEEDED
+    job.progress, job.report = 1.0, dict(report)
     job.started_at = job.finished_at = timezone.now()
     job.save()
     return job
+
+
+def refusal_in(report: Mapping[str, Any]) -> str:
+    """Return the sentence by which a report says that nothing was imported; empty where no problem is an error."""
+    errors = sum(problem["severity"] == "error" for problem in report.get("problems", ()))
+    return f"Nothing was imported: {say_count(errors, 'error')}." if errors else ""
 
 
 def answer_job(job: Job, by: User) -> Job:

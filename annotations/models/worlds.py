@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import secrets
 from collections import defaultdict
-from datetime import timedelta
+from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, Any
 
 from django.conf import settings
@@ -162,6 +162,11 @@ class World(models.Model):
             and self.grammar.templates.exists()
         )
 
+    @property
+    def has_commands_to_generate(self) -> bool:
+        """Whether a generation would make commands, or make those anew that are here."""
+        return self.commands_are_stale and (self.commands.exists() or self.awaits_first_commands)
+
     def mark_changed(self) -> None:
         """Record a change of the grammar or of a template that makes commands."""
         World.objects.filter(pk=self.pk).update(revision=models.F("revision") + 1)
@@ -214,6 +219,12 @@ class InvitationQuerySet(models.QuerySet["Invitation"]):
             created_by__is_active=True,
             world__deletion_requested_at__isnull=True,
         )
+
+    def withdraw(self) -> dict[int, datetime]:
+        """End those that can still be joined by, and return until when each would have been open, by key."""
+        ends = dict(self.filter(expires_at__gt=timezone.now()).values_list("pk", "expires_at"))
+        self.filter(pk__in=ends).update(expires_at=timezone.now())
+        return ends
 
     def for_key(self, key: str) -> Invitation | None:
         """Return the open invitation whose link holds ``key``, or None."""

@@ -52,6 +52,7 @@ WHAT = {
     "member": "change roles",
     "invite": "invite",
     "invitation_withdraw": "withdraw an invitation",
+    "people_take_back": "undo a change of people",
     "world_new": "create a world",
     "world_import": "import a world",
     "world_edit": "describe the world",

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass
+from datetime import datetime
 from http import HTTPStatus
 
 from django.db import transaction
 
 from annotations.language.errors import Refusal
-from annotations.models import Assignment, Membership, User, World
+from annotations.models import Assignment, Invitation, Membership, User, World
 from annotations.models.worlds import Role
 
 
@@ -50,6 +51,12 @@ def members_of(world: World) -> list[Member]:
     ]
 
 
+def roles_of(world: World, user: User) -> list[str]:
+    """Return the roles of ``user`` in ``world``, in the order of ``Role``."""
+    held = set(world.memberships.filter(user=user).values_list("role", flat=True))
+    return [role for role in Role.values if role in held]
+
+
 def admins_of(world: World) -> list[str]:
     """Return the names of the world's admins who can log in."""
     admins = world.memberships.filter(role=Role.ADMIN, user__is_active=True)
@@ -62,11 +69,12 @@ def find_account(name: str) -> User | None:
 
 
 @transaction.atomic
-def set_roles(world: World, user: User, roles: Collection[str], by: User) -> None:
+def set_roles(world: World, user: User, roles: Collection[str], by: User) -> dict[int, datetime]:
     """Make ``roles`` the roles of ``user`` in ``world``; none removes them from it.
 
     Whoever is no longer an admin has no invitations open any more, and what they held in the work queue
-    and may not do any more is free for others.
+    and may not do any more is free for others. Returns the invitations that are over with it, as
+    ``Invitation.objects.withdraw`` does.
 
     Raises:
         NoAdminLeft: the last admin would lose that role. Administrators of the site, who see every
@@ -77,9 +85,11 @@ def set_roles(world: World, user: User, roles: Collection[str], by: User) -> Non
     add_roles(world, user, roles)
     if not admins_of(world) and not by.is_superuser:
         raise NoAdminLeft(world)
+    withdrawn: dict[int, datetime] = {}
     if Role.ADMIN not in roles and not user.is_superuser:
-        world.invitations.filter(created_by=user).delete()
+        withdrawn = Invitation.objects.filter(world=world, created_by=user).withdraw()
     Assignment.objects.orphaned().filter(person=user, item__world=world).release()
+    return withdrawn
 
 
 def add_roles(world: World, user: User, roles: Collection[str]) -> int:

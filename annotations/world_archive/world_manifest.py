@@ -41,7 +41,7 @@ def read_manifest(archive: zipfile.ZipFile, name: str) -> WorldManifest:
         raise LanguageError(
             f"the archive holds no world: {MANIFEST} is missing",
             Position(name),
-            "choose an archive that “Download” made; the files of a generator have a page of their own",
+            "choose the archive of a whole world; the files of a generator have a page of their own",
         )
     # Some programs pack a folder rather than what is in it.
     prefix = min(manifests, key=len).removesuffix(MANIFEST)

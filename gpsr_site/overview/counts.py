@@ -90,6 +90,11 @@ class Counts:
         return bool(self.stale and self.templates and not self.commands)
 
     @property
+    def generation_waiting(self) -> int:
+        """1 where a generation would make commands, or make those anew that are here."""
+        return int(bool(self.stale and (self.commands or self.templates)))
+
+    @property
     def templates_waiting(self) -> int:
         """Templates that make no commands yet."""
         return self.drafts + self.disputed

@@ -13,6 +13,7 @@ from django.urls import reverse
 from annotations.language.english import say_count
 from annotations.models import Duty, Job, World
 from annotations.models.worlds import Role
+from annotations.worlds.shipped_worlds import SHIPPED_WORLDS
 from gpsr_site.overview.best_runs import BestRuns
 from gpsr_site.overview.counts import Counts
 from gpsr_site.overview.workers import Workers
@@ -118,7 +119,10 @@ FOR_REVIEWERS = (
 
 @dataclass(frozen=True, slots=True)
 class WorkList:
-    """What waits in ``world`` for somebody with ``duties``."""
+    """What waits in ``world`` for somebody with ``duties``.
+
+    ``is_only_world`` is true for an administrator of the site, who may make another one, where there is none yet.
+    """
 
     world: World
     counts: Counts
@@ -126,6 +130,7 @@ class WorkList:
     workers: Workers
     best: BestRuns | None = None
     jobs: Iterable[Job] = ()
+    is_only_world: bool = False
 
     @property
     def groups(self) -> list[WorkGroup]:
@@ -165,6 +170,7 @@ class WorkList:
             yield from self._queued_runs()
             yield from self._waiting(FOR_ADMINS)
             yield from self._missing_people()
+            yield from self._missing_world()
         elif role == Role.ANNOTATOR:
             yield from self._waiting(FOR_ANNOTATORS)
             yield from self._stale()
@@ -186,7 +192,13 @@ class WorkList:
         if is_alone and Duty.MANAGE in self.duties:
             who = "Only one person" if self.counts.members else "Nobody"
             sentence = f"{who} belongs to this world"
-            yield Task(1, sentence, "Add people", self._address("people"))
+            yield Task(1, sentence, "Invite people", self._address("people"))
+
+    def _missing_world(self) -> Iterator[Task]:
+        """Yield an item for an administrator of the site whose only world came with the project."""
+        if self.is_only_world and self.world.name in SHIPPED_WORLDS:
+            sentence = "Your own files need a world of their own"
+            yield Task(1, sentence, "New world", reverse("world_new"))
 
     def _waiting(self, declared: Iterable[WaitingRows]) -> Iterator[Task]:
         for waiting in declared:
@@ -209,12 +221,18 @@ class WorkList:
                     yield Task(1, f"{job.title}: {job.status}", "Watch", url)
 
     def _stale(self) -> Iterator[Task]:
-        """Yield one item: a single button brings all commands up to date."""
-        if self.counts.stale and self.counts.commands and Duty.ANNOTATE in self.duties:
-            sentence = "Commands are out of date: grammar or templates have changed"
-            yield Task(
-                1, sentence, "Generate commands", self._address("generate"), "warn", is_action=True
-            )
+        """Yield one item, a button that generates all commands; not where it is one of the first steps."""
+        is_first_step = self.counts.awaits_first_commands and not self.counts.evaluated
+        if is_first_step or not self.counts.generation_waiting or Duty.ANNOTATE not in self.duties:
+            return
+        sentence = (
+            "Commands are out of date: grammar or templates have changed"
+            if self.counts.commands
+            else "Commands wait to be generated"
+        )
+        yield Task(
+            1, sentence, "Generate commands", self._address("generate"), "warn", is_action=True
+        )
 
     def _queued_runs(self) -> Iterator[Task]:
         waiting = self.counts.runs_queued

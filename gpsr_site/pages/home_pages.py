@@ -48,7 +48,9 @@ def world(request: OverviewRequest, world: World) -> HttpResponse:
     counts = request.counts = counts_of(world)  # the rail takes them from there
     best = best_runs(world)
     jobs = world.jobs.needing_attention()[:MOST_JOBS]
-    work = WorkList(world, counts, request.duties, workers_now(), best, jobs)
+    others = World.objects.present().exclude(pk=world.pk)
+    is_only_world = request.user.is_superuser and not others.exists()
+    work = WorkList(world, counts, request.duties, workers_now(), best, jobs, is_only_world)
     context = {
         "stages": stages(counts),
         "work_groups": work.groups,

@@ -133,7 +133,7 @@ COLLECT = (
         label="Commands",
         page="commands",
         count="commands",
-        waiting=Waiting(count="stale", reason="out of date"),
+        waiting=Waiting(count="generation_waiting", reason="to be generated"),
         pages_below=("command", "generation"),
         tabs=(
             Place(label="Logical forms", page="logical_forms", pages_below=("logical_form",)),
@@ -246,7 +246,6 @@ SETTINGS = Place(
         Place(
             label="Import and export",
             page="import",
-            duty=Duty.MANAGE,
             pages_below=("import_competition", "import_pairs"),
         ),
         Place(label="Jobs", page="jobs", pages_below=("job",)),

@@ -115,7 +115,7 @@ def test_what_belongs_together_is_one_place_with_tabs(path, tabs, sample, admin,
 def test_one_sees_only_the_tabs_that_one_may_open(sample, annotator, client):
     client.force_login(annotator)
     row = client.get("/w/home/people/").context["tabs"]
-    assert [tab.label for tab in row] == ["People", "Jobs"]
+    assert [tab.label for tab in row] == ["People", "Import and export", "Jobs"]
 
 
 def test_what_waits_on_a_tab_is_told_at_its_place_too(sample, admin, client):

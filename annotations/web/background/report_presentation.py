@@ -10,6 +10,7 @@ from django.utils.http import urlencode
 
 from annotations.language.templates import SampleNote
 from annotations.models import Entity, JobKind, Production, SemanticTemplate, World
+from annotations.web.background.problem_groups import group_problems
 
 MOST_PROBLEMS = 500
 MOST_NAMES = 200
@@ -37,6 +38,12 @@ TEMPLATES = {
     JobKind.PARSE: "annotations/background/_parse_result.html",
     JobKind.DELETE_WORLD: "annotations/background/_deletion_result.html",
 }
+# The page of the world on which files are chosen again after a refused import.
+IMPORT_PAGES = {
+    JobKind.IMPORT_GENERATOR: "import",
+    JobKind.IMPORT_COMPETITION: "import_competition",
+    JobKind.IMPORT_PAIRS: "import_pairs",
+}
 # What asks whether an import may go on.
 QUESTIONS = {JobKind.IMPORT_RESULTS: "annotations/campaigns/_results_question.html"}
 REMOVAL_QUESTION = "annotations/background/_removal_question.html"
@@ -60,8 +67,11 @@ def shown_report(
         "report_template": TEMPLATES[JobKind(kind)],
         "question_template": QUESTIONS.get(JobKind(kind), REMOVAL_QUESTION),
         "problems": problems[:MOST_PROBLEMS],
+        "problem_groups": group_problems(problems[:MOST_PROBLEMS]),
+        "import_page": IMPORT_PAGES.get(JobKind(kind), ""),
         "n_problems_left_out": max(0, len(problems) - MOST_PROBLEMS),
         "n_errors": n_errors,
+        "n_warnings": len(problems) - n_errors,
         "is_refused": n_errors > 0,
         "sample_note": SampleNote.from_json(report.get("sample")),
         "removals": _shown_texts(report.get("removals") or {}),

@@ -74,6 +74,8 @@ class EntityForm(forms.Form):
         self.world = world
         self.row = row
         self.fields["text"].disabled = row is not None
+        if row is None and not self.is_bound:
+            self.fields["text"].widget.attrs["autofocus"] = True
         self.fields["entity_class"] = class_field(world)
 
     def clean(self) -> dict[str, Any]:

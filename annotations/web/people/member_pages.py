@@ -8,6 +8,7 @@ from django.shortcuts import get_object_or_404, redirect, render
 from django.urls import reverse
 from django.views.decorators.cache import never_cache
 
+from annotations.language.errors import Refusal
 from annotations.models import Duty, Invitation, User, World
 from annotations.models.worlds import Role
 from annotations.people import shown_once
@@ -18,8 +19,11 @@ from annotations.people.members import (
     add_roles,
     members_of,
     role_names,
+    roles_of,
     set_roles,
 )
+from annotations.people.taking_back import PeopleChange, take_back
+from annotations.web.editing.undo import say_with_undo
 from annotations.web.people.member_forms import InvitationForm, MemberForm, RolesForm
 
 WHAT_ROLES_DO = {
@@ -36,9 +40,11 @@ def people(request: WorldRequest, world: World) -> HttpResponse:
     form = MemberForm(request.POST if request.method == "POST" else None)
     if form.is_bound and form.is_valid():
         account = form.cleaned_data["name"]
+        before = roles_of(world, account)
         add_roles(world, account, form.cleaned_data["roles"])
         note(request, f"{account}: {role_names(form.cleaned_data['roles'])}")
-        messages.success(request, f"{account} is a member of {world}.")
+        change = PeopleChange(world, account, before, roles_of(world, account))
+        _say_changed(request, f"{account} is a member of {world}.", change)
         return redirect("people", world=world.name)
     return _render_people(request, world, form=form)
 
@@ -58,11 +64,28 @@ def invite(request: WorldRequest, world: World) -> HttpResponse:
 
 @world_view(Duty.MANAGE, WRITE)
 def withdraw(request: WorldRequest, world: World, pk: int) -> HttpResponse:
-    """Delete an invitation. Its link stops working."""
-    invitation = get_object_or_404(world.invitations, pk=pk)
-    invitation.delete()
+    """End an invitation. Its link stops working."""
+    rows = Invitation.objects.filter(world=world)
+    invitation = get_object_or_404(rows.open(), pk=pk)
+    change = PeopleChange(world, withdrawn=rows.filter(pk=pk).withdraw())
     note(request, invitation.note or "a link")
-    messages.success(request, "The invitation is withdrawn. Who has joined by it stays.")
+    sentence = "The invitation is withdrawn. Who has joined by it stays."
+    _say_changed(request, sentence, change)
+    return redirect("people", world=world.name)
+
+
+@world_view(Duty.MANAGE, WRITE)
+def take_change_back(request: WorldRequest, world: World) -> HttpResponse:
+    """Undo a change of roles, of members or of an invitation, as long as nobody has changed it again."""
+    try:
+        change = PeopleChange.read(request.POST.get("change", ""), world)
+        said = take_back(change, request.user)
+    except Refusal as error:
+        note(request, f"refused: {error.message}")
+        messages.error(request, error.message)
+    else:
+        note(request, said)
+        messages.success(request, said)
     return redirect("people", world=world.name)
 
 
@@ -75,17 +98,33 @@ def member(request: WorldRequest, world: World, pk: int) -> HttpResponse:
         messages.error(request, "There is no such role.")
         return redirect("people", world=world.name)
     roles = [] if "remove" in request.POST else form.cleaned_data["roles"]
+    before = roles_of(world, account)
     try:
-        set_roles(world, account, roles, by=request.user)
+        withdrawn = set_roles(world, account, roles, by=request.user)
     except NoAdminLeft as error:
         note(request, f"refused: {account} is the last admin")
         messages.error(request, str(error))
         return redirect("people", world=world.name)
     note(request, f"{account}: {role_names(roles) or 'removed'}")
     done = f"is now {role_names(roles)} of" if roles else "is no longer a member of"
-    messages.success(request, f"{account} {done} {world}.")
+    change = PeopleChange(world, account, before, roles_of(world, account), withdrawn)
+    _say_changed(request, f"{account} {done} {world}.", change)
     is_gone = not roles and account == request.user and not request.user.is_superuser
     return redirect("home") if is_gone else redirect("people", world=world.name)
+
+
+def _say_changed(request: WorldRequest, sentence: str, change: PeopleChange) -> None:
+    """Say what was done, with a button that undoes it for whoever may still do that."""
+    if change.withdrawn and change.member:
+        count = len(change.withdrawn)
+        were = "invitation of theirs is" if count == 1 else "invitations of theirs are"
+        sentence = f"{sentence} {count} {were} withdrawn."
+    is_none = list(change.before) == list(change.after) and not change.withdrawn
+    if change.world.allows(request.user, Duty.MANAGE) and not is_none:
+        address = reverse("people_take_back", kwargs={"world": change.world.name})
+        say_with_undo(request, sentence, address, change=change.sealed())
+    else:
+        messages.success(request, sentence)
 
 
 def _render_people(

@@ -178,7 +178,7 @@ class InvitationViewSet(RowsViewSet):
     def destroy(self, request: ApiRequest, **kwargs: object) -> Response:
         """Withdraws an invitation: who has joined by it stays."""
         with self.matching() as row:
-            row.delete()
+            Invitation.objects.filter(pk=row.pk).withdraw()
         note(request, row.note or "a link")
         return Response(status=HTTPStatus.NO_CONTENT)
 

@@ -59,7 +59,26 @@ class EncodingField(forms.ChoiceField):
         )
 
 
-class PairsForm(forms.Form):
+class FilesForm(forms.Form):
+    """Files to import. The choices that most imports leave as they are come after the others, folded."""
+
+    FOLDED = ("keeps_others", "encoding", "brings_back")
+
+    @property
+    def first_fields(self) -> list[forms.BoundField]:
+        return [field for field in self if field.name not in self.FOLDED]
+
+    @property
+    def folded_fields(self) -> list[forms.BoundField]:
+        return [field for field in self if field.name in self.FOLDED]
+
+    @property
+    def is_unfolded(self) -> bool:
+        """Whether one of the folded fields says something already."""
+        return any(field.value() or field.errors for field in self.folded_fields)
+
+
+class PairsForm(FilesForm):
     """The pair files of a published corpus, in one archive."""
 
     name = forms.SlugField(
@@ -86,7 +105,7 @@ class PairsForm(forms.Form):
     brings_back = BringsBackField()
 
 
-class CompetitionForm(forms.Form):
+class CompetitionForm(FilesForm):
     """The files of a competition's folder, as they are or in one zip archive."""
 
     files = FilesField(  # type: ignore[assignment]  # of the same name as those that were sent
@@ -106,11 +125,11 @@ class WorldArchiveForm(forms.Form):
     )
     archive = forms.FileField(
         allow_empty_file=True,
-        help_text="The zip archive from “Download” on a world's import page.",
+        help_text="The archive of the whole world, from Settings → Import and export there.",
     )
 
 
-class ImportForm(forms.Form):
+class ImportForm(FilesForm):
     """The files of a generator, as they are or in one zip archive."""
 
     files = FilesField(  # type: ignore[assignment]  # of the same name as those that were sent

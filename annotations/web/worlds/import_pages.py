@@ -10,11 +10,13 @@ from django.shortcuts import redirect, render
 
 from annotations.generation.generating import GenerationReport, start_generation
 from annotations.generation.language_size import language_size
+from annotations.importing.competition_import import CompetitionReport
 from annotations.importing.import_jobs import (
     start_competition_import,
     start_generator_import,
     start_pairs_import,
 )
+from annotations.importing.import_reports import ImportReport, PairsReport
 from annotations.jobs.requesting import keep_report
 from annotations.language.errors import LanguageError
 from annotations.language.grammar import readable
@@ -22,19 +24,19 @@ from annotations.language.templates import DEFAULT_LIMIT, SampleNote
 from annotations.models import Duty, Job, JobKind, World
 from annotations.people.access import READ_AND_WRITE, WRITE, PageRequest, WorldRequest, world_view
 from annotations.people.allowances import may_take_long, takes_files
-from annotations.web.background.report_presentation import shown_report
+from annotations.people.audit_log import note
 from annotations.web.forms import posted
+from annotations.web.worlds.exports import exports_of
 from annotations.web.worlds.generation_forms import GenerationForm
 from annotations.web.worlds.import_forms import CompetitionForm, ImportForm, PairsForm, uploads_of
 
 
 @takes_files
-@world_view(Duty.MANAGE, READ_AND_WRITE)
+@world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.MANAGE)
 def import_files(request: WorldRequest, world: World) -> HttpResponse:
-    """Import the uploaded files of a generator, all of them or nothing."""
+    """List what everybody may export. Import the uploaded files of a generator, all of them or nothing."""
     initial = {"keeps_others": "part" in request.GET}
     form = ImportForm(posted(request), request.FILES or None, initial=initial)
-    report = None
     if form.is_bound and form.is_valid():
         try:
             files = uploads_of(world, form)
@@ -43,12 +45,9 @@ def import_files(request: WorldRequest, world: World) -> HttpResponse:
         except LanguageError as error:
             form.add_error("files", str(error))
         else:
-            if isinstance(started, Job):
-                return redirect("job", pk=started.pk)
-            if not started.is_refused:
-                return _done(request, world, JobKind.IMPORT_GENERATOR, started.as_json())
-            report = shown_report(JobKind.IMPORT_GENERATOR, started.as_json(), world)
-    return _page(request, "annotations/worlds/import.html", form, report)
+            return _done(request, world, JobKind.IMPORT_GENERATOR, started)
+    exports = exports_of(world, request.duties)
+    return _page(request, "annotations/worlds/import.html", form, exports=exports)
 
 
 @takes_files
@@ -56,7 +55,6 @@ def import_files(request: WorldRequest, world: World) -> HttpResponse:
 def import_competition_files(request: WorldRequest, world: World) -> HttpResponse:
     """Import the folder of a competition, all of it or nothing."""
     form = CompetitionForm(posted(request), request.FILES or None)
-    report = None
     if form.is_bound and form.is_valid():
         files, brings_back = form.cleaned_data["files"], form.cleaned_data["brings_back"]
         try:
@@ -64,12 +62,8 @@ def import_competition_files(request: WorldRequest, world: World) -> HttpRespons
         except LanguageError as error:
             form.add_error("files", str(error))
         else:
-            if isinstance(started, Job):
-                return redirect("job", pk=started.pk)
-            if not started.is_refused:
-                return _done(request, world, JobKind.IMPORT_COMPETITION, started.as_json())
-            report = shown_report(JobKind.IMPORT_COMPETITION, started.as_json(), world)
-    return _page(request, "annotations/worlds/import_competition.html", form, report)
+            return _done(request, world, JobKind.IMPORT_COMPETITION, started)
+    return _page(request, "annotations/worlds/import_competition.html", form)
 
 
 @takes_files
@@ -77,7 +71,6 @@ def import_competition_files(request: WorldRequest, world: World) -> HttpRespons
 def import_pair_files(request: WorldRequest, world: World) -> HttpResponse:
     """Import the uploaded pairs of a published corpus as frozen splits and paraphrases."""
     form = PairsForm(posted(request), request.FILES or None)
-    report = None
     if form.is_bound and form.is_valid():
         values = form.cleaned_data
         choices = values["brings_back"], values["encoding"], values["notation"]
@@ -88,27 +81,27 @@ def import_pair_files(request: WorldRequest, world: World) -> HttpResponse:
         except LanguageError as error:
             form.add_error("archive", str(error))
         else:
-            if isinstance(started, Job):
-                return redirect("job", pk=started.pk)
-            if not started.is_refused:
-                return _done(request, world, JobKind.IMPORT_PAIRS, started.as_json())
-            report = shown_report(JobKind.IMPORT_PAIRS, started.as_json(), world)
-    return _page(request, "annotations/worlds/import_pairs.html", form, report)
+            return _done(request, world, JobKind.IMPORT_PAIRS, started)
+    return _page(request, "annotations/worlds/import_pairs.html", form)
 
 
 def _done(
-    request: WorldRequest, world: World, kind: JobKind, report: dict[str, Any]
+    request: WorldRequest,
+    world: World,
+    kind: JobKind,
+    started: Job | ImportReport | CompetitionReport | PairsReport,
 ) -> HttpResponse:
-    """Show the report of an import as that of a job, so that it can be reloaded and found again."""
-    return redirect("job", pk=keep_report(kind, world.name, request.user, {}, report).pk)
+    """Show the job, or the report as that of a job, so that it can be reloaded and found again."""
+    if not isinstance(started, Job):
+        started = keep_report(kind, world.name, request.user, {}, started.as_json())
+        if started.failure:
+            note(request, started.failure)
+    return redirect("job", pk=started.pk)
 
 
-def _page(
-    request: PageRequest, template: str, form: Any, report: dict[str, Any] | None
-) -> HttpResponse:
-    is_refused = bool(form.errors) or bool(report and report["is_refused"])
-    context = {"form": form, **(report or {})}
-    return render(request, template, context, status=422 if is_refused else 200)
+def _page(request: PageRequest, template: str, form: Any, **context: Any) -> HttpResponse:
+    context["form"] = form
+    return render(request, template, context, status=422 if form.errors else 200)
 
 
 @may_take_long

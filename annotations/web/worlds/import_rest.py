@@ -22,8 +22,8 @@ from annotations.importing.import_jobs import (
     start_pairs_import,
 )
 from annotations.importing.pair_files import Notation
+from annotations.jobs.requesting import refusal_in
 from annotations.language.decoding import ENCODINGS
-from annotations.language.english import say_count
 from annotations.language.errors import Refusal
 from annotations.language.templates import (
     LARGEST_SEED,
@@ -126,12 +126,9 @@ class Doing(Route):
             location = {"Location": address_of_job(self.request, started)}
             return Response(done, status=HTTPStatus.ACCEPTED, headers=location)
         report = started.as_json()
-        problems = report.get("problems", [])
-        errors = sum(each["severity"] == "error" for each in problems)
-        if errors:
-            sentence = f"Nothing was imported: {say_count(errors, 'error')}."
+        if sentence := refusal_in(report):
             status = HTTPStatus.UNPROCESSABLE_ENTITY
-            raise Refusal(sentence, "not_imported", status, problems)
+            raise Refusal(sentence, "not_imported", status, report["problems"])
         return Response({"job": None, "report": report})
 
     def valid(self, form: AnyForm) -> AnyForm:

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from textwrap import shorten
+from typing import Any
+
 from django import forms
 from django.db import IntegrityError, transaction
+from django.http import QueryDict
 
-from annotations.models import Job, User, World
+from annotations.editing.edits import say_who
+from annotations.models import AuditEntry, Job, User, World
 from annotations.models.worlds import Role
+from annotations.people.audit_log import WHAT
 from annotations.people.members import add_roles
 from annotations.worlds.shipped_worlds import SHIPPED_WORLDS, request_load
 
@@ -18,6 +24,7 @@ def start_choices() -> list[tuple[str, str]]:
 
 
 NAME_TAKEN = "There is a world of this name already. Choose another name."
+LONGEST_SHOWN = 400  # characters of what another admin has saved
 AT_WORK = "Jobs wait or run in this world, and find it by its name. Rename it when they have ended, or stop them."
 
 
@@ -48,11 +55,14 @@ class WorldForm(forms.ModelForm):  # type: ignore[type-arg]  # generic in the st
     def change(self) -> bool:
         """Save the world of a valid form, its own columns alone. Return False, with an error, if the name is taken, or
         cannot change now."""
+        changed = [
+            name for name in self.Meta.fields if self.cleaned_data[name] != self.initial[name]
+        ]
         try:
             with transaction.atomic():
-                is_changed = "name" not in self.changed_data or self._let_jobs_follow()
+                is_changed = "name" not in changed or self._let_jobs_follow()
                 if is_changed:
-                    self.instance.save(update_fields=self.changed_data)
+                    self.instance.save(update_fields=changed)
         except IntegrityError:
             self.add_error("name", NAME_TAKEN)
             return False
@@ -70,6 +80,50 @@ class WorldForm(forms.ModelForm):  # type: ignore[type-arg]  # generic in the st
             return False
         jobs.update(world_name=self.cleaned_data["name"])
         return True
+
+
+class WorldEditForm(WorldForm):
+    """A world as an admin has seen and changed it: what another one has saved meanwhile is neither lost nor hidden.
+
+    ``seen_…`` are the values that the page showed. A field that the reader left as it was keeps what is stored now.
+    """
+
+    seen_name = forms.CharField(required=False, strip=False, widget=forms.HiddenInput)
+    seen_description = forms.CharField(required=False, strip=False, widget=forms.HiddenInput)
+
+    def __init__(self, world: World, reader: User, data: QueryDict | None) -> None:
+        seen = {f"seen_{name}": getattr(world, name) for name in self.Meta.fields}
+        super().__init__(data, instance=world, initial=seen)
+        self._reader = reader
+
+    def clean(self) -> dict[str, Any]:
+        values = super().clean() or self.cleaned_data
+        for name in self.Meta.fields:
+            key, stored = f"seen_{name}", str(self.initial[name])
+            if name not in values or key not in self.data:
+                continue
+            seen, typed = _lines(values[key]), _lines(values[name])
+            if typed == seen:
+                values[name] = stored
+            elif _lines(stored) not in (seen, typed):
+                self.add_error(name, self._say_overtaken(name, stored))
+                assert isinstance(self.data, QueryDict)
+                self.data = self.data.copy()
+                self.data[key] = stored  # whoever saves again has read it
+        return values
+
+    def _say_overtaken(self, name: str, stored: str) -> str:
+        world = self.instance
+        entries = AuditEntry.objects.filter(world=world, what=WHAT["world_edit"])
+        last = entries.select_related("who").first()
+        who = say_who(last.who if last else None, self._reader, f"saved another {name}")
+        now = f"It is “{shorten(stored, LONGEST_SHOWN)}” now." if stored else "It is empty now."
+        return f"{who} {now} Save again to put yours in its place."
+
+
+def _lines(text: str) -> str:
+    """Return a text with the line ends that are stored; browsers send others."""
+    return text.replace("\r\n", "\n").strip()
 
 
 class NewWorldForm(WorldForm):

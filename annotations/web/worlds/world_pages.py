@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from copy import copy
 from typing import Any
 
 from django import forms
 from django.contrib import messages
 from django.core.exceptions import ValidationError
+from django.db import transaction
 from django.http import HttpResponse, StreamingHttpResponse
+from django.http.response import HttpResponseBase
 from django.shortcuts import redirect, render
 
 from annotations.language.errors import LanguageError
@@ -27,9 +28,11 @@ from annotations.web.forms import posted
 from annotations.web.sent_texts import MOST_NAMED
 from annotations.web.worlds.downloads import archive_of, file_of
 from annotations.web.worlds.import_forms import WorldArchiveForm
-from annotations.web.worlds.world_forms import NewWorldForm, WorldForm
+from annotations.web.worlds.world_forms import NewWorldForm, WorldEditForm
 from annotations.world_archive.import_job import start_world_import
 from annotations.worlds.world_deletion import count_below, start_deletion
+
+MOST_DIGITS = 19  # of a key that the database takes
 
 
 class NameForm(forms.Form):
@@ -100,14 +103,24 @@ def download_part(request: WorldRequest, world: World, part: str) -> HttpRespons
     return file_of(world, part)
 
 
+def world_edit(request: PageRequest, world: str) -> HttpResponseBase:
+    """Rename a world, and describe it; also from a page that was opened before another admin renamed it."""
+    key = request.POST.get("world", "")
+    if request.method == "POST" and key.isdecimal() and len(key) < MOST_DIGITS:
+        renamed = World.objects.visible_to(request.user).filter(pk=int(key)).first()
+        world = renamed.name if renamed else world
+    return _edit_world(request, world=world)
+
+
 @world_view(Duty.MANAGE, READ_AND_WRITE)
-def world_edit(request: WorldRequest, world: World) -> HttpResponse:
-    """Rename a world, and describe it."""
-    before = world.name
-    form = WorldForm(
-        posted(request), instance=copy(world)
-    )  # the frame goes on showing what is stored
-    if form.is_bound and form.is_valid() and form.change():
+def _edit_world(request: WorldRequest, world: World) -> HttpResponse:
+    with transaction.atomic():
+        # The frame goes on showing ``world``; of two admins who save at once, one is first.
+        stored = World.objects.select_for_update().get(pk=world.pk)
+        before = stored.name
+        form = WorldEditForm(stored, request.user, posted(request))
+        is_saved = form.is_bound and form.is_valid() and form.change()
+    if is_saved:
         now = form.cleaned_data["name"]
         if now != before:
             note(request, f"{before} is called {now} now")

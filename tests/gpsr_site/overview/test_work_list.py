@@ -258,6 +258,20 @@ def test_only_who_may_add_people_is_told_that_somebody_is_alone(sample, admin, a
         assert any(item.url == "/w/home/people/" for item in work.items) is is_told
 
 
+def test_an_administrator_whose_only_world_came_with_the_project_is_led_to_an_own_one(
+    world, admin, superuser, client
+):
+    World.objects.filter(pk=world.pk).update(name="household")
+    for user, is_told in ((admin, False), (superuser, True)):
+        client.force_login(user)
+        page = client.get("/w/household/").content.decode().partition("<main")[2]
+        assert ("Your own files need a world of their own" in page) is is_told
+        assert ('href="/worlds/new/"' in page) is is_told
+    World.objects.create(name="ours")
+    page = client.get("/w/household/").content.decode().partition("<main")[2]
+    assert 'href="/worlds/new/"' not in page
+
+
 def test_the_list_of_worlds_says_what_waits_in_each(busy, other_world, adam):
     page = adam.get("/")
     ((world, _, items),) = page.context["listed"]

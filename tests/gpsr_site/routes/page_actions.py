@@ -61,6 +61,9 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "member": "patch member-detail, delete member-detail",
     "invite": "post invitation-list",
     "invitation_withdraw": "delete invitation-detail",
+    "people_take_back": NoRoute(
+        "It is the button in a message; a program says what it wants instead."
+    ),
     # Files, jobs, commands
     "import": "post import",
     "import_competition": "post import-competition",

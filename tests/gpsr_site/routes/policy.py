@@ -300,7 +300,8 @@ POLICY = [
     Rule("guidelines_preview", *ADMINS, method="post"),
     Rule("queue_settings", *ADMINS),
     Rule("queue_settings", *ADMINS, method="post"),
-    *(Rule(name, *ADMINS) for name in ("import", "import_competition", "import_pairs")),
+    Rule("import", *MEMBERS),  # where everybody exports
+    *(Rule(name, *ADMINS) for name in ("import_competition", "import_pairs")),
     *(
         Rule(name, LOG_IN, NOWHERE, NO, NO, 422, method="post")
         for name in ("import", "import_competition", "import_pairs")
@@ -330,5 +331,6 @@ POLICY = [
     Rule("audit_log", *ADMINS),
     Rule("invite", LOG_IN, NOWHERE, NO, NO, 422, method="post"),
     Rule("invitation_withdraw", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
+    Rule("people_take_back", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     *API_POLICY,
 ]

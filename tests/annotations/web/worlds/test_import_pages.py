@@ -9,8 +9,10 @@ import pytest
 from django.core.files.uploadedfile import SimpleUploadedFile
 
 from annotations.editing.edits import delete
-from annotations.models import Job, SemanticTemplate
+from annotations.models import AuditEntry, Job, SemanticTemplate
 from tests.annotations.conftest import TINY, as_bytes
+from tests.gpsr_site.routes.sample_rows import campaign_row, submission, utterance
+from tests.sample_world import paraphrase_in
 
 
 def uploads(files):
@@ -60,16 +62,22 @@ def test_the_same_files_again_change_nothing(world, adam, tiny):
 
 def test_one_error_refuses_everything_and_is_shown_with_its_place(world, adam, tiny):
     tiny["tiny_category_1_semantics.txt"] = b"go to the {room} = (go $1)\n"
-    answer = send(adam, uploads(tiny))
-    page = answer.content.decode()
-    assert answer.status_code == 422
-    assert answer.context["is_refused"]
-    assert "tiny_category_1_semantics.txt:1:" in page
+    sent = send(adam, uploads(tiny))
+    for _ in range(2):  # also after a reload
+        answer = report_of(adam, sent)
+        page = answer.content.decode()
+        assert answer.context["is_refused"]
+        assert "tiny_category_1_semantics.txt:1:" in page
+        assert 'href="/w/home/import/"' in page.partition("<main")[2]
     assert not hasattr(world, "grammar")
+    job = Job.objects.get()
+    assert (job.status, job.failure) == ("failed", "Nothing was imported: 1 error.")
+    assert AuditEntry.objects.latest("pk").subject == job.failure
 
 
 def test_an_error_of_the_files_as_a_whole_has_no_place(world, adam):
-    answer = send(adam, uploads({"names.xml": b"<names><name>Ada</name></names>"}))
+    sent = send(adam, uploads({"names.xml": b"<names><name>Ada</name></names>"}))
+    answer = report_of(adam, sent)
     (problem,) = [each for each in answer.context["problems"] if each["severity"] == "error"]
     assert problem["file"] == "" and problem["message"] in answer.content.decode()
     assert ":1:1" not in answer.content.decode()
@@ -84,7 +92,6 @@ def test_no_file_is_told(world, adam):
     [
         ([SimpleUploadedFile("x.zip", b"PK no archive")], "x.zip"),
         ([archive({f"{n}.txt": b"x" for n in range(80)})], "64"),
-        ([archive({"a/x.txt": b"$Main = a\n", "b/x.txt": b"$Main = b\n"})], "x.txt"),
     ],
 )
 def test_an_upload_that_cannot_be_taken_is_told_at_its_field(files, named, world, adam):
@@ -92,8 +99,12 @@ def test_an_upload_that_cannot_be_taken_is_told_at_its_field(files, named, world
         file.seek(0)
     answer = send(adam, files)
     assert answer.status_code == 422
-    told = f"{answer.context['form'].errors} {answer.context.get('problems')}"
-    assert named in told
+    assert named in str(answer.context["form"].errors)
+
+
+def test_two_files_of_one_name_are_told_in_the_report(world, adam):
+    twice = archive({"a/x.txt": b"$Main = a\n", "b/x.txt": b"$Main = b\n"})
+    assert "x.txt" in str(report_of(adam, send(adam, [twice])).context["problems"])
 
 
 def test_an_archive_that_swells_is_refused_before_it_is_unpacked(world, adam, settings):
@@ -128,15 +139,13 @@ def test_published_pairs_become_a_frozen_split(sample, adam):
 
 
 def test_a_fault_in_the_pairs_refuses_them_with_its_place(sample, adam):
-    answer = send_pairs(adam, {"gen/train.txt": b"go to the <room>\n"})
-    assert answer.status_code == 422
+    answer = report_of(adam, send_pairs(adam, {"gen/train.txt": b"go to the <room>\n"}))
     assert answer.context["is_refused"] and "train.txt:1" in answer.content.decode()
     assert sample.world.splits.count() == 1
 
 
 def test_an_archive_without_pairs_is_told(sample, adam):
-    answer = send_pairs(adam, {"notes/train.txt": b"x"})
-    assert answer.status_code == 422
+    answer = report_of(adam, send_pairs(adam, {"notes/train.txt": b"x"}))
     assert answer.context["is_refused"]
 
 
@@ -247,11 +256,26 @@ def test_warnings_are_there_after_a_reload_and_lead_to_what_they_are_about(world
     assert all(each.get("url") for each in problems)
 
 
+def test_warnings_of_one_kind_are_one_line_with_their_number_and_places(world, adam, tiny):
+    tiny["tiny_category_1_grammar.txt"] += b"$nobody = somebody\n$nothing = something\n"
+    tiny["objects.xml"] = tiny["objects.xml"].replace(b'room="kitchen"', b'room="attic"')
+    answer = report_of(adam, send(adam, uploads(tiny)))
+    groups = answer.context["problem_groups"]
+    assert sum(group.count for group in groups) == len(answer.context["problems"])
+    (unreached,) = [group for group in groups if group.count == 2]
+    assert (unreached.title, unreached.severity) == ("$Main never reaches …", "warning")
+    page = answer.content.decode()
+    for name in ("nobody", "nothing"):
+        row = world.grammar.productions.get(nonterminal=name)
+        assert f'href="/w/home/grammar/{row.pk}/"' in page
+    assert page.count(unreached.hint) == 1
+
+
 def test_errors_lead_to_no_row_of_the_files_before(world, adam, tiny):
     send(adam, uploads(tiny))
     tiny["common_rules.txt"] = b"$new = (a\n" + tiny["common_rules.txt"]
-    answer = send(adam, uploads(tiny))
-    assert answer.status_code == 422
+    answer = report_of(adam, send(adam, uploads(tiny)))
+    assert answer.context["is_refused"]
     problems = answer.context["problems"]
     assert problems and not [each for each in problems if each.get("url")]
 
@@ -268,6 +292,7 @@ def test_after_a_first_import_everything_leads_to_the_commands(world, adam, tiny
     page = report_of(adam, send(adam, uploads(tiny))).content.decode()
     generate = 'action="/w/home/generate/"'
     assert page.count(generate) == 1
+    assert page.partition("<main")[2].partition("</main")[0].count("primary") == 1
     overview = adam.get("/w/home/")
     assert not [
         task
@@ -279,7 +304,13 @@ def test_after_a_first_import_everything_leads_to_the_commands(world, adam, tiny
     assert overview.content.decode().count(generate) == 1
     coverage = adam.get("/w/home/coverage/").content.decode()
     assert generate in coverage and "/w/home/templates/new/" not in coverage
+    commands = adam.get("/w/home/commands/").content.decode()
+    for each in (page, overview.content.decode(), coverage, commands):
+        assert "<strong>3 commands</strong> wait to be generated" in each
+        assert "All 3 commands of the grammar will have a form then." in " ".join(each.split())
+        assert "out of date" not in each and "older than" not in each
     adam.post("/w/home/generate/")
+    assert world.commands.count() == 3
     for address in ("/w/home/", "/w/home/coverage/"):
         page = adam.get(address).content.decode()
         assert generate not in page and "coverage-bar" in page
@@ -291,7 +322,48 @@ def test_an_import_without_templates_leads_to_writing_one(world, adam, tiny):
     assert "/w/home/templates/new/" in page and "/w/home/generate/" not in page
 
 
-def test_an_empty_world_is_told_what_to_choose_and_not_what_is_replaced(world, adam, tiny):
-    assert "Replaces" not in adam.get("/w/home/import/").content.decode()
-    send(adam, uploads(tiny))
-    assert "Replaces" in adam.get("/w/home/import/").content.decode()
+def test_the_first_sentence_says_what_to_bring_and_what_becomes_of_it(world, adam, tiny):
+    for _ in range(2):
+        page = adam.get("/w/home/import/").content.decode().partition("<main")[2]
+        sentence = "Bring the files of your command generator"
+        assert (
+            sentence in page
+            and "Replaces" not in page
+            and "replaced" not in page.split(sentence)[0]
+        )
+        assert ("would be removed" in page) is hasattr(world, "grammar")
+        send(adam, uploads(tiny))
+        world.refresh_from_db()
+
+
+def test_everything_that_is_exported_stands_on_one_page_and_is_there(sample, adam, anna, rene):
+    paraphrase_in(sample.world)
+    utterance(sample)
+    titles = {}
+    for client in (adam, anna, rene):
+        answer = client.get("/w/home/import/")
+        listed = answer.context["exports"]
+        titles[client] = [each.title for each in listed]
+        assert ('<form class="fields"' in answer.content.decode()) is (client is adam)
+        for link in (link for each in listed for link in each.links):
+            given = client.get(link.url)
+            assert given.status_code == 200, link.url
+            assert given.has_header("Content-Disposition") is link.is_file
+    assert titles[anna][:2] == ["The whole world", "Files of the generator"]
+    assert {"Vocabulary", "Utterances", "Rephrased data", "Splits", "Reports"} <= {*titles[adam]}
+
+
+def test_an_empty_world_offers_no_empty_file(world, anna):
+    (whole,) = anna.get("/w/home/import/").context["exports"]
+    assert whole.title == "The whole world"
+
+
+def test_submissions_are_offered_to_whoever_may_read_them(sample, rene, anna):
+    campaign_row(sample)
+    submission(sample)
+    assert "Submissions to campaigns" in titles_of(rene)
+    assert "Submissions to campaigns" not in titles_of(anna)
+
+
+def titles_of(client):
+    return [each.title for each in client.get("/w/home/import/").context["exports"]]

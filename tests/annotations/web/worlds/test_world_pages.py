@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import pytest
+from django.test import Client
 
-from annotations.models import Job, World
+from annotations.models import Job, User, World
 from annotations.models.background import JobKind, Status
-from annotations.people.members import admins_of
+from annotations.models.worlds import Role
+from annotations.people.members import add_roles, admins_of
 from tests.notices import levels
 
 
@@ -98,3 +100,64 @@ def test_only_who_may_delete_the_world_finds_the_button(sample, admin, superuser
     for user, is_there in ((admin, False), (superuser, True)):
         client.force_login(user)
         assert ("/w/home/delete/" in client.get(PAGE).content.decode()) is is_there
+
+
+def values_of(client):
+    """What the form of the page sends as it stands."""
+    form = client.get(PAGE).context["form"]
+    return {field.name: field.value() for field in form}
+
+
+@pytest.fixture
+def berta(sample):
+    account = User.objects.create_user("berta")
+    add_roles(sample.world, account, [Role.ADMIN])
+    client = Client()
+    client.force_login(account)
+    return client
+
+
+def test_two_admins_who_change_other_fields_lose_nothing(sample, admin, client, berta):
+    client.force_login(admin)
+    mine, theirs = values_of(client), values_of(berta)
+    berta.post(PAGE, {**theirs, "world": sample.world.pk, "name": "flat"})
+    answer = client.post(PAGE, {**mine, "world": sample.world.pk, "description": "Two rooms."})
+    assert answer.url == "/w/flat/world/"
+    sample.world.refresh_from_db()
+    assert (sample.world.name, sample.world.description) == ("flat", "Two rooms.")
+
+
+def test_the_second_of_two_admins_reads_what_the_first_has_saved(sample, admin, client, berta):
+    client.force_login(admin)
+    mine, theirs = values_of(client), values_of(berta)
+    berta.post(PAGE, {**theirs, "description": "One room."})
+    answer = client.post(PAGE, {**mine, "description": "Two rooms."})
+    assert answer.status_code == 422
+    (error,) = answer.context["form"].errors["description"]
+    assert error.startswith(
+        "berta has saved another description in the meantime. It is “One room.”"
+    )
+    shown = {field.name: field.value() for field in answer.context["form"]}
+    assert shown["description"] == "Two rooms."
+    sample.world.refresh_from_db()
+    assert sample.world.description == "One room."
+    assert client.post(PAGE, shown).status_code == 302
+    sample.world.refresh_from_db()
+    assert sample.world.description == "Two rooms."
+
+
+def test_the_same_description_twice_is_no_clash(sample, admin, client, berta):
+    client.force_login(admin)
+    mine = values_of(client)
+    berta.post(PAGE, {**mine, "description": "One\nroom."})
+    assert client.post(PAGE, {**mine, "description": "One\r\nroom."}).status_code == 302
+
+
+@pytest.mark.parametrize("key", ["", "x", "-1", "9" * 30, "²"])
+def test_a_world_that_is_not_the_reader_s_is_not_found_by_its_key(
+    key, sample, other_world, admin, client
+):
+    client.force_login(admin)
+    values = {"name": "mine", "description": ""}
+    assert client.post("/w/nowhere/world/", {**values, "world": key}).status_code == 404
+    assert client.post("/w/nowhere/world/", {**values, "world": other_world.pk}).status_code == 404
