@@ -32,7 +32,7 @@ class NameTaken(Refusal):
     status = HTTPStatus.CONFLICT
 
     def __init__(self) -> None:
-        super().__init__("Somebody has this name already. Choose another one.")
+        super().__init__("Somebody has this username already. Choose another one.")
 
 
 def has_joined(invitation: Invitation, user: User) -> bool:

@@ -27,6 +27,7 @@ from annotations.form_presentation import (
     tree_of,
     wildcard_class,
 )
+from annotations.language.english import article
 from annotations.language.errors import Position
 from annotations.language.forms import Change, predicates
 from annotations.language.names import CLASS_OF_ATTRIBUTE
@@ -47,6 +48,7 @@ for written in (
 ):
     register.filter(written)
 register.filter("as_markdown", rendered)
+register.filter("article", article)
 
 PLACE = ("source", "line", "column")
 PATTERN_TOKEN = re.compile(r"(\$\w+|\{[^{}]*\})")

@@ -115,7 +115,7 @@ class Sheet:
 
     ``column`` has the texts; it ``is_column_sure`` where its name says so, or where there is only one.
     ``form_column`` has logical forms, and is empty where none has. ``ignored`` are columns that are not
-    stored. ``has_head``: the first row of the table names its columns. ``remarks`` are sentences that say
+    stored. ``has_head``: the first row of the table names its columns. ``warnings`` are sentences that say
     what was left out or converted. ``problems`` are rows that cannot be read; with one that has no row of
     its own nothing can be.
     """
@@ -127,7 +127,7 @@ class Sheet:
     is_column_sure: bool = True
     form_column: str = ""
     has_head: bool = False
-    remarks: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
     problems: tuple[Problem, ...] = ()
 
     @property
@@ -631,8 +631,10 @@ def _read_pairs(text: str, source: str) -> Sheet:
         UploadRow(lines[n][0], {"utterance": lines[n][1], "form": lines[n + period - 1][1]})
         for n in range(0, whole, period)
     ]
-    remark = "These are pairs of a command and its form. To make a split of them, use Import pairs."
-    return replace(_sheet(UploadFormat.PAIRS, records, problems=problems), remarks=(remark,))
+    warning = (
+        "These are pairs of a command and its form. To make a split of them, use Import pairs."
+    )
+    return replace(_sheet(UploadFormat.PAIRS, records, problems=problems), warnings=(warning,))
 
 
 # --- columns --------------------------------------------------------------------------------------

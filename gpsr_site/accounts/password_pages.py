@@ -49,7 +49,7 @@ TOO_OFTEN = (
     "Too many wrong attempts from this address. "
     f"Try again in {BY_NAME_AND_ADDRESS.seconds // 60} minutes."
 )
-TOO_MANY_AT_ONCE = "Too many attempts for this name just now. Try again in a few seconds."
+TOO_MANY_AT_ONCE = "Too many attempts for this username just now. Try again in a few seconds."
 
 
 # What the pages below take, before they look at anything else: Django's views of forms read a PUT too.
@@ -57,11 +57,11 @@ reads_forms = method_decorator(require_http_methods(READ_AND_WRITE), "dispatch")
 
 
 class LogInForm(AuthenticationForm):
-    """Name and password, of a length that is cheap to hash."""
+    """Username and password, of a length that is cheap to hash."""
 
     password = forms.CharField(strip=False, max_length=MOST_CHARACTERS, widget=forms.PasswordInput)
     error_messages = {
-        "invalid_login": "No account has this name and this password.",
+        "invalid_login": "No account has this username and this password.",
         "inactive": "This account is closed. Ask an admin of the site.",
     }
 

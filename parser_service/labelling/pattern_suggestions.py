@@ -26,13 +26,13 @@ MOST_NEIGHBOURS = 3
 class PatternSuggestions:
     """Forms for a pattern, the most likely first, and the command that parsers are asked about.
 
-    ``waits_for`` is the title of the parser that a worker asks; ``remark`` says why it gives no form.
+    ``waits_for`` is the title of the parser that a worker asks; ``reason`` says why it gives no form.
     """
 
     forms: tuple[SuggestedForm, ...] = ()
     command: str = ""
     waits_for: str = ""
-    remark: str = ""
+    reason: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class _Answer:
 
     answers: tuple[ParserAnswer, ...] = ()
     waits_for: str = ""
-    remark: str = ""
+    reason: str = ""
 
 
 def suggest_with_parsers(
@@ -65,8 +65,8 @@ def suggest_with_parsers(
     both = add_answers(world, category, pattern, forms, [best.answers, nearest])
     is_used = any(each in best.answers for form in both for each in form.answers)
     does_not_fit = bool(best.answers) and not is_used
-    remark = f"{best.answers[0].parser} gives no form that fits." if does_not_fit else best.remark
-    return PatternSuggestions(tuple(both), command, best.waits_for, remark)
+    reason = f"{best.answers[0].parser} gives no form that fits." if does_not_fit else best.reason
+    return PatternSuggestions(tuple(both), command, best.waits_for, reason)
 
 
 def _answer_of_best(world: World, command: str, by: User | None) -> _Answer:
@@ -86,4 +86,4 @@ def _answer_of_best(world: World, command: str, by: User | None) -> _Answer:
         job = request_answer(world, command, run.pk, by)
     if not job.is_ended:
         return _Answer(waits_for=title)
-    return _Answer(remark=job.failure or f"{title} answers no well-formed form.")
+    return _Answer(reason=job.failure or f"{title} answers no well-formed form.")

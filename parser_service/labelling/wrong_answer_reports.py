@@ -15,6 +15,7 @@ from annotations.models.corpus import UtteranceStatus
 from annotations.queueing.enqueuing import WantedItem, enqueue
 from parser_service.labelling.label_candidates import PERSON
 from parser_service.models import TrainingRun
+from parser_service.parsers.registry import title_of
 
 FIRST = 0  # before what parsers propose
 NO_RUN = 0
@@ -62,4 +63,4 @@ def report_wrong(
 
 def say_parser(run: TrainingRun | None) -> str:
     """Return what people read in the queue of the parser that answered."""
-    return f"{run.parser} (run {run.pk})" if run else "a parser"
+    return f"{title_of(run.parser)} (run {run.pk})" if run else "a parser"

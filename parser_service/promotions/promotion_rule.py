@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from django.db import transaction
 
+from annotations.language.corpus import Criterion
 from annotations.models import Split, World
 from annotations.people.audit_log import RULE, record_command
 from parser_service.models import Promotion, PromotionState, TrainingRun
@@ -12,6 +13,7 @@ from parser_service.promotions.promoting import promote
 from parser_service.promotions.score_evidence import (
     evidence_for,
     is_right_on_paraphrases,
+    known_low,
     spoken_low,
     spoken_score,
 )
@@ -24,9 +26,11 @@ def consider(run: TrainingRun) -> Promotion | None:
 
     The first run of a world that is right on some paraphrase is promoted. A later one takes its place where the
     lower end of its 95 % interval on validation paraphrases is higher. Both have to be tested on the same split,
-    or the later one on a split that was frozen anew from it. What a person has promoted stays until a person
-    decides: a better run is proposed. So is one after the corpus has changed that is not clearly worse: its accuracy
-    is within the interval of the promoted run's.
+    or the later one on a split that was frozen anew from it. One more case can be compared: the later run is on a
+    split by command, the promoted one on a split by form, and the lower end on its known forms counts.
+
+    What a person has promoted stays until a person decides: a better run is proposed. So is one after the corpus has
+    changed that is not clearly worse: its accuracy is within the interval of the promoted run's.
 
     A parser that asks a server is never promoted here: what a robot hears would go there. Runs on a share of the
     training pairs do not count. Returns the row that was made, if any.
@@ -40,9 +44,10 @@ def consider(run: TrainingRun) -> Promotion | None:
         is_for_people = run.parser in needing(Needs.SERVER)
         if present is None:
             return None if is_for_people else _promote(run, FIRST)
-        if not is_comparable(run, present.run):
-            return None
-        better = _how_much_better(run, present.run)
+        if is_comparable(run, present.run):
+            better = _how_much_better(run, present.run)
+        else:
+            better = _how_much_better_on_known_forms(run, present.run)
         if better and present.decided_by is None and not is_for_people:
             return _promote(run, better)
         return _propose(run, present.run, better)
@@ -68,6 +73,27 @@ def _how_much_better(run: TrainingRun, present: TrainingRun) -> str:
     return (
         f"Surer to be right than run {present.pk}: at least {_percent(now)} on validation paraphrases, "
         f"{_percent(before)} so far (lower ends of the 95 % intervals)."
+    )
+
+
+def _how_much_better_on_known_forms(run: TrainingRun, present: TrainingRun) -> str:
+    """Say by how much ``run``, on a split by command, is surer to be right than ``present``, on one by form; nothing
+    where it is not, or where they are on other splits.
+
+    By command, parsers are asked for forms that they know. That is what most people say, so a figure of it may take
+    the place of one by form, and not the other way round.
+    """
+    if (run.split.criterion, present.split.criterion) != (
+        Criterion.COMMAND,
+        Criterion.LOGICAL_FORM,
+    ):
+        return ""
+    now, before = spoken_low(run), known_low(present)
+    if now is None or now <= before:
+        return ""
+    return (
+        f"Surer to be right than run {present.pk} on forms that training has: at least {_percent(now)} on "
+        f"{run.split.name}, {_percent(before)} on {present.split.name} so far (lower ends of the 95 % intervals)."
     )
 
 

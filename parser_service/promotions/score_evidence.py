@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from annotations.language.corpus import KNOWN
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.models.evaluations import ShownScore, shown_scores
 from parser_service.parsers.conditions import in_words
@@ -23,6 +24,13 @@ def spoken_low(run: TrainingRun) -> float | None:
     scores = shown_scores(run.evaluations.all(), run.split.criterion)
     shown = next((scores[COMPARED_ON, of] for of in SPOKEN if (COMPARED_ON, of) in scores), None)
     return None if shown is None or shown.alone else shown.interval[0]
+
+
+def known_low(run: TrainingRun) -> float:
+    """Return the lower end of the 95 % interval on paraphrases of known forms, a fraction of 1, of a run on a split by
+    form; 0 where it was not asked any."""
+    asked = {each.test_source: each for each in run.evaluations.all() if each.part == KNOWN}
+    return next((asked[source].interval_low for source in SPOKEN if source in asked), 0.0)
 
 
 def is_right_on_paraphrases(run: TrainingRun) -> bool:

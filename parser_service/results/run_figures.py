@@ -12,7 +12,7 @@ from parser_service.analysis.scores import over_seeds
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.models.evaluations import ShownScore, reach_of, shown_scores
 from parser_service.parsers.conditions import TEST_SOURCES
-from parser_service.results.measures import Measure
+from parser_service.results.measures import Measure, interval_of, is_known
 from parser_service.results.seed_figures import figure_of
 
 KNOWN_FORMS = "Pairs held out of the training part, by whole source commands, whose logical forms stay in training"
@@ -50,21 +50,27 @@ def report_run(run: TrainingRun) -> dict[str, Any]:
         "attempts": run.attempt,
         "parameters": run.parameters,
         "seconds_trained": round(run.seconds_trained, 2),
-        "evaluations": [
-            {
-                "test_source": score.test_source,
-                "part": score.part,
-                "count": score.count,
-                "correct": score.correct,
-                "accuracy": score.accuracy,
-                "interval": [score.interval_low, score.interval_high],
-                "equivalent": score.equivalent,
-                "well_formed": score.well_formed,
-                "same_plan": score.same_plan,
-            }
-            for score in run.evaluations.all()
-        ],
+        "evaluations": [_report_score(score) for score in run.evaluations.all()],
         "harmonic_means": harmonic_means([run]),
+    }
+
+
+def _report_score(score: Evaluation) -> dict[str, Any]:
+    """Report a score by every measure, those that compare answers with their 95 % intervals; the plan's are None
+    where plans were not compared."""
+    is_compared = is_known(score, Measure.SAME_PLAN)
+    return {
+        "test_source": score.test_source,
+        "part": score.part,
+        "count": score.count,
+        "correct": score.correct,
+        "accuracy": score.accuracy,
+        "interval": list(interval_of(score, Measure.EXACT)),
+        "equivalent": score.equivalent,
+        "equivalent_interval": list(interval_of(score, Measure.EQUIVALENT)),
+        "same_plan": score.same_plan,
+        "same_plan_interval": list(interval_of(score, Measure.SAME_PLAN)) if is_compared else None,
+        "well_formed": score.well_formed,
     }
 
 

@@ -80,16 +80,19 @@ def best_run(world: World) -> TrainingRun:
     )
 
 
-def opening_run(world: World) -> TrainingRun | None:
-    """Return the run that a page opens on: what answers in the world, else the best one.
+def answering_run(world: World) -> TrainingRun:
+    """Return the run that answers in ``world`` where nobody names one: the promoted one, else ``best_run``.
 
-    That is the promoted run, else ``best_run``, else the newest that has succeeded; None where there is none.
+    Raises Refusal where no run has succeeded.
     """
-    promoted = promoted_run(world)
-    if promoted is not None:
-        return promoted
+    return promoted_run(world) or best_run(world)
+
+
+def opening_run(world: World) -> TrainingRun | None:
+    """Return the run that a page opens on: ``answering_run``, else the newest that has succeeded; None where there is
+    none."""
     try:
-        return best_run(world)
+        return answering_run(world)
     except Refusal:
         return world.runs.succeeded().select_related("split").order_by("-pk").first()
 

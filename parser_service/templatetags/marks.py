@@ -1,4 +1,4 @@
-"""Template tags: the sign behind the name of a parser whose figures a footnote qualifies, and the footnote."""
+"""What pages call a parser, the sign behind the name of one whose figures a footnote qualifies, and the footnote."""
 
 from __future__ import annotations
 
@@ -9,10 +9,17 @@ from django import template
 from django.utils.html import format_html
 from django.utils.safestring import SafeString
 
+from parser_service.parsers.registry import title_of
 from parser_service.results.table_parts import MARK, MAY_KNOW_CORPORA, may_know_corpora
 
 register = template.Library()
 NOTHING = SafeString()
+
+
+@register.filter
+def parser_title(parser: str) -> str:
+    """Return what pages call a parser, by its name in the registry: ``Nearest neighbour`` for ``knn``."""
+    return title_of(parser)
 
 
 @register.simple_tag

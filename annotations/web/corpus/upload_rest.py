@@ -116,7 +116,7 @@ class PreviewSerializer(serializers.Serializer[Any]):
     bad = serializers.IntegerField()
     forms = serializers.IntegerField()
     bad_forms = serializers.IntegerField()
-    remarks = serializers.ListField(child=serializers.CharField())
+    warnings = serializers.ListField(child=serializers.CharField())
     problems = ProblemItemSerializer(many=True)
     first = ShownTextSerializer(many=True)
 
@@ -139,7 +139,7 @@ def shown_as_json(shown: Preview, upload: Upload | None) -> dict[str, Any]:
         "bad": shown.n_problems,
         "forms": len(shown.forms or {}),
         "bad_forms": shown.n_bad_forms,
-        "remarks": list(sheet.remarks),
+        "warnings": list(sheet.warnings),
         "problems": [as_json(each) for each in shown.problems],
         "first": ShownTextSerializer(shown.first, many=True).data,
     }

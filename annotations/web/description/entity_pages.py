@@ -140,7 +140,7 @@ def asked_class(request: PageRequest) -> dict[str, str]:
 
 
 def tell_saved(request: PageRequest, sentence: str, problems: tuple[Problem, ...]) -> None:
-    """Tell the reader that it was saved, with the checker's remarks."""
+    """Tell the reader that it was saved, with the checker's problems."""
     if not problems:
         messages.success(request, sentence)
         return

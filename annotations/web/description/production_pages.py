@@ -45,7 +45,7 @@ PAGE_SIZE = 200
 
 @world_view(Duty.VIEW)
 def grammar(request: WorldRequest, world: World) -> HttpResponse:
-    """List the productions by nonterminal, with the checker's remarks."""
+    """List the productions by nonterminal, with the checker's problems."""
     rows = Production.objects.filter(grammar__world=world)
     listing = Listing(request, ProductionFilters, rows, SORTS, size=PAGE_SIZE)
     grouped = groupby(listing.rows, key=lambda row: (row.source, row.nonterminal))

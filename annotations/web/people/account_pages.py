@@ -15,7 +15,7 @@ from annotations.people.accounts import OwnAccount, password_path, set_open
 from annotations.people.audit_log import note
 from annotations.web.people.people_filters import AccountFilters
 
-SORTS = {"name": Sort("Name", "username"), "joined": Sort("Since", "date_joined")}
+SORTS = {"name": Sort("Username", "username"), "joined": Sort("Since", "date_joined")}
 
 
 @never_cache

@@ -31,7 +31,7 @@ MODEL_BACKEND = "django.contrib.auth.backends.ModelBackend"
 
 
 class SignUpForm(UserCreationForm):  # type: ignore[type-arg]  # generic in the stubs alone
-    """A name that nobody has in any spelling, and a password that is not easily guessed."""
+    """A username that nobody has in any spelling, and a password that is not easily guessed."""
 
     class Meta:
         model = User
@@ -39,7 +39,7 @@ class SignUpForm(UserCreationForm):  # type: ignore[type-arg]  # generic in the 
 
     def __init__(self, *args: object, **kwargs: object) -> None:
         super().__init__(*args, **kwargs)
-        self.fields["username"].label = "Name"
+        self.fields["username"].label = "Username"
         self.fields["username"].help_text = "Others see it beside what you do."
         self.fields["username"].widget.attrs |= {
             "autocomplete": "username",

@@ -19,8 +19,9 @@ class MemberForm(forms.Form):
     """An account by its name, and what it may do here. Nobody gets a role unasked."""
 
     name = forms.CharField(
+        label="Username",
         max_length=150,
-        help_text="The name of an account. Whoever has none yet joins by an invitation.",
+        help_text="Whoever has no account yet joins by an invitation.",
         widget=forms.TextInput(attrs={"autocomplete": "off", "autocapitalize": "none"}),
     )
     roles = forms.MultipleChoiceField(
@@ -32,7 +33,9 @@ class MemberForm(forms.Form):
     def clean_name(self) -> User:
         account = find_account(self.cleaned_data["name"])
         if account is None:
-            raise ValidationError("No account has this name. Invite the person by a link instead.")
+            raise ValidationError(
+                "No account has this username. Invite the person by a link instead."
+            )
         return account
 
 

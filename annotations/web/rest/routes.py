@@ -200,7 +200,7 @@ class Noun(Tagged):
         raise NotImplementedError
 
     def problems_of(self, form: Any) -> Iterable[Problem]:
-        """Return the checker's remarks on a row that was stored."""
+        """Return the checker's problems on a row that was stored."""
         return ()
 
     def valid_form(self, row: Any | None, sent: Mapping[str, Any]) -> Any:
@@ -210,7 +210,7 @@ class Noun(Tagged):
         return form
 
     def written(self, row: Editable, form: Any, status: int = HTTPStatus.OK) -> Response:
-        """Respond with the stored row and the checker's remarks on it."""
+        """Respond with the stored row and the checker's problems on it."""
         problems = [as_json(each) for each in self.problems_of(form)]
         shown = {"problems": problems, **self.get_serializer(row).data}
         return Response(shown, status=status, headers={"ETag": etag_of(row, shown)})

@@ -73,7 +73,7 @@ class Schema(AutoSchema):
         )
 
     def get_response_serializers(self) -> Any:
-        """Return the serializer for the answer to a write: the row with the checker's remarks."""
+        """Return the serializer for the answer to a write: the row with the checker's problems."""
         writes = ("POST", "PATCH", "create", "partial_update")
         if self._asked in writes and hasattr(self.view, "new_serializer"):
             return with_problems(getattr(self.view, "serializer_class", None))

@@ -6,6 +6,7 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
+from annotations.language.english import article
 from annotations.language.forms import (
     Application,
     Constant,
@@ -93,16 +94,16 @@ def by_names(case: ErrorCase) -> Suggestions:
             yield CategoryProposal(category, reason), True
         elif made_up := frozenset(classes) - set(named):
             reason = (
-                f"The label is UNKNOWN, and the answer has a place for a {_list(made_up)} that the "
+                f"The label is UNKNOWN, and the answer has a place for {_list(made_up)} that the "
                 "utterance does not name."
             )
             yield CategoryProposal(ErrorCategory.UNEXPECTED_DEFAULT, reason), True
     elif unsaid := unsaid_in_label(case.gold, case.predicted, named):
-        reason = f"The label has a place for a {_list(unsaid)}, but the utterance names none."
+        reason = f"The label has a place for {_list(unsaid)}, but the utterance names none."
         yield CategoryProposal(category, reason), _is_the_same(case.label_as_said(), case.predicted)
     elif left_out := left_out_of_label(case.gold, case.predicted, named):
         without = without_classes(flatten_conjunctions(case.predicted), left_out)
-        reason = f"The utterance names a {_list(left_out)}, which the label leaves out."
+        reason = f"The utterance names {_list(left_out)}, which the label leaves out."
         yield CategoryProposal(category, reason), _is_the_same(case.gold, without)
 
 
@@ -172,7 +173,7 @@ RULES: tuple[Callable[[ErrorCase], Suggestions], ...] = (
 
 
 def _list(classes: frozenset[str]) -> str:
-    return " and a ".join(sorted(classes))
+    return " and ".join(f"{article(each)} {each}" for each in sorted(classes))
 
 
 def _is_the_same(first: Form, second: Form) -> bool:

@@ -20,7 +20,7 @@ from annotations.templatetags.task_plans import call
 from parser_service.models import TrainingRun
 from parser_service.parsers.registry import untrained
 from parser_service.runs.training.evaluating import BEAM_WIDTH
-from parser_service.serving.default_runs import best_run
+from parser_service.serving.default_runs import answering_run
 from parser_service.serving.line_files import answer_file, require_utf8
 from parser_service.serving.lines import LineAnswer
 from parser_service.serving.loading import load_parser, make_untrained
@@ -34,7 +34,7 @@ STANDARD_INPUT = "-"
 
 class Command(ReportingCommand):
     help = (
-        "Parse an utterance, or every line of a file, with the best parser trained in a world, with that of a run, or "
+        "Parse an utterance, or every line of a file, with the parser that answers in a world, with that of a run, or "
         "with one that needs no run."
     )
 
@@ -47,7 +47,11 @@ class Command(ReportingCommand):
         )
         parser.add_argument("--world", required=True)
         who = parser.add_mutually_exclusive_group()
-        who.add_argument("--run", type=int, help="number of a succeeded run (default: the best)")
+        who.add_argument(
+            "--run",
+            type=int,
+            help="number of a succeeded run (default: the promoted run, else the best)",
+        )
         who.add_argument(
             "--parser",
             choices=untrained(),
@@ -137,9 +141,9 @@ def _say_plan(candidate: Mapping[str, Any]) -> list[str]:
 
 
 def find_run(world: World, number: int | None) -> TrainingRun:
-    """Return run ``number`` of ``world``, or its best. Raises Refusal where there is none."""
+    """Return run ``number`` of ``world``, or the one that answers there. Raises Refusal where there is none."""
     if number is None:
-        return best_run(world)
+        return answering_run(world)
     run = world.runs.filter(pk=number).first()
     if run is None:
         raise Refusal(f"There is no run {number} in {world}.", "no_such_run", HTTPStatus.NOT_FOUND)

@@ -5,15 +5,36 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, field
 
-from django.db.models import Count
+from django.db.models import Case, Count, Exists, OuterRef, Value, When
 
 from annotations.language.corpus import Criterion, Part
-from annotations.models import Entity, Split, World
+from annotations.models import Entity, Example, Split, World
 from annotations.models.splits import Source
 from parser_service.parsers.conditions import SOURCE_WORDS, SOURCES
 from parser_service.parsers.pretrained_files import Gap, find_gaps
 from parser_service.parsers.recommendation import Recommendation, TrainingMaterial, recommend
 from parser_service.parsers.registry import PARSERS, make_config
+
+# What most people ask for is known forms said in another way; a split by form asks for new ones.
+USUAL_ORDER = (Criterion.COMMAND, Criterion.SOURCE_COMMAND, Criterion.LOGICAL_FORM)
+
+
+def usual_split(world: World) -> Split | None:
+    """Return the split to train on where nobody names one; None where there is none.
+
+    Splits with paraphrases to learn from come first, of these those by command, then by source command; of several
+    the newest.
+    """
+    learned = Example.objects.of(Part.TRAIN).exclude(source=Source.GENERATED)
+    places = [When(criterion=each, then=Value(place)) for place, each in enumerate(USUAL_ORDER)]
+    return (
+        world.splits.annotate(
+            has_paraphrases=Exists(learned.filter(split=OuterRef("pk"))),
+            place=Case(*places, default=Value(len(places))),
+        )
+        .order_by("-has_paraphrases", "place", *Split._meta.ordering)
+        .first()
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +90,7 @@ def gaps_of_parsers() -> dict[str, list[Gap]]:
 
 
 def recommendation_for(world: World, split: Split | None = None) -> Recommendation:
-    """Return the parser to train next on ``split``, or on the newest one of ``world``."""
-    split = split or world.splits.first()
+    """Return the parser to train next on ``split``, or on ``usual_split``."""
+    split = split or usual_split(world)
     lacking = {name for name, gaps in gaps_of_parsers().items() if gaps}
     return recommend(material_of(world, contents_of(split) if split else None), lacking)

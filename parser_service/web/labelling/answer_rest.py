@@ -91,7 +91,7 @@ class SuggestionsSerializer(serializers.Serializer[Any]):
     forms = SuggestedFormSerializer(many=True)
     command = serializers.CharField(allow_blank=True)
     waits_for = serializers.CharField(allow_blank=True)
-    remark = serializers.CharField(allow_blank=True)
+    reason = serializers.CharField(allow_blank=True)
 
 
 class SuggestForms(WorldRoute):

@@ -34,6 +34,7 @@ from parser_service.runs.requests.recommended import (
     gaps_of_parsers,
     material_of,
     recommendation_for,
+    usual_split,
 )
 from parser_service.runs.requests.retraining import retrainable
 from parser_service.runs.requests.starting import start_again, start_runs
@@ -70,7 +71,7 @@ def context_of(world: World, form: RunForm, choices: RunChoices) -> dict[str, ob
         "chosen": choices.parser,
         "entry": PARSERS[choices.parser],
         "note": choices.note,
-        "picker": picker_of(world, chosen or splits.first(), choices.parser),
+        "picker": picker_of(world, chosen or usual_split(world), choices.parser),
         "has_splits": splits.exists(),
     }
 
@@ -150,7 +151,7 @@ def choices_in(query: QueryDict, world: World) -> RunChoices:
         return RunChoices(advice.parser, {"protocol": advice.protocol}, note)
     initial: dict[str, Any] = values_of(run, parser) if run else {}
     if run is None:
-        initial = {"train_sources": all_sources(split)}
+        initial = {"split": split and split.pk, "train_sources": all_sources(split)}
         if parser == advice.parser:
             initial["protocol"] = advice.protocol
     names = [*GENERAL, *(PREFIX + each.name for each in config_fields(parser))]
@@ -162,9 +163,9 @@ def choices_in(query: QueryDict, world: World) -> RunChoices:
 
 
 def split_in(query: QueryDict, world: World) -> Split | None:
-    """Return the split that an address names, else the newest one."""
+    """Return the split that an address names, else the usual one."""
     key = number_in(query.get("split", ""))
-    return world.splits.filter(pk=key or 0).first() or world.splits.first()
+    return world.splits.filter(pk=key or 0).first() or usual_split(world)
 
 
 def all_sources(split: Split | None) -> str:

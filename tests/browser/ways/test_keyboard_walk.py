@@ -26,7 +26,7 @@ SAID += ["fetch my cuppa", *(f"go to the bath {time} times" for time in range(2,
 
 def log_in(page: Page) -> None:
     """Type name and password; the cursor stands in the first field."""
-    expect(page.get_by_label("Name")).to_be_focused()
+    expect(page.get_by_label("Username")).to_be_focused()
     page.keyboard.type("anna")
     tab_to(page, page.get_by_label("Password"))
     page.keyboard.type("correct horse")

@@ -29,7 +29,7 @@ def sign_up(noras: Page, link: str) -> None:
     """Let somebody without an account follow the link and make one."""
     noras.goto(link)
     expect(noras.locator("main")).to_contain_text("adam invites you to join home as annotator.")
-    noras.get_by_label("Name").fill("nora")
+    noras.get_by_label("Username").fill("nora")
     noras.get_by_label("Password", exact=True).fill(PASSWORD)
     noras.get_by_label("Password again").fill(PASSWORD)
     noras.keyboard.press("Enter")

@@ -55,7 +55,7 @@ def test_the_focus_is_where_one_goes_on(client):
 
 def test_what_the_field_is_called_the_error_calls_it_too(client):
     page = client.post("/login/", WRONG).content.decode()
-    assert ">Name</label>" in page and "username and" not in page
+    assert ">Username</label>" in page and "has this username and" in page
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ from django.core.management import CommandError, call_command
 
 from annotations.models import Entity, Ontology, Split
 from parser_service.models import TrainingRun
+from parser_service.promotions.promoting import promote
 from parser_service.runs import lifecycle
 from parser_service.runs.checkpoints import model_folder, remove_folder
 from parser_service.runs.requests import run_requests
@@ -90,6 +91,14 @@ def test_of_two_runs_the_surer_one_is_the_best(split):
     for run, accuracy, low in ((sure, 0.8, 0.7), (lucky, 0.9, 0.5)):
         run.evaluations.filter(test_source="para").update(accuracy=accuracy, interval_low=low)
     assert best_run(split.world) == sure
+
+
+def test_the_promoted_run_is_asked_where_none_is_named(split):
+    promoted = trained(split, train_sources="gen")
+    trained(split, train_sources="gen+para")
+    assert ask("find the red cup")["run"] != promoted.pk
+    promote(promoted, None)
+    assert ask("find the red cup")["run"] == promoted.pk
 
 
 def test_a_run_of_a_split_by_form_is_not_better_for_being_right_more_often(split):

@@ -46,7 +46,13 @@ def test_it_prints_one_object_with_the_figures(split):
     assert (report["train_sources"], report["seed"]) == ("gen+para", 7)
     assert len(report["evaluations"]) == 6
     for figures in report["evaluations"]:
-        assert 0 <= figures["interval"][0] <= figures["accuracy"] <= figures["interval"][1] <= 1
+        for share, name in (
+            ("accuracy", "interval"),
+            ("equivalent", "equivalent_interval"),
+            ("same_plan", "same_plan_interval"),
+        ):
+            low, high = figures[name]
+            assert 0 <= low <= figures[share] <= high <= 1
 
 
 def test_what_was_trained_already_is_reported_again(split):

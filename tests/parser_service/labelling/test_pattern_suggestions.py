@@ -72,7 +72,7 @@ def test_a_new_answer_stands_behind_the_forms_of_the_templates(sample):
 def test_an_answer_that_does_not_fit_is_not_suggested(sample):
     answer(sample.world, sample.run, '( go " <object> " )', '( fly " <room> " )')
     suggested = suggest(sample.world)
-    assert "Nearest neighbour" in suggested.remark
+    assert "Nearest neighbour" in suggested.reason
     assert set(marks(suggested)) == {"(go {room})"}
 
 
@@ -118,7 +118,7 @@ def test_a_parser_that_cannot_answer_is_asked_once(sample, anna, annotator, sett
     carry_out(background.claim("a worker", "quick", Job))
     job.refresh_from_db()
     assert str(tmp_path) in job.report["sentence"]
-    assert "Nearest neighbour" in suggest(sample.world, by=annotator).remark
+    assert "Nearest neighbour" in suggest(sample.world, by=annotator).reason
     assert sample.world.jobs.filter(kind=JobKind.PROPOSE).count() == 1
 
 

@@ -102,6 +102,43 @@ def test_by_form_the_harmonic_mean_is_compared(split):
     assert promoted_run(split.world) == runs[0]
 
 
+@pytest.fixture
+def by_form(split):
+    """A promoted run on a split by form that is right on half of the paraphrases of known forms, and on few others."""
+    other = make_split(split.world, "by-form")
+    Split.objects.filter(pk=other.pk).update(criterion="logical_form")
+    run = trained_run(Split.objects.get(pk=other.pk), spoken=0.15)
+    (known,) = run.evaluations.all()
+    known.pk, known.part = None, "known"
+    known.accuracy, known.interval_low, known.interval_high = 0.5, 0.4, 0.6
+    known.save()
+    consider(run)
+    return run
+
+
+def test_a_run_by_command_overtakes_one_by_form_that_is_less_sure_of_known_forms(split, by_form):
+    assert consider(trained_run(split, spoken=0.45)) is None  # at least 35 %, and 40 % so far
+    better = trained_run(split, seed=1, spoken=0.55)
+    row = consider(better)
+    assert (row.run, row.state) == (better, "promoted")
+    assert "45.0 % on home, 40.0 % on by-form" in row.reason
+    assert consider(trained_run(by_form.split, seed=1, spoken=0.95)) is None
+    assert promoted_run(split.world) == better
+
+
+def test_one_by_form_that_a_person_promoted_is_only_proposed_against(split, by_form, admin):
+    roll = trained_run(by_form.split, seed=1, spoken=0.15)
+    promote(roll, admin)
+    assert consider(trained_run(split, spoken=0.9)).state == "proposed"
+    assert promoted_run(split.world) == roll
+
+
+def test_a_run_by_command_overtakes_one_that_was_asked_for_unseen_forms_alone(split, by_form):
+    by_form.evaluations.filter(part="known").delete()
+    better = trained_run(split, spoken=0.3)
+    assert consider(better).run == better
+
+
 def test_a_run_that_is_never_right_on_paraphrases_is_not_promoted_by_itself(split):
     assert consider(trained_run(split, spoken=0.0)) is None
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from parser_service.models import Prediction, TrainingRun
+from parser_service.parsers.registry import title_of
 from tests.notices import levels
 from tests.parser_service.reports.reading import addresses, parse, table, texts
 from tests.parser_service.reports.validating import validate
@@ -45,7 +46,7 @@ def test_the_figures_are_those_of_the_page(ask, runs):
     document = parse(html_of(ask("report.html")))
     shown = table(document, "differences")
     for row, (letter, run, cell) in zip(shown, page["accuracies"], strict=True):
-        assert row[0] == f"{letter}, {run.parser}, run {run.pk}"
+        assert row[0] == f"{letter}, {title_of(run.parser)}, run {run.pk}"
         assert row[1:3] == [str(cell.correct), str(cell.count)]
         assert row[3] == f"{cell.percent:.1f} {cell.low:.1f}–{cell.high:.1f}"
     (pair,) = page["pairs"]

@@ -12,6 +12,8 @@ from parser_service.analysis.slicing import accuracy_by
 from parser_service.models import ErrorCategory, Prediction, Review, RunAnalysis
 from parser_service.reports import run_report_rows
 from parser_service.reports.run_report import part_of
+from parser_service.results.accuracy_cells import PLANS_NOT_COMPARED
+from parser_service.results.measures import Measure, interval_of, share_of
 from parser_service.runs.training.split_pairs import cluster_of
 from tests.notices import levels
 from tests.parser_service.reports.conftest import EVIL
@@ -95,6 +97,17 @@ def test_the_figures_are_those_of_the_page(report, run, anna):
     assert row[:3] == ["validation", "gen", f"{100 * score.accuracy:.1f}"]
     assert row[4:6] == [str(score.correct), str(score.count)]
     assert f"{100 * score.accuracy:.1f}" in page.content.decode()
+    for measure, told in ((Measure.EQUIVALENT, row[6]), (Measure.SAME_PLAN, row[7])):
+        low, high = (f"{100 * end:.1f}" for end in interval_of(score, measure))
+        assert told == f"{100 * share_of(score, measure):.1f} {low}–{high}"
+        assert f"{low}–{high}" in page.content.decode()
+
+
+def test_what_was_not_compared_has_a_dash(report, run, anna):
+    run.evaluations.update(same_plan=None)
+    (row,) = table(parse(report()), "accuracy")
+    assert row[7] == "–"
+    assert PLANS_NOT_COMPARED in anna.get(f"/w/home/runs/{run.pk}/").content.decode()
 
 
 def test_slices_are_those_of_the_analysis(report, run):

@@ -137,6 +137,31 @@ def test_a_new_run_learns_from_paraphrases_too_where_there_are_any(sample, adam)
     assert initial() == "gen"
 
 
+def test_a_new_run_is_on_a_split_with_paraphrases_by_command_first(sample, adam):
+    def opened():
+        page = adam.get("/w/home/runs/new/")
+        split = page.context["form"]["split"].value()
+        assert page.context["picker"].contents.split.pk == split
+        return split
+
+    def newer(name, criterion):
+        Split.objects.filter(pk=(made := make_split(sample.world, name)).pk).update(
+            criterion=criterion
+        )
+        return made
+
+    newer("by-form", "logical_form")
+    newer("by-source", "source_command")
+    assert opened() == sample.split.pk
+    newest = newer("again", "command")
+    assert opened() == newest.pk
+    newest.examples.filter(source="paraphrased").delete()
+    assert opened() == sample.split.pk
+    assert adam.get("/w/home/runs/new/", {"split": newest.pk}).context["form"][
+        "split"
+    ].value() == str(newest.pk)
+
+
 @pytest.mark.parametrize(("served", "is_missed"), [("cpu", False), ("gpu", True)])
 def test_an_analysis_waits_for_a_worker_of_its_own_queue(sample, rene, served, is_missed):
     TrainingRun.objects.update(queue="cpu")

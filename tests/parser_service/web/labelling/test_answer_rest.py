@@ -21,7 +21,7 @@ def test_a_wrong_answer_is_sent_to_the_work_queue(call_as, sample, reviewer):
     said = call_as(reviewer, "parse/wrong/", sent).json()["sentence"]
     item = WorkItem.objects.get()
     assert item.reason.startswith("rene ") and item.reason.endswith(" Nobody knew.")
-    assert f" knn (run {sample.run.pk}) " in item.reason
+    assert f" Nearest neighbour (run {sample.run.pk}) " in item.reason
     assert (item.utterance.text, Proposal.objects.get().form) == ("off to bed", GO)
     refused = call_as(reviewer, "parse/wrong/", {**sent, "form": "(go"})
     assert refused.json()["problems"][0]["field"] == "form"

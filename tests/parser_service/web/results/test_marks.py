@@ -58,7 +58,7 @@ def test_its_own_page_and_report_bear_the_mark(model, sample, anna):
 @pytest.mark.parametrize("name", ["predictions", "defaults", "sensitivity", "probes"])
 def test_pages_of_its_answers_bear_the_mark_beside_its_name(name, model, sample, anna):
     text = text_of(anna, f"runs/{model.pk}/{name}/")
-    assert f">llm {MARK}, run {model.pk}</span></h1>" in text and FOOTNOTE in text
+    assert f">Language model {MARK}, run {model.pk}</span></h1>" in text and FOOTNOTE in text
     assert MARK not in text_of(anna, f"runs/{sample.run.pk}/{name}/")
 
 

@@ -171,7 +171,7 @@ def test_a_run_is_asked_for_again_with_its_own_values(sample, second_split, adam
 
 def test_a_run_of_another_world_is_not_copied(sample, other_sample, adam):
     form = adam.get(NEW, {"like": other_sample.run.pk}).context["form"]
-    assert "split" not in form.initial
+    assert form.initial["split"] == sample.split.pk
 
 
 @pytest.mark.parametrize("like", ["x", "-1", "9" * 30, "²", ""])

@@ -144,7 +144,7 @@ def test_a_wrong_answer_goes_to_the_work_queue_with_the_right_form(run, anna):
     item = WorkItem.objects.get()
     assert (item.utterance.text, item.kind) == ("get the mug", "requested")
     assert item.reason.startswith("anna ") and item.reason.endswith(" it is not a search")
-    assert f" knn (run {run.pk}) " in item.reason
+    assert f" Nearest neighbour (run {run.pk}) " in item.reason
     first = candidates_for(item.utterance)[0]
     assert first.form == FETCH and first.sources[0] == PERSON
 
