@@ -2,6 +2,7 @@
 // survives a reload and a server that is away. Without this script the advice comes after saving.
 import "./copying.js";
 import { csrfToken } from "./csrf.js";
+import "./time-zone.js";
 import { isCtrlEnter, keyOf } from "./typing.js";
 
 const PAUSE_MS = 700;

@@ -163,13 +163,14 @@ class CampaignForm(forms.Form):
         ]
 
     def clean_ends_at(self) -> datetime | None:
-        """Return the end of the last day, of which something has to be left."""
+        """Return the end of the last day, of which something has to be left: a day of whoever sets it, over REST of
+        UTC."""
         day: date | None = self.cleaned_data["ends_at"]
         if day is None:
             return None
         try:
-            # In UTC, whoever sets it: contributors are anywhere, and their page says UTC.
-            end = datetime.combine(day + timedelta(days=1), time.min, UTC)
+            here = timezone.get_current_timezone()
+            end = datetime.combine(day + timedelta(days=1), time.min, here).astimezone(UTC)
         except OverflowError:
             raise forms.ValidationError("Choose an earlier day.") from None
         if end <= timezone.now():
@@ -247,10 +248,10 @@ def values_of(campaign: Campaign) -> dict[str, Any]:
 
 
 def last_day_of(campaign: Campaign) -> date | None:
-    """Return the last whole day of a campaign; None where it has no end."""
+    """Return the last day of a campaign, as the reader counts days; None where it has no end."""
     if campaign.ends_at is None:
         return None
-    return (campaign.ends_at - timedelta(microseconds=1)).astimezone(UTC).date()
+    return timezone.localdate(campaign.ends_at - timedelta(microseconds=1))
 
 
 class ResultsForm(forms.Form):
