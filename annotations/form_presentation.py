@@ -129,7 +129,7 @@ def answer_pieces(
     annotated: str, answer: str
 ) -> tuple[list[tuple[str, str]], list[tuple[str, str]]]:
     """Return what ``difference`` does, whatever the order of conjuncts: those of the answer stand in the order
-    of the annotated form."""
+    of the label."""
     compared = answer_difference(annotated, answer)
     if compared is None:
         return unmarked(annotated), unmarked(answer)

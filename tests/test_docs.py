@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from django.core.management import get_commands, load_command_class
 
+from parser_service.parsers.registry import PARSERS
 from parser_service.results.published import PUBLISHED, published_accuracy
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -152,6 +153,17 @@ def test_the_readme_has_the_figures_of_the_docs():
     text = (DOCS / "research" / "reproducing.md").read_text(encoding="utf-8")
     rows = set(re.findall(r"^\| `[\w-]+` \| .*$", README, re.MULTILINE))
     assert len(rows) == 4 and rows <= set(text.splitlines())
+
+
+def test_the_table_of_the_paper_is_called_as_the_paper_calls_it():
+    for page in (README, (DOCS / "research" / "reproducing.md").read_text(encoding="utf-8")):
+        assert "Table 3" in page
+
+
+def test_every_parser_has_a_row_and_the_name_of_its_page():
+    table = (DOCS / "design" / "parsers.md").read_text(encoding="utf-8").partition("\n## ")[0]
+    for name, entry in PARSERS.items():
+        assert f"`{name}`, {entry.title}" in table, name
 
 
 def test_every_page_is_reached_from_the_readme():

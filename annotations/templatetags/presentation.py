@@ -232,14 +232,14 @@ def _mark(token: str, grammar_url: str = "") -> str:
 
 @register.simple_tag
 def expected_form(expected: str, predicted: str) -> SafeString:
-    """Show the annotated form, with what the prediction lacks marked, whatever the order of conjuncts."""
+    """Show the label, with what the prediction lacks marked, whatever the order of conjuncts."""
     return _form_with_marks(answer_pieces(expected, predicted)[0])
 
 
 @register.simple_tag
 def predicted_form(expected: str, predicted: str) -> SafeString:
     """Show the predicted form, with what it has beyond the annotated one marked; its conjuncts stand in the
-    order of those of the annotated form."""
+    order of those of the label."""
     return _form_with_marks(answer_pieces(expected, predicted)[1])
 
 

@@ -33,6 +33,7 @@ from annotations.models import (
 )
 from annotations.models.worlds import Role
 from annotations.rows.from_rows import annotated_categories, classes_of, predicates_of
+from annotations.rows.rows_in_words import rows_in_words
 from annotations.rows.stored_problems import as_json
 from annotations.rows.synchronise import BATCH, batches
 from annotations.splits.freezing import content_hash_of
@@ -179,7 +180,7 @@ class _Loader:
                 self._progress.check()
                 self._done += len(rows)
                 total = max(1, sum(self._manifest.rows.values()))
-                message = f"storing {table.model._meta.verbose_name_plural}"
+                message = f"storing {rows_in_words(table.model)}"
                 self._progress.report(min(1.0, self._done / total), message)
             announced = self._manifest.rows[table.name]
             if len(keys) != announced:

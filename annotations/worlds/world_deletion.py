@@ -14,6 +14,7 @@ from annotations.jobs.requesting import request_job
 from annotations.jobs.watching import JobProgress
 from annotations.jobs.weight import MOST_ROWS
 from annotations.models import Job, JobKind, User, World
+from annotations.rows.rows_in_words import rows_in_words
 from annotations.rows.synchronise import BATCH
 
 # Model → the paths by which its rows belong to a world.
@@ -49,7 +50,7 @@ def delete_world(world: World, progress: Progress = UNWATCHED) -> int:
     for model in counts:
         for keys in _batches_of_keys(model, world, paths[model]):
             progress.check()
-            progress.report(deleted / total, f"deleting {model._meta.verbose_name_plural}")
+            progress.report(deleted / total, f"deleting {rows_in_words(model)}")
             deleted += len(keys)
             model._base_manager.filter(pk__in=keys).delete()
     with progress.writing():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from annotations.language.english import say_count
+from annotations.language.english import plural, say_count
 from gpsr_site.overview.counts import Counts
 
 
@@ -26,19 +26,28 @@ def stages(counts: Counts) -> list[Stage]:
     ontology_note = _warnings(counts.ontology_problems)
     grammar_note = _warnings(counts.grammar_problems)
     forms = say_count(counts.forms, "form")
+    entities, productions = (
+        _unit(counts.entities, "entity"),
+        _unit(counts.productions, "production"),
+    )
+    lines, said = _unit(counts.templates, "line"), _unit(counts.paraphrases, "utterance")
     unready = f"{counts.templates_waiting} not ready" if counts.templates_waiting else ""
     stale = "out of date" if counts.stale and counts.commands else ""
     active = f"{counts.runs_active} queued or running" if counts.runs_active else ""
     return [
-        Stage("Ontology", "ontology", counts.entities, "entities", "describe", ontology_note),
-        Stage("Grammar", "grammar", counts.productions, "productions", "annotate", grammar_note),
-        Stage("Templates", "templates", counts.templates, "lines", "generate", unready),
+        Stage("Ontology", "ontology", counts.entities, entities, "describe", ontology_note),
+        Stage("Grammar", "grammar", counts.productions, productions, "annotate", grammar_note),
+        Stage("Templates", "templates", counts.templates, lines, "generate", unready),
         Stage("Commands", "commands", counts.commands, forms, "collect", stale),
-        Stage("Paraphrases", "paraphrases", counts.paraphrases, "utterances", "freeze"),
+        Stage("Paraphrases", "paraphrases", counts.paraphrases, said, "freeze"),
         Stage("Splits", "splits", counts.splits, "frozen", "train"),
         Stage("Runs", "runs", counts.runs, "started", "evaluate", active),
         Stage("Results", "results", counts.evaluated, "evaluated"),
     ]
+
+
+def _unit(count: int, noun: str) -> str:
+    return noun if count == 1 else plural(noun)
 
 
 def _warnings(count: int) -> str:

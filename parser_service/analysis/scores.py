@@ -30,7 +30,7 @@ class Judged(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Judgement:
-    """One answer against the annotated form. Exact match is what accuracy counts.
+    """One answer against the label. Exact match is what accuracy counts.
 
     An exact match is equivalent, and what is equivalent has the same plan; None where plans were not compared.
     """

@@ -59,7 +59,7 @@ class PartAnswers:
 
     @property
     def same_plan(self) -> float | None:
-        """The share that has the plan of the annotated form; None without a pair."""
+        """The share that has the plan of the label; None without a pair."""
         right = sum(bool(answer.judgement.is_same_plan) for answer in self.of)
         return right / len(self.of) if self.of else None
 

@@ -39,7 +39,7 @@ class PredictionQuerySet(models.QuerySet["Prediction"]):
 class Prediction(models.Model):
     """A ranked candidate for one example. An example without candidates has one row with an empty form.
 
-    ``is_same_plan`` says whether the answer has the plan of the annotated form by the recipes that the world had when
+    ``is_same_plan`` says whether the answer has the plan of the label by the recipes that the world had when
     the run was scored, or its plans were last compared; None where they were not.
     ``answer_in_training`` and ``label_in_training`` count the training pairs that have this form and the
     example's, None where it is not known and for the empty form. ``origin`` says where the parser has the

@@ -88,7 +88,7 @@ class PredictionFilters(PageFilters):
     min_depth = WholeNumber("example__depth", "gte", label="Depth of the form, at least")
     max_depth = WholeNumber("example__depth", "lte", label="Depth of the form, at most")
     answer = SeenFilter("answer_in_training", label="Answer", choices=SEEN)
-    label = SeenFilter("label_in_training", label="Annotated form", choices=SEEN)
+    label = SeenFilter("label_in_training", label="Label", choices=SEEN)
     answer_head = AnswerHead(label="Head predicate of the answer")
     answer_form = AnswerForm(label="Answer is", widget=forms.HiddenInput)
     slot = SlotFilter(label="Slot", widget=forms.HiddenInput)

@@ -90,6 +90,36 @@ CUT = """() => [...document.querySelectorAll(".card, .option-card, .flow-noun")]
   .filter((element) => element.scrollWidth > element.clientWidth + 1)
   .map((element) => element.outerHTML.slice(0, 80))"""
 
+# What a printed page shows though only a screen can use it.
+OF_A_SCREEN = """() => [...document.querySelectorAll(
+    ".rail, .topbar, .banner, .sheet-bar, .run-start, .tick, .page-head > .actions, [data-notice]")]
+  .filter((each) => each.checkVisibility()).map((each) => each.outerHTML.slice(0, 80))"""
+# Ground and ink of a printed page where they are not those of paper.
+DARK = """() => {
+  const lightness = (colour) => {
+    const canvas = new OffscreenCanvas(1, 1).getContext("2d");
+    canvas.fillStyle = colour;
+    canvas.fillRect(0, 0, 1, 1);
+    return canvas.getImageData(0, 0, 1, 1).data.slice(0, 3).reduce((sum, each) => sum + each) / 3;
+  };
+  const { backgroundColor, color } = getComputedStyle(document.body);
+  return lightness(backgroundColor) > 250 && lightness(color) < 100 ? [] : [backgroundColor, color];
+}"""
+UNTITLED = """() => [...document.querySelectorAll("h1")].some((each) => each.checkVisibility()) ? [] : ["no h1"]"""
+# Tables, texts and charts that do not end where the paper does. Nothing scrolls there.
+CUT_ON_PAPER = """() => [...document.querySelectorAll("main :is(th, td, pre, p, dd, svg, canvas, figure)")]
+  .filter((each) => each.checkVisibility({visibilityProperty: true}))
+  .filter((each) => !each.closest(".visually-hidden"))
+  .filter((each) => each.getBoundingClientRect().right > document.documentElement.clientWidth + 1)
+  .map((each) => each.outerHTML.slice(0, 120)).slice(0, 3)"""
+A4 = {"width": 688, "height": 1017}  # CSS pixels between margins of 14 mm
+
+OF_PAPER = {
+    "on paper": OF_A_SCREEN,
+    "dark on paper": DARK,
+    "without a heading on paper": UNTITLED,
+    "cut off on paper": CUT_ON_PAPER,
+}
 OF_WIDTH = {"beside the screen": BESIDE, "cut": CUT}
 OF_STRUCTURE = {
     "without a name": NAMELESS,
@@ -170,6 +200,16 @@ def wide_and_light(page: Page) -> Faults:
     """Return the faults of a page in a wide and light window: by all rules of axe-core, and by keyboard."""
     page.evaluate(SETTLED)
     return {**look_for(page, OF_STRUCTURE), **broken_rules(page), **focus_faults(page)}
+
+
+def printed(page: Page) -> Faults:
+    """Return the faults of a page on a sheet of A4, printed by somebody who reads in the dark."""
+    page.set_viewport_size(A4)
+    page.emulate_media(media="print", color_scheme="dark")
+    page.evaluate(SETTLED)
+    faults = look_for(page, OF_PAPER)
+    page.emulate_media(media="null")
+    return faults
 
 
 def only_faults(reports: dict[str, Faults]) -> dict[str, Faults]:

@@ -1,4 +1,4 @@
-"""The answers of a run beside the annotated forms; those in doubt go back to annotators."""
+"""The answers of a run beside the labels; those in doubt go back to annotators."""
 
 from __future__ import annotations
 

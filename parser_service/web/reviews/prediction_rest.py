@@ -23,7 +23,7 @@ from parser_service.web.runs.run_rest import OfRun
 
 
 class PredictionSerializer(serializers.ModelSerializer[Prediction]):
-    """A ranked candidate of a run for an example, whose ``label`` is the annotated form. ``is_cut``: the
+    """A ranked candidate of a run for an example, whose ``label`` is the label. ``is_cut``: the
     parser read only the beginning of the utterance. ``is_same_plan`` is null where plans were not compared."""
 
     run = serializers.IntegerField(source="run_id")

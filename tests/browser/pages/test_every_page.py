@@ -1,4 +1,4 @@
-"""Every page in a narrow dark window, a wide light one and between: whole, and to be used by everybody."""
+"""Every page in a narrow dark window, a wide light one, between and on paper: whole, and to be used by everybody."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from tests.browser.faults import (
     look_for,
     narrow_and_dark,
     only_faults,
+    printed,
     wide_and_light,
 )
 from tests.browser.screenshots import PAGES
@@ -78,7 +79,7 @@ class Window:
     complaints: list[str]
 
     def faults(self, path: str) -> Faults:
-        """What is wrong with a page that is opened narrow and dark, and then made wide and light."""
+        """What is wrong with a page that is opened narrow and dark, printed, and then made wide and light."""
         page = self.page
         page.set_viewport_size(NARROW_DARK.size)
         page.emulate_media(color_scheme="dark")
@@ -88,6 +89,7 @@ class Window:
             page.set_viewport_size({"width": width, "height": 600})
             faults = look_for(page, OF_WIDTH)
             report |= {f"{what} at {width} pixels": each for what, each in faults.items()}
+        report |= printed(page)
         page.set_viewport_size(WIDE_LIGHT.size)
         page.emulate_media(color_scheme="light")
         report |= wide_and_light(page)

@@ -56,6 +56,13 @@ def test_a_clash_shows_what_it_was_theirs_and_mine(template, anna, admin):
     assert "adam" in sides[1].title and sides[1].title in answer.content.decode()
 
 
+def test_who_was_faster_in_another_tab_is_not_told_of_a_third_person(template, anna, annotator):
+    mine = opened(template, pattern="find my $object")
+    change(template, {"pattern": "find a $object"}, annotator, 1)
+    page = anna.post(address(template), mine).content.decode()
+    assert "You saved version 2 in another tab." in page and "anna has saved" not in page
+
+
 def test_a_third_save_meanwhile_is_a_merge_again(template, anna, admin):
     mine = opened(template, pattern="find my $object")
     row = change(template, {"pattern": "find a $object"}, admin, 1)

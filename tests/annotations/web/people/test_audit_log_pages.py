@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from io import StringIO
+
 import pytest
+from django.core.management import call_command
 
 from annotations.models import ApiToken, AuditEntry, Invitation, Scope
 from annotations.models.worlds import Role
@@ -55,6 +58,17 @@ def test_a_program_is_named_by_its_token(annotator, client, world):
     entry = AuditEntry.objects.get()
     assert (entry.who, entry.through, entry.world) == (annotator, "robot", world)
     assert entry.what == "create utterances"
+
+
+def test_a_token_that_was_made_on_the_command_line_is_called_a_token(adam, admin, client):
+    call_command("issue_token", "adam", "--scope", "admin", stdout=(out := StringIO()))
+    headers = {"authorization": f"Bearer {out.getvalue().strip()}"}
+    sent = {"name": "hall", "description": ""}
+    client.post("/api/v1/worlds/", sent, content_type="application/json", headers=headers)
+    page = client_of(admin).get(LOG).content.decode()
+    assert "by command line" not in page
+    AuditEntry.objects.update(world=admin.memberships.get().world)
+    assert "with the token command line" in client_of(admin).get(LOG).content.decode()
 
 
 def test_what_is_read_refused_or_only_checked_is_not_in_it(adam, anna, world):

@@ -17,7 +17,8 @@ def root(superuser, client):
 
 def test_what_would_go_is_counted(sample, root):
     page = root.get("/w/home/delete/").content.decode()
-    assert "Commands</dt><dd>3</dd>" in page
+    assert "Commands</dt><dd>3</dd>" in page and "<dd>0</dd>" not in page
+    assert "Entities</dt><dd>7</dd>" in page and "Entitys" not in page
     assert World.objects.filter(name="home").exists()
 
 

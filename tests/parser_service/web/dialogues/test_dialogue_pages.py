@@ -109,6 +109,8 @@ def test_actions_get_the_names_of_the_robot(sample, browse):
     [
         ("no name", "", "“no name”"),
         ("id", "", "“id”"),
+        ("Sequence", "", "“Sequence”"),
+        ("root", "", "“root”"),
         ("", "goal", "“goal”"),
         ("", "a=x, b=x", "“b=x”"),
     ],

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from gpsr_site.overview.best_runs import best_runs
@@ -31,6 +33,7 @@ def text_of(client, path: str) -> str:
 def test_pages_show_the_harmonic_mean_with_what_it_is_of(path, run, adam):
     page = text_of(adam, path)
     assert "60.0" in page and TOGETHER in page
+    assert not re.search(r"known 75\.0(?: |<[^>]*>)*[,.;]", page)
 
 
 @pytest.mark.parametrize("path", ["runs/", "runs/new/?parser=knn", "compare/", "promotion/", ""])
