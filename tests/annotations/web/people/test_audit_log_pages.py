@@ -60,15 +60,13 @@ def test_a_program_is_named_by_its_token(annotator, client, world):
     assert entry.what == "create utterances"
 
 
-def test_a_token_that_was_made_on_the_command_line_is_called_a_token(adam, admin, client):
-    call_command("issue_token", "adam", "--scope", "admin", stdout=(out := StringIO()))
+def test_a_token_that_was_made_on_the_command_line_is_called_a_token(adam, client, world):
+    call_command("issue_token", "adam", "--scope", "annotate", stdout=(out := StringIO()))
     headers = {"authorization": f"Bearer {out.getvalue().strip()}"}
-    sent = {"name": "hall", "description": ""}
-    client.post("/api/v1/worlds/", sent, content_type="application/json", headers=headers)
-    page = client_of(admin).get(LOG).content.decode()
-    assert "by command line" not in page
-    AuditEntry.objects.update(world=admin.memberships.get().world)
-    assert "with the token command line" in client_of(admin).get(LOG).content.decode()
+    sent, url = {"texts": ["bring me tea"]}, "/api/v1/worlds/home/utterances/"
+    client.post(url, sent, content_type="application/json", headers=headers)
+    page = adam.get(LOG).content.decode()
+    assert "with the token command line" in page and "by command line" not in page
 
 
 def test_what_is_read_refused_or_only_checked_is_not_in_it(adam, anna, world):
