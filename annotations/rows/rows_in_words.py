@@ -12,6 +12,7 @@ IN_WORDS = {
     "example columns": "tables of examples",
     "ontology": "ontologies",
     "run analysis": "error analyses",
+    "semantic template": "templates",
     "training run": "runs",
     "work share": "settings of double labelling",
 }

@@ -92,7 +92,7 @@ CUT = """() => [...document.querySelectorAll(".card, .option-card, .flow-noun")]
 
 # What a printed page shows though only a screen can use it.
 OF_A_SCREEN = """() => [...document.querySelectorAll(
-    ".rail, .topbar, .banner, .sheet-bar, .run-start, .tick, .page-head > .actions, [data-notice]")]
+    ".rail, .tabs, .topbar, .banner, .sheet-bar, .run-start, .tick, .page-head > .actions, [data-notice]")]
   .filter((each) => each.checkVisibility()).map((each) => each.outerHTML.slice(0, 80))"""
 # Ground and ink of a printed page where they are not those of paper.
 DARK = """() => {
