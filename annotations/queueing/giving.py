@@ -87,8 +87,10 @@ def next_item(person: User, world: World, wanted: ItemFilter = ANYTHING) -> Assi
     return assignment
 
 
-def take(person: User, item: WorkItem) -> Assignment:
-    """Give ``person`` this very item, which they may have skipped; what they hold already stays theirs.
+def take(person: User, item: WorkItem, after_skip: bool = False) -> Assignment:
+    """Give ``person`` this very item; what they hold already stays theirs.
+
+    With ``after_skip`` they may have it although they have skipped it.
 
     Raises NotForThem where others have taken it, it is done or not for them.
     """
@@ -96,7 +98,7 @@ def take(person: User, item: WorkItem) -> Assignment:
         stored = WorkItem.objects.select_for_update().get(pk=item.pk)
         held = stored.assignments.held().filter(person=person).first()
         if held is None:
-            return _give(stored, person, timezone.now() + LEASE, None, after_skip=True)
+            return _give(stored, person, timezone.now() + LEASE, None, after_skip)
         if held.leased_until is not None:
             held.leased_until = timezone.now() + LEASE
             held.save(update_fields=["leased_until"])

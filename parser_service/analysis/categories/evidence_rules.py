@@ -173,6 +173,7 @@ RULES: tuple[Callable[[ErrorCase], Suggestions], ...] = (
 
 
 def _list(classes: frozenset[str]) -> str:
+    """Return ``a category and an object``."""
     return " and ".join(f"{article(each)} {each}" for each in sorted(classes))
 
 
