@@ -189,6 +189,16 @@ def broken_rules(page: Page, rules: list[str] | None = None) -> Faults:
     return {"axe": page.evaluate(BROKEN_RULES, rules)}
 
 
+def printed(page: Page) -> Faults:
+    """Return the faults of a page on a sheet of A4, printed by somebody who reads in the dark."""
+    page.set_viewport_size(A4)
+    page.emulate_media(media="print", color_scheme="dark")
+    page.evaluate(SETTLED)
+    faults = look_for(page, OF_PAPER)
+    page.emulate_media(media="null")
+    return faults
+
+
 def narrow_and_dark(page: Page) -> Faults:
     """Return the faults of a page that was opened in a narrow and dark window."""
     page.evaluate(SETTLED)
@@ -200,16 +210,6 @@ def wide_and_light(page: Page) -> Faults:
     """Return the faults of a page in a wide and light window: by all rules of axe-core, and by keyboard."""
     page.evaluate(SETTLED)
     return {**look_for(page, OF_STRUCTURE), **broken_rules(page), **focus_faults(page)}
-
-
-def printed(page: Page) -> Faults:
-    """Return the faults of a page on a sheet of A4, printed by somebody who reads in the dark."""
-    page.set_viewport_size(A4)
-    page.emulate_media(media="print", color_scheme="dark")
-    page.evaluate(SETTLED)
-    faults = look_for(page, OF_PAPER)
-    page.emulate_media(media="null")
-    return faults
 
 
 def only_faults(reports: dict[str, Faults]) -> dict[str, Faults]:
