@@ -54,13 +54,14 @@ def shown_report(
 ) -> dict[str, Any]:
     """Return the context of ``_report.html``: the report, its template, and its problems, the errors first.
 
-    A problem of an import into ``world`` has a ``url``: that of the row on its line, or of its list. After a
-    refused import there is no ``url``, since no row comes from its files.
+    A problem of an import into ``world`` has a ``url``: that of the row on its line, or of its list. Where an import
+    was refused, or has only asked, there is no ``url``, since no row comes from its files.
     """
     problems = [{**each, "source": each["file"]} for each in report.get("problems", ())]
     problems.sort(key=lambda each: each["severity"] != "error")
     n_errors = sum(each["severity"] == "error" for each in problems)
-    if world is not None and not n_errors:
+    is_stored = not (n_errors or report.get("is_waiting") or report.get("is_dropped"))
+    if world is not None and is_stored:
         _link_to_rows(world, problems[:MOST_PROBLEMS])
     return {
         "report": report,

@@ -162,6 +162,7 @@ def test_an_import_that_forgets_a_file_shows_what_would_go_and_asks(
     assert "go to the {room} = (go {room})" in page.content.decode()
     assert f'action="/jobs/{job.pk}/answer/"' in page.content.decode()
     assert SemanticTemplate.objects.count() == 2
+    assert not [each for each in page.context["problems"] if each.get("url")]
     answer = adam.post(f"/jobs/{job.pk}/answer/")
     confirmed = Job.objects.latest("pk")
     assert answer["Location"] == f"/jobs/{confirmed.pk}/"
