@@ -32,7 +32,7 @@ def usual_split(world: World) -> Split | None:
             has_paraphrases=Exists(learned.filter(split=OuterRef("pk"))),
             place=Case(*places, default=Value(len(places))),
         )
-        .order_by("-has_paraphrases", "place", *Split._meta.ordering)
+        .order_by("-has_paraphrases", "place", "-created_at", "-pk")
         .first()
     )
 
