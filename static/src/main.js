@@ -33,6 +33,7 @@ onContent((root) => {
     ["[data-audit-page]", "audit"],
     ["[data-refusal]", "refusal"],
     ["[data-case]", "review"],
+    ["[data-my-drafts]", "my-drafts"],
   ]) {
     within(selector).forEach((element) => enhanceBy(name, element));
   }
