@@ -96,6 +96,14 @@ class LabelPage {
     this.clearNotices();
     await this.show(next);
     this.fetchNext();
+    if (!this.item) this.lookAgain();
+  }
+
+  // What was fetched before the last answer arrived does not know of it: that it was a skip, say.
+  async lookAgain() {
+    await this.queue.isEmpty();
+    if (!this.item) await this.show(this.fetchItem({}));
+    this.fetchNext();
   }
 
   onSubmit(event) {
