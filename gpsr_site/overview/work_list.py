@@ -95,7 +95,7 @@ FOR_ANNOTATORS = (
     ),
     WaitingRows(
         *("utterances_waiting", "utterance", "Label", "label"),
-        after="without a form, not in the queue",
+        after="without a form, not waiting in the queue",
     ),
     WaitingRows("command_problems", "warning", "Read", "commands", "", "warn", "on commands"),
     WaitingRows("drafts", "draft template", "Finish", "templates", "?status=draft"),

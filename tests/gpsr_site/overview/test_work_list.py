@@ -112,7 +112,7 @@ def test_each_count_is_the_number_of_rows_behind_its_link(busy, adam):
 def test_an_utterance_counts_once_as_an_item_or_as_one_without_a_form(sample, anna, annotator):
     collect(sample.world, ["find the tea now", "find the tea please"], by=annotator)
     texts = [each.sentence for each in work_of(sample.world, Role.ANNOTATOR).items]
-    assert "2 utterances without a form, not in the queue" in texts
+    assert "2 utterances without a form, not waiting in the queue" in texts
     refill(sample.world)
     items = work_of(sample.world, Role.ANNOTATOR).items
     (waiting,) = (each for each in items if "in the work queue" in each.sentence)
