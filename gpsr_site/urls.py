@@ -9,6 +9,7 @@ from annotations.rest_urls import urlpatterns as corpus_routes
 from annotations.web.background import job_pages
 from annotations.web.campaigns import public_pages
 from annotations.web.editing import comment_pages
+from annotations.web.editing.draft_pages import my_drafts
 from annotations.web.people import account_pages, own_account_pages
 from annotations.web.people.audit_log_pages import site_log
 from annotations.web.people.invitation_pages import join
@@ -52,6 +53,7 @@ urlpatterns = [
     path("docs/<slug:shelf>/<slug:page>/", document, name="document"),
     path("worlds/new/", world_new, name="world_new"),
     path("worlds/import/", world_import, name="world_import"),
+    path("drafts/", my_drafts, name="my_drafts"),
     path("inbox/", comment_pages.inbox, name="inbox"),
     path("inbox/<int:pk>/", comment_pages.notice_open, name="notice_open"),
     path("jobs/<int:pk>/", job_pages.job, name="job"),

@@ -16,6 +16,8 @@ from annotations.models.worlds import Duty, World
 NEW = "new"
 MOST_CHARACTERS_OF_COMMENT = 4_000  # of a comment
 LONGEST_DEVICE = 40  # the name of a browser
+LONGEST_ABOUT = 200
+LONGEST_PAGE = 500
 
 
 class Records(HistoricalRecords):
@@ -100,7 +102,8 @@ class Draft(models.Model):
 
     ``subject`` is the key of the row, ``NEW`` for a new one, or either with a dash and a name behind it.
     ``base_version`` is the version that is edited, None for a new row. ``device`` tells the browsers of
-    one person apart.
+    one person apart. ``about`` is what lists call it, and ``page`` the address of its form below that of the
+    world, which may have another name later; both are empty where the browser did not say.
     """
 
     user = models.ForeignKey(User, on_delete=models.CASCADE, related_name="drafts")
@@ -110,6 +113,8 @@ class Draft(models.Model):
     fields = models.JSONField(default=dict)
     base_version = models.PositiveIntegerField(null=True)
     device = models.CharField(max_length=LONGEST_DEVICE)
+    about = models.CharField(max_length=LONGEST_ABOUT, blank=True, default="")
+    page = models.CharField(max_length=LONGEST_PAGE, blank=True, default="")
     saved_at = models.DateTimeField()
 
     class Meta:
@@ -121,6 +126,17 @@ class Draft(models.Model):
 
     def __str__(self) -> str:
         return f"draft of {self.user}: {self.kind} {self.subject}"
+
+    @property
+    def key(self) -> str:
+        """The name of its copy in a browser (``data-draft`` of the form)."""
+        return f"{self.world_id}-{self.kind}-{self.subject}"
+
+    @property
+    def excerpt(self) -> str:
+        """The beginning of the longest text that was typed."""
+        texts = [text for name, text in self.fields.items() if name not in ("version", "once")]
+        return max(texts, key=len, default="")[:LONGEST_ABOUT]
 
 
 class CommentQuerySet(models.QuerySet["Comment"]):

@@ -312,6 +312,12 @@ class WorkItemQuerySet(models.QuerySet["WorkItem"]):
         """Return those that two people do independently of each other."""
         return self.filter(people__gt=1)
 
+    def skipped_by(self, person: User) -> WorkItemQuerySet:
+        """Return the free items that ``person`` has skipped: others are asked, and they may have them once more."""
+        theirs = Assignment.objects.skipped().filter(person=person)
+        rows = self.present().free().not_answered_by(person)
+        return rows.filter(models.Exists(theirs.filter(item=models.OuterRef("pk"))))
+
     def returned_by(self, person: User) -> WorkItemQuerySet:
         """Return the free items that ``person`` gave back or kept too long, and may have once more."""
         theirs = Assignment.objects.filter(person=person, outcome__in=FREE_AGAIN)

@@ -87,10 +87,25 @@ def next_item(person: User, world: World, wanted: ItemFilter = ANYTHING) -> Assi
     return assignment
 
 
-def take(person: User, item: WorkItem, after_skip: bool = False) -> Assignment:
-    """Give ``person`` this very item; what they hold already stays theirs.
+def next_skipped(person: User, world: World, wanted: ItemFilter = ANYTHING) -> Assignment | None:
+    """Give ``person`` the most urgent free item that they have skipped before; None where there is none."""
+    for item in skipped_items(person, world, wanted).order_by("-priority", "id"):
+        try:
+            return take(person, item)
+        except NotForThem:
+            continue  # taken meanwhile
+    return None
 
-    With ``after_skip`` they may have it although they have skipped it.
+
+def skipped_items(person: User, world: World, wanted: ItemFilter = ANYTHING) -> WorkItemQuerySet:
+    """Return the free items that ``person`` has skipped, and may have once more."""
+    kinds = kinds_for(person, world)
+    rows = wanted.of_items(WorkItem.objects.filter(world=world, kind__in=kinds))
+    return rows.skipped_by(person)
+
+
+def take(person: User, item: WorkItem) -> Assignment:
+    """Give ``person`` this very item, although they may have skipped it; what they hold already stays theirs.
 
     Raises NotForThem where others have taken it, it is done or not for them.
     """
@@ -98,7 +113,7 @@ def take(person: User, item: WorkItem, after_skip: bool = False) -> Assignment:
         stored = WorkItem.objects.select_for_update().get(pk=item.pk)
         held = stored.assignments.held().filter(person=person).first()
         if held is None:
-            return _give(stored, person, timezone.now() + LEASE, None, after_skip)
+            return _give(stored, person, timezone.now() + LEASE, None, after_skip=True)
         if held.leased_until is not None:
             held.leased_until = timezone.now() + LEASE
             held.save(update_fields=["leased_until"])

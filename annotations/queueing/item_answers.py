@@ -115,7 +115,7 @@ def _take_unasked(utterance: Utterance, by: User) -> Assignment | None:
     free = WorkItem.objects.open().filter(utterance=utterance).exclude(kind=WorkKind.AUDIT)
     for item in free.order_by("-priority", "id"):
         try:
-            return take(by, item, after_skip=True)
+            return take(by, item)
         except NotForThem:
             continue
     return None

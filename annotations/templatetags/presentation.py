@@ -33,7 +33,7 @@ from annotations.language.forms import Change, predicates
 from annotations.language.names import CLASS_OF_ATTRIBUTE
 from annotations.markdown import rendered
 from annotations.models import Predicate, World
-from annotations.models.editing import NEW
+from annotations.models.editing import LONGEST_ABOUT, NEW
 
 register = template.Library()
 for written in (
@@ -101,19 +101,57 @@ def empty_state(content: str, url: str = "", action: str = "") -> str:
 
 
 @register.simple_tag(takes_context=True)
-def draft_attributes(context: Any, kind: str, row: Any = None, name: str = "") -> SafeString:
-    """Return the attributes of a form whose text is kept as a draft while it is typed.
+def draft_attributes(
+    context: Any,
+    kind: str,
+    row: Any = None,
+    name: str = "",
+    about: str = "",
+    page: str = "",
+    at: object = "",
+) -> SafeString:
+    """Return the attributes of a form whose text is kept on the server as a draft while it is typed.
 
     ``kind`` is a name in ``annotations.rows.row_kinds``; without a ``row`` the form makes a new one.
     ``name``, a short slug, tells apart the forms about one row, and those that make new rows for different reasons.
+    ``about``, ``page`` and ``at`` are as in ``browser_draft``.
     """
-    about = str(row.pk) if row else NEW
-    world, subject = context["world"], f"{about}-{name}" if name else about
+    key = str(row.pk) if row else NEW
+    world, subject = context["world"], f"{key}-{name}" if name else key
     path = reverse("draft", kwargs={"world": world.name, "kind": kind, "subject": subject})
-    return format_html(
-        'data-draft="{}-{}-{}" data-draft-of="{}" data-draft-url="{}"',
-        *(world.name, kind, subject, context["request"].user.pk, path),
+    noun = about or kind.replace("_", " ").capitalize()
+    attributes = browser_draft(
+        context,
+        *(kind, subject),
+        about=noun if row else f"New {noun.lower()}",
+        of=row,
+        page=page,
+        at=at,
     )
+    return format_html('{} data-draft-url="{}"', attributes, path)
+
+
+@register.simple_tag(takes_context=True)
+def browser_draft(
+    context: Any, *name: object, about: str, of: object = None, page: str = "", at: object = ""
+) -> SafeString:
+    """Return the attributes of a form whose text is kept in this browser as a draft while it is typed.
+
+    The parts of ``name`` tell it from other forms of its world. The list of drafts says ``about``, and ``of`` what.
+    ``page`` is the address of the form where it is not that of its page; ``at`` is written behind it.
+    """
+    called = f"{about}: {of}" if of else about
+    attributes = format_html(
+        'data-draft="{}-{}" data-draft-of="{}" data-draft-about="{}"',
+        context["world"].pk,
+        "-".join(map(str, name)),
+        context["request"].user.pk,
+        called[:LONGEST_ABOUT],
+    )
+    if not page:
+        return attributes
+    start = reverse("world", kwargs={"world": context["world"].name})
+    return format_html('{} data-draft-page="{}{}"', attributes, page.removeprefix(start), at)
 
 
 @register.inclusion_tag("_logical_form.html", takes_context=True)

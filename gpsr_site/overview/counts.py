@@ -11,6 +11,7 @@ from django.db import connection
 from django.db.models import (
     Case,
     Count,
+    Exists,
     Expression,
     F,
     IntegerField,
@@ -50,6 +51,7 @@ class Counts:
 
     ``uncovered`` counts the commands of the grammar without a logical form, as of the last import or
     generation; ``stale`` is 1 where grammar or templates have changed since the last generation.
+    ``utterances_waiting`` have no form and are no free item of the queue, so that nothing is counted twice.
     ``runs_failed`` and ``runs_lost`` leave out a run if the same parser has succeeded on the same split
     since.
     """
@@ -161,7 +163,7 @@ def _rows_to_count() -> dict[str, tuple[QuerySet[Any], str]]:
             "world",
         ),
         "utterances": (Utterance.objects.all(), "world"),
-        "utterances_waiting": (Utterance.objects.unlabelled(), "world"),
+        "utterances_waiting": (_not_asked_about(), "world"),
         "work_items": (WorkItem.objects.open(), "world"),
         "work_items_free": (WorkItem.objects.free(), "world"),
         "audit_findings": (AuditFinding.objects.open(), "world"),
@@ -177,6 +179,12 @@ def _rows_to_count() -> dict[str, tuple[QuerySet[Any], str]]:
         "evaluated": (runs.succeeded(), "world"),
         "promotions_proposed": (Promotion.objects.proposed(), "world"),
     }
+
+
+def _not_asked_about() -> QuerySet[Utterance]:
+    """Return the utterances without a form that are no free item of the queue: those are counted there."""
+    asked = WorkItem.objects.free().filter(utterance=OuterRef("pk"))
+    return Utterance.objects.unlabelled().exclude(Exists(asked))
 
 
 def _aggregate(rows: QuerySet[Any], path: str, value: Count | Sum) -> Coalesce:

@@ -54,7 +54,7 @@ class WorkGroup:
 class WaitingRows:
     """Rows that wait. ``field`` is the field of ``Counts``, ``page`` and ``query`` list exactly them.
 
-    Said as ``3 draft templates``, with ``after`` behind it.
+    Said as ``3 draft templates``, with ``after`` behind it. Where it ``is_action``, ``page`` is posted to.
     """
 
     field: str
@@ -64,6 +64,7 @@ class WaitingRows:
     query: str = ""
     tone: str = ""
     after: str = ""
+    is_action: bool = False
 
 
 FOR_ADMINS = (
@@ -78,7 +79,9 @@ FOR_ADMINS = (
 )
 FOR_ANNOTATORS = (
     WaitingRows(
-        "work_items_free", "item", "Take the next", "queue", "?state=free", "", "in the work queue"
+        *("work_items_free", "item", "Take the next", "queue_next"),
+        after="in the work queue",
+        is_action=True,
     ),
     WaitingRows("uncovered", "command", "Annotate", "uncovered", "", "warn", "without a form"),
     WaitingRows(
@@ -91,13 +94,8 @@ FOR_ANNOTATORS = (
         "with problems",
     ),
     WaitingRows(
-        "utterances_waiting",
-        "utterance",
-        "Label",
-        "utterances",
-        "?status=unlabelled",
-        "",
-        "without a form",
+        *("utterances_waiting", "utterance", "Label", "label"),
+        after="without a form, not waiting in the queue",
     ),
     WaitingRows("command_problems", "warning", "Read", "commands", "", "warn", "on commands"),
     WaitingRows("drafts", "draft template", "Finish", "templates", "?status=draft"),
@@ -207,7 +205,7 @@ class WorkList:
             if count := getattr(self.counts, waiting.field):
                 sentence = f"{say_count(count, waiting.noun)} {waiting.after}".strip()
                 url = self._address(waiting.page) + waiting.query
-                yield Task(count, sentence, waiting.label, url, waiting.tone)
+                yield Task(count, sentence, waiting.label, url, waiting.tone, waiting.is_action)
 
     def _jobs_of(self, role: Role) -> Iterator[Task]:
         """Yield an item for each import or generation, which leads to its own page."""

@@ -172,7 +172,9 @@ COLLECT = (
         label="Utterances",
         page="utterances",
         count="utterances",
-        waiting=Waiting(count="utterances_waiting", noun="utterance", reason="without a form"),
+        waiting=Waiting(
+            count="utterances_waiting", noun="utterance", reason="without a form, not waiting in the queue"
+        ),
         pages_below=("utterance", "utterances_new", "utterances_delete"),
         tabs=(Place(label="Uploads", page="uploads", pages_below=("upload", "upload_undo")),),
     ),

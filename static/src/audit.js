@@ -47,7 +47,7 @@ async function openEditor() {
 }
 
 function leaveField(event, key) {
-  if (event.target.id !== "audit-reason" && key !== "Escape") return;
+  if (!shown()?.contains(event.target) || (event.target.id !== "audit-reason" && key !== "Escape")) return;
   if (key === "Escape") shown()?.querySelector("[data-audit-write]")?.removeAttribute("open");
   event.preventDefault();
   focusRow();

@@ -1,13 +1,30 @@
 // The copy of a draft on the server: sent a moment after the last key, one request at a time, again and again
 // with longer pauses while the server does not answer.
-import { csrfToken } from "./csrf.js";
-import { deviceName } from "./draft-storage.js";
+import { postDraft } from "./draft-post.js";
+import { attempt } from "./draft-storage.js";
 import { askToLogIn, isLogin, session } from "./log-in.js";
+import { timeOf } from "./moments.js";
 
 const PAUSE = 800; // milliseconds without a key before it is sent
 const FIRST_RETRY = 2000;
 const LONGEST_RETRY = 60_000;
-const clock = (moment) => new Date(moment).toLocaleTimeString([], { hour: "2-digit", minute: "2-digit", hourCycle: "h23" });
+
+// A name by which the server tells the browsers of one person apart.
+const deviceName = nameDevice();
+
+function nameDevice() {
+  const made = crypto.getRandomValues(new Uint32Array(2)).join("-");
+  return attempt(() => {
+    if (!localStorage.getItem("device")) localStorage.setItem("device", made);
+    return localStorage.getItem("device");
+  }, made);
+}
+
+/** A draft as the server takes it. */
+export function draftToSend(fields, place) {
+  const version = Number.parseInt(fields.version, 10);
+  return { fields, version: Number.isNaN(version) ? null : version, device: deviceName, ...place };
+}
 
 export class DraftServer {
   /** `show` is called with a sentence about the state of the draft, and with what a person can do about it: text → action. */
@@ -30,16 +47,15 @@ export class DraftServer {
       const answer = await fetch(this.url, { headers: { accept: "application/json" } });
       if (!answer.ok || isLogin(answer)) return null;
       const { draft } = await answer.json();
-      return draft && { ...draft, clock: clock(draft.saved_at), isElsewhere: draft.device !== deviceName };
+      return draft && { ...draft, savedAt: draft.saved_at, isElsewhere: draft.device !== deviceName };
     } catch {
       return null;
     }
   }
 
-  /** Keep these fields, once nothing has been typed for a moment. */
-  save(fields) {
-    const version = Number.parseInt(fields.version, 10);
-    this.waiting = { fields, version: Number.isNaN(version) ? null : version, device: deviceName };
+  /** Keep these fields of the form at `place`, once nothing has been typed for a moment. */
+  save(fields, place) {
+    this.waiting = draftToSend(fields, place);
     if (!this.isLoggedOut) this.show("Saving the draft …");
     this.after(PAUSE);
   }
@@ -61,9 +77,7 @@ export class DraftServer {
   }
 
   post(sent, options = {}) {
-    const headers = { "content-type": "application/json", "X-CSRFToken": csrfToken() };
-    const body = JSON.stringify({ ...sent, of: this.account });
-    return fetch(this.url, { method: "POST", headers, body, ...options });
+    return postDraft(this.url, this.account, sent, options);
   }
 
   async send() {
@@ -96,7 +110,7 @@ export class DraftServer {
     if (answer.status >= 500) return this.fail(sent);
     const { saved_at, error } = await answer.json();
     this.retry = FIRST_RETRY;
-    if (saved_at) this.show(`Draft saved ${clock(saved_at)}`);
+    if (saved_at) this.show(`Draft saved ${timeOf(saved_at)}`);
     else this.show(error ?? "");
   }
 

@@ -1,26 +1,45 @@
-// Keeps what a person types into a form with data-draft until the server has it, so that it outlives a reload, a lost
-// connection, an expired session, and can be taken up on another device. It is kept in this browser (draft-storage.js)
-// and, with data-draft-url, on the server (draft-server.js). Sending the form only marks the copy in this browser,
-// because an expired session may swallow it; it is removed when the server has shown another page, or the same form
-// with the same values. Passwords are never kept.
+// Keeps what a person types into a form with data-draft until the server has it, so that it outlives a closed tab, a
+// reload, a lost connection, an expired session and a conflict. It is kept in this browser (draft-storage.js) and, with
+// data-draft-url, on the server too (draft-server.js), where another device finds it. It goes once the form has arrived:
+// the server answers one that it has taken with a redirect or with a fragment, and one that it has refused with
+// the form itself, an error or the page for logging in. Passwords are never kept.
 import { onContent } from "./content.js";
 import { DraftServer } from "./draft-server.js";
-import { readDraft, removeAllOf, removeArrived, removeDraft, writeDraft } from "./draft-storage.js";
+import {
+  keyOfDraft,
+  noteSent,
+  placeOf,
+  readDraft,
+  removeAllOf,
+  removeDraft,
+  takeSent,
+  writeDraft,
+} from "./draft-storage.js";
+import { timeOf } from "./moments.js";
 
-const TYPED = "textarea[name], select[name], input:is([type=text], [type=number])[name]";
+const TEXTS = "input:is([type=text], [type=number], [type=url], [type=email])[name]";
+const TYPED = `textarea[name], select[name], input[type=radio][name], ${TEXTS}`;
 // The version that was edited comes back too, so that nobody's later version is overwritten unseen.
 // (A form that says what its page shows now, with data-undrafted, is sent with the version of that page.)
 const KEPT = `${TYPED}, input[type=hidden]:is([name=version]:not([data-undrafted]), [name=once])`;
 const servers = new WeakMap(); // form → its DraftServer
+const shown = new WeakMap(); // form → its values as the page came with them
+let refused = null; // the key of the draft whose form was sent and not taken; its page shows what was typed
 
 const fieldsOf = (form) => [...form.elements].filter((field) => field.matches(KEPT));
-const valuesOf = (form) => Object.fromEntries(fieldsOf(form).map((field) => [field.name, field.value]));
+const isUnchosen = (field) => field.type === "radio" && !field.checked;
+
+function valuesOf(form) {
+  const fields = fieldsOf(form).filter((field) => !isUnchosen(field));
+  return Object.fromEntries(fields.map((field) => [field.name, field.value]));
+}
 
 function fill(form, values) {
   for (const field of fieldsOf(form)) {
     // The key of a new form is its own: an earlier one may have been sent already.
     if (values[field.name] === undefined || field.name === "once") continue;
-    field.value = values[field.name];
+    if (field.type === "radio") field.checked = field.value === values[field.name];
+    else field.value = values[field.name];
     field.dispatchEvent(new CustomEvent("draft:restored"));
   }
   // Whoever watches the form (checker, preview) looks at it again.
@@ -28,17 +47,23 @@ function fill(form, values) {
 }
 
 function differs(form, values) {
-  const typed = fieldsOf(form).filter((field) => field.matches(TYPED));
-  return typed.some((field) => (values[field.name] ?? field.value) !== field.value);
+  const typed = fieldsOf(form).filter((field) => field.matches(TYPED) && !isUnchosen(field));
+  return typed.some((field) => (values[field.name] ?? field.value) !== field.value) || hasOtherChoice(form, values);
 }
 
+const hasOtherChoice = (form, values) =>
+  fieldsOf(form).some((field) => isUnchosen(field) && values[field.name] === field.value);
+
+/** Keep what the form holds; where it is again as the page came with it, there is nothing to keep. */
 function keep(form) {
+  const isUntouched = shown.has(form) && !differs(form, shown.get(form));
+  if (isUntouched) return readDraft(form) && discard(form);
   writeDraft(form, valuesOf(form));
-  servers.get(form)?.save(valuesOf(form));
+  servers.get(form)?.save(valuesOf(form), placeOf(form));
 }
 
 function discard(form) {
-  removeDraft(form);
+  removeDraft(keyOfDraft(form));
   servers.get(form)?.discard();
 }
 
@@ -64,7 +89,9 @@ function say(line, sentence, actions = {}) {
 
 /** A line above the form, which a click on one of its buttons takes away. */
 function showNote(form, sentence, actions) {
+  form.querySelector(":scope > p.draft-note")?.remove();
   const line = makeLine("p");
+  line.classList.add("draft-note");
   const closing = (action) => () => {
     line.remove();
     action();
@@ -74,12 +101,12 @@ function showNote(form, sentence, actions) {
 }
 
 function restore(form, draft) {
-  const shown = valuesOf(form);
+  const before = valuesOf(form);
   form.closest("details")?.setAttribute("open", "");
   fill(form, draft.fields);
-  showNote(form, "Restored your unsaved draft.", {
+  showNote(form, `Your draft of ${timeOf(draft.savedAt)}.`, {
     Discard: () => {
-      fill(form, shown);
+      fill(form, before);
       discard(form);
     },
   });
@@ -87,7 +114,7 @@ function restore(form, draft) {
 
 function offer(form, draft) {
   const where = draft.isElsewhere ? " from another device" : "";
-  showNote(form, `You have an unsaved draft of ${draft.clock}${where}:`, {
+  showNote(form, `You have an unsaved draft of ${timeOf(draft.savedAt)}${where}:`, {
     Restore: () => restore(form, draft),
     // What has been typed here meanwhile takes its place.
     "Discard it": () => (readDraft(form) ? keep(form) : discard(form)),
@@ -109,23 +136,30 @@ function stateLine(form) {
 }
 
 function enhance(form) {
-  const line = stateLine(form);
-  if (form.dataset.draftUrl) servers.set(form, new DraftServer(form, (...said) => say(line, ...said)));
+  if (form.dataset.draftUrl) {
+    const line = stateLine(form);
+    servers.set(form, new DraftServer(form, (...said) => say(line, ...said)));
+  }
   form.addEventListener("input", () => keep(form));
-  // The page shows what was sent, merged: newer than any draft.
+  form.addEventListener("change", (event) => event.target.type === "radio" && keep(form));
+  // The page shows what was sent, merged or refused: newer than any draft.
   if (form.hasAttribute("data-draft-arrived")) return keep(form);
   const draft = readDraft(form);
   const hasLocal = draft !== null && differs(form, draft.fields);
+  const isRefused = keyOfDraft(form) === refused;
+  if (isRefused && !hasLocal) return keep(form);
+  shown.set(form, valuesOf(form));
   if (hasLocal) restore(form, draft);
-  else if (draft) removeDraft(form);
+  else if (draft) removeDraft(keyOfDraft(form));
   if (servers.has(form)) offerFromServer(form, hasLocal);
 }
 
 document.addEventListener("submit", (event) => {
   const form = event.target;
   if (form.matches("form[data-draft]")) {
-    writeDraft(form, valuesOf(form), true);
     servers.get(form)?.stop();
+    writeDraft(form, valuesOf(form));
+    if (!event.defaultPrevented) noteSent(form); // else a script sends it behind the scenes
   }
   if (form.dataset.logOutOf) removeAllOf(form.dataset.logOutOf);
 });
@@ -133,5 +167,25 @@ document.addEventListener("submit", (event) => {
 // The form of a panel was sent behind the scenes, and has arrived.
 document.addEventListener("draft:arrived", (event) => discard(event.target));
 
-removeArrived();
+const SAYS_NO = 'class="message error"';
+
+// htmx has sent a form. Where it may not show the answer, that is the page for logging in.
+document.addEventListener("htmx:beforeSwap", (event) => {
+  const { requestConfig, xhr, shouldSwap } = event.detail;
+  const form = requestConfig.elt.closest("form[data-draft]");
+  if (!form || requestConfig.verb !== "post") return;
+  if (shouldSwap && xhr.status < 300 && !xhr.responseText.includes(SAYS_NO)) discard(form);
+  else refused = keyOfDraft(form);
+});
+
+/** Whether the form that was sent before this page has arrived: a redirect led here, and nothing says that it failed. */
+function hasArrived() {
+  const [navigation] = performance.getEntriesByType("navigation");
+  return navigation?.redirectCount > 0 && !document.querySelector(".messages .error");
+}
+
+const sent = takeSent();
+if (sent && hasArrived()) removeDraft(sent);
+else refused = sent;
+
 onContent((root) => root.querySelectorAll("form[data-draft]").forEach(enhance));

@@ -55,7 +55,10 @@ export const isTyping = (event) => Boolean(event.target.closest(TYPING) || docum
 function onKey(event) {
   const key = keyOf(event);
   if (event.defaultPrevented || !key) return;
-  if (key === "Escape" && event.target.matches("input[type=search]")) event.target.blur();
+  if (key === "Escape" && event.target.matches("input[type=search]") && !event.target.closest("details")) {
+    event.preventDefault(); // a browser would empty it
+    event.target.blur();
+  }
   if (isTyping(event)) return;
   if (key === "Enter" && event.target === currentRow()) {
     event.preventDefault();

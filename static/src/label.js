@@ -17,10 +17,7 @@ function tellOthers(place) {
 }
 
 // Panels whose fields are kept as drafts, by the names of their templates.
-const hasDraft = (template) => {
-  const draft = readDraft(template.content.querySelector("form"));
-  return draft !== null && !draft.isSent;
-};
+const hasDraft = (template) => readDraft(template.content.querySelector("form")) !== null;
 
 export function enhance(page) {
   new LabelPage(page);
@@ -98,6 +95,14 @@ class LabelPage {
     this.item.removeAttribute("data-asks");
     this.clearNotices();
     await this.show(next);
+    this.fetchNext();
+    if (!this.item) this.lookAgain();
+  }
+
+  // What was fetched before the last answer arrived does not know of it: that it was a skip, say.
+  async lookAgain() {
+    await this.queue.isEmpty();
+    if (!this.item) await this.show(this.fetchItem({}));
     this.fetchNext();
   }
 

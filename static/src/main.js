@@ -14,14 +14,15 @@ import "./copying.js";
 import "./suggestions.js";
 import "./row-search.js";
 import "./filter-addresses.js";
-import "./first-error.js";
 import { onContent } from "./content.js";
+import { focusFirstError } from "./first-error.js";
 import { enhanceForms } from "./forms.js";
 import { enhanceBy } from "./modules.js";
 import { watchScrolling } from "./scrolling.js";
 
 onContent((root) => {
   enhanceForms(root);
+  focusFirstError(root);
   const within = (selector) =>
     [root, ...root.querySelectorAll(selector)].filter((element) => element.matches?.(selector));
   within(".table-wrap").forEach(watchScrolling);
@@ -33,6 +34,7 @@ onContent((root) => {
     ["[data-audit-page]", "audit"],
     ["[data-refusal]", "refusal"],
     ["[data-case]", "review"],
+    ["[data-my-drafts]", "my-drafts"],
   ]) {
     within(selector).forEach((element) => enhanceBy(name, element));
   }

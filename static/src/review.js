@@ -32,8 +32,40 @@ export function enhance(place) {
     fold.open = open.has(fold.dataset.fold);
     fold.addEventListener("toggle", () => remember(fold));
   });
+  shorten(place);
   mark();
   if (!document.activeElement?.closest(TYPING)) focus();
+}
+
+// What may be long: the utterance, its form, and the answers. CSS gives each a few lines, which scroll.
+const SLACK = 8; // pixels: chips are a little higher than their line
+const LONG = ".review-text, .review-label .lf > code, .review-body > .lf > code";
+
+/** Where something is longer than its lines, show the first difference of it, and a button that shows all. */
+function shorten(place) {
+  const pane = place.querySelector(".review-pane");
+  const button = place.querySelector("[data-show-all]");
+  const isAll = open.has("all");
+  pane.removeAttribute("data-shows-all");
+  const cut = [...pane.querySelectorAll(LONG)].filter((each) => each.scrollHeight > each.clientHeight + SLACK);
+  for (const each of cut) {
+    each.tabIndex = 0; // arrow keys scroll it
+    const first = each.querySelector("mark, ins, del");
+    if (first) each.scrollTop = first.offsetTop - each.offsetTop;
+  }
+  pane.toggleAttribute("data-is-long", cut.length > 0);
+  pane.toggleAttribute("data-shows-all", isAll);
+  button.hidden = !cut.length;
+  button.setAttribute("aria-expanded", String(isAll));
+  button.querySelector("span").textContent = isAll ? "Show less" : "Show all";
+  button.onclick = showAll;
+}
+
+function showAll() {
+  if (!current().querySelector("[data-show-all]:not([hidden])")) return;
+  if (open.has("all")) open.delete("all");
+  else open.add("all");
+  shorten(current());
 }
 
 function remember(fold) {
@@ -125,6 +157,7 @@ const actions = {
   Enter: () => press("Enter", shown()),
   t: () => unfold(FOLDS.t),
   b: () => unfold(FOLDS.b),
+  v: showAll,
   a: () => document.getElementById("review-add")?.focus(),
   f: openFilters,
   e: () => press("e", current()),
@@ -148,7 +181,7 @@ function leaveField(event, key) {
     return;
   }
   event.preventDefault();
-  document.querySelector("[data-review-doubt]")?.removeAttribute("open");
+  event.target.closest("details[open]")?.removeAttribute("open");
   focus();
 }
 

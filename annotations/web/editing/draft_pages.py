@@ -1,22 +1,59 @@
-"""What somebody types, kept while they type: asked for and sent by ``static/src/drafts.js``."""
+"""What somebody types, kept while they type: asked for and sent by ``static/src/drafts.js``; and the list of it."""
 
 from __future__ import annotations
 
 import json
 
-from django.http import Http404, JsonResponse
+from django.http import Http404, HttpResponse, JsonResponse
+from django.shortcuts import render
+from django.urls import reverse
 from django.views.decorators.cache import never_cache
+from django.views.decorators.http import require_http_methods
 
-from annotations.editing.drafts import MOST_BYTES, discard_draft, read_draft, save_draft
+from annotations.editing.drafts import (
+    MOST_BYTES,
+    discard_draft,
+    drafts_of,
+    read_draft,
+    save_draft,
+)
 from annotations.language.errors import Refusal
 from annotations.lists.paging import number_in
 from annotations.models import Draft, Duty, World
 from annotations.models.editing import NEW
-from annotations.people.access import READ_AND_WRITE, WorldRequest, world_view
+from annotations.people.access import (
+    READ,
+    READ_AND_WRITE,
+    PageRequest,
+    WorldRequest,
+    world_view,
+)
 from annotations.web.editing.kinds_of_rows import kind_named
 from annotations.web.sent_texts import sent_texts_of
 
 LONGEST_SUBJECT = Draft._meta.get_field("subject").max_length
+
+
+@never_cache
+@require_http_methods(READ)
+def my_drafts(request: PageRequest) -> HttpResponse:
+    """List what the reader has typed and not saved. Their browser adds what it alone keeps (``my-drafts.js``)."""
+    drafts = [(each, _page_of(each)) for each in drafts_of(request.user)]
+    worlds = {
+        world.pk: {"name": world.name, "url": _start_of(world)}
+        for world in World.objects.visible_to(request.user)
+    }
+    context = {"drafts": drafts, "worlds_of_drafts": worlds}
+    return render(request, "annotations/editing/my_drafts.html", context)
+
+
+def _start_of(world: World) -> str:
+    return reverse("world", kwargs={"world": world.name})
+
+
+def _page_of(row: Draft) -> str:
+    """Return the address of the form, under the name that its world has now; empty where it is not known."""
+    return f"{_start_of(row.world)}{row.page}" if row.page else ""
 
 
 @never_cache
@@ -41,6 +78,8 @@ def draft(request: WorldRequest, world: World, kind: str, subject: str) -> JsonR
         "fields": stored.fields,
         "version": stored.base_version,
         "device": stored.device,
+        "about": stored.about,
+        "page": stored.page,
         "saved_at": stored.saved_at.isoformat(),
     }
     return JsonResponse({"draft": shown})

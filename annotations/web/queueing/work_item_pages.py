@@ -34,11 +34,14 @@ from annotations.queueing.giving import (
     assign_first,
     held_item,
     next_item,
+    next_skipped,
+    skipped_items,
     take,
     withdraw,
 )
 from annotations.queueing.item_answers import answer, labels_to_compare
 from annotations.queueing.queue_progress import open_by_kind
+from annotations.web.editing.undo import say_with_undo
 from annotations.web.forms import posted
 from annotations.web.queueing.queueing_filters import WorkItemFilters
 from annotations.web.queueing.work_item_forms import (
@@ -71,9 +74,11 @@ def queue(request: WorldRequest, world: World) -> HttpResponse:
         request, WorkItemFilters, world.work_items.present().prefetch_related(shown_parts()), SORTS
     )
     held = held_item(request.user, world)
+    n_skipped = 0 if held else skipped_items(request.user, world).count()
     context = {
         "listing": listing,
         "held": held,
+        "n_skipped": n_skipped,
         "page": page_of(held.item) if held else "",
         "waiting": open_by_kind(world),
         "assign_form": AssignManyForm(world, auto_id="assign_%s"),  # a filter is called person too
@@ -83,8 +88,9 @@ def queue(request: WorldRequest, world: World) -> HttpResponse:
 
 @world_view(Duty.VIEW, WRITE)
 def queue_next(request: WorldRequest, world: World) -> HttpResponse:
-    """Assign the next item to the reader, and open its page."""
-    assignment = next_item(request.user, world)
+    """Assign the next item to the reader, and open its page: with ``skipped`` one that they have skipped."""
+    give = next_skipped if "skipped" in request.POST else next_item
+    assignment = give(request.user, world)
     if assignment is None:
         messages.info(request, "There is nothing that you can do now. Look again later.")
         return redirect("queue", world=world.name)
@@ -185,7 +191,10 @@ def queue_ask(request: WorldRequest, world: World, kind: str, pk: int) -> HttpRe
 # What the person who holds an item does with it, and what is said then.
 STEPS: dict[str, tuple[Callable[[Assignment], object], str]] = {
     "give_back": (give_back, "Given back. Others can take it now."),
-    "skip": (skip, "Skipped. Others can take it now; you do not get it again."),
+    "skip": (
+        skip,
+        "Skipped. Others can take it now; it waits for you among those that you skipped.",
+    ),
     "done": (_finish, "Done."),
 }
 
@@ -199,7 +208,12 @@ def queue_act(request: WorldRequest, world: World, pk: int) -> HttpResponse:
         if step == "take":
             take(request.user, item)
             return redirect(page_of(item))
-        messages.success(request, _act(request, item, step))
+        sentence = _act(request, item, step)
+        if step == "skip":
+            act = reverse("queue_act", kwargs={"world": world.name, "pk": pk})
+            say_with_undo(request, sentence, act, step="take")
+        else:
+            messages.success(request, sentence)
     except (NotForThem, NoLongerYours) as error:
         messages.error(request, str(error))
     return redirect("queue_item", world=world.name, pk=pk)

@@ -20,8 +20,8 @@ from annotations.language.errors import Refusal
 from annotations.lists.listing import Listing
 from annotations.lists.paging import number_in
 from annotations.models import Duty, Entity, Label, Origin, Utterance, Verdict, World
-from annotations.people.access import WRITE, PageRequest, WorldRequest, world_view
-from annotations.queueing.giving import ItemFilter, next_item
+from annotations.people.access import WRITE, WorldRequest, world_view
+from annotations.queueing.giving import ItemFilter, next_item, skipped_items
 from annotations.queueing.item_answers import (
     answer,
     answer_waiting,
@@ -163,11 +163,12 @@ def _find_asked(request: WorldRequest, world: World, listing: Listing) -> Uttera
     return next_utterance(rows, request.user, without)
 
 
-def _item(request: PageRequest, row: Utterance | None) -> dict[str, Any]:
+def _item(request: WorldRequest, row: Utterance | None) -> dict[str, Any]:
     """Return the context of the utterance; ``part`` says why the queue asks for it, ``given`` is what
-    the person has answered where others are still asked."""
+    the person has answered where others are still asked. Without one, how many they have skipped."""
     if row is None:
-        return {"row": None}
+        skipped = skipped_items(request.user, request.world, ItemFilter(labels_only=True))
+        return {"row": None, "n_skipped": skipped.count()}
     part = assignment_in(row, request.user)
     given = None if part else answer_waiting(row, request.user)
     return {"row": row, "candidates": candidates_for(row), "part": part, "given": given}

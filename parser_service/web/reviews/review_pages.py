@@ -46,6 +46,7 @@ KEYS = (
     ("a", "choose another run to show beside them"),
     ("t", "show the difference as a tree"),
     ("b", "show all candidates of the answer"),
+    ("v", "show all of a long utterance and its forms"),
     ("e", "edit the utterance, and see what each run answers then"),
 )
 

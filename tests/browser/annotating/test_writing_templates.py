@@ -12,7 +12,7 @@ from tests.browser.writing import open_editor, save_button, write
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
-RESTORED = "Restored your unsaved draft."
+RESTORED = "Your draft of "
 
 
 @pytest.fixture

@@ -78,6 +78,61 @@ def test_so_it_is_in_a_window_at_twice_the_size(page_of, live_server, runs, revi
     expect_first_wrong_answer(page, runs[0], ZOOMED["height"])
 
 
+LONG_TEXT = "could you please be so kind as to go to the kitchen and then " * 12
+STEP = '( bring ( lambda $1 e ( and ( is_a $1 " <object> " ) ( at $1 " <location> " ) ) ) " <name> " )'
+LAST = '( go " <room> " )'
+
+
+@pytest.fixture
+def long_case(runs) -> TrainingRun:
+    """The best run, whose first wrong answer is about a very long utterance, and differs in its last step."""
+    wrong = runs[0].predictions.filter(is_exact_match=False).order_by("example_id").first()
+    steps = " ".join([STEP] * 8)
+    wrong.example.utterance = LONG_TEXT
+    wrong.example.logical_form = f"( sequence {steps} {STEP} )"
+    wrong.example.save()
+    wrong.logical_form = f"( sequence {steps} {LAST} )"
+    wrong.save()
+    return runs[0]
+
+
+# How far down the first difference of the answer is seen, within the lines that its form has.
+DIFFERENCE = """() => {
+  const code = document.querySelector(".review-answer .lf > code");
+  const mark = code.querySelector("mark, ins, del").getBoundingClientRect();
+  const lines = code.getBoundingClientRect();
+  return mark.top >= lines.top - 1 && mark.bottom <= lines.bottom + 2 ? mark.bottom : Infinity;
+}"""
+
+
+@pytest.mark.parametrize(("window", "lowest"), [(WIDE, FIRST), (ZOOMED, ZOOMED["height"])])
+def test_a_very_long_utterance_leaves_the_difference_in_sight_and_can_be_read(
+    window, lowest, page_of, live_server, long_case, reviewer
+):
+    page = page_of(reviewer, viewport=window)
+    page.goto(f"{live_server.url}/w/home/review/?run={long_case.pk}&outcome=wrong")
+    expect(page.locator(f"#answer-{long_case.pk}")).to_be_focused()
+    assert page.evaluate(DIFFERENCE) <= lowest
+    text, show_all = page.locator(".review-text"), page.locator("[data-show-all]")
+    assert text.evaluate("text => text.scrollHeight > text.clientHeight")
+    expect(show_all).to_have_attribute("aria-expanded", "false")
+    page.keyboard.press("v")
+    expect(show_all).to_have_attribute("aria-expanded", "true")
+    assert text.evaluate("text => text.scrollHeight <= text.clientHeight")
+    page.reload()
+    expect(show_all).to_have_attribute("aria-expanded", "false")
+    show_all.click()
+    show_all.click()
+    assert text.evaluate("text => text.scrollHeight > text.clientHeight")
+
+
+def test_a_short_utterance_has_no_button_for_more(page_of, live_server, runs, reviewer):
+    page = page_of(reviewer, viewport=WIDE)
+    page.goto(f"{live_server.url}/w/home/review/")
+    expect(page.locator(f"#answer-{runs[0].pk}")).to_be_focused()
+    expect(page.locator("[data-show-all]")).to_be_hidden()
+
+
 def test_the_card_of_the_best_run_leads_there_too(page_of, live_server, runs, reviewer):
     Evaluation.objects.update(test_source="mixed")  # what the scores of the sample count
     page = overview(page_of(reviewer, viewport=WIDE), live_server.url)

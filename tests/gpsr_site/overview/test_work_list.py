@@ -6,6 +6,7 @@ import re
 
 import pytest
 
+from annotations.labelling.collecting import collect
 from annotations.language.corpus import Criterion
 from annotations.language.grammar import Grammar
 from annotations.models import (
@@ -17,6 +18,8 @@ from annotations.models import (
     World,
 )
 from annotations.models.worlds import DUTIES, Role
+from annotations.queueing.enqueuing import refill
+from annotations.queueing.giving import next_item
 from gpsr_site.overview.best_runs import best_runs
 from gpsr_site.overview.counts import counts_of
 from gpsr_site.overview.first_steps import first_steps
@@ -104,6 +107,23 @@ def test_each_count_is_the_number_of_rows_behind_its_link(busy, adam):
         "1 disputed template": 1,
         "1 paraphrase to judge": 1,
     }
+
+
+def test_an_utterance_counts_once_as_an_item_or_as_one_without_a_form(sample, anna, annotator):
+    collect(sample.world, ["find the tea now", "find the tea please"], by=annotator)
+    texts = [each.sentence for each in work_of(sample.world, Role.ANNOTATOR).items]
+    assert "2 utterances without a form, not waiting in the queue" in texts
+    refill(sample.world)
+    items = work_of(sample.world, Role.ANNOTATOR).items
+    (waiting,) = (each for each in items if "in the work queue" in each.sentence)
+    assert waiting.count == 2 and not any("without a form, not" in each.sentence for each in items)
+    held = next_item(annotator, sample.world)
+    counts = counts_of(World.objects.get(pk=sample.world.pk))
+    assert (counts.work_items_free, counts.utterances_waiting) == (1, 1)
+    # One press leads from the overview to the first utterance.
+    assert f'action="{waiting.url}"' in anna.get("/w/home/").content.decode()
+    first = f"/w/home/label/?utterance={held.item.utterance_id}"
+    assert anna.post(waiting.url)["Location"] == first
 
 
 def success_like(run: TrainingRun, split: Split) -> None:

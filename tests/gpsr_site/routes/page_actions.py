@@ -190,6 +190,7 @@ PAGE_VIEWS: dict[str, str | NoRoute] = {
     **dict.fromkeys(("healthz", "banner", "admin:index"), HERE),
     **dict.fromkeys(("documents", "document", "document_image"), DOCUMENTS),
     "home": "get worlds",
+    "my_drafts": UNSAVED,
     "account": "get token-list, get sessions",
     "accounts": "get account-list",
     "site_log": "get site-log",

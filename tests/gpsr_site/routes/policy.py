@@ -54,6 +54,7 @@ POLICY = [
     Rule("campaign_done", *[GONE_ON] * 5),
     Rule("campaign_done", *[GONE_ON] * 5, method="post"),
     Rule("home", LOG_IN, YES, YES, YES, YES),
+    Rule("my_drafts", LOG_IN, YES, YES, YES, YES),
     Rule("inbox", LOG_IN, YES, YES, YES, YES),
     Rule("inbox", LOG_IN, GONE_ON, GONE_ON, GONE_ON, GONE_ON, method="post"),
     Rule("notice_open", LOG_IN, NOWHERE, NOWHERE, NOWHERE, NOWHERE, method="post"),

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+from datetime import timedelta
 
 import pytest
+from django.utils import timezone
 
-from annotations.editing.drafts import MOST_BYTES, MOST_DRAFTS
-from annotations.models import Draft, SemanticTemplate
+from annotations.editing.drafts import KEPT, MOST_BYTES, MOST_DRAFTS
+from annotations.models import Draft, SemanticTemplate, World
 from tests.annotations.web.editing.test_merge_pages import opened
 
 NEW = "/w/home/drafts/template/new/"
@@ -24,9 +26,10 @@ def read(client, path=NEW):
 
 def test_a_draft_is_kept_and_read_again(sample, anna, annotator):
     assert read(anna) is None
-    saved_at = send(anna, annotator).json()["saved_at"]
+    place = {"about": "New template", "page": "templates/new/"}
+    saved_at = send(anna, annotator, **place).json()["saved_at"]
     expected = {"fields": {"pattern": "go"}, "version": 1, "device": "a", "saved_at": saved_at}
-    assert read(anna) == expected
+    assert read(anna) == expected | place
     send(anna, annotator, fields={"pattern": "go home"}, device="b")
     assert (read(anna)["fields"], read(anna)["device"]) == ({"pattern": "go home"}, "b")
 
@@ -90,6 +93,8 @@ def test_it_can_be_discarded(sample, anna, annotator):
         {"version": -1},
         {"version": True},
         {"version": 2**31},
+        {"about": 1},
+        {"page": None},
     ],
     ids=str,
 )
@@ -114,6 +119,37 @@ def test_the_oldest_goes_where_there_are_too_many(sample, anna, annotator, monke
         True,
     ]
     assert MOST_DRAFTS > 10
+
+
+def test_what_is_sent_once_more_is_as_old_as_it_was(sample, anna, annotator):
+    first = send(anna, annotator, fields={"pattern": "go", "once": "a"}).json()["saved_at"]
+    assert send(anna, annotator, fields={"pattern": "go", "once": "b"}).json()["saved_at"] == first
+    assert send(anna, annotator, fields={"pattern": "go on"}).json()["saved_at"] > first
+
+
+def test_none_is_kept_for_longer_than_half_a_year(sample, anna, annotator):
+    send(anna, annotator)
+    Draft.objects.update(saved_at=timezone.now() - KEPT - timedelta(days=1))
+    assert anna.get("/drafts/").context["drafts"] == []
+    send(anna, annotator, f"/w/home/drafts/template/{sample.template.pk}/")
+    assert Draft.objects.get().subject == str(sample.template.pk)
+
+
+def test_all_of_them_are_listed_with_the_way_back(sample, anna, annotator, adam):
+    assert 'data-key="' not in anna.get("/drafts/").text
+    typed = {"pattern": "go to the {room}", "once": "a" * 40}
+    send(anna, annotator, fields=typed, about="New template", page="templates/new/?command=go")
+    World.objects.filter(pk=sample.world.pk).update(name="house")
+    page = anna.get("/drafts/").text
+    assert 'href="/w/house/templates/new/?command=go"' in page
+    assert "go to the {room}" in page and "a" * 40 not in page
+    assert "go to the {room}" not in adam.get("/drafts/").text
+
+
+def test_drafts_of_a_world_that_one_has_left_are_not_listed(sample, anna, annotator):
+    send(anna, annotator, about="New template")
+    sample.world.memberships.filter(user=annotator).delete()
+    assert "New template" not in anna.get("/drafts/").text
 
 
 @pytest.mark.parametrize("subject", ["0", "x", "9" * 30, "-1", "new-" + "a" * 20])

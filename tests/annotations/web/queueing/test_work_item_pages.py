@@ -70,9 +70,41 @@ def test_an_item_is_taken_given_back_and_skipped(anna, item, annotator):
     for step in ("give_back", "take", "skip"):
         assert "error" not in levels(act(anna, item, step))
         assert annotator.assignments.held().exists() == (step == "take")
-    for step in ("take", "skip"):
-        assert levels(act(anna, item, step)) == ["error"]
+    assert levels(act(anna, item, "skip")) == ["error"]
     assert not annotator.assignments.held().exists()
+
+
+def test_whoever_is_alone_gets_back_what_they_skipped(tiny_world, anna, item, annotator):
+    label, following = "/w/home/label/", reverse("queue_next", args=["home"])
+    act(anna, item, "take")
+    skipped = act(anna, item, "skip")
+    assert 'name="step" value="take"' in skipped.text  # Undo, in the message
+    anna.post(following)
+    tiny_world.utterances.exclude(pk=item.utterance_id).update(status="excluded")
+    for page in (label, "/w/home/queue/"):
+        assert "Go through 1 that you skipped" in anna.get(page).text
+    assert anna.post(following)["Location"] == "/w/home/queue/"
+    again = anna.post(following, {"skipped": "yes"})
+    assert again["Location"] == f"{label}?utterance={item.utterance_id}"
+    assert annotator.assignments.held().get().item == item
+    assert "that you skipped" not in anna.get("/w/home/queue/").text
+
+
+def test_a_skip_is_undone_from_its_message(anna, item, annotator):
+    act(anna, item, "take")
+    act(anna, item, "skip")
+    act(anna, item, "take")
+    assert annotator.assignments.held().get().item == item
+
+
+def test_what_one_skipped_is_not_theirs_once_somebody_else_has_done_it(
+    tiny_world, anna, item, annotator, berta
+):
+    act(anna, item, "take")
+    act(anna, item, "skip")
+    answer(item.utterance, Verdict.FORM, BRING, berta, 1)
+    assert "that you skipped" not in anna.get("/w/home/queue/").text
+    assert levels(act(anna, item, "take")) == ["error"]
 
 
 def test_an_utterance_is_done_by_labelling_and_a_template_by_saying_so(tiny_world, anna, item):
