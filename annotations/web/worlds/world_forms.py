@@ -100,7 +100,7 @@ class WorldEditForm(WorldForm):
         values = super().clean() or self.cleaned_data
         for name in self.Meta.fields:
             key, stored = f"seen_{name}", str(self.initial[name])
-            if name not in values or key not in self.data:
+            if key not in self.data or not values.keys() >= {name, key}:
                 continue
             seen, typed = _lines(values[key]), _lines(values[name])
             if typed == seen:
