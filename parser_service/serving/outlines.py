@@ -30,7 +30,7 @@ from parser_service.serving.parse_answers import answer_with, as_json, form_of, 
 from parser_service.serving.preparing import WorldLanguage
 
 REMEMBERED = 4096  # of each kind of thing that is made once
-OWN = ("score", "open_slots", "remarks", "values", "task_plan", "spoken")  # of each answer
+OWN = ("score", "open_slots", "warnings", "values", "task_plan", "spoken")  # of each answer
 _AWAITED = "awaited"
 _PLACE = re.compile(rf'({STAND_IN.pattern}|\{{"{_AWAITED}": "[^"]*"\}})')
 
@@ -79,6 +79,15 @@ class AskedEntity:
     number: int
     predicate: str
     place: int
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenTaskPlan:
+    """A task plan and the sentence about it, as JSON, and whether a robot can do it without asking anybody."""
+
+    text: str
+    spoken: str
+    is_executable: bool
 
 
 class Outlines:
@@ -137,7 +146,7 @@ class Outlines:
     @remembered(REMEMBERED)
     def task_plan(
         self, form: str, paths: Paths, texts: tuple[str, ...], doubts: tuple[PlanProblem, ...]
-    ) -> tuple[str, str]:
+    ) -> WrittenTaskPlan:
         """Return the task plan of a form with entities in it, and the sentence about it, as JSON.
 
         No outline says them: which steps there are depends on which entities are the same.
@@ -146,7 +155,7 @@ class Outlines:
         for path, text in zip(paths, texts, strict=True):
             grounded = filled(grounded, path, text)
         made = task_plan_of(grounded, doubts, self.language)
-        return as_json(made.as_json()), as_json(spoken(made))
+        return WrittenTaskPlan(as_json(made.as_json()), as_json(spoken(made)), made.is_executable)
 
     @remembered(REMEMBERED)
     def question(self, form: str, paths: Paths, asked: SlotPath) -> Outline | None:
