@@ -347,7 +347,7 @@ def warnings_about(given: Deanonymized, ontology: Ontology) -> tuple[str, ...]:
         elif not slot.entity_class:
             continue
         elif ontology.of_class(slot.entity_class):
-            why = f"the utterance names no {slot.entity_class} of this world"
+            why = f"the utterance names no {ontology.classes.noun(slot.entity_class)} of this world"
         else:
             why = f"this world has no entity of the class {slot.entity_class}"
         sentences.append(f"{slot.token} stays open: {why}.")

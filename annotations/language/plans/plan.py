@@ -123,11 +123,13 @@ class Named:
 class Words:
     """A text that is no entity: words to say, ``current``.
 
-    ``is_of_robot`` marks the robot's own words, such as a question: it says them as they are.
+    ``is_of_robot`` marks the robot's own words, such as a question: it says them as they are. ``said`` is what it says
+    in their place, where that is something else: "sentence" for the class whattosay.
     """
 
     text: str
     is_of_robot: bool = field(default=False, compare=False)
+    said: str = field(default="", compare=False)
 
     def as_json(self) -> dict[str, Any]:
         return {"kind": "text", "text": self.text}

@@ -90,7 +90,9 @@ class RecipeBook:
             node = node_name(each.name)
             others = " and ".join(name for name in nodes[node] if name != each.name)
             if others:
-                message = f"“{each.name}” is the node {node} of a behaviour tree, and so is {others}"
+                message = (
+                    f"“{each.name}” is the node {node} of a behaviour tree, and so is {others}"
+                )
                 yield error_at(each.position, message, "choose another name")
 
     def _recipe_problems(

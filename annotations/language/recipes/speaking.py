@@ -294,6 +294,8 @@ def _noun_phrase(value: TaskValue | None, is_new: bool, is_plural: bool) -> str:
     if isinstance(value, Words):
         if value.text == QUESTION_WORD:
             return f"the {value.text}"
+        if value.said:
+            return value.said
         return value.text if value.is_of_robot else _turned(value.text)
     if isinstance(value, Named):
         if kind_of_class(value.entity_class) not in ("", PERSON) or PLACE in kinds_of(value):

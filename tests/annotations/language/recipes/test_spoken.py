@@ -64,6 +64,10 @@ ADA = '(λ$1:e (person $1) (name $1 "Ada") (at $1 "stool"))'
             "ask you “What shall I bring you?”, find the thing that you name, and bring it to you.",
         ),
         ("(go UNKNOWN)", "ask you “Where shall I go?” and go to the destination that you name."),
+        (
+            '(say "<whattosay>")',
+            "ask you “What shall I tell you?” and tell you the sentence that you name.",
+        ),
         ('(say "something about yourself")', "say something about myself."),
     ],
 )
