@@ -108,8 +108,9 @@ class Outlines:
 
     @remembered(REMEMBERED)
     def text(self, text: str) -> StandIn | None:
-        """Return what is put in for a text."""
-        if not can_stand_in(text, self._of_patterns):
+        """Return what is put in for a text; one of two classes may be said in another way than others of its slot."""
+        is_of_one_class = text in self.language.ontology.class_of_text
+        if not (is_of_one_class and can_stand_in(text, self._of_patterns)):
             return None
         many = plural(text)
         return StandIn(text, many, as_json(text)[1:-1], as_json(many)[1:-1])
@@ -189,6 +190,7 @@ class _AwaitingLookup(Lookup):
     def __init__(self, lookup: Lookup, classes: Mapping[AskedEntity, str]) -> None:
         self._lookup = lookup
         self.classes = lookup.classes
+        self.class_of_text = lookup.class_of_text
         self._class_of = classes
         self.names: dict[AskedEntity, str] = {}
 

@@ -247,7 +247,8 @@ class _Planner:
         action = str(form.predicate)
         before, self.waiting = self.waiting, []
         spoken = Lambda(1, "e", (*scope.conjuncts, form)) if scope.conjuncts else form
-        text = gloss(spoken, self.predicates, self.lookup.classes)
+        named = self.lookup.class_of_text
+        text = gloss(spoken, self.predicates, self.lookup.classes, named)
         arguments: dict[str, Value] = {}
         said: list[tuple[Form, Value]] = []
         around, self.acting = self.acting, _Acting.of(form, scope.conjuncts, self.predicates)
