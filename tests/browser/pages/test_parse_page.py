@@ -11,7 +11,8 @@ from playwright.sync_api import Locator, Page, expect
 from annotations.models import Command, LogicalForm
 from parser_service.promotions.promoting import promote
 from tests.browser.arriving import wait_for_swap
-from tests.browser.variants import SIZES, VARIANTS, Variant
+from tests.browser.faults import narrow_and_dark, only_faults, wide_and_light
+from tests.browser.variants import NARROW_DARK, SIZES, VARIANTS, WIDE_LIGHT, Variant
 from tests.browser.walking import tab_to
 from tests.parser_service.live_server import parse_server  # noqa: F401
 from tests.parser_service.served import make_home, trained_run
@@ -134,3 +135,15 @@ def test_a_form_is_selected_where_it_cannot_be_copied(open_page):
     expect(form.locator(".copy-note")).to_have_text("Selected: press Ctrl+C")
     assert page.evaluate("getSelection().toString()").startswith("bring(")
     wait_for_swap(page)
+
+
+@pytest.mark.parametrize("address", [*OPEN.values(), "parse/?text="], ids=[*OPEN.keys(), "empty"])
+def test_an_answer_can_be_used_by_everybody(open_page, axe, address):
+    reports = {}
+    for variant, look in ((NARROW_DARK, narrow_and_dark), (WIDE_LIGHT, wide_and_light)):
+        page = open_page(address.format(SAID), variant)
+        page.evaluate(axe)
+        if not address.endswith("="):
+            expect(page.locator(".plan-spoken")).to_be_visible()
+        reports[f"{address} {variant}"] = look(page)
+    assert only_faults(reports) == {}
