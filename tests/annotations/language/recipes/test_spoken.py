@@ -130,6 +130,13 @@ def test_several_questions_are_asked_together():
     )
 
 
+def test_of_several_answers_their_order_tells_which_is_meant():
+    assert spoken(task_plan('(sequence (go "<room>") (go "<room>"))')) == (
+        "I will ask you “Which room shall I go to?” and “Which room shall I go to?”, "
+        "go to the first room that you name, and go to the second room that you name."
+    )
+
+
 def test_nothing_to_do_is_said():
     assert spoken(TaskPlan(())) == "I have nothing to do."
 
