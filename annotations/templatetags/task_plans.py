@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from typing import Any
 
@@ -21,6 +22,12 @@ def call(step: Mapping[str, Any]) -> str:
         for each in step["arguments"].values()
     )
     return f"{step['primitive']}({values})"
+
+
+@register.filter
+def as_json(value: Mapping[str, Any]) -> str:
+    """Write plain data as JSON that people can read."""
+    return json.dumps(value, ensure_ascii=False, indent=2)
 
 
 @register.filter

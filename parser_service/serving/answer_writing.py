@@ -30,15 +30,16 @@ from parser_service.serving.outlines import (
 from parser_service.serving.parse_answers import (
     ParsedCandidate,
     ParsedUtterance,
+    Reading,
     answer_with,
     as_json,
+    best_first,
     form_of,
     is_cut_in,
-    prefer_grounded,
     questions_of,
-    remarks_on,
     score_of,
     unknown_tokens,
+    warnings_about,
 )
 from parser_service.serving.preparing import WorldLanguage
 
@@ -66,42 +67,41 @@ class AnswerWriter:
     ) -> str:
         """Return the answer to an utterance of which a parser was given ``text``, after what is ``about`` it: who
         answers, and the ``score_kind`` of the candidates."""
-        remarks = unknown_tokens(heard.original, self.language.ontology)
-        parse = ParsedUtterance(heard, text, (), remarks, is_cut_in(candidates))
+        warnings = unknown_tokens(heard.original, self.language.ontology)
+        parse = ParsedUtterance(heard, text, (), warnings, is_cut_in(candidates))
         head = {**about, **parse.as_json()}
         said = UtteranceMentions(heard, self.language.ontology)
-        candidates = prefer_grounded(
-            candidates, heard, about.get("score_kind"), lambda each: self._slots(each, said)
-        )
-        answers = [self._write(each, said) for each in candidates]
-        if candidates:
-            form = form_of(candidates[0].form)
+        written = [self._write(each, said) for each in candidates]
+        readings = best_first(written, heard, about.get("score_kind"))
+        if readings:
+            form = form_of(readings[0].candidate.form)
             head["is_unknown"] = form is None or isinstance(form, Unknown)
         del head["candidates"]
-        return f'{as_json(head)[:-1]}, "candidates": [{", ".join(answers)}]}}'
+        answers = ", ".join(each.answer for each in readings)
+        return f'{as_json(head)[:-1]}, "candidates": [{answers}]}}'
 
-    def _write(self, candidate: Candidate, heard: UtteranceMentions) -> str:
+    def _write(self, candidate: Candidate, heard: UtteranceMentions) -> Reading[str]:
         form = form_of(candidate.form)
         if form is None:
-            return as_json(ParsedCandidate(candidate.form, score_of(candidate)).as_json())
-        slots = self._slots(candidate, heard) or ()
+            answer = ParsedCandidate(candidate.form, score_of(candidate))
+            return Reading(candidate, as_json(answer.as_json()))
+        slots = self._slots(candidate, heard)
         written = self._fill(candidate, form, slots)
         return self._write_anew(candidate, form, slots) if written is None else written
 
-    def _write_anew(self, candidate: Candidate, form: Form, slots: Slots) -> str:
+    def _write_anew(self, candidate: Candidate, form: Form, slots: Slots) -> Reading[str]:
         given, language = fill_all(form, slots), self.language
-        return as_json(answer_with(candidate, given, language, language.lookup).as_json())
+        answer = answer_with(candidate, given, language, language.lookup)
+        return Reading(candidate, as_json(answer.as_json()), slots, answer.executable_plans)
 
-    def _slots(self, candidate: Candidate, heard: UtteranceMentions) -> Slots | None:
-        """Return the slots of a form with their entities; None for a text that is no form."""
-        if form_of(candidate.form) is None:
-            return None
+    def _slots(self, candidate: Candidate, heard: UtteranceMentions) -> Slots:
+        """Return the slots of a form with their entities."""
         slots = self._outlines.slots(candidate.form)
         language = self.language
         resolved = resolve_slots(slots, heard, language.ontology, language.evidence)
         return with_values(resolved, candidate.values)
 
-    def _fill(self, candidate: Candidate, form: Form, slots: Slots) -> str | None:
+    def _fill(self, candidate: Candidate, form: Form, slots: Slots) -> Reading[str] | None:
         """Return the outline with its entities; None where it would say something else."""
         put_in = [(slot.path, value) for slot in slots if (value := slot.filler) is not None]
         if len({value.casefold() for _, value in put_in}) < len(put_in):
@@ -119,15 +119,17 @@ class AnswerWriter:
         outline = self._outlines.answer(candidate.form, paths, classes)
         if outline is None or outline.is_right is False:
             return None
-        written = outline.fill(
+        own, executable_plans = self._own_values(outline, candidate, form, slots, paths, texts)
+        filled_in = outline.fill(
             {name_of_entity(number): text for number, (_, text) in enumerate(entities)}
             | {
                 sign: text
                 for signs, each in zip(_SIGNS, texts, strict=False)
                 for sign, text in zip(signs, (each.in_json, each.plural_in_json), strict=True)
             }
-            | self._own_values(outline, candidate, form, slots, paths, texts)
+            | own
         )
+        written = Reading(candidate, filled_in, slots, executable_plans)
         if outline.is_right is None:
             outline.is_right = written == self._write_anew(candidate, form, slots)
         return written if outline.is_right else None
@@ -140,8 +142,9 @@ class AnswerWriter:
         slots: Slots,
         paths: Paths,
         texts: Sequence[StandIn],
-    ) -> dict[str, str]:
-        """Return the JSON of the values that differ between answers with one outline, by their names."""
+    ) -> tuple[dict[str, str], int]:
+        """Return the JSON of the values that differ between answers with one outline, by their names, and how many of
+        the two plans a robot can carry out."""
         plain = {
             sign: text
             for signs, each in zip(_SIGNS, texts, strict=False)
@@ -169,14 +172,16 @@ class AnswerWriter:
         found = doubts_about(slots)
         doubts = [each.as_json() for each in found]
         put_in = tuple(each.text for each in texts)
-        task_plan, spoken = self._outlines.task_plan(candidate.form, paths, put_in, found)
-        return {
-            "task_plan": task_plan,
-            "spoken": spoken,
+        task_plan = self._outlines.task_plan(candidate.form, paths, put_in, found)
+        is_executable = outline.is_executable and not doubts
+        values = {
+            "task_plan": task_plan.text,
+            "spoken": task_plan.spoken,
             "score": as_json(score_of(candidate)),
             "values": as_json(list(candidate.values)),
             "open_slots": as_json(list(questions_of(given, self.language, asked_for))),
-            "remarks": as_json(remarks_on(given, self.language.ontology)),
-            "is_executable": as_json(outline.is_executable and not doubts),
+            "warnings": as_json(warnings_about(given, self.language.ontology)),
+            "is_executable": as_json(is_executable),
             "problems": as_json([*doubts, *outline.problems]),
         }
+        return values, is_executable + task_plan.is_executable

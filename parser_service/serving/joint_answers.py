@@ -115,7 +115,7 @@ def plan_together(
     language = WorldLanguage.of(world)
     ask = client()
     commands = tuple(
-        _understood(ask.parse(world.name, text, beam=1, run=run), text, language) for text in texts
+        _understood(ask.parse(world.name, text, run=run), text, language) for text in texts
     )
     plans = [each.task_plan for each in commands]
     return JointAnswer(commands, join(plans, language.recipes, distances))

@@ -30,7 +30,7 @@ from parser_service.serving.parse_answers import answer_with, as_json, form_of, 
 from parser_service.serving.preparing import WorldLanguage
 
 REMEMBERED = 4096  # of each kind of thing that is made once
-OWN = ("score", "open_slots", "remarks", "values", "task_plan", "spoken")  # of each answer
+OWN = ("score", "open_slots", "warnings", "values", "task_plan", "spoken")  # of each answer
 _AWAITED = "awaited"
 _PLACE = re.compile(rf'({STAND_IN.pattern}|\{{"{_AWAITED}": "[^"]*"\}})')
 
@@ -81,6 +81,15 @@ class AskedEntity:
     place: int
 
 
+@dataclass(frozen=True, slots=True)
+class WrittenTaskPlan:
+    """A task plan and the sentence about it, as JSON, and whether a robot can do it without asking anybody."""
+
+    text: str
+    spoken: str
+    is_executable: bool
+
+
 class Outlines:
     """Makes the outlines of the forms of a world, and what is put into them, and remembers both.
 
@@ -99,8 +108,9 @@ class Outlines:
 
     @remembered(REMEMBERED)
     def text(self, text: str) -> StandIn | None:
-        """Return what is put in for a text."""
-        if not can_stand_in(text, self._of_patterns):
+        """Return what is put in for a text; one of two classes may be said in another way than others of its slot."""
+        is_of_one_class = text in self.language.ontology.class_of_text
+        if not (is_of_one_class and can_stand_in(text, self._of_patterns)):
             return None
         many = plural(text)
         return StandIn(text, many, as_json(text)[1:-1], as_json(many)[1:-1])
@@ -137,7 +147,7 @@ class Outlines:
     @remembered(REMEMBERED)
     def task_plan(
         self, form: str, paths: Paths, texts: tuple[str, ...], doubts: tuple[PlanProblem, ...]
-    ) -> tuple[str, str]:
+    ) -> WrittenTaskPlan:
         """Return the task plan of a form with entities in it, and the sentence about it, as JSON.
 
         No outline says them: which steps there are depends on which entities are the same.
@@ -146,7 +156,7 @@ class Outlines:
         for path, text in zip(paths, texts, strict=True):
             grounded = filled(grounded, path, text)
         made = task_plan_of(grounded, doubts, self.language)
-        return as_json(made.as_json()), as_json(spoken(made))
+        return WrittenTaskPlan(as_json(made.as_json()), as_json(spoken(made)), made.is_executable)
 
     @remembered(REMEMBERED)
     def question(self, form: str, paths: Paths, asked: SlotPath) -> Outline | None:
@@ -180,6 +190,7 @@ class _AwaitingLookup(Lookup):
     def __init__(self, lookup: Lookup, classes: Mapping[AskedEntity, str]) -> None:
         self._lookup = lookup
         self.classes = lookup.classes
+        self.class_of_text = lookup.class_of_text
         self._class_of = classes
         self.names: dict[AskedEntity, str] = {}
 

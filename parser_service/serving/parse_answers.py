@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import exp, inf
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from annotations.language.errors import LanguageError
 from annotations.language.forms import (
@@ -40,13 +40,15 @@ LEAST_SCORE = -1e300  # in place of −∞, which JSON cannot say
 REMEMBERED_FORMS = 4096
 MOST_OFFERED = 20
 ABOUT_EQUAL = 0.01  # of a probability or a similarity
+PLANS = 2  # of a candidate: ``plan`` and ``task_plan``
+T = TypeVar("T")  # an answer: as a value, or as JSON
 _JSON = json.JSONEncoder(ensure_ascii=False, allow_nan=False)
 
 
 @dataclass(frozen=True, slots=True)
 class ParsedCandidate:
     """One candidate. ``grounded`` names the entities of the utterance, certain and likely ones, and
-    ``remarks`` say what stays open; ``open_slots`` ask for it (``grounding.open_slots_as_json``). ``plan``
+    ``warnings`` say what stays open; ``open_slots`` ask for it (``grounding.open_slots_as_json``). ``plan``
     is what a robot does (``plans.Plan.as_json``), ``task_plan`` the same in its own primitives
     (``recipes.TaskPlan.as_json``), and ``spoken`` says that in a sentence. Where the parser wrote no well-formed
     form there is nothing but ``form`` and ``score``. ``values`` are those of ``Candidate``."""
@@ -59,11 +61,16 @@ class ParsedCandidate:
     reading: str = ""
     english: str = ""
     open_slots: tuple[dict[str, Any], ...] = ()
-    remarks: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
     plan: dict[str, Any] | None = None
     task_plan: dict[str, Any] | None = None
     spoken: str = ""
     values: tuple[str | None, ...] = ()
+
+    @property
+    def executable_plans(self) -> int:
+        """How many of the two plans a robot can carry out."""
+        return sum(bool(each and each["is_executable"]) for each in (self.plan, self.task_plan))
 
     def as_json(self) -> dict[str, Any]:
         """Return plain values, as REST answers them (docs/reference/parse-server.md)."""
@@ -75,7 +82,7 @@ class ParsedCandidate:
             "reading": self.reading,
             "english": self.english,
             "open_slots": list(self.open_slots),
-            "remarks": list(self.remarks),
+            "warnings": list(self.warnings),
             "plan": self.plan,
             "task_plan": self.task_plan,
             "spoken": self.spoken,
@@ -85,13 +92,13 @@ class ParsedCandidate:
 
 @dataclass(frozen=True, slots=True)
 class ParsedUtterance:
-    """The answers to an utterance, best first. ``parsed_text`` is what the parser was given; ``remarks``
+    """The answers to an utterance, best first. ``parsed_text`` is what the parser was given; ``warnings``
     say what of it the world does not know, and ``is_cut`` that the parser read only its beginning."""
 
     heard: Anonymized
     parsed_text: str
     answers: tuple[ParsedCandidate, ...]
-    remarks: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
     is_cut: bool = False
 
     @property
@@ -119,7 +126,7 @@ class ParsedUtterance:
             "parsed_text": self.parsed_text,
             "is_unknown": self.is_unknown,
             "is_cut": self.is_cut,
-            "remarks": list(self.remarks),
+            "warnings": list(self.warnings),
             "candidates": [answer.as_json() for answer in self.answers],
         }
 
@@ -147,73 +154,77 @@ def read_answers(
 ) -> ParsedUtterance:
     """Return what a parser answered to ``text``, with the entities that were heard in its place."""
 
-    def slots_of(candidate: Candidate) -> tuple[Slot, ...] | None:
-        form = form_of(candidate.form)
-        return None if form is None else _given(candidate, form, heard, language).slots
-
-    candidates = prefer_grounded(candidates, heard, score_kind, slots_of)
-    answers = tuple(answer_of(each, heard, language) for each in candidates)
-    remarks = unknown_tokens(heard.original, language.ontology)
-    return ParsedUtterance(heard, text, answers, remarks, is_cut_in(candidates))
+    readings = [_read(each, heard, language) for each in candidates]
+    answers = tuple(each.answer for each in best_first(readings, heard, score_kind))
+    warnings = unknown_tokens(heard.original, language.ontology)
+    return ParsedUtterance(heard, text, answers, warnings, is_cut_in(candidates))
 
 
-def prefer_grounded(
-    candidates: Sequence[Candidate],
-    heard: Anonymized,
-    score_kind: str | None,
-    slots_of: Callable[[Candidate], Sequence[Slot] | None],
-) -> list[Candidate]:
-    """Order candidates that are about equally good by how well the entities of the utterance fill them.
+@dataclass(frozen=True, slots=True)
+class Reading(Generic[T]):
+    """One candidate with what it is answered with, and what decides its place among those that are equally good.
 
-    First come those with the fewest slots that no entity fills, then those that leave the fewest of the named entities
-    out, then those with the fewest doubtful slots; where that is equal too, the order stays. UNKNOWN keeps its
-    place, and so does every candidate that scores clearly otherwise.
+    ``slots`` are those of the form with their entities, None for a text that is no form. ``executable_plans`` counts
+    which of the two plans, ``plan`` and ``task_plan``, a robot can carry out without asking anybody.
+    """
+
+    candidate: Candidate
+    answer: T
+    slots: Sequence[Slot] | None = None
+    executable_plans: int = 0
+
+    def misfit(self, heard: Anonymized) -> tuple[int, float, int, int]:
+        """Return how badly it fits the utterance: how many of its plans cannot be carried out, how many slots have no
+        entity, how many entities no slot, and how many slots no certain entity."""
+        if self.slots is None:
+            return PLANS, inf, 0, 0
+        put_in = [slot.filler for slot in self.slots]
+        named: Counter[str | None] = Counter(span.value for span in heard.spans)
+        left_out = (named - Counter(put_in)).total()
+        doubtful = sum(slot.value is None for slot in self.slots)
+        return PLANS - self.executable_plans, put_in.count(None), left_out, doubtful
+
+
+def best_first(
+    readings: Sequence[Reading[T]], heard: Anonymized, score_kind: str | None
+) -> list[Reading[T]]:
+    """Order readings that are about equally good by what a robot can do with them.
+
+    First come those that it can carry out, then those with the fewest slots that no entity fills, then those that leave
+    the fewest of the named entities out, then those with the fewest doubtful slots; where that is equal too, the order
+    stays. UNKNOWN keeps its place, and so does every candidate that scores clearly otherwise.
 
     Args:
         score_kind: that of the parser; where scores only order the candidates, equal ones are equally good.
-        slots_of: returns the slots of a candidate with their entities; None for a text that is no form.
     """
-    ordered: list[Candidate] = []
-    for group in _about_equal(candidates, score_kind):
-        if len(group) > 1:
-            group.sort(key=lambda each: _misfit(slots_of(each), heard))
-        ordered += group
+    ordered: list[Reading[T]] = []
+    for group in _about_equal(readings, score_kind):
+        ordered += sorted(group, key=lambda each: each.misfit(heard))
     return ordered
 
 
 def _about_equal(
-    candidates: Sequence[Candidate], score_kind: str | None
-) -> Iterator[list[Candidate]]:
-    """Yield the candidates in groups whose probabilities, or similarities, differ by ``ABOUT_EQUAL`` at most."""
+    readings: Sequence[Reading[T]], score_kind: str | None
+) -> Iterator[list[Reading[T]]]:
+    """Yield the readings in groups whose probabilities, or similarities, differ by ``ABOUT_EQUAL`` at most."""
     most = ABOUT_EQUAL if score_kind else 0.0
-    group: list[Candidate] = []
-    for candidate in candidates:
-        is_alone = candidate.form == UNKNOWN or not group or group[0].form == UNKNOWN
-        if not is_alone and _share(group[0], score_kind) - _share(candidate, score_kind) <= most:
-            group.append(candidate)
+    group: list[Reading[T]] = []
+    for reading in readings:
+        forms = {reading.candidate.form, *(each.candidate.form for each in group[:1])}
+        is_alone = not group or UNKNOWN in forms
+        if not is_alone and _share(group[0], score_kind) - _share(reading, score_kind) <= most:
+            group.append(reading)
             continue
         if group:
             yield group
-        group = [candidate]
+        group = [reading]
     if group:
         yield group
 
 
-def _share(candidate: Candidate, score_kind: str | None) -> float:
-    if score_kind == ScoreKind.LOG_PROBABILITY:
-        return exp(min(candidate.score, 0.0))
-    return candidate.score
-
-
-def _misfit(slots: Sequence[Slot] | None, heard: Anonymized) -> tuple[float, int, int]:
-    """Return how badly the entities of an utterance fit the slots of a form: how many slots have no entity, how
-    many entities no slot, and how many slots no certain entity."""
-    if slots is None:
-        return inf, 0, 0
-    put_in = [slot.filler for slot in slots]
-    named: Counter[str | None] = Counter(span.value for span in heard.spans)
-    left_out = (named - Counter(put_in)).total()
-    return put_in.count(None), left_out, sum(slot.value is None for slot in slots)
+def _share(reading: Reading[T], score_kind: str | None) -> float:
+    score = reading.candidate.score
+    return exp(min(score, 0.0)) if score_kind == ScoreKind.LOG_PROBABILITY else score
 
 
 def is_cut_in(candidates: Sequence[Candidate]) -> bool:
@@ -221,19 +232,16 @@ def is_cut_in(candidates: Sequence[Candidate]) -> bool:
     return any(each.is_cut for each in candidates)
 
 
-def answer_of(candidate: Candidate, heard: Anonymized, language: WorldLanguage) -> ParsedCandidate:
+def _read(
+    candidate: Candidate, heard: Anonymized, language: WorldLanguage
+) -> Reading[ParsedCandidate]:
     """Return one candidate with the entities that were heard."""
     form = form_of(candidate.form)
     if form is None:
-        return ParsedCandidate(candidate.form, score_of(candidate))
-    given = _given(candidate, form, heard, language)
-    return answer_with(candidate, given, language, language.lookup)
-
-
-def _given(
-    candidate: Candidate, form: Form, heard: Anonymized, language: WorldLanguage
-) -> Deanonymized:
-    return deanonymize(form, heard, language.ontology, language.evidence, candidate.values)
+        return Reading(candidate, ParsedCandidate(candidate.form, score_of(candidate)))
+    given = deanonymize(form, heard, language.ontology, language.evidence, candidate.values)
+    answer = answer_with(candidate, given, language, language.lookup)
+    return Reading(candidate, answer, given.slots, answer.executable_plans)
 
 
 def answer_with(
@@ -263,7 +271,7 @@ def answer_with(
             language.ontology.class_of_text,
         ),
         open_slots=tuple(questions_of(given, language)),
-        remarks=remarks_on(given, language.ontology),
+        warnings=warnings_about(given, language.ontology),
         plan=plan.as_json(),
         task_plan=task_plan.as_json(),
         spoken=spoken(task_plan),
@@ -330,7 +338,7 @@ def unknown_tokens(utterance: str, ontology: Ontology) -> tuple[str, ...]:
     return tuple(sentences)
 
 
-def remarks_on(given: Deanonymized, ontology: Ontology) -> tuple[str, ...]:
+def warnings_about(given: Deanonymized, ontology: Ontology) -> tuple[str, ...]:
     """Return a sentence for each slot of an answer that no entity fills with certainty, each once."""
     sentences = []
     for slot in given.open_slots:
@@ -339,7 +347,7 @@ def remarks_on(given: Deanonymized, ontology: Ontology) -> tuple[str, ...]:
         elif not slot.entity_class:
             continue
         elif ontology.of_class(slot.entity_class):
-            why = f"the utterance names no {slot.entity_class} of this world"
+            why = f"the utterance names no {ontology.classes.noun(slot.entity_class)} of this world"
         else:
             why = f"this world has no entity of the class {slot.entity_class}"
         sentences.append(f"{slot.token} stays open: {why}.")

@@ -1,4 +1,5 @@
 // Logical forms on the page: hues and brackets, the notation, copying, the tree.
+import { copyText, noteBeside } from "./copying.js";
 import { enhanceBy } from "./modules.js";
 import { onFormText } from "./notation.js";
 
@@ -33,18 +34,9 @@ function setPreferred(notation) {
 /** Put the text of a form into the clipboard and say so on it. */
 export async function copyForm(form) {
   if (!form) return;
-  form.querySelector(".lf-copied")?.remove();
-  const note = document.createElement("span");
-  note.className = "lf-copied";
-  note.role = "status";
-  try {
-    await navigator.clipboard.writeText(codeOf(form).textContent);
-    note.textContent = "Copied";
-  } catch {
-    note.textContent = "This browser does not let pages copy";
-  }
-  form.append(note);
-  setTimeout(() => note.remove(), 1500);
+  const code = codeOf(form);
+  const note = noteBeside(form.lastElementChild);
+  await copyText(code.textContent, note, () => getSelection().selectAllChildren(code));
 }
 
 function button(text, dataset) {

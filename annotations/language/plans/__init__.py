@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
-from annotations.language.plans.behavior_tree import TAKEN_NAMES, to_behavior_tree
+from annotations.language.plans.behavior_tree import (
+    TAKEN_NAMES,
+    node_name,
+    port_name,
+    to_behavior_tree,
+)
 from annotations.language.plans.descriptions import AT
 from annotations.language.plans.lookup import Lookup
 from annotations.language.plans.plan import (
@@ -15,6 +20,7 @@ from annotations.language.plans.plan import (
     OpenValue,
     Operator,
     Plan,
+    PlanOf,
     PlanProblem,
     Referred,
     Step,
@@ -41,6 +47,7 @@ __all__ = [
     "OpenValue",
     "Operator",
     "Plan",
+    "PlanOf",
     "PlanProblem",
     "Referred",
     "Step",
@@ -52,7 +59,9 @@ __all__ = [
     "behavior_tree_schema_text",
     "doubts_about",
     "make_plan",
+    "node_name",
     "plan_schema",
     "plan_schema_text",
+    "port_name",
     "to_behavior_tree",
 ]

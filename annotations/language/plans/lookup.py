@@ -33,6 +33,7 @@ class Lookup:
 
     def __init__(self, ontology: Ontology, predicates: Mapping[str, Predicate]) -> None:
         self.classes = ontology.classes
+        self.class_of_text = ontology.class_of_text
         self._predicates = predicates
         self._locations = ontology.of_class("location")
         self._rows: defaultdict[str, list[Entity]] = defaultdict(list)

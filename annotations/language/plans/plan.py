@@ -8,9 +8,8 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cache
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, ClassVar, Generic, Protocol, TypeAlias, TypeVar
 
-VERSION = 1  # of the JSON that ``Plan.as_json`` writes; see plan.schema.json
 ASK = "ask_operator"
 _FOLDER = Path(__file__).parent
 
@@ -80,12 +79,26 @@ class Step:
         }
 
 
-@dataclass(frozen=True, slots=True)
-class Plan:
-    """Steps in the order in which a robot does them, and the problems of the plan."""
+class AsData(Protocol):
+    """What can be said in plain data."""
 
-    steps: tuple[Step, ...]
-    problems: tuple[PlanProblem, ...] = ()
+    def as_json(self) -> dict[str, Any]: ...
+
+
+StepT = TypeVar("StepT", bound=AsData)
+ProblemT = TypeVar("ProblemT", bound=AsData)
+
+
+@dataclass(frozen=True, slots=True)
+class PlanOf(Generic[StepT, ProblemT]):
+    """Steps in the order in which a robot does them, and the problems of the plan.
+
+    ``version`` is that of the data, which follow the schema of the kind of plan.
+    """
+
+    steps: tuple[StepT, ...]
+    problems: tuple[ProblemT, ...] = ()
+    version: ClassVar[int] = 1
 
     @property
     def is_executable(self) -> bool:
@@ -93,13 +106,18 @@ class Plan:
         return bool(self.steps) and not self.problems
 
     def as_json(self) -> dict[str, Any]:
-        """Return plain data that follow ``PLAN_SCHEMA``."""
+        """Return plain data that follow the schema."""
         return {
-            "version": VERSION,
+            "version": self.version,
             "is_executable": self.is_executable,
             "steps": [step.as_json() for step in self.steps],
             "problems": [problem.as_json() for problem in self.problems],
         }
+
+
+@dataclass(frozen=True, slots=True)
+class Plan(PlanOf[Step, PlanProblem]):
+    """The actions of a form; its data follow ``plan_schema``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,11 +141,13 @@ class Named:
 class Words:
     """A text that is no entity: words to say, ``current``.
 
-    ``is_of_robot`` marks the robot's own words, such as a question: it says them as they are.
+    ``is_of_robot`` marks the robot's own words, such as a question: it says them as they are. ``said`` is what it says
+    in their place, where that is something else: "sentence" for the class whattosay.
     """
 
     text: str
     is_of_robot: bool = field(default=False, compare=False)
+    said: str = field(default="", compare=False)
 
     def as_json(self) -> dict[str, Any]:
         return {"kind": "text", "text": self.text}

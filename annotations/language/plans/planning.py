@@ -247,7 +247,8 @@ class _Planner:
         action = str(form.predicate)
         before, self.waiting = self.waiting, []
         spoken = Lambda(1, "e", (*scope.conjuncts, form)) if scope.conjuncts else form
-        text = gloss(spoken, self.predicates, self.lookup.classes)
+        named = self.lookup.class_of_text
+        text = gloss(spoken, self.predicates, self.lookup.classes, named)
         arguments: dict[str, Value] = {}
         said: list[tuple[Form, Value]] = []
         around, self.acting = self.acting, _Acting.of(form, scope.conjuncts, self.predicates)
@@ -285,11 +286,11 @@ class _Planner:
         self.waiting, self.acting = before, around
         return number
 
-    def ask(self, question: str, expects: str) -> StepResult:
-        """Add a question to the operator; return its answer."""
+    def ask(self, question: str, expects: str, noun: str = "") -> StepResult:
+        """Add a question to the operator; return its answer. ``noun`` says what is expected, if that is no word."""
         arguments: dict[str, Value] = {
             "question": Words(question, is_of_robot=True),
-            "expects": Words(expects),
+            "expects": Words(expects, said=noun),
         }
         return StepResult(self._append(ASK, arguments, f"ask: {question}", gives_result=True))
 
@@ -301,12 +302,13 @@ class _Planner:
     def text_value(self, constant: Constant, predicate: str, place: int) -> Value:
         """Return the value of a constant; an open one is asked for, an unknown one reported."""
         if constant.token_class:
-            what = f"the {constant.token_class} is open"
+            noun = self.lookup.classes.noun(constant.token_class)
+            what = f"the {noun} is open"
             self.waiting.append((Trouble.OPEN_SLOT, what, "name one, or answer the question"))
             question = self._question(
                 constant.token_class, self.acting.next_slot(constant, predicate, place)
             )
-            return self.ask(question, constant.token_class)
+            return self.ask(question, constant.token_class, noun)
         value, is_missing = self.lookup.value(str(constant.value), predicate, place)
         if is_missing and (places := self.lookup.places_called(str(constant.value))):
             message = f"“{constant.value}” can be several places"

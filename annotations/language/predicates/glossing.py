@@ -120,6 +120,8 @@ class NounPhrase:
         is_plural = is_plural or self.is_plural
         noun = self.name or self.noun or ("one" if self.is_person else "object")
         is_person = bool(self.name) or noun.endswith("person") or (not self.noun and self.is_person)
+        if self.has_superlative and not is_plural and looks_plural(noun):
+            noun = f"of the {noun}"  # the biggest of the drinks
         noun = plural(noun) if is_plural and not self.name else noun
         # Fit clauses like ``that is at …`` to people and to plurals; join a second one with "and".
         verb = "are" if is_plural or (looks_plural(noun) and not is_person) else "is"
@@ -316,7 +318,7 @@ def _add(phrase: NounPhrase, conjunct: Application, scope: Scope) -> None:
     """Put one description before the noun, after it or in its place."""
     kinds = [argument_kind(each) for each in conjunct.arguments]
     phrase.has_superlative |= str(conjunct.predicate).endswith(SUPERLATIVES)
-    phrase.is_person |= "gesture" in kinds or "name" in kinds
+    phrase.is_person |= not {"gesture", "name"}.isdisjoint(map(scope.kind_of, conjunct.arguments))
     phrase.is_plural |= any(
         isinstance(each, Constant) and isinstance(each.value, int) and each.value != 1
         for each in conjunct.arguments

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
+from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
@@ -18,7 +19,7 @@ from annotations.language.errors import (
     error_at,
     warning_at,
 )
-from annotations.language.plans import ASK, argument_names
+from annotations.language.plans import ASK, argument_names, node_name
 from annotations.language.recipes.reading import read_primitive, read_recipe
 from annotations.language.recipes.rows import ActionPattern, Name, Primitive, Recipe
 from annotations.language.recipes.values import KINDS
@@ -72,12 +73,27 @@ class RecipeBook:
             if each.name in seen:
                 yield error_at(each.position, f"“{each.name}” is there twice", "remove one row")
             seen.add(each.name)
+        yield from self._node_problems()
         used = {call.primitive for recipe in self.recipes for call in recipe.calls}
         for each in self.primitives:
             if each.name not in used:
                 yield warning_at(
                     each.position, f"no recipe uses {each.name}", "use it, or remove it"
                 )
+
+    def _node_problems(self) -> Iterator[Problem]:
+        """Yield an error for each primitive that a behaviour tree could not tell from another one."""
+        nodes: defaultdict[str, list[str]] = defaultdict(list)
+        for name in self._by_name:
+            nodes[node_name(name)].append(name)
+        for each in self.primitives:
+            node = node_name(each.name)
+            others = " and ".join(name for name in nodes[node] if name != each.name)
+            if others:
+                message = (
+                    f"“{each.name}” is the node {node} of a behaviour tree, and so is {others}"
+                )
+                yield error_at(each.position, message, "choose another name")
 
     def _recipe_problems(
         self, actions: Collection[str] | None, classes: Collection[str]

@@ -19,7 +19,7 @@ from annotations.language.limits import (
     require_name,
     require_writable,
 )
-from annotations.language.plans import TAKEN_NAMES
+from annotations.language.plans import TAKEN_NAMES, port_name
 from annotations.language.recipes.rows import (
     OPERATOR_WORD,
     PLACEHOLDER,
@@ -180,6 +180,11 @@ class _Row:
             is_optional = self._skip("?")
             if name in parameters:
                 raise LanguageError(f"two parameters are called {name}", place, "rename one")
+            twin = next((each for each in parameters if port_name(each) == port_name(name)), None)
+            if twin is not None:
+                port = port_name(name)
+                message = f"“{name}” is the port {port} of a behaviour tree, and so is {twin}"
+                raise LanguageError(message, place, "rename one")
             if not is_optional and any(each.is_optional for each in parameters.values()):
                 raise LanguageError(
                     f"“{name}” comes after a parameter that can be left out",

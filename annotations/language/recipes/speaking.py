@@ -23,6 +23,8 @@ from annotations.language.recipes.task_plan import TaskPlan, TaskStep
 from annotations.language.recipes.values import PLACE, TaskValue, content, kinds_of
 
 YOU = "you"
+THE = "the "
+_ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 COME_BACK = "come back to you"
 NOTHING = "I have nothing to do."
 _PRONOUNS = {PERSON: "them", THING: "it"}
@@ -170,7 +172,12 @@ class _Clauses:
         if step is None or not _learnt(step, {}):
             return f"the result of step {number}"
         words = _learnt(step, {})
-        is_one_of_many = sum(_learnt(each, {}) == words for each in self.steps) > 1
+        alike = [each for each in self.steps if _learnt(each, {}) == words]
+        if len(alike) > 1 and step.primitive.effect(EffectKind.SPEAKS) and words.startswith(THE):
+            # Of answers that somebody gives in one place their order tells which is meant.
+            ordinal = "".join(_ORDINALS[alike.index(step) :][:1])
+            return f"{THE}{ordinal} {words.removeprefix(THE)}" if ordinal else words
+        is_one_of_many = len(alike) > 1
         is_one_of_many |= self._has_namesake(step)
         if is_one_of_many and step.place is not None:
             return f"{words} {_preposition(step.place)} {_noun_phrase(step.place, False, False)}"
@@ -294,6 +301,8 @@ def _noun_phrase(value: TaskValue | None, is_new: bool, is_plural: bool) -> str:
     if isinstance(value, Words):
         if value.text == QUESTION_WORD:
             return f"the {value.text}"
+        if value.said:
+            return value.said
         return value.text if value.is_of_robot else _turned(value.text)
     if isinstance(value, Named):
         if kind_of_class(value.entity_class) not in ("", PERSON) or PLACE in kinds_of(value):

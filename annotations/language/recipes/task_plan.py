@@ -9,11 +9,10 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from annotations.language.plans import PlanProblem
+from annotations.language.plans import PlanOf, PlanProblem
 from annotations.language.recipes.rows import Primitive
 from annotations.language.recipes.values import TaskValue
 
-VERSION = 1  # of the JSON that ``TaskPlan.as_json`` writes; see task_plan.schema.json
 _FOLDER = Path(__file__).parent
 
 
@@ -98,25 +97,8 @@ class TaskStep:
 
 
 @dataclass(frozen=True, slots=True)
-class TaskPlan:
-    """Steps in the order in which the robot does them, and the problems of the plan."""
-
-    steps: tuple[TaskStep, ...]
-    problems: tuple[TaskProblem, ...] = ()
-
-    @property
-    def is_executable(self) -> bool:
-        """Whether a robot can do it without asking anybody."""
-        return bool(self.steps) and not self.problems
-
-    def as_json(self) -> dict[str, Any]:
-        """Return plain data that follow ``task_plan_schema``."""
-        return {
-            "version": VERSION,
-            "is_executable": self.is_executable,
-            "steps": [each.as_json() for each in self.steps],
-            "problems": [each.as_json() for each in self.problems],
-        }
+class TaskPlan(PlanOf[TaskStep, TaskProblem]):
+    """The primitives of a robot; its data follow ``task_plan_schema``."""
 
 
 @cache

@@ -194,7 +194,7 @@ class Candidate:
     """One form: with class tokens, and ``grounded`` with the entities of the utterance.
 
     ``plan`` has the actions of the form, ``task_plan`` the primitives of the robot; ``spoken`` is what it says
-    before it begins.
+    before it begins. ``warnings`` say what stays open, and why.
     """
 
     form: str
@@ -205,6 +205,7 @@ class Candidate:
     plan: Plan | None
     task_plan: TaskPlan | None
     spoken: str
+    warnings: tuple[str, ...]
     raw: dict[str, Any] = field(repr=False, compare=False)
 
     @classmethod
@@ -218,18 +219,23 @@ class Candidate:
             Plan.from_json(value["plan"]) if value["plan"] else None,
             TaskPlan.from_json(value["task_plan"]) if value["task_plan"] else None,
             value["spoken"],
+            tuple(value["warnings"]),
             value,
         )
 
 
 @dataclass(frozen=True)
 class Parse:
-    """The candidates for an utterance, the best first; ``is_unknown`` where there is nothing to act on."""
+    """The candidates for an utterance, the best first; ``is_unknown`` where there is nothing to act on.
+
+    ``warnings`` are about class tokens of the utterance that stand for nothing in the world.
+    """
 
     utterance: str
     anonymized: str
     is_unknown: bool
     candidates: tuple[Candidate, ...]
+    warnings: tuple[str, ...]
     raw: dict[str, Any] = field(repr=False, compare=False)
 
     @property
@@ -244,5 +250,6 @@ class Parse:
             value["anonymized"],
             value["is_unknown"],
             tuple(map(Candidate.from_json, value["candidates"])),
+            tuple(value["warnings"]),
             value,
         )

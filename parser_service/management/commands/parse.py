@@ -123,12 +123,12 @@ class Command(ReportingCommand):
         for candidate in report["candidates"]:
             shown = candidate["reading"] or f"{candidate['form']}   (no well-formed form)"
             lines.append(f"{candidate['score']:8.3f}  {shown}")
-        best = report["candidates"][0]["remarks"] if report["candidates"] else ["no answer"]
+        best = report["candidates"][0]["warnings"] if report["candidates"] else ["no answer"]
         if report["candidates"]:
             lines += _say_plan(report["candidates"][0])
         if report["is_cut"]:
             lines.append("The text is longer than the parser reads: it read only the beginning.")
-        return "\n".join([*lines, *report["remarks"], *best])
+        return "\n".join([*lines, *report["warnings"], *best])
 
 
 def _say_plan(candidate: Mapping[str, Any]) -> list[str]:

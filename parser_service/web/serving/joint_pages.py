@@ -18,6 +18,7 @@ from annotations.models.corpus import MOST_CHARACTERS
 from annotations.people.access import WRITE, WorldRequest, world_view
 from parser_service.serving.joint_answers import commands_in, plan_together
 from parser_service.serving.parser_client import ParserAway
+from parser_service.web.serving.curl_commands import curl_command
 
 MOST_TEXT = MOST_COMMANDS * MOST_CHARACTERS  # of a field, which may hold all commands
 FIELDS = [f"command{number}" for number in range(1, MOST_COMMANDS + 1)]
@@ -30,6 +31,7 @@ def joint_plan(request: WorldRequest, world: World) -> HttpResponse:
         "commands": [(name, _text_of(request.GET, name)) for name in FIELDS],
         "has_text": any(_text_of(request.GET, name) for name in FIELDS),
         "most_text": MOST_TEXT,
+        **_asking(world),
     }
     return render(request, "parser_service/serving/joint_plan.html", context)
 
@@ -39,13 +41,14 @@ def joint_plan(request: WorldRequest, world: World) -> HttpResponse:
 def joint_plan_ask(request: WorldRequest, world: World) -> HttpResponse:
     """Ask the parse server about the commands, and show one plan of them."""
     texts = {name: text for name in FIELDS if (text := _text_of(request.POST, name))}
-    context: dict[str, Any] = {"has_text": bool(texts)}
+    context: dict[str, Any] = {"has_text": bool(texts), **_asking(world)}
     if texts:
         try:
             # One field may hold all of them.
             utterances = [each for text in texts.values() for each in commands_in(world, text)]
             answer = plan_together(world, utterances)
-            context |= {"answer": answer.as_json(), "plan": answer.plan, "spoken": answer.spoken}
+            curl = curl_command(request, world, "joint-plan", {"utterances": utterances})
+            context |= {"answer": answer.as_json(), "plan": answer.plan, "curl": curl}
         except ParserAway as error:
             context["away"] = error.message
         except Refusal as error:
@@ -53,6 +56,14 @@ def joint_plan_ask(request: WorldRequest, world: World) -> HttpResponse:
     response = render(request, "parser_service/serving/_joint_plan_answer.html", context)
     address = reverse("joint_plan", kwargs={"world": world.name})
     return replace_url(response, f"{address}?{urlencode(texts)}" if texts else address)
+
+
+def _asking(world: World) -> dict[str, Any]:
+    """Return what the answer needs to ask for itself again."""
+    return {
+        "form": "joint-form",
+        "ask_url": reverse("joint_plan_ask", kwargs={"world": world.name}),
+    }
 
 
 def _text_of(query: QueryDict, name: str) -> str:

@@ -122,7 +122,7 @@ class CandidateSerializer(serializers.Serializer[Any]):
     reading = serializers.CharField()
     english = serializers.CharField()
     open_slots = OpenSlotSerializer(many=True)
-    remarks = serializers.ListField(child=serializers.CharField())
+    warnings = serializers.ListField(child=serializers.CharField())
     plan = serializers.DictField(
         allow_null=True, help_text="As docs/reference/plans.md describes it."
     )
@@ -147,7 +147,7 @@ class ParseSerializer(serializers.Serializer[Any]):
     parsed_text = serializers.CharField()
     is_unknown = serializers.BooleanField()
     is_cut = serializers.BooleanField(help_text="The parser read only the beginning.")
-    remarks = serializers.ListField(child=serializers.CharField())
+    warnings = serializers.ListField(child=serializers.CharField())
     candidates = CandidateSerializer(many=True)
 
 

@@ -27,6 +27,7 @@ from parser_service.parsers.interface import ScoreKind
 from parser_service.promotions.promoting import promoted_run
 from parser_service.serving.default_runs import opening_run
 from parser_service.serving.parser_client import ParserAway, ParserRefused, client
+from parser_service.web.serving.curl_commands import curl_command
 
 MOST_OFFERED = 50  # other runs
 OWN_EXAMPLES = 3  # as many as there are keys for, beside the texts of the paper
@@ -62,6 +63,7 @@ def playground(request: WorldRequest, world: World) -> HttpResponse:
         "examples": _examples(world),
         "most_text": MOST_CHARACTERS,
         "page_keys": KEYS,
+        **_asking(world),
     }
     return render(request, "parser_service/serving/playground.html", context)
 
@@ -71,12 +73,15 @@ def playground(request: WorldRequest, world: World) -> HttpResponse:
 def playground_ask(request: WorldRequest, world: World) -> HttpResponse:
     """Ask the parse server about the text, and show its answer."""
     text, run = _text_of(request.POST), number_in(request.POST.get("run", ""))
-    context: dict[str, Any] = {"text": text, "run": run}
+    context = {"text": text, "run": run, **_asking(world)}
     if text:
         try:
             answer = client().parse(world.name, text, run=run or None)
             context |= {
                 "answer": answer,
+                "curl": curl_command(
+                    request, world, "parse", {"utterance": text} | ({"run": run} if run else {})
+                ),
                 "heard": SpannedText.heard_in(answer),
                 "bars": [
                     (each, _share(each["score"], answer["score_kind"]))
@@ -120,6 +125,12 @@ def playground_wrong(request: WorldRequest, world: World) -> HttpResponse:
         context["refused"] = str(error)
     status = 422 if "refused" in context else 200
     return render(request, "parser_service/serving/_playground_wrong.html", context, status=status)
+
+
+def _asking(world: World) -> dict[str, Any]:
+    """Return what the answer needs to ask for itself again."""
+    ask_url = reverse("playground_ask", kwargs={"world": world.name})
+    return {"form": "playground-form", "ask_url": ask_url}
 
 
 def _examples(world: World) -> list[tuple[str, list[tuple[int, str]]]]:

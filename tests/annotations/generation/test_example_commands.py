@@ -51,5 +51,13 @@ def test_each_has_another_action_and_entities_of_the_world(described):
     assert example_commands(described, 1) == ["bring me the tea"]
 
 
+def test_a_command_that_says_less_than_a_robot_needs_is_no_example(described):
+    add(described, ("object", "tea"), ("room", "attic"), ("room", "cellar"))
+    for form in described.logical_forms.filter(head_predicate="bring"):
+        form.text = f"( bring UNKNOWN {form.pk} )"
+        form.save()
+    assert example_commands(described, 5) == ["go from the attic, please, to the cellar"]
+
+
 def test_a_world_without_commands_or_entities_has_none(world, described):
     assert example_commands(described, 5) == []

@@ -107,7 +107,7 @@ def test_from_the_link_to_the_code_on_a_phone(link, logged_in):
     expect(page.get_by_label("Your completion code")).to_have_value("C0FFEE")
     context.grant_permissions(["clipboard-read", "clipboard-write"])
     page.get_by_role("button", name="Copy the code").click()
-    expect(page.get_by_role("button", name="Copied")).to_be_visible()
+    expect(page.get_by_text("Copied", exact=True)).to_be_visible()
     page.get_by_role("link", name="Back to where you came from").click()
     expect(page).to_have_url(re.compile("healthz"))
     assert Contributor.objects.get().is_finished

@@ -113,32 +113,32 @@ def test_a_run_of_a_split_by_form_is_not_better_for_being_right_more_often(split
     assert best_run(split.world) == by_form
 
 
-def remarks(text: str) -> list[str]:
+def warnings(text: str) -> list[str]:
     answer = ask(text)
-    return [*answer["remarks"], *answer["candidates"][0]["remarks"]]
+    return [*answer["warnings"], *answer["candidates"][0]["warnings"]]
 
 
-def test_what_the_world_does_not_know_gets_a_remark(split):
+def test_what_the_world_does_not_know_gets_a_warning(split):
     trained(split, train_sources="gen")
-    assert remarks("bring me the red cup") == []
-    assert remarks("bring me the moon") == [
+    assert warnings("bring me the red cup") == []
+    assert warnings("bring me the moon") == [
         "<object> stays open: the utterance names no object of this world."
     ]
     Entity.objects.create(
         ontology=split.world.ontology, entity_class="object", text="bowl", position=2
     )
-    assert remarks("bring me the bowl the red cup") == [
+    assert warnings("bring me the bowl the red cup") == [
         "<object> stays open: it may be bowl or red cup."
     ]
-    assert remarks("bring me the <gadget>")[0].startswith("<gadget> is not a class of entities.")
+    assert warnings("bring me the <gadget>")[0].startswith("<gadget> is not a class of entities.")
     Entity.objects.filter(entity_class="object").delete()
-    assert remarks("bring me the <object>") == [
+    assert warnings("bring me the <object>") == [
         "<object>: this world has no entity of the class object.",
         "<object> stays open: this world has no entity of the class object.",
     ]
 
 
-def test_remarks_are_printed_for_a_person(split):
+def test_warnings_are_printed_for_a_person(split):
     trained(split, train_sources="gen")
     out = StringIO()
     call_command("parse", "bring me the moon", "--world", "home", stdout=out)

@@ -23,6 +23,7 @@ def form(text: str) -> str:
 FETCH = form('( bring ( lambda $1 e ( is_a $1 " <object> " ) ) )')
 IN_ROOM = form('( bring ( lambda $1 e ( is_a $1 " <object> " ) ( at $1 " <room> " ) ) )')
 AT_PLACE = form('( bring ( lambda $1 e ( is_a $1 " <object> " ) ( at $1 " <location> " ) ) )')
+IN_CELLAR = form('( bring ( lambda $1 e ( is_a $1 " <object> " ) ( at $1 " cellar " ) ) )')
 SAID = "bring me the hammer from the kitchen"
 
 
@@ -41,6 +42,29 @@ def order(language, ranked, kind, text=SAID):
 def test_an_open_slot_comes_after_a_filled_one(language):
     ranked = [(AT_PLACE, 0.5), (IN_ROOM, 0.5)]
     assert order(language, ranked, ScoreKind.SIMILARITY) == [IN_ROOM, AT_PLACE]
+
+
+@pytest.mark.parametrize("kind", [ScoreKind.SIMILARITY, ScoreKind.LOG_PROBABILITY, ""])
+def test_what_a_robot_can_do_comes_first_of_what_fits_equally_well(language, kind):
+    """Nobody knows where the cellar is, so that both plans of the first one have a problem."""
+    ranked = [(IN_CELLAR, 0.5), (FETCH, 0.5)]
+    assert order(language, ranked, kind, "bring me the hammer") == [FETCH, IN_CELLAR]
+    clear = [(IN_CELLAR, -0.1), (FETCH, -0.9)]
+    assert order(language, clear, kind, "bring me the hammer") == [IN_CELLAR, FETCH]
+
+
+def test_what_a_robot_can_do_comes_before_what_names_more(language):
+    ranked = [(IN_CELLAR, 0.5), (AT_PLACE, 0.5), (FETCH, 0.5)]
+    text = "bring me the hammer from the cellar near the desk or the kitchen"
+    assert order(language, ranked, ScoreKind.SIMILARITY, text)[0] == FETCH
+
+
+def test_executable_plans_are_counted(language):
+    heard = language.anonymizer.anonymize("bring me the hammer")
+    candidates = [Candidate(each, 0.5) for each in (FETCH, IN_CELLAR, AT_PLACE, "( bring")]
+    answers = read_answers(heard, "", candidates, language, ScoreKind.SIMILARITY).answers
+    counts = {each.form: each.executable_plans for each in answers}
+    assert counts == {FETCH: 2, IN_CELLAR: 0, AT_PLACE: 0, "( bring": 0}
 
 
 def test_a_form_that_leaves_an_entity_out_comes_after_one_that_takes_all(language):
@@ -94,7 +118,8 @@ def test_a_text_that_is_no_form_comes_last(language):
 def test_the_writer_orders_alike(language):
     from parser_service.serving.answer_writing import AnswerWriter
 
-    candidates = [Candidate(AT_PLACE, 0.5), Candidate("( bring", 0.5), Candidate(IN_ROOM, 0.5)]
+    forms = (AT_PLACE, "( bring", IN_CELLAR, FETCH, IN_ROOM)
+    candidates = [Candidate(each, 0.5) for each in forms]
     for kind in ("", "similarity", "log_probability"):
         compare(AnswerWriter(language), SAID, candidates, kind)
 

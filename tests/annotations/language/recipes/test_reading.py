@@ -68,6 +68,7 @@ def test_what_is_printed_reads_back(name):
         ("go(x", 5),
         ("go(x y)", 6),
         ("go(x, x)", 7),
+        ("go(way-to, way_to)", 12),  # one port of a behaviour tree
         ("go(x?, y)", 8),
         ("go(x): flies to x", 8),
         ('go(x) "go|": moves to x', 7),
@@ -154,6 +155,16 @@ def test_a_book_is_checked_as_a_whole():
         *(f"recipes:{line}:{1 + 2 * (line == 3)}" for line in range(1, 6)),
     ]
     assert len(book.primitives) == 4 and len(book.recipes) == 5
+
+
+def test_two_primitives_are_never_one_node_of_a_behaviour_tree():
+    recipe = "find(thing) -> pick-up(thing) pick_up(thing)"
+    _, problems = read_book("pick-up(x)\npick_up(x)\nput-down(x)", recipe)
+    errors = [(each.position.line, each.message) for each in problems if each.is_error]
+    assert errors == [
+        (1, "“pick-up” is the node pick_up of a behaviour tree, and so is pick_up"),
+        (2, "“pick_up” is the node pick_up of a behaviour tree, and so is pick-up"),
+    ]
 
 
 @pytest.mark.parametrize(

@@ -64,6 +64,10 @@ ADA = '(λ$1:e (person $1) (name $1 "Ada") (at $1 "stool"))'
             "ask you “What shall I bring you?”, find the thing that you name, and bring it to you.",
         ),
         ("(go UNKNOWN)", "ask you “Where shall I go?” and go to the destination that you name."),
+        (
+            '(say "<whattosay>")',
+            "ask you “What shall I tell you?” and tell you the sentence that you name.",
+        ),
         ('(say "something about yourself")', "say something about myself."),
     ],
 )
@@ -123,6 +127,13 @@ def test_several_questions_are_asked_together():
     form = '(meet (λ$1:e (person $1) (name $1 "<name>") (at $1 "<room>")))'
     assert spoken(task_plan(form)).startswith(
         "I will ask you “Who shall I meet?” and “Which room is the person in?”, go to the room"
+    )
+
+
+def test_of_several_answers_their_order_tells_which_is_meant():
+    assert spoken(task_plan('(sequence (go "<room>") (go "<room>"))')) == (
+        "I will ask you “Which room shall I go to?” and “Which room shall I go to?”, "
+        "go to the first room that you name, and go to the second room that you name."
     )
 
 

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import os
+import re
+import subprocess
 from dataclasses import replace
+from html import unescape
 
 import pytest
+from django.test import Client
 
 from annotations.background.progress import UNWATCHED
 from annotations.language.forms import read_form
 from annotations.language.plans import make_plan
-from annotations.models import Command, LogicalForm, Proposal, Utterance, WorkItem
+from annotations.models import ApiToken, Command, LogicalForm, Proposal, Utterance, WorkItem
 from parser_service.labelling.label_candidates import PERSON, candidates_for
 from parser_service.labelling.parser_proposals import propose
 from parser_service.parsers.knn import NearestNeighbour
@@ -51,6 +56,39 @@ def test_spans_candidates_english_and_plan_are_shown(answering, anna):
     assert "bring me the red cup" in page and "<meter" in page
     assert 'class="plan-' in page and "data-tree" in page
     assert f"run {answering.pk}" in page
+
+
+@pytest.mark.parametrize(
+    ("page", "field", "text"),
+    [
+        ("parse/", "text", 'bring me Bo\'s "red" cup'),
+        ("parse/", "text", "$(reboot) `id` \\ !! bring me the Süßigkeiten; exit"),
+        ("parse/together/", "command1", "bring me Bo's cup"),
+    ],
+)
+def test_the_copied_request_gives_the_same_answer(answering, anna, annotator, page, field, text):
+    shown = anna.post(f"/w/home/{page}ask/", {field: text})
+    curl = re.search(
+        r'<textarea id="copied-curl"[^>]*>(.*?)</textarea>', shown.content.decode(), re.S
+    )
+    assert curl
+    _, key = ApiToken.issue(annotator, "robot", scope="read")
+    # A shell with a curl of its own, which prints what it is given.
+    script = f'curl() {{ printf "%s\\0" "$@"; }}\n{unescape(curl[1])}'
+    given = subprocess.run(
+        ["sh", "-c", script], env={**os.environ, "TOKEN": key}, capture_output=True, check=True
+    )
+    *options, address = given.stdout.decode().rstrip("\0").split("\0")
+    assert options[::2] == ["-H", "-H", "-d"]
+    headers = dict(each.split(": ", 1) for each in options[1:4:2])
+    answer = Client().post(
+        address.removeprefix("http://testserver"),
+        options[5],
+        content_type=headers["Content-Type"],
+        headers={"Authorization": headers["Authorization"]},
+    )
+    assert answer.status_code == 200
+    assert answer.json() == shown.context["answer"]
 
 
 def test_commands_of_the_world_are_offered_before_the_texts_of_the_paper(run, anna):
