@@ -173,7 +173,9 @@ COLLECT = (
         page="utterances",
         count="utterances",
         waiting=Waiting(
-            count="utterances_waiting", noun="utterance", reason="without a form, not waiting in the queue"
+            count="utterances_waiting",
+            noun="utterance",
+            reason="without a form, not waiting in the queue",
         ),
         pages_below=("utterance", "utterances_new", "utterances_delete"),
         tabs=(Place(label="Uploads", page="uploads", pages_below=("upload", "upload_undo")),),

@@ -79,7 +79,9 @@ def test_so_it_is_in_a_window_at_twice_the_size(page_of, live_server, runs, revi
 
 
 LONG_TEXT = "could you please be so kind as to go to the kitchen and then " * 12
-STEP = '( bring ( lambda $1 e ( and ( is_a $1 " <object> " ) ( at $1 " <location> " ) ) ) " <name> " )'
+STEP = (
+    '( bring ( lambda $1 e ( and ( is_a $1 " <object> " ) ( at $1 " <location> " ) ) ) " <name> " )'
+)
 LAST = '( go " <room> " )'
 
 
