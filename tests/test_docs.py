@@ -148,6 +148,12 @@ def test_the_figures_of_the_paper_are_those_that_the_results_page_shows():
             assert theirs == [published_accuracy(name, each, criterion) for each in settings], name
 
 
+def test_whoever_looks_for_table_3_finds_it_in_the_readme_and_one_click_on():
+    page = DOCS / "research" / "reproducing.md"
+    assert "## Reproduce Table 3\n\n**[Reproduce Table 3](docs/research/reproducing.md)**" in README
+    assert page.read_text(encoding="utf-8").startswith("# Reproduce Table 3\n")
+
+
 def test_the_readme_has_the_figures_of_the_docs():
     """Its table of the paper is a part of the page about it, which names the commands."""
     text = (DOCS / "research" / "reproducing.md").read_text(encoding="utf-8")
