@@ -24,7 +24,8 @@ ACTION = """function () {
 
 # What is read by what it holds: the target of the skip link, and the rows that j and k walk.
 READ_BY_CONTENT = {"RootWebArea", "main", "row"}
-SCROLLER = ".cm-scroller"  # CodeMirror's, around the text box that has the name
+# What only scrolls: CodeMirror's, around the text box that has the name, and code in documents.
+SCROLLER = ".cm-scroller, pre"
 
 
 @dataclass(frozen=True, slots=True)
