@@ -148,6 +148,26 @@ def test_the_figures_of_the_paper_are_those_that_the_results_page_shows():
             assert theirs == [published_accuracy(name, each, criterion) for each in settings], name
 
 
+def test_every_picture_is_shown_described_and_small():
+    pages = [ROOT / "README.md", *DOCS.rglob("*.md")]
+    shown = {}
+    for page in pages:
+        for said, target in re.findall(
+            r"!\[([^]]*)\]\(([^)]*)\)", page.read_text(encoding="utf-8")
+        ):
+            shown[(page.parent / target).resolve()] = said
+    images = set((DOCS / "images").iterdir())
+    assert shown.keys() == images
+    assert not [image for image, said in shown.items() if len(said.split()) < 5]
+    assert not [each.name for each in images if each.stat().st_size > 160_000]
+
+
+def test_whoever_looks_for_table_3_finds_it_in_the_readme_and_one_click_on():
+    page = DOCS / "research" / "reproducing.md"
+    assert "## Reproduce Table 3\n\n**[Reproduce Table 3](docs/research/reproducing.md)**" in README
+    assert page.read_text(encoding="utf-8").startswith("# Reproduce Table 3\n")
+
+
 def test_the_readme_has_the_figures_of_the_docs():
     """Its table of the paper is a part of the page about it, which names the commands."""
     text = (DOCS / "research" / "reproducing.md").read_text(encoding="utf-8")

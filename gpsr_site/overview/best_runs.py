@@ -10,7 +10,7 @@ from django.utils.http import urlencode
 from annotations.models import Split, World
 from parser_service.models import Evaluation
 from parser_service.models.evaluations import ShownScore
-from parser_service.parsers.conditions import Protocol, in_words, only_source
+from parser_service.parsers.conditions import in_words, only_source
 from parser_service.parsers.registry import PARSERS
 from parser_service.serving.default_runs import standings
 
@@ -64,7 +64,7 @@ class BestRun:
 
 @dataclass(frozen=True, slots=True)
 class BestRuns:
-    """The best of each protocol on ``split``. Protocols are not compared with each other."""
+    """The best of each protocol on ``split``, by their order in it; what each may know is said beside it."""
 
     split: Split
     source: str
@@ -72,7 +72,8 @@ class BestRuns:
 
 
 def best_runs(world: World) -> BestRuns | None:
-    """Find the best run of each protocol on the validation part of the split that pages open on.
+    """Find the best run of each protocol, the best one first, on the validation part of the split that pages
+    open on.
 
     Split, source and order are those of ``serving.default_runs``. None if nothing has been scored.
     """
@@ -82,5 +83,5 @@ def best_runs(world: World) -> BestRuns | None:
     best: dict[str, ShownScore] = {}
     for each in standing.scores:
         best.setdefault(each.score.run.protocol, each)
-    runs = tuple(BestRun(world, best[each]) for each in Protocol if each in best)
+    runs = tuple(BestRun(world, each) for each in best.values())
     return BestRuns(standing.split, in_words(standing.source), runs)

@@ -212,6 +212,12 @@ def wide_and_light(page: Page) -> Faults:
     return {**look_for(page, OF_STRUCTURE), **broken_rules(page), **focus_faults(page)}
 
 
+def in_place(page: Page) -> Faults:
+    """Return the faults of what has opened on a page that is looked at already."""
+    page.evaluate(SETTLED)
+    return {**look_for(page, OF_STRUCTURE), **broken_rules(page)}
+
+
 def only_faults(reports: dict[str, Faults]) -> dict[str, Faults]:
     """Return the part of ``reports`` in which something is listed."""
     listed = {

@@ -10,14 +10,14 @@ from annotations.labelling.collecting import collect
 from annotations.models import SemanticTemplate
 from tests.browser.faults import (
     COLOUR_AND_SIZE,
-    OF_STRUCTURE,
     SETTLED,
     Faults,
     broken_rules,
-    look_for,
+    in_place,
     only_faults,
     wide_and_light,
 )
+from tests.browser.tree import tree_faults
 from tests.browser.variants import NARROW_DARK, WIDE_LIGHT
 from tests.browser.writing import open_editor, save_button, write
 from tests.doubted_labels import doubt, say
@@ -99,8 +99,7 @@ OPENED = {
 
 def faults_in_place(page: Page) -> Faults:
     """What is wrong in a wide light window, and with the colours and sizes of the same in a narrow dark one."""
-    page.evaluate(SETTLED)
-    wide = {**look_for(page, OF_STRUCTURE), **broken_rules(page)}
+    wide = {**in_place(page), **tree_faults(page)}
     page.set_viewport_size(NARROW_DARK.size)
     page.emulate_media(color_scheme="dark")
     page.evaluate(SETTLED)
@@ -140,3 +139,15 @@ def test_what_is_looked_for_is_met_where_it_is(axe, page):
     assert "color-contrast" in "".join(report["axe"])
     faults = ("without a name", "passed over by Tab", "focus not to be seen")
     assert [len(report[each]) for each in faults] == [1, 1, 1]
+
+
+def test_the_tree_is_asked_for_names_actions_and_levels(page):
+    page.set_content(
+        """<main tabindex="-1"><h1>One</h1><h3>Three</h3><h2>Two</h2><a href="/"><img></a>
+        <form action="/a"><button>Save</button><button>Save</button></form>
+        <button>Go</button><form action="/b"><input type="hidden" name="to"><button>Go</button></form></main>"""
+    )
+    faults = tree_faults(page)
+    assert len(faults["focusable without a name"]) == 1
+    assert [each.partition(":")[0] for each in faults["buttons of one name"]] == ["Go"]
+    assert faults["levels left out"] == ["Three has level 3 after level 1"]

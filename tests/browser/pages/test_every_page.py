@@ -15,6 +15,7 @@ from annotations.models import User
 from tests.browser.faults import (
     OF_WIDTH,
     Faults,
+    in_place,
     listen,
     look_for,
     narrow_and_dark,
@@ -23,6 +24,7 @@ from tests.browser.faults import (
     wide_and_light,
 )
 from tests.browser.screenshots import PAGES
+from tests.browser.tree import tree_faults
 from tests.browser.variants import NARROW_DARK, WIDE_LIGHT
 from tests.filled_world import leave_traces
 from tests.gpsr_site.routes.addresses import address
@@ -31,6 +33,9 @@ from tests.sample_world import SampleWorld
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
+# Open what a page folds away, and say how much that was.
+OPEN_ALL = """() => [...document.querySelectorAll("main details:not([open])")]
+  .map((each) => { each.open = true; }).length"""
 WIDTHS = (1200, 1000, 820, 768, 640, 360, 320)  # 640 is a window of 1280 at a zoom of 200 %
 
 
@@ -92,7 +97,10 @@ class Window:
         report |= printed(page)
         page.set_viewport_size(WIDE_LIGHT.size)
         page.emulate_media(color_scheme="light")
-        report |= wide_and_light(page)
+        report |= wide_and_light(page) | tree_faults(page)
+        if page.evaluate(OPEN_ALL):
+            opened = {**in_place(page), **tree_faults(page)}
+            report |= {f"{what}, opened": each for what, each in opened.items()}
         report["complaints"] = list(self.complaints)
         self.complaints.clear()
         return report
