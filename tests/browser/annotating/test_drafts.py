@@ -136,7 +136,7 @@ def test_a_doubt_that_was_sent_is_not_put_back_into_its_empty_form(review_page, 
 def log_in(page: Page, user: User) -> None:
     user.set_password("a long password")
     user.save()
-    page.get_by_label("Name", exact=True).fill(user.username)
+    page.get_by_label("Username").fill(user.username)
     page.get_by_label("Password").fill("a long password")
     page.get_by_role("button", name="Log in").click()
 
