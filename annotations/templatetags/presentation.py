@@ -34,6 +34,7 @@ from annotations.language.names import CLASS_OF_ATTRIBUTE
 from annotations.markdown import rendered
 from annotations.models import Predicate, World
 from annotations.models.editing import LONGEST_ABOUT, NEW
+from annotations.models.splits import criterion_choices
 
 register = template.Library()
 for written in (
@@ -318,6 +319,12 @@ def _form_with_marks(pieces: list[tuple[str, str]]) -> SafeString:
 def _mark_piece(change: str, text: str) -> str:
     element = MARKS.get(Change(change))
     return format_html("<{0}>{1}</{0}>", element, text) if element else text
+
+
+@register.filter
+def criterion_label(criterion: str) -> str:
+    """Say what a split keeps apart inside a sentence: ``logical form`` for ``logical_form``."""
+    return dict(criterion_choices())[criterion].lower()
 
 
 @register.filter

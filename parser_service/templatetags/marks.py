@@ -1,4 +1,4 @@
-"""What pages call a parser, the sign behind the name of one whose figures a footnote qualifies, and the footnote."""
+"""What pages call a parser and what it learns from; the sign of one with a footnote, and the footnote."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from django import template
 from django.utils.html import format_html
 from django.utils.safestring import SafeString
 
+from parser_service.parsers.conditions import in_short, in_words
 from parser_service.parsers.registry import title_of
 from parser_service.results.table_parts import MARK, MAY_KNOW_CORPORA, may_know_corpora
 
@@ -20,6 +21,18 @@ NOTHING = SafeString()
 def parser_title(parser: str) -> str:
     """Return what pages call a parser, by its name in the registry: ``Nearest neighbour`` for ``knn``."""
     return title_of(parser)
+
+
+@register.filter
+def sources_in_words(sources: str) -> str:
+    """Say what is trained on: ``generated commands and paraphrases`` for ``gen+para``."""
+    return in_words(sources)
+
+
+@register.filter
+def sources_in_short(sources: str) -> str:
+    """Say what is tested on as heads of results do: ``paraphrases`` for ``para``, ``both`` for ``mixed``."""
+    return in_short(sources)
 
 
 @register.simple_tag

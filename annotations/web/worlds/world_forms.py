@@ -8,6 +8,7 @@ from typing import Any
 from django import forms
 from django.db import IntegrityError, transaction
 from django.http import QueryDict
+from django.utils.text import slugify
 
 from annotations.editing.edits import say_who
 from annotations.models import AuditEntry, Job, User, World
@@ -39,6 +40,12 @@ class WorldForm(forms.ModelForm):  # type: ignore[type-arg]  # generic in the st
             "name": "Lower-case letters, digits, _ and -. Used in URLs and commands.",
             "description": "One sentence, shown in the list of worlds.",
         }
+
+    def full_clean(self) -> None:
+        super().full_clean()
+        fitting = slugify(self["name"].value() or "")
+        if fitting and self.is_bound and self.has_error("name", "invalid"):
+            self.add_error("name", f"{fitting} would do.")
 
     def create(self, by: User) -> World | None:
         """Create the world of a valid form, with ``by`` as its admin. Return None, with an error, if the name was

@@ -94,7 +94,7 @@ def test_the_figures_are_those_of_the_page(report, run, anna):
     page = anna.get(f"/w/home/runs/{run.pk}/")
     (score,) = page.context["evaluations"]
     (row,) = table(parse(report()), "accuracy")
-    assert row[:3] == ["validation", "gen", f"{100 * score.accuracy:.1f}"]
+    assert row[:3] == ["validation", "generated", f"{100 * score.accuracy:.1f}"]
     assert row[4:6] == [str(score.correct), str(score.count)]
     assert f"{100 * score.accuracy:.1f}" in page.content.decode()
     for measure, told in ((Measure.EQUIVALENT, row[6]), (Measure.SAME_PLAN, row[7])):

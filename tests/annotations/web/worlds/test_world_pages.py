@@ -31,7 +31,9 @@ def test_a_new_world_asks_for_its_files_next(root):
 )
 def test_a_name_that_cannot_be_is_told(name, code, world, root):
     answer = root.post("/worlds/new/", {"name": name})
-    assert answer.context["form"].has_error("name", code)
+    form = answer.context["form"]
+    assert form.has_error("name", code)
+    assert any("upper-case" in each for each in form.errors["name"]) == (code == "invalid")
     assert World.objects.count() == 1
 
 
