@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 # A quoted text is one word, whatever it says.
-WORDS = re.compile(r'"[^"]*"|“[^”]*”|\S+')
+WORDS = re.compile(r'"[^"]*"|“[^“”]*”|\S+')
 # What names one row or counts something: it differs from problem to problem of one kind.
 PARTICULAR = re.compile(r'["“$<{0-9]')
 ANYTHING = "…"

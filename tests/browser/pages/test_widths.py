@@ -22,6 +22,10 @@ STATES = {
 }
 
 TOO_WIDE = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
+# A chart takes its new width some frames late.
+FITS = f"""async () => {{
+  for (let frames = 0; frames < 600 && {TOO_WIDE} > 0; frames += 1) await new Promise(requestAnimationFrame);
+}}"""
 
 # What a notice covers where it lies: two boxes that overlap, in which a click would reach the notice.
 COVERED = """() => [...document.querySelectorAll("[data-notice], #connection")].flatMap((notice) =>
@@ -75,6 +79,7 @@ def faults_of(page: Page) -> list[tuple[object, ...]]:
     found = []
     for width in WIDTHS:
         page.set_viewport_size({"width": width, "height": 800})
+        page.evaluate(FITS)
         wider, covered = page.evaluate(TOO_WIDE), page.evaluate(COVERED)
         if wider > 0 or covered:
             found.append((width, wider, covered))

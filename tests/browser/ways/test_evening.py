@@ -14,6 +14,7 @@ from playwright.sync_api import Locator, Page, expect
 
 from annotations.models import Entity, World
 from parser_service.models import TrainingRun
+from parser_service.parsers.registry import title_of
 from tests.browser.arriving import arrive, arrive_at, wait_for_swap
 from tests.browser.faults import OF_STRUCTURE, SETTLED, look_for, only_faults
 from tests.browser.screenshots import log_in
@@ -196,7 +197,7 @@ def promote(evening: Evening, parser: str) -> None:
     page, run = evening.page, TrainingRun.objects.get(parser=parser)
     evening.go(f"/w/robocup/promotion/?run={run.pk}", "Promotion")
     page.click(f"button:has-text('Promote run {run.pk}')")
-    expect(page.locator("#present-title")).to_contain_text(parser)
+    expect(page.locator("#present-title")).to_contain_text(title_of(parser))
     evening.look("20-promoted")
 
 

@@ -36,7 +36,7 @@ def visitor(client):
 
 def test_a_refusal_keeps_the_frame_and_says_whom_to_ask(sample, annotator, admin, client):
     client.force_login(annotator)
-    answer = client.get("/w/home/import/")
+    answer = client.get("/w/home/runs/new/")
     page = answer.content.decode()
     assert answer.status_code == 403
     main = page.partition('<main id="main"')[2]
