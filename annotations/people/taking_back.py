@@ -9,6 +9,7 @@ from http import HTTPStatus
 
 from django.core import signing
 from django.db import transaction
+from django.utils import timezone
 
 from annotations.language.errors import Refusal
 from annotations.models import Invitation, User, World
@@ -30,7 +31,7 @@ class PeopleChange:
     """What was done: the roles of somebody ``before`` and ``after``, and the invitations that ended.
 
     ``withdrawn`` says until when each invitation would have been open, by key. Without a ``member`` invitations alone
-    were withdrawn.
+    were withdrawn. ``at`` is a moment after all that.
     """
 
     world: World
@@ -38,12 +39,20 @@ class PeopleChange:
     before: Sequence[str] = ()
     after: Sequence[str] = ()
     withdrawn: Mapping[int, datetime] = field(default_factory=dict)
+    at: datetime = field(default_factory=timezone.now)
 
     def sealed(self) -> str:
         """Write the change as a text that nobody can make up, to be sent back by the button."""
         ends = {str(key): until.isoformat() for key, until in self.withdrawn.items()}
         member = self.member.pk if self.member else None
-        values = [self.world.pk, member, list(self.before), list(self.after), ends]
+        values = [
+            self.world.pk,
+            member,
+            list(self.before),
+            list(self.after),
+            ends,
+            self.at.isoformat(),
+        ]
         return signing.dumps(values, salt=SALT, compress=True)
 
     @classmethod
@@ -53,12 +62,12 @@ class PeopleChange:
             values = signing.loads(sealed, salt=SALT, max_age=LONGEST_SECONDS)
         except signing.BadSignature as error:
             raise CannotTakeBack("This can no longer be undone.") from error
-        of_world, key, before, after, ends = values
+        of_world, key, before, after, ends, at = values
         member = User.objects.filter(pk=key).first() if key else None
         if of_world != world.pk or (key and member is None):
             raise CannotTakeBack("This can no longer be undone.")
         withdrawn = {int(each): datetime.fromisoformat(until) for each, until in ends.items()}
-        return cls(world, member, before, after, withdrawn)
+        return cls(world, member, before, after, withdrawn, datetime.fromisoformat(at))
 
 
 @transaction.atomic
@@ -66,7 +75,7 @@ def take_back(change: PeopleChange, by: User) -> str:
     """Make it as it was before ``change``, and return a sentence about it.
 
     Raises:
-        CannotTakeBack: somebody has changed the roles since.
+        CannotTakeBack: somebody has changed the roles since, or the invitation is open or was withdrawn once more.
         NoAdminLeft: the last admin would lose that role.
     """
     World.objects.select_for_update().get(pk=change.world.pk)
@@ -80,6 +89,13 @@ def take_back(change: PeopleChange, by: User) -> str:
         said = f"{member} is {role_names(change.before)} of {change.world} again."
         if not change.before:
             said = f"{member} is no longer a member of {change.world}."
-    for key, until in change.withdrawn.items():
-        Invitation.objects.filter(world=change.world, pk=key).update(expires_at=until)
+    over_since = Invitation.objects.filter(world=change.world, expires_at__lte=change.at)
+    opened = sum(
+        over_since.filter(pk=key).update(expires_at=until)
+        for key, until in change.withdrawn.items()
+    )
+    if not change.member and not opened:
+        raise CannotTakeBack(
+            "Nothing was undone: the invitation is open already, or was withdrawn once more."
+        )
     return said

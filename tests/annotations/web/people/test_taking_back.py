@@ -68,6 +68,16 @@ def test_a_withdrawn_invitation_opens_again_until_the_same_day(world, as_admin):
     assert Invitation.objects.open().get().expires_at == until
 
 
+def test_an_old_button_does_not_open_what_was_withdrawn_once_more(world, as_admin):
+    as_admin.post(f"{PEOPLE}invite/", SENT)
+    withdraw = f"{PEOPLE}invitations/{Invitation.objects.get().pk}/withdraw/"
+    page = as_admin.post(withdraw, follow=True)
+    undo(as_admin, page)
+    as_admin.post(withdraw)
+    assert "Nothing was undone" in undo(as_admin, page).content.decode()
+    assert not Invitation.objects.open().exists()
+
+
 def test_invitations_of_a_former_admin_are_told_and_come_back(world, admin, superuser, client):
     Invitation.issue(world, [Role.ANNOTATOR], admin, 7, 1, "")
     client.force_login(superuser)
