@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import Any
 
 from django.urls import reverse
@@ -100,6 +101,14 @@ def _address(world: World, name: str, query: Mapping[str, Any] | None = None, **
     return f"{address}?{urlencode(query)}" if query else address
 
 
+def _by_format(
+    world: World, name: str, labels: Iterable[tuple[StrEnum, str]]
+) -> Iterable[ExportLink]:
+    """Yield a link to what the route ``name`` answers in each format, which has a label."""
+    for format, label in labels:
+        yield ExportLink(label, _address(world, name, {"as": format.value}))
+
+
 def _generator_links(world: World) -> Iterable[ExportLink]:
     ready = SemanticTemplate.objects.filter(grammar__world=world, status=TemplateStatus.READY)
     rows = {
@@ -118,12 +127,12 @@ def _vocabulary_links(world: World) -> Iterable[ExportLink]:
         return
     names = {"as": VocabularyFormat.TXT.value, "only": VocabularyPart.NAMES.value}
     yield ExportLink("Names, one a line", _address(world, "api:vocabulary", names))
-    for format, label in (
-        (VocabularyFormat.TXT, "With words of the grammar"),
-        (VocabularyFormat.JSONL, "JSON Lines, with classes"),
-        (VocabularyFormat.VOSK, "Vosk"),
-    ):
-        yield ExportLink(label, _address(world, "api:vocabulary", {"as": format.value}))
+    labels = {
+        VocabularyFormat.TXT: "With words of the grammar",
+        VocabularyFormat.JSONL: "JSON Lines, with classes",
+        VocabularyFormat.VOSK: "Vosk",
+    }
+    yield from _by_format(world, "api:vocabulary", labels.items())
 
 
 def _utterance_links(world: World) -> Iterable[ExportLink]:
@@ -133,8 +142,7 @@ def _utterance_links(world: World) -> Iterable[ExportLink]:
             LabelFormat.CSV: "CSV",
             LabelFormat.PARQUET: "Parquet",
         }
-        for format, label in labels.items():
-            yield ExportLink(label, _address(world, "api:utterance-export", {"as": format.value}))
+        yield from _by_format(world, "api:utterance-export", labels.items())
 
 
 def _rephrased_links(world: World) -> Iterable[ExportLink]:
@@ -144,8 +152,7 @@ def _rephrased_links(world: World) -> Iterable[ExportLink]:
             RephrasedFormat.PAIRS: "Pairs",
             RephrasedFormat.TESTS: "Test cases",
         }
-        for format, label in labels.items():
-            yield ExportLink(label, _address(world, "api:paraphrase-export", {"as": format.value}))
+        yield from _by_format(world, "api:paraphrase-export", labels.items())
 
 
 def _submission_links(world: World) -> Iterable[ExportLink]:
