@@ -57,8 +57,9 @@ class RegistryEntry:
     most_subwords: int = 0
 
 
+ORACLE = "grammar-oracle"
 PARSERS: dict[str, RegistryEntry] = {
-    "grammar-oracle": RegistryEntry(
+    ORACLE: RegistryEntry(
         dotted="parser_service.parsers.oracle.GrammarOracle",
         config="parser_service.parsers.oracle.OracleConfig",
         title="Grammar oracle",

@@ -30,10 +30,7 @@ from annotations.language.ontology import Ontology
 from annotations.language.plans import Lookup, PlanProblem, doubts_about, make_plan
 from annotations.language.predicates import gloss
 from annotations.language.recipes import TaskPlan, apply_recipes, spoken
-from annotations.models import World
-from parser_service.models import TrainingRun
-from parser_service.parsers.interface import UNKNOWN, Candidate, Parser, ScoreKind
-from parser_service.serving.loading import load_parser
+from parser_service.parsers.interface import UNKNOWN, Candidate, ScoreKind
 from parser_service.serving.preparing import WorldLanguage
 
 LEAST_SCORE = -1e300  # in place of −∞, which JSON cannot say
@@ -129,20 +126,6 @@ class ParsedUtterance:
             "warnings": list(self.warnings),
             "candidates": [answer.as_json() for answer in self.answers],
         }
-
-
-def parse(run: TrainingRun, utterance: str, beam_width: int = 5) -> ParsedUtterance:
-    """Return the answers of ``run`` to ``utterance``, computed in this process. Raises Refusal where it
-    cannot answer."""
-    return ask(load_parser(run).hesitant(), run.world, utterance, beam_width)
-
-
-def ask(parser: Parser, world: World, utterance: str, beam_width: int) -> ParsedUtterance:
-    """Return the answers of ``parser`` to an utterance in ``world``. Raises Refusal where it cannot answer."""
-    language = WorldLanguage.of(world)
-    heard = language.anonymizer.anonymize(utterance)
-    candidates = parser.predict([utterance], beam_width)[0]
-    return read_answers(heard, utterance, candidates, language, parser.score_kind)
 
 
 def read_answers(

@@ -1,0 +1,306 @@
+"""What a world answers: its grammar oracle first, then its learned parser, then a question or UNKNOWN.
+
+An utterance that the oracle understands as it is written needs no other part. Where the oracle is silent, hears
+something else than what is written, or reads it in several ways, the learned part is asked too. Every answer gets a
+probability, and from that a decision (``analysis.sureness``).
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from http import HTTPStatus
+from math import log
+from typing import Any
+
+from annotations.language.dialogue import shall_i
+from annotations.language.errors import Refusal
+from annotations.language.forms import equivalent
+from annotations.language.grounding import Anonymized
+from parser_service.analysis.sureness import (
+    AnsweredForm,
+    AnsweringPart,
+    Calibration,
+    Decision,
+    Evidence,
+    OperatingPoint,
+    in_words,
+)
+from parser_service.parsers.interface import UNKNOWN, Candidate, ScoreKind
+from parser_service.serving.answer_writing import AnswerWriter
+from parser_service.serving.batching import Batcher
+from parser_service.serving.parse_answers import (
+    ParsedUtterance,
+    Reading,
+    as_json,
+    form_of,
+    is_cut_in,
+    unknown_tokens,
+)
+from parser_service.serving.remote import RemoteAsker, Unanswered
+
+LINES_TOGETHER = 32  # of a request of many lines
+NOT_UNDERSTOOD = "I did not understand that."
+LEAST_LOG = -700.0  # of a probability that is 0
+
+
+class Order(StrEnum):
+    """Which parts of a world answer."""
+
+    BOTH = "both"
+    ORACLE = "oracle"
+    LEARNED = "learned"
+
+
+class NotServed(Refusal):
+    """A request that cannot be answered, with its HTTP status and a sentence."""
+
+    code = "not_served"
+
+    def __init__(self, status: int, sentence: str) -> None:
+        super().__init__(sentence, status=status)
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedParser:
+    """A parser in memory. ``knowledge`` is what of its world it was loaded with; ``lines_together`` is how many
+    lines of a longer request it is given at once. ``run`` is None for a parser that needs none."""
+
+    run: int | None
+    name: str
+    score_kind: str
+    knowledge: tuple[object, ...]
+    size: int
+    batcher: Batcher | RemoteAsker
+    lines_together: int = LINES_TOGETHER
+
+    def ask(self, texts: Sequence[str], beam: int) -> list[list[Candidate]]:
+        """Return the candidates of each text. Raises NotServed where it asks a server that does not answer in time."""
+        try:
+            return self.batcher.ask(texts, beam)
+        except Unanswered as error:
+            raise NotServed(HTTPStatus.SERVICE_UNAVAILABLE, error.message) from error
+
+
+@dataclass(frozen=True, slots=True)
+class Sureness:
+    """How evidence becomes a probability in a world, and a probability a decision."""
+
+    calibration: Calibration = field(default_factory=Calibration)
+    point: OperatingPoint = field(default_factory=OperatingPoint)
+
+    @property
+    def has_people(self) -> bool:
+        """Whether it was calibrated on what people say."""
+        return self.calibration.examples > 0
+
+
+@dataclass(frozen=True, slots=True)
+class PartAnswer:
+    """What one part answered to an utterance: ``text`` is what it was given. ``agrees`` says whether the other part
+    gives the same form; None where that was not asked or is silent."""
+
+    utterance: str
+    text: str
+    part: LoadedParser | None = None
+    candidates: Sequence[Candidate] = ()
+    agrees: bool | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """One answer of a world: the readings of its candidates, best first, how sure it is, and what to do with it."""
+
+    given: PartAnswer
+    heard: Anonymized
+    readings: Sequence[Reading[str]]
+    about: AnsweredForm
+    probability: float | None
+    decision: Decision
+
+    @property
+    def is_unknown(self) -> bool:
+        return self.about.evidence is None
+
+
+@dataclass(frozen=True, slots=True)
+class Answerer:
+    """The parts of a world and the writer of its answers. They answer a request and do not change meanwhile.
+
+    ``oracle`` answers first, ``learned`` where it is silent; at least one is there. ``problem`` says why the learned
+    part is missing, where it should be there.
+    """
+
+    world: str
+    writer: AnswerWriter
+    oracle: LoadedParser | None = None
+    learned: LoadedParser | None = None
+    sureness: Sureness = field(default_factory=Sureness)
+    problem: str = ""
+    wanted: Any = None  # what of the database it was made of (``shelf.WantedAnswerer``)
+
+    @property
+    def names(self) -> str:
+        """The names of the parts, in the order in which they answer."""
+        return ", ".join(part.name for part in (self.oracle, self.learned) if part)
+
+    @property
+    def run(self) -> int | None:
+        """The run of the learned part."""
+        return self.learned.run if self.learned else None
+
+    @property
+    def size(self) -> int:
+        """Bytes that the learned part takes."""
+        return self.learned.size if self.learned else 0
+
+    @property
+    def lines_together(self) -> int:
+        # The oracle looks at each line alone, so that several together would only come later.
+        return self.learned.lines_together if self.learned else 1
+
+    def parse(self, utterances: Sequence[str], beam: int) -> list[str]:
+        """Return the answer to each utterance, as JSON. Raises as ``ask``."""
+        return [self.write(each) for each in self.ask(utterances, beam)]
+
+    def ask(self, utterances: Sequence[str], beam: int) -> list[PartAnswer]:
+        """Return what the parts answer to each utterance. Raises NotServed where one asks a server that does not
+        answer in time."""
+        answers = [self._ask_oracle(each, beam) for each in utterances]
+        if self.learned is None:
+            return answers
+        unsure = [at for at, each in enumerate(answers) if not _is_settled(each)]
+        texts = [answers[at].utterance for at in unsure]
+        learned = self.learned.ask(texts, beam) if texts else []
+        for at, text, candidates in zip(unsure, texts, learned, strict=True):
+            answers[at] = self._join(answers[at], text, candidates)
+        return answers
+
+    def heard_nothing(self) -> PartAnswer:
+        """Return what there is to write where nothing was said: no candidate, without asking any part."""
+        return PartAnswer("", "", self.oracle or self.learned)
+
+    def judge(self, given: PartAnswer) -> Answer:
+        """Return an answer with how sure it is."""
+        heard = self.writer.language.anonymizer.anonymize(given.text)
+        score_kind = given.part.score_kind if given.part else ""
+        readings = self.writer.readings(heard, given.candidates, score_kind)
+        about = self._about(given, readings)
+        probability = None
+        if about.evidence is not None:
+            probability = self.sureness.calibration.probability(about.evidence)
+        decision = about.decision(probability, self.sureness.point, self.sureness.has_people)
+        return Answer(given, heard, readings, about, probability, decision)
+
+    def write(self, given: PartAnswer) -> str:
+        """Return an answer as JSON, with who gave it (docs/reference/parse-server.md)."""
+        answer = self.judge(given)
+        language = self.writer.language
+        said = language.anonymizer.anonymize(given.utterance)
+        warnings = unknown_tokens(given.utterance, language.ontology)
+        if self.problem:
+            warnings = (*warnings, self.problem)
+        parse = ParsedUtterance(said, given.text, (), warnings, is_cut_in(given.candidates))
+        part = given.part
+        first = json.loads(answer.readings[0].answer) if answer.readings else {}
+        spoken = self._spoken(answer, first)
+        head: dict[str, Any] = {
+            "world": self.world,
+            "run": part.run if part else None,
+            "parser": part.name if part else "",
+            "score_kind": part.score_kind if part else "",
+            **parse.as_json(),
+            "is_unknown": answer.is_unknown,
+            "agrees": given.agrees,
+            "heard": [],
+            "probability": answer.probability and round(answer.probability, 4),
+            "decision": answer.decision,
+            "sureness": in_words(answer.decision, answer.probability),
+            "spoken": spoken,
+            "reasons": [],
+            "nearest": [],
+            "several": [],
+            "joint_plan": None,
+        }
+        del head["candidates"]
+        written = [each.answer for each in answer.readings]
+        if first.get("task_plan"):
+            written[0] = as_json(first | {"spoken": spoken})
+        return f'{as_json(head)[:-1]}, "candidates": [{", ".join(written)}]}}'
+
+    def _ask_oracle(self, utterance: str, beam: int) -> PartAnswer:
+        if self.oracle is None:
+            return PartAnswer(utterance, utterance, self.learned)
+        [candidates] = self.oracle.ask([utterance], beam)
+        return PartAnswer(utterance, utterance, self.oracle, candidates)
+
+    def _join(self, by_oracle: PartAnswer, text: str, learned: Sequence[Candidate]) -> PartAnswer:
+        """Return what both parts say together: the oracle's readings where it has some, the likeliest of equally good
+        ones first, else the learned answers."""
+        if not by_oracle.candidates:
+            return PartAnswer(by_oracle.utterance, text, self.learned, learned)
+        best = [each for each in learned[:1] if each.form != UNKNOWN]
+        if not best:
+            return by_oracle
+        closest = by_oracle.candidates[0].score
+        equal = [each for each in by_oracle.candidates if each.score == closest]
+        same = [each for each in equal if _is_same(each, best[0])]
+        chosen = same + [each for each in by_oracle.candidates if each not in same]
+        return replace(by_oracle, candidates=chosen, agrees=bool(same))
+
+    def _about(self, given: PartAnswer, readings: Sequence[Reading[str]]) -> AnsweredForm:
+        """Return what is known of the first reading, for the calibration and the decision."""
+        if not readings or readings[0].slots is None or readings[0].candidate.form == UNKNOWN:
+            return AnsweredForm()
+        best, part = readings[0], given.part
+        is_oracle = part is not None and part is self.oracle
+        scores = [_log_probability(each.candidate.score, part) for each in readings[:2]]
+        margin = scores[0] - scores[1] if None not in scores and len(scores) > 1 else None
+        evidence = Evidence(
+            part=AnsweringPart.ORACLE if is_oracle else AnsweringPart.LEARNED,
+            is_exact=is_oracle and best.candidate.score == 0,
+            heard_cost=-best.candidate.score if is_oracle else 0.0,
+            readings=sum(each.candidate.score == best.candidate.score for each in readings),
+            learned_log_probability=None if is_oracle else scores[0],
+            margin=margin,
+            agrees=given.agrees,
+            executable=best.executable_plans > 0,
+        )
+        is_open = any(slot.value is None for slot in best.slots or ())
+        return AnsweredForm(best.candidate.form, evidence, open_slots=is_open)
+
+    def _spoken(self, answer: Answer, first: dict[str, Any]) -> str:
+        """Return what the robot says by the decision. ``first`` is the JSON of the best candidate."""
+        match answer.decision:
+            case Decision.ACT:
+                return str(first["spoken"])
+            case Decision.CONFIRM:
+                return shall_i(first["english"])
+            case Decision.ASK:
+                asked = [slot["question"] for slot in first["open_slots"]]
+                asked += [each["message"] for each in first["plan"]["problems"]]
+                return next(iter(asked), shall_i(first["english"]))
+        return NOT_UNDERSTOOD
+
+
+def _is_settled(answer: PartAnswer) -> bool:
+    """Return whether the oracle understood an utterance as it is written, in one way."""
+    scores = [each.score for each in answer.candidates]
+    return bool(scores) and scores[0] == 0 and scores.count(0) == 1
+
+
+def _is_same(one: Candidate, other: Candidate) -> bool:
+    first, second = form_of(one.form), form_of(other.form)
+    return first is not None and second is not None and equivalent(first, second)
+
+
+def _log_probability(score: float, part: LoadedParser | None) -> float | None:
+    """Return the score as the logarithm of a probability; None where it is none."""
+    kind = part.score_kind if part else ""
+    if kind == ScoreKind.LOG_PROBABILITY:
+        return min(score, 0.0)
+    if kind == ScoreKind.PROBABILITY:
+        return log(score) if score > 0 else LEAST_LOG
+    return None
