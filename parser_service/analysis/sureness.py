@@ -26,6 +26,9 @@ from parser_service.analysis.arrays import Bools, Floats
 from parser_service.analysis.clustered import folds_of
 
 FOLDS = 5
+LEAST_PEOPLE = (
+    20  # utterances of people without which nothing that a learned parser says is acted on
+)
 FEW = 50  # examples that are too few to choose an operating point by
 LEAST_ACT = 0.5  # nothing is acted on that is rather wrong
 LEAST_CONFIRM = 0.3  # below it a person would mostly say no
