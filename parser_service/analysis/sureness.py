@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize
 from scipy.special import expit
+from scipy.stats import binom
 
 from parser_service.analysis.arrays import Bools, Floats
 from parser_service.analysis.clustered import folds_of
@@ -30,9 +31,9 @@ LEAST_PEOPLE = (
     20  # utterances of people without which nothing that a learned parser says is acted on
 )
 FEW = 50  # examples that are too few to choose an operating point by
+UNLIKELY = 0.05  # what happens less often is no chance
 LEAST_ACT = 0.5  # nothing is acted on that is rather wrong
 LEAST_CONFIRM = 0.3  # below it a person would mostly say no
-NEVER = 1.0  # the bound that no probability reaches
 ALLOWED_WRONG = 0.02
 LEAST, MOST = 0.001, 0.999  # nothing that was learned from some hundred examples is surer
 _MOST_COUNTED = 3  # slots, names or words: a fourth says nothing new
@@ -106,7 +107,7 @@ class Weight(NamedTuple):
 
 # Nats of log-odds for one unit of each feature (``_features``).
 WEIGHTS: dict[str, Weight] = {
-    "oracle": Weight(4.5, 1.0),
+    "oracle": Weight(4.5, 0.4),
     "learned": Weight(-0.3, 1.0),
     "heard_otherwise": Weight(-1.8, 0.7, -1),
     "heard_cost": Weight(-0.1, 0.05, -1),
@@ -250,21 +251,30 @@ def operating_point(
     """Return the lowest bound from which on at most the share ``allowed`` of what is acted on is wrong.
 
     It is ``LEAST_ACT`` or more. With fewer than ``FEW`` examples it is 1 − ``allowed``, which calibrated probabilities
-    keep by themselves; where no bound is good enough, nothing is acted on.
+    keep by themselves. So it is where no bound is good enough, unless more is wrong from there on than chance explains:
+    then it is above all that was seen.
 
     Args:
         probabilities: cross-fitted, 0 to 1: [examples].
         is_right: whether each answer has the plan that was meant, [examples].
     """
     given, right = np.asarray(probabilities, dtype=float), np.asarray(is_right, dtype=bool)
+    by_promise = max(1 - allowed, LEAST_ACT)
     if len(given) < FEW:
-        return OperatingPoint(max(1 - allowed, LEAST_ACT))
+        return OperatingPoint(by_promise)
     order = np.argsort(-given, kind="stable")
     surest, wrong = given[order], np.cumsum(~right[order])
     is_last = np.append(surest[1:] != surest[:-1], True)  # of equal probabilities all are acted on
     share = wrong / np.arange(1, len(surest) + 1)
     bounds = surest[is_last & (share <= allowed) & (surest >= LEAST_ACT)]
-    return OperatingPoint(float(bounds.min()) if len(bounds) else NEVER)
+    if len(bounds):
+        return OperatingPoint(float(bounds.min()))
+    acted = given >= by_promise
+    chance = binom.sf(
+        (~right[acted]).sum() - 1, acted.sum(), allowed
+    )  # of so many wrong ones, or more
+    above_all = float(np.nextafter(surest[0], np.inf))
+    return OperatingPoint(by_promise if chance >= UNLIKELY else max(by_promise, above_all))
 
 
 def decide(

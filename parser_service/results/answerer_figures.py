@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from random import Random
 from statistics import fmean
 from typing import Any, Protocol
 
@@ -12,8 +14,11 @@ from django.utils import timezone
 
 from annotations.background.progress import UNWATCHED, Progress
 from annotations.language.corpus import Part
+from annotations.language.forms import CLASS_TOKEN
+from annotations.language.ontology import Ontology
 from annotations.language.text import normalise
 from annotations.models import Example, Split, World
+from annotations.rows.from_rows import ontology_of
 from parser_service.analysis.clustered import Clustered, Interval, interval_of
 from parser_service.analysis.outcomes import name_clusters
 from parser_service.analysis.scores import Judgement, judge
@@ -135,20 +140,48 @@ def _ask(
     answer: Callable[[Sequence[str]], Sequence[AnsweredForm]],
     progress: Progress,
 ) -> list[_Measured]:
-    same_plan = plan_agreement_of(world)
+    same_plan, ontology = plan_agreement_of(world), ontology_of(world)
     examples = list(split.examples.filter(part__in=PARTS))
     measured = []
     for start in range(0, len(examples), AT_ONCE):
         progress.check()
         some = examples[start : start + AT_ONCE]
         for example, given in zip(
-            some, answer([normalise(each.utterance) for each in some]), strict=True
+            some, answer([as_said(each.utterance, ontology) for each in some]), strict=True
         ):
             judgement = judge(given.form or UNKNOWN, example.logical_form, same_plan)
             cluster = cluster_of(example, split.criterion)
             measured.append(_Measured(example, cluster, given, judgement))
         progress.report(len(measured) / len(examples), "asking for each example")
     return measured
+
+
+def as_said(utterance: str, ontology: Ontology) -> str:
+    """Return an utterance as a robot hears it: with an entity in place of each class token.
+
+    Equal utterances have equal entities. Equal tokens with a number have the same one, all others differ, as far as
+    there are enough of the class; a token of a class without an entity stays.
+    """
+    random = Random(utterance)
+    left: dict[str, list[str]] = {}
+    numbered: dict[str, str] = {}
+
+    def fill(match: re.Match[str]) -> str:
+        token = match[1]
+        entity_class = token.rstrip("0123456789")
+        if token in numbered:
+            return numbered[token]
+        if not left.get(entity_class):
+            texts = [entity.text for entity in ontology.of_class(entity_class)]
+            left[entity_class] = random.sample(texts, len(texts))
+        if not left[entity_class]:
+            return match[0]
+        text = left[entity_class].pop()
+        if token != entity_class:
+            numbered[token] = text
+        return text
+
+    return CLASS_TOKEN.sub(fill, normalise(utterance))
 
 
 def _evaluate(measured: Sequence[_Measured], allowed: float) -> list[dict[str, Any]]:

@@ -102,10 +102,9 @@ class AnswererTable:
         return 100 * float(self.first.row.calibration["allowed_wrong"])
 
     @property
-    def act_percent(self) -> float | None:
-        """From which probability on it acts, in percent; None where it never does."""
-        bound = float(self.first.row.calibration["point"]["act"])
-        return 100 * bound if bound < 1 else None
+    def act_percent(self) -> float:
+        """From which probability on it acts, in percent."""
+        return 100 * float(self.first.row.calibration["point"]["act"])
 
     @property
     def examples(self) -> int:

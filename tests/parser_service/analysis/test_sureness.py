@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.stats import binom
 
 from parser_service.analysis.sureness import (
     DEFAULT_WEIGHTS,
     FEW,
     LEAST_ACT,
-    NEVER,
+    UNLIKELY,
     WEIGHTS,
     AnsweredForm,
     AnsweringPart,
@@ -48,7 +49,7 @@ evidences = st.builds(
     unknown_words=counts,
 )
 examples = st.lists(st.tuples(evidences, st.booleans()), max_size=30)
-judged = st.lists(st.tuples(st.floats(0, 1), st.booleans()), max_size=3 * FEW)
+judged = st.lists(st.tuples(st.floats(0, 0.999), st.booleans()), max_size=3 * FEW)
 
 
 def logit(probability):
@@ -127,7 +128,7 @@ def test_no_evidence_against_an_answer_makes_it_surer(evidence, pairs):
     for each in worse:
         assert calibration.probability(replace(evidence, **each)) <= before + 1e-12
     assert calibration.probability(replace(evidence, agrees=True)) >= before - 1e-12
-    assert 0 < before < NEVER
+    assert 0 < before < 1
 
 
 def test_without_an_example_it_is_the_default():
@@ -206,13 +207,17 @@ def test_of_what_is_acted_on_no_more_is_wrong_than_allowed(pairs, allowed):
     given_ = np.array([each for each, _ in pairs])
     right = np.array([each for _, each in pairs], dtype=bool)
     point = operating_point(given_, right, allowed)
-    assert LEAST_ACT <= point.act <= NEVER
+    assert LEAST_ACT <= point.act <= 1
     if len(pairs) < FEW:
         assert point.act == max(1 - allowed, LEAST_ACT)
         return
     acted = given_ >= point.act
-    if point.act < NEVER:
-        assert (~right[acted]).mean() <= allowed
+    wrong = (~right[acted]).sum()
+    kept_by_chance = (
+        point.act == max(1 - allowed, LEAST_ACT)
+        and binom.sf(wrong - 1, acted.sum(), allowed) >= UNLIKELY
+    )
+    assert wrong <= allowed * acted.sum() or kept_by_chance
     for bound in given_[(given_ < point.act) & (given_ >= LEAST_ACT)]:  # a lower one allows more
         assert (~right[given_ >= bound]).mean() > allowed
 
@@ -226,11 +231,17 @@ def test_a_larger_allowed_share_acts_on_more():
     assert bounds[0] > bounds[-1]
 
 
-def test_where_the_surest_are_wrong_nothing_is_acted_on():
-    point = operating_point([0.9] * FEW, [False] * FEW)
-    assert point.act == NEVER
-    most = decide(Calibration().probability(ORACLE), point, is_learned=False, has_people=True)
-    assert most == Decision.CONFIRM
+@pytest.mark.parametrize(("surest", "least"), [(0.9, 0.98), (0.99, 0.99)])
+def test_where_the_surest_are_wrong_only_what_is_surer_is_acted_on(surest, least):
+    point = operating_point([surest] * FEW, [False] * FEW)
+    assert point.act == pytest.approx(least)
+    assert point.act > surest
+
+
+def test_one_wrong_answer_of_few_does_not_silence_what_is_sure():
+    """All others are far below any bound that is good enough."""
+    given_, right = [0.99] * 6 + [0.6] * 60, [False] + [True] * 35 + [False] * 30
+    assert operating_point(given_, right).act == pytest.approx(0.98)
 
 
 POINT = OperatingPoint(0.9, 0.3)

@@ -7,9 +7,9 @@ from collections import Counter
 from hypothesis import given
 from hypothesis import strategies as st
 
+from parser_service.analysis.clustered import folds_of
 from parser_service.parsers.interface import Pair
 from parser_service.parsers.knn import NearestNeighbour
-from parser_service.analysis.clustered import folds_of
 from parser_service.runs.training.cross_fitting import FOLDS, calibrated_folds
 
 PAIRS = [Pair(f"say {n}", "( go )") for n in range(12)]
