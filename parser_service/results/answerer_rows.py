@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -94,7 +95,13 @@ class AnswererTable:
         return min(self.rows, key=lambda each: EVIDENCE.index(each.row.test_source))
 
     @property
+    def slug(self) -> str:
+        """Tells its parts apart on a page."""
+        return str(self.split.pk)
+
+    @property
     def order(self) -> str:
+        """Which parts answered, in words."""
         return AnsweringOrder(self.first.row.order).label
 
     @property
@@ -130,19 +137,29 @@ class AnswererTable:
         return reliability_chart(self.reliability) if self.reliability else None
 
 
-def answerer_table(world: World, split: Split, part: str) -> AnswererTable | None:
-    """Return the newest measurement on ``part`` of ``split``; None where nobody has measured there.
+def answerer_tables(world: World, splits: Iterable[Split], part: str) -> list[AnswererTable]:
+    """Return the newest measurement on ``part`` of each of ``splits`` that somebody has measured on.
 
-    Of several orders that were measured it is the one that the world has chosen now. One query, and one for the order.
+    Of several orders that were measured it is the one that the world has chosen now. Three queries.
     """
-    measured = AnswererEvaluation.objects.filter(world=world, split=split, part=part)
-    measured = measured.filter(order=answering_of(world).order).select_related("split", "run")
-    rows = sorted(measured.newest(), key=lambda row: list(TEST_SOURCES).index(row.test_source))
-    if not rows:
-        return None
+    measured = AnswererEvaluation.objects.filter(
+        world=world, split__in=list(splits), part=part, order=answering_of(world).order
+    )
+    of_split: dict[Split, list[AnswererEvaluation]] = defaultdict(list)
+    for row in measured.select_related("split", "run").order_by("-made_at"):
+        if not of_split[row.split] or of_split[row.split][0].made_at == row.made_at:
+            of_split[row.split].append(row)
     revision = World.objects.values_list("revision", flat=True).get(pk=world.pk)
-    shown = tuple(ShownAnswerer(row) for row in rows)
-    return AnswererTable(split, part, shown, any(row.revision != revision for row in rows))
+    sources = list(TEST_SOURCES)
+    return [
+        AnswererTable(
+            split,
+            part,
+            tuple(map(ShownAnswerer, sorted(rows, key=lambda row: sources.index(row.test_source)))),
+            any(row.revision != revision for row in rows),
+        )
+        for split, rows in of_split.items()
+    ]
 
 
 def newest_answerer_table(world: World) -> AnswererTable | None:
@@ -151,7 +168,8 @@ def newest_answerer_table(world: World) -> AnswererTable | None:
         world=world, part="validation", order=answering_of(world).order
     )
     newest = rows.order_by("-made_at").select_related("split").first()
-    return None if newest is None else answerer_table(world, newest.split, newest.part)
+    tables = answerer_tables(world, [newest.split], newest.part) if newest else []
+    return next(iter(tables), None)
 
 
 def reliability_of(rows: Iterable[AnswererEvaluation]) -> Reliability | None:

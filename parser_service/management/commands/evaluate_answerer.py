@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from math import log
 from time import process_time
 from typing import Any
 
@@ -13,6 +14,7 @@ from annotations.language.errors import Refusal
 from annotations.language.grounding import deanonymize
 from annotations.management.base import ReportingCommand, find_split, find_world
 from annotations.models import Split, World
+from parser_service.analysis.probabilities import probability_of
 from parser_service.analysis.sureness import AnsweredForm, AnsweringPart, Evidence
 from parser_service.models import AnswererEvaluation, AnsweringOrder, TrainingRun
 from parser_service.models.answering import answering_of
@@ -134,6 +136,11 @@ def _number(value: float | None) -> str:
     return "–" if value is None else f"{value:.3f}"
 
 
+def _log_probability(candidate: Candidate, kind: ScoreKind | None) -> float | None:
+    probability = probability_of(candidate.score, kind)
+    return None if probability is None else log(max(probability, 1e-30))
+
+
 @dataclass(frozen=True)
 class PartsInOrder:
     """Asks the grammar oracle, and the learned parser of ``run`` where that is silent."""
@@ -195,14 +202,16 @@ class PartsInOrder:
         given = deanonymize(form, heard, language.ontology, language.evidence, best.values)
         answer = answer_with(best, given, language, language.lookup)
         _, not_said, left_out, _ = Reading(best, answer, given.slots).misfit(heard)
-        is_sure = kind == ScoreKind.LOG_PROBABILITY
+        own = [_log_probability(each, kind) for each in candidates]
         evidence = Evidence(
             part,
             is_exact=best.score == 0,
             heard_cost=max(-best.score, 0.0),
             readings=1 + sum(each.score == best.score for each in others),
-            learned_log_probability=best.score if is_sure else None,
-            margin=best.score - others[0].score if is_sure and others else None,
+            learned_log_probability=own[0],
+            margin=own[0] - own[1]
+            if others and own[0] is not None and own[1] is not None
+            else None,
             not_said=int(not_said),
             left_out=left_out,
             executable=answer.executable_plans > 0,
