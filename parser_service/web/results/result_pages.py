@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from typing import Any
 
 from django.http import HttpResponse, JsonResponse
 from django.shortcuts import render
@@ -11,6 +12,7 @@ from django.views.decorators.cache import never_cache
 from annotations.exporting.split_export import formula_safe
 from annotations.models import Duty, World
 from annotations.people.access import WorldRequest, world_view
+from parser_service.results.answerer_rows import answerer_tables
 from parser_service.results.export import HEADER, as_json, rows_of
 from parser_service.results.latex import as_latex
 from parser_service.results.result_choices import read_choices, scored_splits
@@ -19,7 +21,9 @@ from parser_service.results.result_choices import read_choices, scored_splits
 @world_view(Duty.VIEW)
 def results(request: WorldRequest, world: World) -> HttpResponse:
     """Show the accuracy tables, one per protocol."""
-    return render(request, "parser_service/results/results.html", results_of(request, world))
+    context = results_of(request, world)
+    context["answerer"] = answerer_tables(world, context["chosen"], context["part"])
+    return render(request, "parser_service/results/results.html", context)
 
 
 @never_cache
@@ -68,7 +72,7 @@ def as_attachment(world: World, ending: str) -> dict[str, str]:
     return {"Content-Disposition": f'attachment; filename="{world.name}-results.{ending}"'}
 
 
-def results_of(request: WorldRequest, world: World) -> dict[str, object]:
+def results_of(request: WorldRequest, world: World) -> dict[str, Any]:
     """Return the tables that the address chooses, and its choices."""
     splits = scored_splits(world)
     choices = read_choices(request.GET, world, splits)
