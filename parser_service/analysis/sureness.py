@@ -34,6 +34,7 @@ FEW = 50  # examples that are too few to choose an operating point by
 UNLIKELY = 0.05  # what happens less often is no chance
 LEAST_ACT = 0.5  # nothing is acted on that is rather wrong
 LEAST_CONFIRM = 0.3  # below it a person would mostly say no
+LEAST_UNCALIBRATED = 0.1  # the same where no utterance of people told what a score is worth
 ALLOWED_WRONG = 0.02
 LEAST, MOST = 0.001, 0.999  # nothing that was learned from some hundred examples is surer
 _MOST_COUNTED = 3  # slots, names or words: a fourth says nothing new
@@ -298,11 +299,13 @@ def decide(
         objections: a prohibition, a condition, no command: no form is right.
         ambiguous: two things are equally near to what was said.
     """
-    if objections or probability is None or probability < point.confirm:
+    is_uncalibrated = is_learned and not has_people
+    least = LEAST_UNCALIBRATED if is_uncalibrated else point.confirm
+    if objections or probability is None or probability < least:
         return Decision.REFUSE
     if open_slots or ambiguous or not executable:
         return Decision.ASK
-    if probability < point.act or (is_learned and not has_people):
+    if probability < point.act or is_uncalibrated:
         return Decision.CONFIRM
     return Decision.ACT
 

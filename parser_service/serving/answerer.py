@@ -8,9 +8,9 @@ probability, and from that a decision (``analysis.sureness``).
 from __future__ import annotations
 
 import json
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from enum import StrEnum
 from http import HTTPStatus
 from math import log
 from typing import Any
@@ -22,15 +22,14 @@ from annotations.language.grounding import Anonymized
 from parser_service.analysis.sureness import (
     AnsweredForm,
     AnsweringPart,
-    Calibration,
     Decision,
     Evidence,
-    OperatingPoint,
     in_words,
 )
 from parser_service.parsers.interface import UNKNOWN, Candidate, ScoreKind
 from parser_service.serving.answer_writing import AnswerWriter
 from parser_service.serving.batching import Batcher
+from parser_service.serving.calibrating import Calibrated
 from parser_service.serving.parse_answers import (
     ParsedUtterance,
     Reading,
@@ -41,17 +40,10 @@ from parser_service.serving.parse_answers import (
 )
 from parser_service.serving.remote import RemoteAsker, Unanswered
 
+USUAL_BEAM = 5
 LINES_TOGETHER = 32  # of a request of many lines
 NOT_UNDERSTOOD = "I did not understand that."
 LEAST_LOG = -700.0  # of a probability that is 0
-
-
-class Order(StrEnum):
-    """Which parts of a world answer."""
-
-    BOTH = "both"
-    ORACLE = "oracle"
-    LEARNED = "learned"
 
 
 class NotServed(Refusal):
@@ -82,19 +74,6 @@ class LoadedParser:
             return self.batcher.ask(texts, beam)
         except Unanswered as error:
             raise NotServed(HTTPStatus.SERVICE_UNAVAILABLE, error.message) from error
-
-
-@dataclass(frozen=True, slots=True)
-class Sureness:
-    """How evidence becomes a probability in a world, and a probability a decision."""
-
-    calibration: Calibration = field(default_factory=Calibration)
-    point: OperatingPoint = field(default_factory=OperatingPoint)
-
-    @property
-    def has_people(self) -> bool:
-        """Whether it was calibrated on what people say."""
-        return self.calibration.examples > 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +116,7 @@ class Answerer:
     writer: AnswerWriter
     oracle: LoadedParser | None = None
     learned: LoadedParser | None = None
-    sureness: Sureness = field(default_factory=Sureness)
+    calibrated: Calibrated = field(default_factory=Calibrated)
     problem: str = ""
     wanted: Any = None  # what of the database it was made of (``shelf.WantedAnswerer``)
 
@@ -182,6 +161,13 @@ class Answerer:
         """Return what there is to write where nothing was said: no candidate, without asking any part."""
         return PartAnswer("", "", self.oracle or self.learned)
 
+    def measure(self, utterances: Sequence[str]) -> list[AnsweredForm]:
+        """Return what is known of the answer to each utterance, with its share of the processor time."""
+        began = time.process_time()
+        answers = [self.judge(each).about for each in self.ask(utterances, USUAL_BEAM)]
+        seconds = (time.process_time() - began) / max(len(answers), 1)
+        return [replace(each, seconds=seconds) for each in answers]
+
     def judge(self, given: PartAnswer) -> Answer:
         """Return an answer with how sure it is."""
         heard = self.writer.language.anonymizer.anonymize(given.text)
@@ -190,8 +176,8 @@ class Answerer:
         about = self._about(given, readings)
         probability = None
         if about.evidence is not None:
-            probability = self.sureness.calibration.probability(about.evidence)
-        decision = about.decision(probability, self.sureness.point, self.sureness.has_people)
+            probability = self.calibrated.calibration.probability(about.evidence)
+        decision = about.decision(probability, self.calibrated.point, self.calibrated.has_people)
         return Answer(given, heard, readings, about, probability, decision)
 
     def write(self, given: PartAnswer) -> str:

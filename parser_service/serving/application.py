@@ -18,7 +18,7 @@ from prometheus_client import CONTENT_TYPE_LATEST
 
 from annotations.language.errors import Refusal
 from parser_service.parsers.registry import untrained
-from parser_service.serving.answerer import Answerer, NotServed
+from parser_service.serving.answerer import USUAL_BEAM, Answerer, NotServed
 from parser_service.serving.lines import answer_lines, read_object
 from parser_service.serving.parse_answers import as_json
 from parser_service.serving.preparing import require_beam, require_utterance
@@ -28,7 +28,6 @@ logger = logging.getLogger(__name__)
 
 JSON, JSON_LINES = "application/json", "application/jsonl"
 PARSE_ADDRESS = re.compile(r"^/api/v1/worlds/(?P<world>[a-z0-9][a-z0-9_-]*)/parse/$")
-USUAL_BEAM = 5
 LOADING_PATIENCE = 20.0  # seconds that a request waits for a parser that is being loaded
 
 REASONS = {

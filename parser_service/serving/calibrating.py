@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from annotations.models import World
@@ -25,8 +25,8 @@ _ACTIONABLE = (Decision.ACT, Decision.CONFIRM)  # nothing else speaks against ac
 class Calibrated:
     """A calibration and the operating point that was chosen with it."""
 
-    calibration: Calibration
-    point: OperatingPoint
+    calibration: Calibration = field(default_factory=Calibration)
+    point: OperatingPoint = field(default_factory=OperatingPoint)
 
     @property
     def has_people(self) -> bool:

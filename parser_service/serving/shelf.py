@@ -22,7 +22,15 @@ from annotations.models import (
     Recipe,
     World,
 )
-from parser_service.models import ActionNames, Promotion, TrainingRun
+from parser_service.analysis.sureness import ALLOWED_WRONG
+from parser_service.models import (
+    ActionNames,
+    AnswererEvaluation,
+    Answering,
+    AnsweringOrder,
+    Promotion,
+    TrainingRun,
+)
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.interface import Parser
 from parser_service.parsers.registry import ORACLE, untrained
@@ -32,9 +40,9 @@ from parser_service.serving.answerer import (
     Answerer,
     LoadedParser,
     NotServed,
-    Order,
 )
 from parser_service.serving.batching import Batcher
+from parser_service.serving.calibrating import calibrated
 from parser_service.serving.loading import load_anew, make_untrained, size_of
 from parser_service.serving.metrics import Metrics
 from parser_service.serving.preparing import WorldLanguage
@@ -53,7 +61,7 @@ class WantedAnswerer:
     """A world, the key of its promoted run (None: none), and what changes whenever its words do.
 
     ``language`` stands for ontology and predicates, ``revision`` for the grammar, ``names`` for those
-    of actions, and ``recipes`` for these and the primitives.
+    of actions, and ``recipes`` for these and the primitives; ``measured`` for what was last measured of its answers.
     """
 
     world: int
@@ -62,7 +70,9 @@ class WantedAnswerer:
     revision: int
     names: int = 0
     recipes: tuple[object, ...] = ()
-    order: str = Order.BOTH
+    order: str = AnsweringOrder.BOTH
+    allowed_wrong: float = ALLOWED_WRONG
+    measured: int = 0
 
     def knowledge(self, protocol: str) -> tuple[object, ...]:
         """Return what a run may know of the world; it is loaded anew where that changes."""
@@ -72,7 +82,7 @@ class WantedAnswerer:
 
 
 def read_wanted() -> dict[str, WantedAnswerer]:
-    """Return world name → what is wanted there, in eight queries.
+    """Return world name → what is wanted there, in ten queries.
 
     Every edit and import of rows adds, deletes or raises a version, so that number, last key and sum of
     the versions together change.
@@ -81,6 +91,14 @@ def read_wanted() -> dict[str, WantedAnswerer]:
     recipes = _totals((Primitive, "world"), (Recipe, "world"))
     runs = dict(Promotion.objects.present().order_by().values_list("world", "run"))
     names = dict(ActionNames.objects.values_list("world", "version"))
+    chosen = {
+        world: (order, allowed)
+        for world, order, allowed in Answering.objects.values_list(
+            "world", "order", "allowed_wrong"
+        )
+    }
+    rated = AnswererEvaluation.objects.order_by().values_list("world")
+    measured = dict(rated.annotate(Max("pk")))
     rows = World.objects.present().values_list("pk", "name", "revision")
     return {
         name: WantedAnswerer(
@@ -90,6 +108,8 @@ def read_wanted() -> dict[str, WantedAnswerer]:
             revision,
             names.get(key, 0),
             tuple(recipes[key]),
+            *chosen.get(key, (AnsweringOrder.BOTH, ALLOWED_WRONG)),
+            measured.get(key, 0),
         )
         for key, name, revision in rows
     }
@@ -175,16 +195,20 @@ class Shelf:
             answerer = self._take_unpromoted(world, wanted)
         return self._alone(answerer) if parser else answerer
 
-    def load(self, world: str, run: int | None, parser: str = "") -> Answerer:
+    def load(
+        self, world: str, run: int | None = None, parser: str = "", order: str | None = None
+    ) -> Answerer:
         """Return what answers in ``world``, loaded for the caller alone; with ``run`` or ``parser`` that one alone.
-        Raises Refusal."""
+        ``order`` is an ``AnsweringOrder``, that of the world by default. Raises Refusal."""
         wanted = read_wanted().get(world)
         if wanted is None:
             raise Refusal(f"There is no world {world}.", "no_such_world", HTTPStatus.NOT_FOUND)
         if run is not None:
             return self._load_run(world, wanted, run, None)
         if parser:
-            wanted = replace(wanted, run=None, order=Order.ORACLE)
+            wanted = replace(wanted, run=None, order=AnsweringOrder.ORACLE)
+        elif order:
+            wanted = replace(wanted, order=order)
         return self._load(world, wanted, None)
 
     def _alone(self, answerer: Answerer) -> Answerer:
@@ -326,22 +350,26 @@ class Shelf:
         world = _world(name, wanted)
         writer = self._writer(world, wanted, held)
         learned = None
-        if wanted.run is not None and wanted.order != Order.ORACLE:
+        if wanted.run is not None and wanted.order != AnsweringOrder.ORACLE:
             learned = self._learned(name, wanted, wanted.run, held.learned if held else None)
         oracle = None
-        if wanted.order != Order.LEARNED or learned is None:
+        if wanted.order != AnsweringOrder.LEARNED or learned is None:
             oracle = self._oracle(world, wanted, held.oracle if held else None)
         if oracle is None and learned is None:
             raise Refusal(_nobody_answers(name, wanted), "no_promoted_run", HTTPStatus.CONFLICT)
-        return Answerer(name, writer, oracle, learned, wanted=wanted)
+        run = learned.run if learned else None
+        sureness = calibrated(world, run, wanted.order, wanted.allowed_wrong)
+        return Answerer(name, writer, oracle, learned, sureness, wanted=wanted)
 
     def _load_run(
         self, name: str, wanted: WantedAnswerer, run: int, held: Answerer | None
     ) -> Answerer:
         """Load a run alone. Raises Refusal where there is no such run or no parser of it."""
         learned = self._learned(name, wanted, run, held.learned if held else None, any_parser=True)
-        writer = self._writer(_world(name, wanted), wanted, held)
-        return Answerer(name, writer, None, learned, wanted=wanted)
+        world = _world(name, wanted)
+        writer = self._writer(world, wanted, held)
+        sureness = calibrated(world, run, AnsweringOrder.LEARNED, wanted.allowed_wrong)
+        return Answerer(name, writer, None, learned, sureness, wanted=wanted)
 
     def _writer(self, world: World, wanted: WantedAnswerer, held: Answerer | None) -> AnswerWriter:
         if held is not None and _words(held.wanted) == _words(wanted):
