@@ -14,19 +14,19 @@ from annotations.models import Split, World
 from parser_service.analysis.probabilities import Reliability, reliability
 from parser_service.models import AnswererEvaluation
 from parser_service.models.answering import AnsweringOrder, answering_of
-from parser_service.parsers.conditions import PEOPLES, TEST_SOURCES, in_words
+from parser_service.parsers.conditions import TEST_SOURCES, in_words
 from parser_service.results.answerer_figures import FIGURES
 from parser_service.serving.default_runs import EVIDENCE
 
-# Figure → the head of its column, and what it is a share of.
+# Figure → the head of its column, and what is counted.
 LABELS = {
-    "correct": ("Exact", "of all answers have exactly the form of the label"),
-    "same_plan": ("Same plan", "of all answers make the robot do what was meant"),
-    "acted": ("Acts", "of all commands are carried out at once"),
-    "wrong_acts": ("Wrong acts", "of what is carried out at once is not what was meant"),
-    "confirmed": ("Confirms", "of all commands are repeated first: “Shall I …?”"),
-    "asked": ("Asks", "of all commands are answered with a question"),
-    "refused": ("Refuses", "of all commands are refused, with what was not understood"),
+    "correct": ("Exact", "answers have exactly the form of the label"),
+    "same_plan": ("Same plan", "answers make the robot do what was meant"),
+    "acted": ("Acts", "commands are carried out at once"),
+    "wrong_acts": ("Wrong acts", "commands that are carried out at once meant something else"),
+    "confirmed": ("Confirms", "commands are repeated first: “Shall I …?”"),
+    "asked": ("Asks", "commands are answered with a question"),
+    "refused": ("Refuses", "commands are refused"),
 }
 
 
@@ -54,30 +54,20 @@ class ShownAnswerer:
         return in_words(self.row.test_source)
 
     @property
-    def is_of_people(self) -> bool:
-        return self.row.test_source in PEOPLES
-
-    @property
     def figures(self) -> list[AnswererFigure]:
         return [figure_of(self.row, name) for name in LABELS]
-
-    @property
-    def milliseconds(self) -> float:
-        return 1000 * self.row.seconds
 
 
 def figure_of(row: AnswererEvaluation, name: str) -> AnswererFigure:
     """Return one of ``FIGURES`` of a row."""
-    label, share = LABELS[name]
+    label, counted = LABELS[name]
     right, whole = getattr(row, name), getattr(row, FIGURES[name])
     if not whole:
-        return AnswererFigure(name, label, f"{label}: nothing is carried out at once")
+        return AnswererFigure(name, label, "No command is carried out at once")
     low, high = (100 * end for end in row.intervals[name])
-    percent = 100 * right / whole
-    sentence = (
-        f"{right:,} of {whole:,}: {percent:.1f} % {share}; 95 % interval {low:.1f}–{high:.1f}"
+    return AnswererFigure(
+        name, label, f"{right:,} of {whole:,} {counted}", 100 * right / whole, low, high
     )
-    return AnswererFigure(name, label, sentence, percent, low, high)
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,10 +113,6 @@ class AnswererTable:
         if not self.examples:
             return "Nobody’s utterances calibrate its probabilities yet: what a learned parser says is confirmed."
         return f"{say_count(self.examples, 'utterance')} of people calibrate its probabilities."
-
-    @property
-    def heads(self) -> list[str]:
-        return [label for label, _ in LABELS.values()]
 
     @property
     def reliability(self) -> Reliability | None:
