@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Self
@@ -18,6 +18,7 @@ from annotations.language.grammar import (
 )
 from annotations.language.grounding import HeardLattice, UtteranceReader
 from annotations.language.ontology import Ontology, read_ontology, write_ontology
+from annotations.language.requests import Islands
 from annotations.language.templates import (
     ChartDerivation,
     TaskCategory,
@@ -119,6 +120,26 @@ class GrammarOracle(Parser):
                     for (form, values), score in found.items()
                 ]
         return []
+
+    def understands(self, utterance: str) -> bool:
+        """Return whether an utterance is one command."""
+        return bool(self._candidates(normalise_line(utterance)))
+
+    def islands(self, utterance: str) -> Iterator[Islands]:
+        """Yield the parts of an utterance that may be one command each, for each way to read it, the strictest first.
+
+        A few are none: see ``TemplateChart.spans``.
+        """
+        for heard in self._reader.lattices(utterance):
+            if heard.tokens:
+                spans = self._chart.spans(heard.lattice, Budget(CHECK_STEPS))
+                yield Islands(
+                    frozenset(
+                        (heard.tokens[start][0], heard.tokens[end - 1][1]) for start, end in spans
+                    ),
+                    frozenset((each.start, each.end) for each in heard.spans),
+                    frozenset(each.casefold() for each in self._chart.beginnings),
+                )
 
     def _parse(self, heard: HeardLattice) -> list[ChartDerivation]:
         """Return the derivations; none where that takes too many steps. A competition's commands take up to 26,000."""

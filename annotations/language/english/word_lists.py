@@ -201,10 +201,16 @@ REWORDED_PATTERNS = _rewordings.words_by_name("patterns")
 _joints = WordFile("joints")
 JOINTS = _joints.words("joints")
 JOINT_OPENINGS = _joints.words("openings")
+COMMAND_NOUNS = frozenset(_joints.words("nouns"))
+SEQUENCE_WORDS = frozenset(_joints.words("sequence"))
+FINISHED_WORDS = _joints.words("finished")
+TELLING_WORDS = frozenset(_joints.words("telling"))
 
 _other_requests = WordFile("other_requests")
 FORBIDDING_PHRASES = _other_requests.words("forbidding")
 CONDITIONAL_PHRASES = _other_requests.words("conditions")
+TAKING_BACK_PHRASES = _other_requests.words("taking_back")
+ASKING_PHRASES = _other_requests.words("asking")
 POLITE_BEFORE_IF = _other_requests.words("polite_before_if")
 
 

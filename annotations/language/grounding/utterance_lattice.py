@@ -55,10 +55,15 @@ DIGITS = "0123456789"
 
 @dataclass(frozen=True, slots=True)
 class HeardLattice:
-    """A lattice, and the entities for which its numbered arcs stand."""
+    """A lattice, and the entities for which its numbered arcs stand.
+
+    ``tokens`` says which characters of the utterance lie between a place and the next one; it is empty where the
+    lattice has no such places.
+    """
 
     lattice: Lattice
     spans: tuple[Span, ...] = ()
+    tokens: tuple[tuple[int, int], ...] = ()
 
     def values(self, arcs: Sequence[int | None]) -> tuple[str | None, ...]:
         """Return the entity of each arc, None for an arc that stands for none."""
@@ -210,6 +215,7 @@ class _Everything:
         return HeardLattice(
             Lattice(_skipping(arcs, self._skipped(), len(self.tokens)), len(self.tokens)),
             tuple(self.spans),
+            tuple(self.tokens),
         )
 
     def _is_word(self, place: int) -> bool:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from annotations.language.requests.cutting import MOST_COMMANDS, Judge, cut_commands
+from annotations.language.requests.cutting import MOST_COMMANDS, Islands, Judge, Piece, cut, cut_at_joints
 from annotations.language.requests.qualifying import is_qualified, says_number
 from annotations.language.requests.request_kinds import OtherRequest, other_requests
 
 __all__ = [
     "MOST_COMMANDS",
+    "Islands",
     "Judge",
     "OtherRequest",
-    "cut_commands",
+    "Piece",
+    "cut",
+    "cut_at_joints",
     "is_qualified",
     "other_requests",
     "says_number",

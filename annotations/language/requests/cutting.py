@@ -1,16 +1,39 @@
 """Cut an utterance that holds several commands into its commands.
 
-A cut is tried wherever people join commands: at a sign, at "and then". Which joints lie between two commands and which
-inside one ("take the tea and bring it to me") only a parser can tell, so the caller judges the pieces. The cut is the
-best path over the joints, by dynamic programming.
+A grammar tells which parts of an utterance are commands: *islands*. Those that do not overlap, hold no end of a
+sentence, and cover most words are taken, the fewest of them. What lies between two of them is an announcement or a
+joint, whatever its wording ("my second wish is", "once that's done"), and is dropped, unless it may be a command
+itself: what names an entity or begins like a command is a piece of its own that was not understood.
+
+Where there is no grammar, only a parser can tell: a cut is tried at signs and at the joints of ``english``, and the
+parser judges the pieces (``cut_at_joints``).
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from bisect import bisect_left, bisect_right
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
 
-from annotations.language.english import JOINT_OPENINGS, JOINTS
+from annotations.language.english import (
+    ARTICLES,
+    BOUNDARIES,
+    COMMAND_NOUNS,
+    COURTESY_CLOSINGS,
+    COURTESY_OPENINGS,
+    DETERMINERS,
+    JOINT_OPENINGS,
+    JOINTS,
+    NO_COMMAND_WORDS,
+    NUMBERS,
+    PLACE_PREPOSITIONS,
+    SEQUENCE_WORDS,
+    TELLING_WORDS,
+)
+from annotations.language.requests.qualifying import Hold, holds_in
 
 MOST_COMMANDS = 3  # as many as a referee gives at once
 MOST_JOINTS = 16  # in an utterance, so at most 153 pieces; one with more is not cut
@@ -19,50 +42,367 @@ Judge = Callable[[Sequence[str]], Sequence[float | None]]
 """Returns for each piece how well it is understood as one command; None for one that is not."""
 
 
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A part of an utterance: its characters ``start`` to ``end``, and whether it is understood as one command."""
+
+    start: int
+    end: int
+    text: str
+    is_understood: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Islands:
+    """What a grammar finds in an utterance. Places are characters of it.
+
+    ``spans`` are what it derives as one command, ``names`` the entities that are named. ``beginnings`` are words
+    that its commands begin with, in lower case.
+    """
+
+    spans: frozenset[tuple[int, int]] = frozenset()
+    names: frozenset[tuple[int, int]] = frozenset()
+    beginnings: frozenset[str] = frozenset()
+
+    def union(self, other: Islands) -> Islands:
+        return Islands(
+            self.spans | other.spans,
+            self.names | other.names,
+            self.beginnings | other.beginnings,
+        )
+
+    def without(self, spans: Collection[tuple[int, int]]) -> Islands:
+        return replace(self, spans=self.spans.difference(spans))
+
+
+def cut(utterance: str, islands: Islands, judge: Judge | None = None) -> tuple[Piece, ...]:
+    """Return the commands of an utterance, in its order, and what may be one and is not understood.
+
+    What is forbidden, has a condition or is taken back is not understood, and neither is an utterance with a single
+    island, unless the rest only counts ("Command one: ..."): it may be said of something else.
+
+    Args:
+        islands: what the grammar finds.
+        judge: is asked about what the grammar does not derive; not about what is held back.
+    """
+    pieces = _Cut(utterance, islands, False).pieces(judge)
+    if all(each.is_understood for each in pieces):
+        return pieces
+    # People also end a sentence inside a command: "Go to the galley. Then find the cup and bring it to me."
+    across = _Cut(utterance, islands, True).pieces(judge)
+    return across if all(each.is_understood for each in across) else pieces
+
+
+_WORD = re.compile(r"\w+(?:['’-]\w+)*")
+_CONTRACTED = re.compile(r"(?<!^let)['’](?:s|re|ve|ll|d|m)$")
+_SENTENCE_END = re.compile(r"[.!?…](?=\s|$)|[;\n]")
+_SIGN = re.compile(r"[^\w\s'’]")
+_AROUND = " \t\n.,;:!?"
+
+
+class _Range(NamedTuple):
+    """Words ``first`` to ``last``, the latter not included. ``is_command``: an island."""
+
+    first: int
+    last: int
+    is_command: bool = False
+    is_held: bool = False
+
+
+class _Cut:
+    """One way to cut an utterance. Ranges are of its words."""
+
+    def __init__(self, utterance: str, islands: Islands, is_across: bool) -> None:
+        self.utterance = utterance
+        self.islands = islands
+        self.words = [match.span() for match in _WORD.finditer(utterance)]
+        # "Here's" counts as "here".
+        self.said = [
+            _CONTRACTED.sub("", utterance[slice(*word)].casefold()) for word in self.words
+        ]
+        self.is_across = is_across
+        self.places: dict[tuple[int, int], tuple[int, int]] = {}
+
+    def pieces(self, judge: Judge | None) -> tuple[Piece, ...]:
+        if not self.words:
+            return ()
+        held = self._held()
+        chosen = self._choose(held)
+        ranges = sorted([*chosen, *held])
+        ranges = sorted([*ranges, *self._unknown(ranges)])
+        ranges = self._joined(ranges)
+        if len(ranges) <= 1 and not self._is_counted(ranges):
+            ranges = [_Range(0, len(self.words), is_held=bool(held))]
+        return tuple(piece for each in ranges for piece in self._as_pieces(each, judge))
+
+    # Sentences and signs
+
+    @cached_property
+    def starts(self) -> list[int]:
+        return [start for start, _ in self.words]
+
+    @cached_property
+    def ends(self) -> list[int]:
+        """The words after which a sentence ends, none of them inside a name."""
+        places = [match.start() for match in _SENTENCE_END.finditer(self.utterance)]
+        inside = {
+            place
+            for start, end in self.islands.names
+            for place in places[bisect_left(places, start) : bisect_left(places, end)]
+        }
+        last = (bisect_left(self.starts, place) for place in places if place not in inside)
+        return sorted({each for each in last if 0 < each < len(self.words)} | {len(self.words)})
+
+    def _sentence(self, word: int) -> tuple[int, int]:
+        """Return the first word of the sentence of a word, and that of the next sentence."""
+        number = bisect_right(self.ends, word)
+        return (self.ends[number - 1] if number else 0), self.ends[number]
+
+    def _is_parted(self, word: int) -> bool:
+        """Whether a sign or a joint stands between a word and the one before."""
+        if word in (0, len(self.words)):
+            return True
+        between = self.utterance[self.words[word - 1][1] : self.words[word][0]]
+        return bool(_SIGN.search(between) or "\n" in between) or not _PARTING.isdisjoint(
+            self.said[word - 1 : word + 1]
+        )
+
+    # Islands
+
+    def _held(self) -> list[_Range]:
+        """Return what is held back: from the words that do so to the end of the sentence, or all of it."""
+        ranges: list[_Range] = []
+        for held in holds_in(self.utterance):
+            word = bisect_right(self.starts, held.start) - 1
+            first, last = self._sentence(word)
+            if held.hold is Hold.FORBIDDEN and self._is_parted(word):
+                first = word
+            if held.hold is Hold.TAKEN_BACK and first:
+                first, _ = self._sentence(first - 1)
+            ranges.append(_Range(first, last, is_held=True))
+        return _merged(ranges)
+
+    def _choose(self, held: Sequence[_Range]) -> list[_Range]:
+        """Return the islands that cover most words, and are fewest. Takes linear time in words and islands."""
+        ending: dict[int, list[tuple[int, int]]] = {}
+        for start, end in self.islands.spans:
+            first = bisect_left(self.starts, start)
+            last = bisect_left(self.starts, end)
+            if first < last and (self.is_across or not self._holds_end(first, last)):
+                self.places[first, last] = max(start, self.starts[first]), end
+                ending.setdefault(last, []).append((first, last))
+        blocked = [False] * len(self.words)
+        for each in held:
+            blocked[each.first : each.last] = [True] * (each.last - each.first)
+        free = 0  # the first word from which on none is blocked
+        best: list[tuple[int, int, tuple[int, int] | None]] = [(0, 0, None)]
+        for place in range(1, len(self.words) + 1):
+            if blocked[place - 1]:
+                free = place
+            options = [(best[place - 1][0], best[place - 1][1], None)]
+            for span in ending.get(place, ()):
+                if span[0] >= free:
+                    covered, fewer, _ = best[span[0]]
+                    options.append((covered + place - span[0], fewer - 1, span))
+            best.append(max(options, key=lambda each: (each[0], each[1])))
+        chosen: list[_Range] = []
+        place = len(self.words)
+        while place:
+            span = best[place][2]
+            if span:
+                chosen.append(_Range(*span, is_command=True))
+            place = span[0] if span else place - 1
+        return chosen[::-1]
+
+    def _holds_end(self, first: int, last: int) -> bool:
+        return self._sentence(first)[1] < last
+
+    # What lies between
+
+    def _unknown(self, ranges: Sequence[_Range]) -> Iterator[_Range]:
+        """Yield what lies between and may be a command, sentence by sentence."""
+        first = 0
+        for stop in (*ranges, _Range(len(self.words), len(self.words))):
+            while first < stop.first:
+                last = min(self._sentence(first)[1], stop.first)
+                if self._may_be_command(first, last):
+                    yield _Range(first, last)
+                first = last
+            first = stop.last
+
+    def _may_be_command(self, first: int, last: int) -> bool:
+        """Whether words between two islands say something that must not be passed over."""
+        start, end = self.words[first][0], self.words[last - 1][1]
+        if any(start < until and since < end for since, until in self.islands.names):
+            return True
+        said = self.said[first:last]
+        speaks_of_commands = not COMMAND_NOUNS.isdisjoint(said)
+        if not self._is_parted(last) and not speaks_of_commands:
+            # "He told me to": what follows is told, not asked for.
+            is_told = not TELLING_WORDS.isdisjoint(said) and said[-2:] != ["you", "to"]
+            if said[0] in _QUESTIONS or is_told:
+                return True
+        if not self._is_parted(first) and said[0] in _GOING_ON:
+            # "for my grandmother": it goes on with the island before.
+            follows = next((each for each in said[1:] if each not in _FUNCTION), None)
+            is_described = len(said) > 1 and said[1] in DETERMINERS
+            if follows and follows not in _COUNTING and (is_described or self._is_parted(last)):
+                return True
+        if speaks_of_commands:
+            return False
+        parts = [
+            place for place in range(first, last) if place == first or self._is_parted(place)
+        ]
+        return any(self._begins_command(place, last) for place in parts)
+
+    def _begins_command(self, first: int, last: int) -> bool:
+        """Whether words begin as a command does: by a word of the grammar, or "turn off the lights"."""
+        while first < last and self.said[first] in _FUNCTION:
+            if self.said[first] not in _BEFORE_COMMAND:
+                return False
+            first += 1
+        if first == last:
+            return False
+        rest = self.said[first + 1 : last]
+        if "you" in rest[:2]:
+            return False  # "let me tell you": nobody asks a robot to tell itself
+        if self.said[first] in self.islands.beginnings:
+            return any(each not in _FUNCTION | _COUNTING for each in rest)
+        if rest[:1] and rest[0] in BOUNDARIES:
+            rest = rest[1:]
+        has_object = rest[:1] and rest[0] in _DEFINITE and len(rest) > 1
+        return bool(has_object) and self._is_parted(last) and rest[1] not in _COUNTING
+
+    def _joined(self, ranges: Sequence[_Range]) -> list[_Range]:
+        """Join what is not understood with the island that it is part of: no sign or joint parts them."""
+        joined: list[_Range] = []
+        for each in ranges:
+            before = joined[-1] if joined else None
+            if (
+                before
+                and before.last == each.first
+                and not (before.is_command and each.is_command)
+                and (before.is_held and each.is_held or not self._is_parted(each.first))
+            ):
+                is_held = before.is_held or each.is_held
+                joined[-1] = _Range(before.first, each.last, is_held=is_held)
+            else:
+                joined.append(each)
+        return joined
+
+    def _is_counted(self, ranges: Sequence[_Range]) -> bool:
+        """Whether the one island is all that is said, but for words that count commands before it."""
+        if not (ranges and ranges[0].is_command and ranges[0].last == len(self.words)):
+            return False
+        before = self.said[: ranges[0].first]
+        is_plain = all(each in _FUNCTION | _COUNTING or each.isdecimal() for each in before)
+        return is_plain and (
+            not before or any(each in _COUNTING or each.isdecimal() for each in before)
+        )
+
+    # Pieces
+
+    def _as_pieces(self, words: _Range, judge: Judge | None) -> Iterator[Piece]:
+        if words.is_command:
+            start, end = self.places[words.first, words.last]
+            yield self._piece(start, end, True)
+            return
+        start, end = self.words[words.first][0], self.words[words.last - 1][1]
+        if words.is_held:
+            yield self._piece(start, end, False)
+            return
+        found = cut_at_joints(self.utterance[start:end], judge)
+        for each in found:
+            yield self._piece(start + each.start, start + each.end, each.is_understood)
+
+    def _piece(self, start: int, end: int, is_understood: bool) -> Piece:
+        end -= len(self.utterance[start:end]) - len(self.utterance[start:end].rstrip(_AROUND))
+        return Piece(start, end, self.utterance[start:end], is_understood)
+
+
+def _merged(ranges: Iterable[_Range]) -> list[_Range]:
+    """Return ranges that are held back, those that overlap as one."""
+    merged: list[_Range] = []
+    for each in sorted(ranges):
+        if merged and each.first < merged[-1].last:
+            each = each._replace(first=merged[-1].first, last=max(each.last, merged.pop().last))
+        merged.append(each)
+    return merged
+
+
+def _words_of(phrases: Iterable[str]) -> frozenset[str]:
+    return frozenset(word for phrase in phrases for word in phrase.split())
+
+
+_ONE_WORD = frozenset(each for each in JOINTS if " " not in each)
+_PARTING = _ONE_WORD.difference(SEQUENCE_WORDS) | {"but", "or"}
+_COUNTING = COMMAND_NOUNS | SEQUENCE_WORDS | frozenset(NUMBERS)
+# What may stand before the verb of a command.
+_BEFORE_COMMAND = _words_of((*COURTESY_OPENINGS, *COURTESY_CLOSINGS, *JOINTS)) | {"but", "to"}
+_FUNCTION = (
+    (BOUNDARIES | DETERMINERS | NO_COMMAND_WORDS | _BEFORE_COMMAND)
+    - COMMAND_NOUNS
+    - {"finished", "go", "do"}
+) | {"do", "be", "been", "only", "just"}
+_QUESTIONS = NO_COMMAND_WORDS & {"did", "does", "has", "is", "are"}
+_GOING_ON = PLACE_PREPOSITIONS | {"for", "with", "without", "of", "about", "that", "which", "who"}
+_DEFINITE = DETERMINERS - (ARTICLES - {"the"}) - {"this", "that", "any"}
+
+
+# Without a grammar
+
+
 def _phrases(phrases: Iterable[str]) -> str:
     return "|".join(re.escape(each) for each in sorted(phrases, key=len, reverse=True))
 
 
 # Possessive, and only from where blanks or signs begin: linear for every text.
-_SIGN = r"(?<![\s.;:,!?])\s*+[.;:,!?]++\s++"
+_SIGNS = r"(?<![\s.;:,!?])\s*+[.;:,!?]++\s++"
 _WORDS = rf"(?:(?:{_phrases(JOINTS)})\b(?:,?\s++))"
 _NUMBER = r"(?:\(?[1-9][.)]\s++)"
 _JOINT = re.compile(
-    rf"(?:{_SIGN}(?:{_WORDS}|{_NUMBER})*+|(?<!\s)\s++(?:{_WORDS}|{_NUMBER})++)", re.IGNORECASE
+    rf"(?:{_SIGNS}(?:{_WORDS}|{_NUMBER})*+|(?<!\s)\s++(?:{_WORDS}|{_NUMBER})++)", re.IGNORECASE
 )
 _OPENING = re.compile(
     rf"\s*+(?:(?:{_phrases((*JOINT_OPENINGS, *JOINTS))})\b[\s,:.]*+|{_NUMBER})++", re.IGNORECASE
 )
-_SIGNS = " .,;:!?"  # of the end of a command
+_CLOSING = re.compile(rf"(?:\s++(?:{_phrases(_PARTING)}))++[\s.,;:!?]*+\Z", re.IGNORECASE)
 
 
-def cut_commands(utterance: str, judge: Judge, most: int = MOST_COMMANDS) -> tuple[str, ...]:
-    """Return the commands of an utterance, in its order.
+def cut_at_joints(
+    utterance: str, judge: Judge | None, most: int = MOST_COMMANDS
+) -> tuple[Piece, ...]:
+    """Return the commands of an utterance by a parser alone, as a world without a grammar has it.
 
     An utterance that ``judge`` understands as it is, is one command. Of the cuts all of whose pieces are understood,
     the one with the fewest counts, and of these the one with the highest sum. Where there is none, the utterance
-    comes back whole.
+    comes back as one piece that is not understood, without what joins it to others.
     """
-    [whole] = judge([utterance])
-    if whole is not None:
-        return (utterance,)
     opening = _OPENING.match(utterance)
     starts, ends = [opening.end() if opening else 0], []
     for joint in _JOINT.finditer(utterance, starts[0]):
         ends.append(joint.start())
         starts.append(joint.end())
     ends.append(len(utterance))
+    closing = _CLOSING.search(utterance, starts[0])
+    last = closing.start() if closing else len(utterance)
+    whole = Piece(starts[0], last, utterance[starts[0] : last].rstrip(_AROUND), False)
+    if judge is None:
+        return (replace(whole, end=whole.start + len(whole.text)),)
+    [score] = judge([utterance])
+    if score is not None:
+        return (Piece(0, len(utterance), utterance, True),)
     if len(ends) > MOST_JOINTS + 1:
-        return (utterance,)
+        return (whole,)
     places = [(first, last) for first in range(len(starts)) for last in range(first, len(ends))]
     pieces = {
-        (first, last): utterance[starts[first] : ends[last]].rstrip(_SIGNS)
+        (first, last): Piece(starts[first], starts[first] + len(text), text, True)
         for first, last in places
-        if starts[first] < ends[last]
+        if (text := utterance[starts[first] : ends[last]].rstrip(_AROUND))
     }
-    scores = dict(zip(pieces, judge(list(pieces.values())), strict=True))
-    best = _best_path(scores, len(ends), most)
-    return tuple(pieces[place] for place in best) or (utterance,)
+    judged = judge([each.text for each in pieces.values()])
+    best = _best_path(dict(zip(pieces, judged, strict=True)), len(ends), most)
+    return tuple(pieces[place] for place in best) or (whole,)
 
 
 def _best_path(

@@ -25,6 +25,7 @@ from annotations.language.grammar import (
     Lattice,
     RuleBook,
     Run,
+    TooManyCombinations,
     intact,
 )
 from annotations.language.symbols import Text, Wildcard
@@ -79,6 +80,27 @@ class TemplateChart:
         """The words and class tokens of all commands."""
         return frozenset().union(*(each.vocabulary for each in self._sets))
 
+    @cached_property
+    def beginnings(self) -> frozenset[str]:
+        """The words that commands begin with; none of a template that can begin with too many."""
+        return frozenset().union(*(each.beginnings for each in self._sets))
+
+    def spans(self, lattice: Lattice, budget: Budget | None = None) -> frozenset[tuple[int, int]]:
+        """Return the places (start, end) between which a path is derived by some template.
+
+        No form is made. So a span counts too whose words disagree about a nonterminal that stands twice;
+        ``parse`` tells. Where the budget is spent, these are the spans that were found until then.
+        """
+        budget = budget or Budget()
+        spans: set[tuple[int, int]] = set()
+        try:
+            for chart in self._sets:
+                for span in chart.spans(lattice, budget):
+                    spans.add(span)
+        except TooManyCombinations:
+            pass
+        return frozenset(spans)
+
     def parse(self, command: str | Lattice, budget: Budget | None = None) -> list[ChartDerivation]:
         """Return derivations of a command, given as words between spaces or as a lattice; the best one is first.
 
@@ -128,6 +150,19 @@ class _TemplateSet:
             if isinstance(item, Run)
             for word in item.words
         )
+
+    @property
+    def beginnings(self) -> frozenset[str]:
+        rules = (self.book.rules[root.number] for _, root in self.roots)
+        return frozenset().union(*(each.first or () for each in rules))
+
+    def spans(self, lattice: Lattice, budget: Budget) -> Iterator[tuple[int, int]]:
+        chart = Chart(self.book, lattice, budget)
+        for start in range(lattice.end):
+            for _, root in self.roots:
+                for end in chart.ends(root.number, start):
+                    if start < end:
+                        yield start, end
 
     def parse(self, lattice: Lattice, budget: Budget) -> Iterator[ChartDerivation]:
         forest = _Forest(self, lattice, budget)
