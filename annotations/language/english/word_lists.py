@@ -214,6 +214,23 @@ ASKING_PHRASES = _other_requests.words("asking")
 POLITE_BEFORE_IF = _other_requests.words("polite_before_if")
 
 
+_hearing = WordFile("hearing")
+SOUNDS = _hearing.words("sounds")
+FILLERS = _hearing.words("fillers")
+REPAIRS = _hearing.words("repairs")
+HEARD_OPENINGS = _hearing.words("openings")
+HEARD_CLOSINGS = _hearing.words("closings")
+HEARD_ANYWHERE = _hearing.words("anywhere")
+CALLS = _hearing.words("calls")
+CONTRACTIONS = _hearing.texts_by_name("contractions")
+OPEN_WORDS = frozenset(_hearing.words("open_words"))
+KEPT_WORDS = frozenset(_hearing.words("kept"))
+POSSESSIVES = frozenset(_hearing.words("possessives"))
+ALIKE = _hearing.groups("alike")
+AGREEING = _hearing.groups("agreeing")
+SYNONYMS = _hearing.groups("synonyms")
+
+
 @cache
 def sample_commands() -> tuple[tuple[str, str], ...]:
     """Return commands with their forms, both with numbered class tokens."""

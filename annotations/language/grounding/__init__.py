@@ -17,6 +17,7 @@ from annotations.language.grounding.deanonymizer import (
 )
 from annotations.language.grounding.drawing import may_fill
 from annotations.language.grounding.grounding import Grounded, ground
+from annotations.language.grounding.hearing import HearingReader
 from annotations.language.grounding.questions import (
     choices_of,
     named_entities,
@@ -26,7 +27,11 @@ from annotations.language.grounding.questions import (
 )
 from annotations.language.grounding.role_evidence import Evidence
 from annotations.language.grounding.roles import SlotPath
-from annotations.language.grounding.utterance_lattice import HeardLattice, UtteranceReader
+from annotations.language.grounding.utterance_lattice import (
+    HeardChange,
+    HeardLattice,
+    UtteranceReader,
+)
 from annotations.language.grounding.utterance_mentions import UtteranceMentions
 
 __all__ = [
@@ -37,7 +42,9 @@ __all__ = [
     "Evidence",
     "FormSlots",
     "Grounded",
+    "HeardChange",
     "HeardLattice",
+    "HearingReader",
     "Slot",
     "SlotPath",
     "Span",

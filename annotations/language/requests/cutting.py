@@ -117,9 +117,7 @@ class _Cut:
         self.islands = islands
         self.words = [match.span() for match in _WORD.finditer(utterance)]
         # "Here's" counts as "here".
-        self.said = [
-            _CONTRACTED.sub("", utterance[slice(*word)].casefold()) for word in self.words
-        ]
+        self.said = [_CONTRACTED.sub("", utterance[slice(*word)].casefold()) for word in self.words]
         self.is_across = is_across
         self.places: dict[tuple[int, int], tuple[int, int]] = {}
 
@@ -250,9 +248,7 @@ class _Cut:
                 return True
         if speaks_of_commands:
             return False
-        parts = [
-            place for place in range(first, last) if place == first or self._is_parted(place)
-        ]
+        parts = [place for place in range(first, last) if place == first or self._is_parted(place)]
         return any(self._begins_command(place, last) for place in parts)
 
     def _begins_command(self, first: int, last: int) -> bool:
@@ -282,7 +278,7 @@ class _Cut:
                 before
                 and before.last == each.first
                 and not (before.is_command and each.is_command)
-                and (before.is_held and each.is_held or not self._is_parted(each.first))
+                and ((before.is_held and each.is_held) or not self._is_parted(each.first))
             ):
                 is_held = before.is_held or each.is_held
                 joined[-1] = _Range(before.first, each.last, is_held=is_held)

@@ -7,7 +7,7 @@ from functools import cache
 
 from spellchecker import SpellChecker
 
-from annotations.language.paraphrases.word_folding import folded_words
+from annotations.language.english.word_folding import folded_words
 
 _LONGEST_MENDED = 20  # letters of a word for which corrections are looked for
 
