@@ -12,13 +12,14 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from http import HTTPStatus
-from math import log
-from typing import Any
+from math import log, prod
+from typing import TYPE_CHECKING, Any, cast
 
 from annotations.language.dialogue import shall_i
 from annotations.language.errors import Refusal
-from annotations.language.forms import equivalent
+from annotations.language.forms import SEQUENCE, Application, Form, canonical_text, equivalent
 from annotations.language.grounding import Anonymized
+from annotations.language.recipes import MOST_COMMANDS, join, spoken
 from parser_service.analysis.sureness import (
     AnsweredForm,
     AnsweringPart,
@@ -26,10 +27,12 @@ from parser_service.analysis.sureness import (
     Evidence,
     in_words,
 )
-from parser_service.parsers.interface import UNKNOWN, Candidate, ScoreKind
+from parser_service.parsers.interface import UNKNOWN, Candidate, Parser, ScoreKind
+from parser_service.parsers.several import pieces_of
 from parser_service.serving.answer_writing import AnswerWriter
 from parser_service.serving.batching import Batcher
 from parser_service.serving.calibrating import Calibrated
+from parser_service.serving.joint_answers import understood
 from parser_service.serving.parse_answers import (
     ParsedUtterance,
     Reading,
@@ -40,9 +43,13 @@ from parser_service.serving.parse_answers import (
 )
 from parser_service.serving.remote import RemoteAsker, Unanswered
 
+if TYPE_CHECKING:
+    from parser_service.parsers.oracle import GrammarOracle
+
 USUAL_BEAM = 5
 LINES_TOGETHER = 32  # of a request of many lines
 NOT_UNDERSTOOD = "I did not understand that."
+_CAREFUL = (Decision.REFUSE, Decision.ASK, Decision.CONFIRM, Decision.ACT)
 LEAST_LOG = -700.0  # of a probability that is 0
 
 
@@ -67,6 +74,7 @@ class LoadedParser:
     size: int
     batcher: Batcher | RemoteAsker
     lines_together: int = LINES_TOGETHER
+    parser: Parser | None = None
 
     def ask(self, texts: Sequence[str], beam: int) -> list[list[Candidate]]:
         """Return the candidates of each text. Raises NotServed where it asks a server that does not answer in time."""
@@ -79,20 +87,30 @@ class LoadedParser:
 @dataclass(frozen=True, slots=True)
 class PartAnswer:
     """What one part answered to an utterance: ``text`` is what it was given. ``agrees`` says whether the other part
-    gives the same form; None where that was not asked or is silent."""
+    gives the same form; None where that was not asked or is silent. ``pieces`` are the answers to the commands of an
+    utterance that holds several."""
 
     utterance: str
     text: str
     part: LoadedParser | None = None
     candidates: Sequence[Candidate] = ()
     agrees: bool | None = None
+    pieces: tuple[PartAnswer, ...] = ()
+
+    def said_in(self, utterance: str) -> PartAnswer:
+        """Return the same as the answer to an utterance that has this one inside."""
+        return replace(self, utterance=utterance)
 
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """One answer of a world: the readings of its candidates, best first, how sure it is, and what to do with it."""
+    """One answer of a world: the readings of its candidates, best first, how sure it is, and what to do with it.
+
+    ``several`` are the answers to the commands of an utterance that holds more than one.
+    """
 
     given: PartAnswer
+    several: tuple[Answer, ...]
     heard: Anonymized
     readings: Sequence[Reading[str]]
     about: AnsweredForm
@@ -147,15 +165,48 @@ class Answerer:
     def ask(self, utterances: Sequence[str], beam: int) -> list[PartAnswer]:
         """Return what the parts answer to each utterance. Raises NotServed where one asks a server that does not
         answer in time."""
-        answers = [self._ask_oracle(each, beam) for each in utterances]
-        if self.learned is None:
-            return answers
+        answers = [self._cut(each, beam) for each in self._ask_oracle(utterances, beam)]
+        return self._ask_learned(answers, beam)
+
+    def _ask_oracle(self, utterances: Sequence[str], beam: int) -> list[PartAnswer]:
+        if self.oracle is None:
+            return [PartAnswer(each, each, self.learned) for each in utterances]
+        # Each alone: one takes milliseconds, and others may ask in between.
+        return [
+            PartAnswer(each, each, self.oracle, self.oracle.ask([each], beam)[0])
+            for each in utterances
+        ]
+
+    def _ask_learned(self, answers: list[PartAnswer], beam: int) -> list[PartAnswer]:
+        """Return the answers with what the learned part says where the oracle leaves a doubt."""
         unsure = [at for at, each in enumerate(answers) if not _is_settled(each)]
-        texts = [answers[at].utterance for at in unsure]
-        learned = self.learned.ask(texts, beam) if texts else []
-        for at, text, candidates in zip(unsure, texts, learned, strict=True):
-            answers[at] = self._join(answers[at], text, candidates)
-        return answers
+        if self.learned is None or not unsure:
+            return answers
+        texts = [answers[at].text for at in unsure]
+        found = dict(zip(unsure, self.learned.ask(texts, beam), strict=True))
+        return [
+            self._join(each, found[at]) if at in found else each for at, each in enumerate(answers)
+        ]
+
+    def _cut(self, given: PartAnswer, beam: int) -> PartAnswer:
+        """Return the answer with one for each command, where the oracle is silent and the utterance holds several."""
+        if given.candidates or not given.utterance.strip():
+            return given
+        oracle = self.oracle.parser if self.oracle else None
+        judge = self._judge if self.learned else None
+        pieces = pieces_of(given.utterance, cast("GrammarOracle | None", oracle), judge)
+        texts = [each.text for each in pieces]
+        if len(texts) < 2:
+            text = texts[0] if texts else given.text
+            return self._ask_oracle([text], beam)[0].said_in(given.utterance)
+        alone = self._ask_learned(self._ask_oracle(texts, beam), beam)
+        return replace(given, pieces=tuple(alone))
+
+    def _judge(self, texts: Sequence[str]) -> list[float | None]:
+        """Return how well the learned part understands each text as one command; None for one that it does not."""
+        assert self.learned is not None
+        best = [next(iter(each), None) for each in self.learned.ask(texts, 1)]
+        return [None if each is None or each.form == UNKNOWN else each.score for each in best]
 
     def heard_nothing(self) -> PartAnswer:
         """Return what there is to write where nothing was said: no candidate, without asking any part."""
@@ -170,6 +221,8 @@ class Answerer:
 
     def judge(self, given: PartAnswer) -> Answer:
         """Return an answer with how sure it is."""
+        if given.pieces:
+            return self._judge_several(given)
         heard = self.writer.language.anonymizer.anonymize(given.text)
         score_kind = given.part.score_kind if given.part else ""
         readings = self.writer.readings(heard, given.candidates, score_kind)
@@ -178,7 +231,33 @@ class Answerer:
         if about.evidence is not None:
             probability = self.calibrated.calibration.probability(about.evidence)
         decision = about.decision(probability, self.calibrated.point, self.calibrated.has_people)
-        return Answer(given, heard, readings, about, probability, decision)
+        return Answer(given, (), heard, readings, about, probability, decision)
+
+    def _judge_several(self, given: PartAnswer) -> Answer:
+        """Return the answer to several commands: as sure as all of them together, and as the least sure one decides.
+
+        Where all are understood, the one candidate does one after the other.
+        """
+        several = tuple(map(self.judge, given.pieces))
+        heard = self.writer.language.anonymizer.anonymize(given.utterance)
+        probabilities = [each.probability or 0.0 for each in several]
+        probability, readings, about = None, [], AnsweredForm()
+        if not any(each.is_unknown for each in several):
+            candidate = _sequence([each.readings[0] for each in several])
+            readings = self.writer.readings(heard, [candidate], "")
+            probability = prod(probabilities)
+            least = min(several, key=lambda each: each.probability or 0.0).about
+            about = replace(
+                least,
+                form=candidate.form,
+                open_slots=any(each.about.open_slots for each in several),
+                ambiguous=any(each.about.ambiguous for each in several),
+            )
+        decisions = {each.decision for each in several}
+        decision = next(each for each in _CAREFUL if each in decisions)
+        if decision is Decision.REFUSE:
+            decision = Decision.ASK  # the others can be done
+        return Answer(given, several, heard, readings, about, probability, decision)
 
     def write(self, given: PartAnswer) -> str:
         """Return an answer as JSON, with who gave it (docs/reference/parse-server.md)."""
@@ -191,7 +270,7 @@ class Answerer:
         parse = ParsedUtterance(said, given.text, (), warnings, is_cut_in(given.candidates))
         part = given.part
         first = json.loads(answer.readings[0].answer) if answer.readings else {}
-        spoken = self._spoken(answer, first)
+        said_by = self._spoken(answer, first)
         head: dict[str, Any] = {
             "world": self.world,
             "run": part.run if part else None,
@@ -204,29 +283,26 @@ class Answerer:
             "probability": answer.probability and round(answer.probability, 4),
             "decision": answer.decision,
             "sureness": in_words(answer.decision, answer.probability),
-            "spoken": spoken,
+            "spoken": said_by,
             "reasons": [],
             "nearest": [],
             "several": [],
             "joint_plan": None,
         }
+        if answer.several:
+            head |= self._together(answer)
+            said_by = head["spoken"]
         del head["candidates"]
         written = [each.answer for each in answer.readings]
         if first.get("task_plan"):
-            written[0] = as_json(first | {"spoken": spoken})
+            written[0] = as_json(first | {"spoken": said_by})
         return f'{as_json(head)[:-1]}, "candidates": [{", ".join(written)}]}}'
 
-    def _ask_oracle(self, utterance: str, beam: int) -> PartAnswer:
-        if self.oracle is None:
-            return PartAnswer(utterance, utterance, self.learned)
-        [candidates] = self.oracle.ask([utterance], beam)
-        return PartAnswer(utterance, utterance, self.oracle, candidates)
-
-    def _join(self, by_oracle: PartAnswer, text: str, learned: Sequence[Candidate]) -> PartAnswer:
+    def _join(self, by_oracle: PartAnswer, learned: Sequence[Candidate]) -> PartAnswer:
         """Return what both parts say together: the oracle's readings where it has some, the likeliest of equally good
         ones first, else the learned answers."""
         if not by_oracle.candidates:
-            return PartAnswer(by_oracle.utterance, text, self.learned, learned)
+            return replace(by_oracle, part=self.learned, candidates=learned)
         best = [each for each in learned[:1] if each.form != UNKNOWN]
         if not best:
             return by_oracle
@@ -257,6 +333,20 @@ class Answerer:
         is_open = any(slot.value is None for slot in best.slots or ())
         return AnsweredForm(best.candidate.form, evidence, open_slots=is_open)
 
+    def _together(self, answer: Answer) -> dict[str, Any]:
+        """Return what is said of several commands: the answer to each, and one plan of all."""
+        several = [json.loads(self.write(each)) for each in answer.given.pieces]
+        language = self.writer.language
+        plans = [understood(each, language).task_plan for each in several]
+        joint = join(plans, language.recipes) if len(plans) <= MOST_COMMANDS else None
+        questions = [each["spoken"] for each in several if each["decision"] != Decision.ACT]
+        said = next(iter(questions), spoken(joint.plan) if joint else "")
+        return {
+            "several": several,
+            "joint_plan": joint.as_json() if joint else None,
+            "spoken": said,
+        }
+
     def _spoken(self, answer: Answer, first: dict[str, Any]) -> str:
         """Return what the robot says by the decision. ``first`` is the JSON of the best candidate."""
         match answer.decision:
@@ -272,9 +362,24 @@ class Answerer:
 
 
 def _is_settled(answer: PartAnswer) -> bool:
-    """Return whether the oracle understood an utterance as it is written, in one way."""
+    """Return whether the oracle understood an utterance as it is written, in one way, or its commands were answered."""
+    if answer.pieces or not answer.text.strip():
+        return True
     scores = [each.score for each in answer.candidates]
     return bool(scores) and scores[0] == 0 and scores.count(0) == 1
+
+
+def _sequence(readings: Sequence[Reading[str]]) -> Candidate:
+    """Return the candidate that does what several say, one after the other."""
+    steps: list[Form] = []
+    values: list[str | None] = []
+    for reading in readings:
+        form = form_of(reading.candidate.form)
+        assert form is not None
+        is_sequence = isinstance(form, Application) and form.predicate == SEQUENCE
+        steps += form.arguments if is_sequence else (form,)
+        values += [slot.filler for slot in reading.slots or () if slot.entity_class]
+    return Candidate(canonical_text(Application(SEQUENCE, tuple(steps))), 0.0, values=tuple(values))
 
 
 def _is_same(one: Candidate, other: Candidate) -> bool:

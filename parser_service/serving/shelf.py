@@ -425,6 +425,7 @@ class Shelf:
             if parser.asks_a_server
             else Batcher(parser.predict, self._turn, self.metrics.batches.observe),
             lines_together=TOGETHER if parser.asks_a_server else LINES_TOGETHER,
+            parser=parser,
         )
 
 
