@@ -21,7 +21,11 @@ from parser_service.parsers.registry import untrained
 from parser_service.serving.answerer import USUAL_BEAM, Answerer, NotServed
 from parser_service.serving.lines import answer_lines, read_object
 from parser_service.serving.parse_answers import as_json
-from parser_service.serving.preparing import require_beam, require_utterance
+from parser_service.serving.preparing import (
+    MOST_ALTERNATIVES,
+    require_beam,
+    require_utterance,
+)
 from parser_service.serving.shelf import Shelf
 
 logger = logging.getLogger(__name__)
@@ -91,10 +95,10 @@ class ParseApplication:
         began = time.perf_counter()
         try:
             asked = read_object(body)
-            utterance = require_utterance(asked.get("utterance"))
+            utterances = _utterances(asked)
             beam = require_beam(asked.get("beam", USUAL_BEAM))
             answerer = self._find(world, asked.get("run"), asked.get("parser", ""))
-            (answer,) = answerer.parse([utterance], beam)
+            answer = answerer.write(answerer.ask_best(utterances, beam))
         except NotServed as error:
             self._count(world if error.status != 404 else "", error.status)
             raise
@@ -143,6 +147,20 @@ class ParseApplication:
 
     def _count(self, world: str, status: int) -> None:
         self._shelf.metrics.requests.labels(world=world, status=str(status)).inc()
+
+
+def _utterances(asked: dict[str, Any]) -> list[tuple[str, float]]:
+    """Return the utterance of a request, or the alternatives of a recogniser, each with its score. Raises Refusal."""
+    alternatives = asked.get("alternatives")
+    if not alternatives:
+        return [(require_utterance(asked.get("utterance")), 0.0)]
+    try:
+        offered = [(each["utterance"], float(each["score"])) for each in alternatives]
+    except (KeyError, TypeError, ValueError) as error:
+        raise Refusal(
+            "alternatives have to be objects with an utterance and a score.", "bad_alternatives"
+        ) from error
+    return [(require_utterance(text), score) for text, score in offered[:MOST_ALTERNATIVES]]
 
 
 def _encode(text: str) -> bytes:

@@ -6,7 +6,7 @@ import json
 import math
 import select
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 from http import HTTPStatus
@@ -60,12 +60,16 @@ class ParserClient:
         beam: int = 5,
         run: int | None = None,
         parser: str = "",
+        alternatives: Sequence[Mapping[str, Any]] = (),
     ) -> dict[str, Any]:
         """Return the answer of ``world`` (docs/reference/parse-server.md), or that of ``run`` or ``parser`` alone.
 
-        Raises ParserRefused where there is no such world or run, or nothing answers there.
+        Where a recogniser gives ``alternatives``, each with ``utterance`` and ``score``, the best that is understood is
+        answered. Raises ParserRefused where there is no such world or run, or nothing answers there.
         """
-        body = {"utterance": utterance, "beam": beam, "run": run, "parser": parser}
+        body: dict[str, Any] = {"utterance": utterance, "beam": beam, "run": run, "parser": parser}
+        if alternatives:
+            body["alternatives"] = list(alternatives)
         with closing(self._connect()) as connection:
             path = f"/api/v1/worlds/{world}/parse/"
             response = self._ask(connection, "POST", path, json.dumps(body).encode())

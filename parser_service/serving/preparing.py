@@ -25,6 +25,7 @@ from annotations.rows.from_rows import ontology_of, predicates_of, recipe_book_o
 from parser_service.robots.action_naming import names_of
 
 MOST_CANDIDATES = 20
+MOST_ALTERNATIVES = 20  # of a recogniser
 # What the grammar tells about which words of an utterance go where:
 MOST_OF_A_TEMPLATE = 40  # commands; more of one template say nothing new
 MOST_COMMANDS = 4_000
