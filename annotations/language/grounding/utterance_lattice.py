@@ -72,15 +72,19 @@ class HeardChange:
 
 @dataclass(frozen=True, slots=True)
 class HeardLattice:
-    """A lattice, the entities for which its numbered arcs stand, and what its arcs change."""
+    """A lattice, the entities for which its numbered arcs stand, and what its arcs change.
+
+    The changes numbered ``always`` are those of every path.
+    """
 
     lattice: Lattice
     spans: tuple[Span, ...] = ()
     changes: tuple[HeardChange, ...] = ()
+    always: tuple[int, ...] = ()
 
     def heard(self, changes: Sequence[int]) -> tuple[HeardChange, ...]:
         """Return what a derivation changes, in the order of the utterance."""
-        made = {self.changes[number] for number in changes}
+        made = {self.changes[number] for number in (*self.always, *changes)}
         return tuple(sorted(made, key=lambda each: (each.start, each.end, each.kind, each.heard)))
 
     def values(self, arcs: Sequence[int | None]) -> tuple[str | None, ...]:

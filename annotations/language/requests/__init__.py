@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from annotations.language.requests.alternatives import best_alternative
 from annotations.language.requests.cutting import MOST_COMMANDS, Judge, cut_commands
 from annotations.language.requests.qualifying import is_qualified, says_number
 from annotations.language.requests.request_kinds import OtherRequest, other_requests
@@ -10,6 +11,7 @@ __all__ = [
     "MOST_COMMANDS",
     "Judge",
     "OtherRequest",
+    "best_alternative",
     "cut_commands",
     "is_qualified",
     "other_requests",
