@@ -57,7 +57,8 @@ class GrammarOracle(Parser):
 
     It is right on every generated command by construction and has no answer for what is no command. An
     utterance is read as it is, then with its entities as class tokens, then in every way that
-    ``UtteranceReader`` knows, and last through the noise of recognisers (``HearingReader``); the first of these that the grammar derives counts. It learns nothing from
+    ``UtteranceReader`` knows, and last through the noise of recognisers and hurried people (``HearingReader``); the
+    first of these that the grammar derives counts. It learns nothing from
     pairs: it consists of the annotated grammar and the ontology of ``Knowledge``, and saves a copy of both.
     """
 

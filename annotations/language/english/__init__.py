@@ -9,8 +9,8 @@ from annotations.language.english.inflection import (
     say_count,
     spellings,
 )
-from annotations.language.english.known_words import KnownWords
-from annotations.language.english.near_words import Near, NearWords, is_english, sounds_like
+from annotations.language.english.known_words import KnownWords, is_common
+from annotations.language.english.near_words import Near, NearWords, sounds_like
 from annotations.language.english.stand_ins import (
     MOST_STAND_INS,
     STAND_IN,
@@ -198,7 +198,7 @@ __all__ = [
     "RequestGroup",
     "article",
     "folded_words",
-    "is_english",
+    "is_common",
     "looks_plural",
     "other_request_groups",
     "plural",

@@ -18,7 +18,7 @@ from jellyfish import metaphone
 from rapidfuzz.distance import OSA
 from rapidfuzz.process import extract
 
-from annotations.language.english.known_words import KnownWords
+from annotations.language.english.known_words import is_common
 from annotations.language.english.word_lists import (
     AGREEING,
     ALIKE,
@@ -43,11 +43,45 @@ _MOST_NEAR = 8  # words that one word may be
 _REMEMBERED = 8_192  # words of which a vocabulary remembers what they may be
 
 _VOWELS = re.compile(r"[aeiou][aeiouyw]*|(?<=.)y[aeiouyw]*")
-# The sounds that letters stand for; the first letter decides where a group is not here.
+# The sounds that letters stand for; small letters are long vowels. Otherwise the first letter decides.
 _SOUNDS_OF = {
-    "a": "A", "e": "E", "i": "I", "o": "O", "u": "O", "y": "I", "ea": "IE", "ee": "I", "ie": "I", "ei": "IA", "ey": "IA",
-    "au": "OA", "aw": "OA", "ew": "O", "eu": "O", "ui": "OI", "eo": "IE",
-}  # fmt: skip
+    **{
+        "a": "A",
+        "e": "E",
+        "i": "I",
+        "o": "O",
+        "u": "U",
+        "y": "Ii",
+        "ea": "IiE",
+        "ee": "Ii",
+        "ie": "Ii",
+    },
+    **{
+        "ei": "IiAa",
+        "ey": "IiAa",
+        "ai": "Aa",
+        "ay": "Aa",
+        "au": "OoAa",
+        "aw": "OoAa",
+        "ew": "Uu",
+        "eu": "Uu",
+    },
+    **{
+        "ui": "UuI",
+        "eo": "IiE",
+        "oo": "OoUu",
+        "ou": "OoUu",
+        "ow": "OoUu",
+        "oa": "Oo",
+        "yi": "Ii",
+        "yo": "IiOo",
+    },
+}
+_SILENT, _LONG = re.compile("[aeiouy][^aeiouy]{1,2}e$"), re.compile("[aeiouy][^aeiouy]e$")
+_PAST = re.compile("[aeiouy].*[^aeioutd]ed$")
+# Letters of consonants that Metaphone does not tell apart, though speakers do.
+_DENTALS = re.compile("t(?!c?h)|d(?!g)")
+_PAIRS = ("g", "ckq"), ("v", "fp")
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +135,7 @@ class NearWords:
             if near := _by_letters(said, word, int(edits), most):
                 found.setdefault(word, near)
         found.pop(said, None)
-        if is_english(said):
+        if is_common(said):
             for word in _FUNCTION_WORDS.difference(each.word for each in alike):
                 found.pop(word, None)
         nearest = sorted(found.values(), key=lambda each: (each.cost, each.word))
@@ -111,7 +145,7 @@ class NearWords:
 def _by_sound(said: str, word: str) -> Near | None:
     if OSA.distance(said, word) > min(MOST_EDITS, max(len(said), len(word)) // 2):
         return None
-    more = OF_A_WORD if is_english(said) else 0
+    more = OF_A_WORD if is_common(said) else 0
     if sounds_like(said, word):
         return Near(word, "sound", SAME_SOUND + more)
     return Near(word, "sound", SAME_SOUND + more + LOOSE, not more)
@@ -126,16 +160,16 @@ def _by_letters(said: str, word: str, edits: int, most: int) -> Near | None:
         return Near(word, "spelling", cost) if _is_swapped(said, word) else None
     if edits > most or (said[0] != word[0] and min(len(said), len(word)) <= _SHORT):
         return None
-    if is_english(said):
+    if is_common(said):
         cost += OF_A_WORD
-        if is_english(word):
+        if is_common(word):
             return Near(word, "sound", cost + LOOSE, False)
     return Near(word, "spelling", cost)
 
 
 def _is_swapped(said: str, word: str) -> bool:
     """Whether two letters of a short word that is none changed places: "teh"."""
-    return sorted(said) == sorted(word) and not is_english(said)
+    return sorted(said) == sorted(word) and not is_common(said)
 
 
 def _most_edits(said: str) -> int:
@@ -156,22 +190,30 @@ def consonants(word: str) -> str:
 @lru_cache(_REMEMBERED)
 def _vowels(word: str) -> tuple[str, ...]:
     """Return which sounds each group of vowels of a word may have."""
+    is_long = bool(_LONG.search(word))
     if word.endswith("ing"):
         word = word[:-1]
-    elif len(word) > SHORTEST and re.search(r"[^aeiou]ed$", word) and word[-3] not in "td":
+    elif _PAST.search(word):
         word = word[:-2] + "d"
-    elif len(word) > SHORTEST and re.search(r"[aeiouy][^aeiouy]{1,2}e$", word):
+    elif _SILENT.search(word):
         word = word[:-1]
+    groups = _VOWELS.findall(word)
+    if is_long and len(groups) == 1 and len(groups[0]) == 1:
+        return (_SOUNDS_OF[groups[0]][0].lower(),)
     return tuple(
-        _SOUNDS_OF.get(group, _SOUNDS_OF.get(group[:2], _SOUNDS_OF[group[0]]))
-        for group in _VOWELS.findall(word)
+        _SOUNDS_OF.get(group, _SOUNDS_OF.get(group[:2], _SOUNDS_OF[group[0]])) for group in groups
     )
 
 
 def sounds_like(one: str, other: str) -> bool:
     """Whether two folded words sound the same: the consonants, the number of vowels, the first and a last one."""
-    if consonants(one) != consonants(other):
+    if consonants(one) != consonants(other) or _dentals(one) != _dentals(other):
         return False
+    for voiced, voiceless in _PAIRS:
+        if {one[0], other[0]} <= {*voiced, *voiceless} and (one[0] in voiced) != (
+            other[0] in voiced
+        ):
+            return False
     first, second = _vowels(one), _vowels(other)
     if len(first) != len(second):
         return False
@@ -182,8 +224,15 @@ def sounds_like(one: str, other: str) -> bool:
     return not set(_ending(one)).isdisjoint(_ending(other))
 
 
+def _dentals(word: str) -> list[str]:
+    return _DENTALS.findall(re.sub(r"(.)\1", r"\1", word))
+
+
 def _ending(word: str) -> str:
     """Return which vowels a word may end with, "-" for a consonant. Daniel is not Danielle."""
+    word = re.sub("(?<=[aeiouy])h$", "", word)
+    if word.endswith("oe"):
+        return "IiOo"
     if word.endswith(("lle", "tte")):
         return "F"
     if word[-1] not in "aeiouy" or (word[-1] == "e" and word[-2] not in "aeiouy"):
@@ -209,16 +258,6 @@ def _stems(word: str) -> set[str]:
     if word.endswith("ing") and len(word) == len("going"):
         stems.add(word[:-3])
     return stems
-
-
-def is_english(word: str) -> bool:
-    """Whether a folded word is an English one."""
-    return word in _english()
-
-
-@cache
-def _english() -> KnownWords:
-    return KnownWords()
 
 
 @cache

@@ -17,7 +17,7 @@ from annotations.language.grounding.deanonymizer import (
 )
 from annotations.language.grounding.drawing import may_fill
 from annotations.language.grounding.grounding import Grounded, ground
-from annotations.language.grounding.hearing import HearingReader
+from annotations.language.grounding.hearing import HeardText, HearingReader
 from annotations.language.grounding.questions import (
     choices_of,
     named_entities,
@@ -44,6 +44,7 @@ __all__ = [
     "Grounded",
     "HeardChange",
     "HeardLattice",
+    "HeardText",
     "HearingReader",
     "Slot",
     "SlotPath",

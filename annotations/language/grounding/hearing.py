@@ -40,6 +40,7 @@ from annotations.language.english import (
     SYNONYMS,
     Near,
     NearWords,
+    is_common,
 )
 from annotations.language.grammar import Arc, Lattice
 from annotations.language.grounding.anonymizer import Reading, readings_of
@@ -63,6 +64,7 @@ MOST_REPEATED = 4  # words that are said twice
 MOST_IN_A_NAME = 3  # changes in one name
 MOST_TOKENS = 120  # of an utterance; a longer one is heard as it is
 MOST_RIVALS = 4  # names that are equally near
+SHORTEST_PART = 2  # letters of each of two words that were taken for one
 _INNER = 16  # places for the words of one token
 _BLANK = " "
 
@@ -70,7 +72,10 @@ _NUMBER_WORDS = {word: str(number) for number, word in enumerate(NUMBERS)}
 _WORDS_OF_NUMBERS = {digits: word for word, digits in _NUMBER_WORDS.items()}
 _KEPT = KEPT_WORDS | set(NUMBERS[2:])
 _FUNCTION_WORDS = BOUNDARIES | DETERMINERS | PLACE_PREPOSITIONS
+_LIKE_PREPOSITIONS = frozenset(("two", "2", "four", "4"))
 _CUT_OFF = frozenset("-‐‑–—…")
+_WORD = re.compile(r"\w")
+_LEFT_OVER = re.compile(r" ?([,;:])(?: ?[,;:])*+")
 _APOSTROPHE = re.compile("['’]")
 
 
@@ -86,11 +91,24 @@ _SOUNDS = frozenset(map(fold, SOUNDS))
 _FILLERS = _phrases(SOUNDS, FILLERS)
 _REPAIRS = _phrases(REPAIRS)
 _COURTESY = _phrases(COURTESY_OPENINGS, HEARD_OPENINGS)
+# Those that begin no command.
+_SAFE_OPENINGS = (
+    *_phrases(COURTESY_OPENINGS),
+    *(each for each in _phrases(HEARD_OPENINGS) if len(each) > 2),
+)
 _OPENINGS = [list(each) for each in (*_COURTESY, *_FILLERS)]
 _CLOSINGS = [list(each) for each in _phrases(COURTESY_CLOSINGS, HEARD_CLOSINGS, SOUNDS)]
 _ANYWHERE = _phrases(COURTESY_ANYWHERE, HEARD_ANYWHERE)
 _CALLS = frozenset(map(fold, CALLS))
 _BARE_REPAIRS = frozenset((("no",), ("better",), ("rather",), ("actually",)))
+
+
+@dataclass(frozen=True, slots=True)
+class HeardText:
+    """A text without noise, and what was changed; the places are those of the utterance."""
+
+    text: str
+    changes: tuple[HeardChange, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,6 +141,14 @@ class HearingReader(UtteranceReader):
         if noisy := _Noisy(self, utterance).heard_noisily():
             yield noisy
 
+    def clean(self, utterance: str) -> HeardText:
+        """Return an utterance, normalised, with the changes made that are safe without a grammar.
+
+        Sounds, repetitions, corrections and courtesy are taken out, contractions written out, and a word that is
+        none becomes the one name of the world that is nearest.
+        """
+        return _Noisy(self, utterance).cleaned()
+
     @cached_property
     def near_words(self) -> NearWords:
         """The words of the grammar."""
@@ -132,6 +158,11 @@ class HearingReader(UtteranceReader):
     def near_name_words(self) -> NearWords:
         """The words of names, and names without the blanks in them."""
         return NearWords((*self.names, *(word for tokens in self._called for word in tokens)))
+
+    @cached_property
+    def known_words(self) -> frozenset[str]:
+        """The words of the grammar and of names."""
+        return frozenset(self.words) | {word for tokens in self._called for word in tokens}
 
     @cached_property
     def trie(self) -> dict[str, dict]:  # type: ignore[type-arg]
@@ -190,7 +221,12 @@ class _Noisy(Everything):
     def __init__(self, reader: HearingReader, utterance: str) -> None:
         super().__init__(reader, utterance)
         self.changes: dict[HeardChange, int] = {}
+        self._always = self._split_tokens()
         self._kept = [each in _KEPT or each.isdigit() for each in self.folded]
+        # What may be passed over inside a name.
+        self._inside: defaultdict[int, list[tuple[int, str, int]]] = defaultdict(list)
+        for start, stop, kind, cost in (*self._fillers(), *self._repeated()):
+            self._inside[start].append((stop, kind, cost))
 
     def heard_noisily(self) -> HeardLattice | None:
         """Return the lattice; None where it has no path or the utterance is too long."""
@@ -203,7 +239,6 @@ class _Noisy(Everything):
         arcs += [*self._near_word_arcs(), *self._near_entity_arcs(), *self._articles()]
         arcs += [
             *self._contractions(),
-            *self._splits(),
             *self._joined(),
             *self._left_out_references(),
         ]
@@ -212,7 +247,9 @@ class _Noisy(Everything):
         if not paths:
             return None
         lattice = Lattice(_spread(paths), end * _INNER)
-        return HeardLattice(lattice, tuple(self.spans), tuple(self.tokens), tuple(self.changes))
+        places = tuple(token for token in self.tokens for _ in range(_INNER))
+        changes = tuple(self.changes)
+        return HeardLattice(lattice, tuple(self.spans), places, changes, self._always)
 
     def _change(self, kind: str, start: int, stop: int, heard: str) -> tuple[int, ...]:
         """Return the number of a change of the tokens from ``start`` to ``stop``."""
@@ -225,6 +262,101 @@ class _Noisy(Everything):
         change = HeardChange(kind, first, last, self.utterance[first:last], heard)
         return (self.changes.setdefault(change, len(self.changes)),)
 
+    def cleaned(self) -> HeardText:
+        """Return the utterance with its safe changes; as it is where nothing would be left or it is too long."""
+        if not self.tokens or len(self.tokens) > MOST_TOKENS:
+            return HeardText(self.utterance)
+        self._named_at = {(arc.start, arc.end) for arc in self._entity_arcs()}
+        taken: set[int] = set()
+        for start, stop, kind, heard in (*self._removed(), *self._mended()):
+            if taken.isdisjoint(range(start, stop)):
+                taken.update(range(start, stop))
+                self._change(kind, start, stop, heard)
+        changes = tuple(sorted(self.changes, key=lambda each: each.start))
+        text = _changed(self.utterance, changes)
+        return HeardText(text, changes) if _WORD.search(text) else HeardText(self.utterance)
+
+    def _removed(self) -> Iterator[tuple[int, int, str, str]]:
+        """Yield what is taken out of any text."""
+        place = 0
+        openings = [list(each) for each in _SAFE_OPENINGS]
+        while place < len(self.tokens):
+            is_passed = not self._is_word(place) or self.folded[place] in _SOUNDS
+            stops = [place + 1] if is_passed else []
+            for phrase in openings:
+                stops += [stop for _, stop in self._places_of(phrase, (place,))]
+            if not stops:
+                break
+            if not is_passed:
+                yield place, max(stops), "courtesy", ""
+            place = max(stops)
+        corrected: dict[int, int] = {}
+        for first, last, is_clear in self._markers():
+            starts = (
+                start
+                for start in range(first - 1, max(-1, first - 1 - MOST_REPAIRED), -1)
+                if is_clear and last < len(self.tokens) and self._is_begun_again(start, first, last)
+            )
+            if (start := next(starts, None)) is not None:
+                corrected[start] = max(last, corrected.get(start, 0))
+        for start, last in corrected.items():
+            yield start, last, "repair", ""
+        for start, stop, kind, _ in self._repeated():
+            yield start, stop, kind, ""
+        for place, folded in enumerate(self.folded):
+            if folded in _SOUNDS:
+                yield place, place + 1, "filler", ""
+
+    def _mended(self) -> Iterator[tuple[int, int, str, str]]:
+        """Yield contractions, and words that are none and are near one name alone."""
+        for place in range(len(self.tokens)):
+            for first, second in self._written_out(place):
+                if first in OPEN_WORDS:
+                    yield place, place + 1, "contraction", f"{first} {second}"
+                    break
+        inside = {each for start, stop in self._named_at for each in range(start, stop)}
+        for start in range(len(self.tokens)):
+            near: dict[tuple[str, str], tuple[int, int, str]] = {}
+            for stop, tokens, way in self._walk(start):
+                changed = {each for change in way.changes for each in range(*change[:2])}
+                if not changed or not changed.isdisjoint(inside):
+                    continue
+                if any(is_common(self.folded[each]) for each in changed):
+                    continue
+                for name, reading, is_synonym in self.reader.called(tokens):
+                    key = reading.entity_class, reading.value
+                    if not is_synonym and way.cost < near.get(key, (10**6,))[0]:
+                        near[key] = way.cost, stop, name
+            if near:
+                cost, stop, name = min(near.values())
+                if sum(each[0] == cost for each in near.values()) == 1:
+                    kind = "joined" if stop - start > 1 else "spelling"
+                    yield start, stop, kind, name
+
+    def _split_tokens(self) -> tuple[int, ...]:
+        """Make two tokens of one that is no word and that two known words are, and return the changes."""
+        tokens = []
+        changes: tuple[int, ...] = ()
+        known = self.reader.known_words
+        for place, ((start, end), folded) in enumerate(zip(self.tokens, self.folded, strict=True)):
+            cuts = (
+                start + cut
+                for cut in range(SHORTEST_PART, end - start - SHORTEST_PART + 1)
+                if fold(self.utterance[start : start + cut]) in known
+                and fold(self.utterance[start + cut : end]) in known
+            )
+            is_word = folded in known or is_common(folded) or folded in self.reader.names
+            if not is_word and len(folded) == end - start and (cut := next(cuts, None)):
+                words = f"{self.utterance[start:cut]} {self.utterance[cut:end]}"
+                changes += self._change("split", place, place + 1, words)
+                tokens += [(start, cut), (cut, end)]
+            else:
+                tokens.append((start, end))
+        self.tokens = tokens
+        self.texts = [self.utterance[start:end] for start, end in tokens]
+        self.folded = [fold(text) for text in self.texts]
+        return changes
+
     # What is read as another word.
 
     def _may_be_another(self, place: int) -> bool:
@@ -233,11 +365,15 @@ class _Noisy(Everything):
     def _near(self, table: NearWords, place: int) -> Iterator[Near]:
         if self._may_be_another(place):
             yield from table.near(self.folded[place])
-        elif self.folded[place] in ("two", "2", "four", "4") and place + 1 < len(self.folded):
-            # "go two the kitchen": nobody counts before an article.
-            if self.folded[place + 1] in DETERMINERS | {"me"}:
-                word = _WORDS_OF_NUMBERS.get(self.folded[place], self.folded[place])
-                yield from (each for each in table.near(word) if each.kind == "sound")
+        elif self._is_counting_nothing(place):
+            word = _WORDS_OF_NUMBERS.get(self.folded[place], self.folded[place])
+            yield from (each for each in table.near(word) if each.kind == "sound")
+
+    def _is_counting_nothing(self, place: int) -> bool:
+        """Whether a number is none: "go two the kitchen". Nobody counts before an article."""
+        return self.folded[place] in _LIKE_PREPOSITIONS and not (
+            {*self.folded[place + 1 : place + 2]}.isdisjoint(DETERMINERS | {"me"})
+        )
 
     def _near_word_arcs(self) -> Iterator[Arc]:
         for place, folded in enumerate(self.folded):
@@ -260,16 +396,6 @@ class _Noisy(Everything):
             both = self.folded[place] + self.folded[place + 1]
             if len(both) > len("anyone") or both in self.reader.words:
                 yield from self._word(place, place + 2, both, "joined", JOINED)
-
-    def _splits(self) -> Iterator[Arc]:
-        """Yield two words that were taken for one: "pickup"."""
-        for place, folded in enumerate(self.folded):
-            if not self._may_be_another(place):
-                continue
-            for cut in range(2, len(folded) - 1):
-                first, second = folded[:cut], folded[cut:]
-                if first in self.reader.words and second in self.reader.words:
-                    yield from self._chain_of(place, (first, second), "split", JOINED)
 
     def _contractions(self) -> Iterator[Arc]:
         for place in range(len(self.tokens)):
@@ -349,14 +475,14 @@ class _Noisy(Everything):
         """Yield an arc for each of the nearest names."""
         least = min(way.cost for way, _, _ in found)
         values: set[str] = set()
-        for way, _, reading in found:
+        for way, name, reading in found:
             if way.cost > least or reading.value in values or len(values) == MOST_RIVALS:
                 continue
             values.add(reading.value)
             changes = tuple(
                 number
                 for first, stop, kind, heard in way.changes
-                for number in self._change(kind, first, stop, heard)
+                for number in self._change(kind, first, stop, _as_written(heard, name))
             )
             token = f"<{reading.entity_class}>"
             characters = self.tokens[start][0], self.tokens[end - 1][1]
@@ -376,8 +502,8 @@ class _Noisy(Everything):
                     yield place, tokens, way
             if place < len(self.tokens):
                 waiting += self._steps(start, place, node, way)
-            if place > start:
-                for word in POSSESSIVES & node.keys():
+            if place < len(self.tokens):
+                for word in (POSSESSIVES if place > start else ARTICLES) & node.keys():
                     left_out = way.then(ARTICLE, (place, place, "article", word))
                     waiting.append((place, node[word], left_out))
 
@@ -416,9 +542,8 @@ class _Noisy(Everything):
             if second in node.get(first, ()):
                 change = (place, place + 1, "contraction", f"{first} {second}")
                 yield place + 1, node[first][second], way.then(CONTRACTED, change)
-        if place > start and (folded in _SOUNDS or folded == self.folded[place - 1]):
-            kind = "filler" if folded in _SOUNDS else "repeated"
-            yield place + 1, node, way.then(REPEATED, (place, place + 1, kind, ""))
+        for stop, kind, cost in self._inside.get(place, ()) if place > start else ():
+            yield stop, node, way.then(cost, (place, stop, kind, ""))
         if place + 1 < len(self.tokens) and self._may_be_joined(place):
             both = folded + self.folded[place + 1]
             if both in node and place + 2 - start > 1:
@@ -467,10 +592,9 @@ class _Noisy(Everything):
         """Yield the address of a robot that has some name: "hey Rosie"."""
         for place in range(min(MOST_REPAIRED, len(self.tokens) - 1)):
             name = self.folded[place + 1]
-            is_free = self._is_word(place + 1) and not self._kept[place + 1]
-            if self.folded[place] in _CALLS and is_free:
-                if name not in self.reader.words and name not in self.reader.trie:
-                    yield place, place + 2
+            is_known = name in self.reader.words or name in self.reader.trie
+            if self.folded[place] in _CALLS and self._may_be_another(place + 1) and not is_known:
+                yield place, place + 2
 
     def _fillers(self) -> Iterator[tuple[int, int, str, int]]:
         for phrase in _FILLERS:
@@ -542,15 +666,37 @@ class _Noisy(Everything):
         again = self.folded[last]
         if not start and is_clear and again not in _FUNCTION_WORDS:
             return True  # a new beginning
-        if first - start > MOST_REPAIRED or sum(word in DETERMINERS for word in words) > 1:
+        if first - start > MOST_REPAIRED:
             return False
-        for kind in (DETERMINERS, PLACE_PREPOSITIONS):
-            if words[0] in kind and again in kind:
-                return True
-        if words[0] == again:
+        if self._is_begun_again(start, first, last):
             return True
         is_name = (start, first) in self._named_at or len(words) == 1
         return is_clear and is_name and words[0] not in _FUNCTION_WORDS
+
+    def _is_begun_again(self, start: int, first: int, last: int) -> bool:
+        """Whether what follows a correction begins like the words before it, which are one phrase without a word
+        that is kept."""
+        words, again = self.folded[start:first], self.folded[last]
+        if any(self._kept[start:first]) or sum(word in DETERMINERS for word in words) > 1:
+            return False
+        kinds = (DETERMINERS, PLACE_PREPOSITIONS, {again})
+        return any(words[0] in kind and again in kind for kind in kinds)
+
+
+def _changed(utterance: str, changes: Sequence[HeardChange]) -> str:
+    """Return an utterance with changes made that are in its order; signs that are left over go."""
+    pieces, end = [], 0
+    for change in changes:
+        pieces += [utterance[end : change.start], change.heard]
+        end = change.end
+    text = " ".join("".join((*pieces, utterance[end:])).split())
+    return _LEFT_OVER.sub(r"\1", text).lstrip(" ,;:.!?-")
+
+
+def _as_written(heard: str, name: str) -> str:
+    """Return a folded word, or all of them together, as they are written in a name."""
+    words = {fold(word): word for word in spoken_words(name)}
+    return name if heard == "".join(words) else words.get(heard, heard)
 
 
 def _on_paths(arcs: Sequence[Arc], end: int) -> list[Arc]:

@@ -75,17 +75,18 @@ class HeardLattice:
     """A lattice, the entities for which its numbered arcs stand, and what its arcs change.
 
     ``tokens`` says which characters of the utterance lie between a place and the next one; it is empty where the
-    lattice has no such places.
+    lattice has no such places. The changes numbered ``always`` are those of every path.
     """
 
     lattice: Lattice
     spans: tuple[Span, ...] = ()
     tokens: tuple[tuple[int, int], ...] = ()
     changes: tuple[HeardChange, ...] = ()
+    always: tuple[int, ...] = ()
 
     def heard(self, changes: Sequence[int]) -> tuple[HeardChange, ...]:
         """Return what a derivation changes, in the order of the utterance."""
-        made = {self.changes[number] for number in changes}
+        made = {self.changes[number] for number in (*self.always, *changes)}
         return tuple(sorted(made, key=lambda each: (each.start, each.end, each.kind, each.heard)))
 
     def values(self, arcs: Sequence[int | None]) -> tuple[str | None, ...]:

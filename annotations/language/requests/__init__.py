@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from annotations.language.requests.alternatives import best_alternative
 from annotations.language.requests.cutting import (
     MOST_COMMANDS,
     Islands,
@@ -19,6 +20,7 @@ __all__ = [
     "Judge",
     "OtherRequest",
     "Piece",
+    "best_alternative",
     "cut",
     "cut_at_joints",
     "is_qualified",
