@@ -20,7 +20,7 @@ from annotations.language.recipes import (
     join,
     spoken,
 )
-from annotations.language.requests import cut_commands
+from annotations.language.requests import cut_at_joints
 from annotations.models import World
 from parser_service.serving.parse_answers import task_plan_of
 from parser_service.serving.parser_client import client
@@ -76,7 +76,7 @@ def commands_in(world: World, utterance: str, run: int | None = None) -> tuple[s
     """Return the commands of one utterance: its sentences, its lines, and what semicolons or numbers tell apart.
 
     A piece that the parser does not understand as one command is cut where it understands the pieces
-    (``language.requests.cut_commands``).
+    (``language.requests.cut_at_joints``).
 
     Raises:
         TooManyCommands: there are more than ``MOST_COMMANDS``.
@@ -91,7 +91,7 @@ def commands_in(world: World, utterance: str, run: int | None = None) -> tuple[s
         answers = client().parse_lines(world.name, lines.encode(), beam=1, run=run)
         return [_score_of(json.loads(each)) for each in answers]
 
-    commands = tuple(each for said in sentences for each in cut_commands(said, judge))
+    commands = tuple(each.text for said in sentences for each in cut_at_joints(said, judge))
     _require_few(commands)
     return commands
 

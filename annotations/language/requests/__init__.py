@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
-from annotations.language.requests.cutting import MOST_COMMANDS, Islands, Judge, Piece, cut, cut_at_joints
+from annotations.language.requests.cutting import (
+    MOST_COMMANDS,
+    Islands,
+    Judge,
+    Piece,
+    cut,
+    cut_at_joints,
+)
 from annotations.language.requests.qualifying import is_qualified, says_number
 from annotations.language.requests.request_kinds import OtherRequest, other_requests
 
