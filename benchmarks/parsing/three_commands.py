@@ -21,7 +21,6 @@ from random import Random
 import django
 
 from annotations.language.errors import Refusal
-from annotations.language.requests import cut_commands
 
 WAYS = (
     "{0}. {1}. {2}.",
@@ -53,6 +52,8 @@ def main() -> None:
     from parser_service.analysis.intervals import wilson_interval
     from parser_service.models import TrainingRun
     from parser_service.parsers.interface import UNKNOWN
+    from parser_service.parsers.oracle import GrammarOracle
+    from parser_service.parsers.several import pieces_of
     from parser_service.serving.loading import load_parser, make_untrained
 
     world = World.objects.get(name=given.world)
@@ -64,6 +65,8 @@ def main() -> None:
         ).hesitant()
     except Refusal as refusal:
         sys.exit(str(refusal))
+
+    oracle = asked if isinstance(asked, GrammarOracle) else None
 
     def judge(pieces: Sequence[str]) -> list[float | None]:
         answers = asked.predict(pieces, 1)
@@ -77,7 +80,8 @@ def main() -> None:
     for number in range(given.joins):
         way = WAYS[number % len(WAYS)]
         three = random.sample(commands, 3)
-        pieces = cut_commands(said := join(three, way), judge)
+        said = join(three, way)
+        pieces = [each.text for each in pieces_of(said, oracle, None if oracle else judge)]
         alone = [each[0].form if each else "" for each in asked.predict(three, 1)]
         cut = [each[0].form if each else "" for each in asked.predict(pieces, 1)]
         found[way] += alone == cut

@@ -203,6 +203,7 @@ JOINTS = _joints.words("joints")
 JOINT_OPENINGS = _joints.words("openings")
 COMMAND_NOUNS = frozenset(_joints.words("nouns"))
 SEQUENCE_WORDS = frozenset(_joints.words("sequence"))
+SEQUENCE_NOUNS = frozenset(_joints.words("sequence_nouns"))
 FINISHED_WORDS = _joints.words("finished")
 TELLING_WORDS = frozenset(_joints.words("telling"))
 

@@ -16,22 +16,28 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise, starmap
 from typing import NamedTuple
 
 from annotations.language.english import (
     ARTICLES,
     BOUNDARIES,
+    CHOOSING_WORDS,
     COMMAND_NOUNS,
     COURTESY_CLOSINGS,
     COURTESY_OPENINGS,
     DETERMINERS,
+    FINISHED_WORDS,
     JOINT_OPENINGS,
     JOINTS,
+    NEGATIONS,
     NO_COMMAND_WORDS,
     NUMBERS,
     PLACE_PREPOSITIONS,
+    SEQUENCE_NOUNS,
     SEQUENCE_WORDS,
     TELLING_WORDS,
+    YES_WORDS,
 )
 from annotations.language.requests.qualifying import Hold, holds_in
 
@@ -85,12 +91,12 @@ def cut(utterance: str, islands: Islands, judge: Judge | None = None) -> tuple[P
         islands: what the grammar finds.
         judge: is asked about what the grammar does not derive; not about what is held back.
     """
-    pieces = _Cut(utterance, islands, False).pieces(judge)
-    if all(each.is_understood for each in pieces):
-        return pieces
     # People also end a sentence inside a command: "Go to the galley. Then find the cup and bring it to me."
-    across = _Cut(utterance, islands, True).pieces(judge)
-    return across if all(each.is_understood for each in across) else pieces
+    for is_across in (False, True):
+        pieces = _Cut(utterance, islands, is_across).pieces(None)
+        if all(each.is_understood for each in pieces):
+            return pieces
+    return _Cut(utterance, islands, False).pieces(judge)
 
 
 _WORD = re.compile(r"\w+(?:['’-]\w+)*")
@@ -101,12 +107,16 @@ _AROUND = " \t\n.,;:!?"
 
 
 class _Range(NamedTuple):
-    """Words ``first`` to ``last``, the latter not included. ``is_command``: an island."""
+    """Words ``first`` to ``last``, the latter not included. ``is_command``: an island.
+
+    What begins before word ``reach`` is part of it.
+    """
 
     first: int
     last: int
     is_command: bool = False
     is_held: bool = False
+    reach: int = 0
 
 
 class _Cut:
@@ -151,6 +161,15 @@ class _Cut:
         last = (bisect_left(self.starts, place) for place in places if place not in inside)
         return sorted({each for each in last if 0 < each < len(self.words)} | {len(self.words)})
 
+    @cached_property
+    def named(self) -> frozenset[int]:
+        """The words that name entities."""
+        return frozenset(
+            word
+            for start, end in self.islands.names
+            for word in range(bisect_left(self.starts, start), bisect_left(self.starts, end))
+        )
+
     def _sentence(self, word: int) -> tuple[int, int]:
         """Return the first word of the sentence of a word, and that of the next sentence."""
         number = bisect_right(self.ends, word)
@@ -160,10 +179,11 @@ class _Cut:
         """Whether a sign or a joint stands between a word and the one before."""
         if word in (0, len(self.words)):
             return True
+        beside = self.said[word - 1 : word + 1]
+        if not CHOOSING_WORDS.isdisjoint(beside) or beside[1] == "but":
+            return False  # of two things one is meant; or it restricts the one before
         between = self.utterance[self.words[word - 1][1] : self.words[word][0]]
-        return bool(_SIGN.search(between) or "\n" in between) or not _PARTING.isdisjoint(
-            self.said[word - 1 : word + 1]
-        )
+        return bool(_SIGN.search(between)) or "\n" in between or not _PARTING.isdisjoint(beside)
 
     # Islands
 
@@ -223,33 +243,52 @@ class _Cut:
         for stop in (*ranges, _Range(len(self.words), len(self.words))):
             while first < stop.first:
                 last = min(self._sentence(first)[1], stop.first)
-                if self._may_be_command(first, last):
-                    yield _Range(first, last)
+                reach = self._reach(first, last)
+                if reach or self._may_be_command(first, last):
+                    yield _Range(first, last, reach=reach)
                 first = last
             first = stop.last
 
+    def _reach(self, first: int, last: int) -> int:
+        """Return up to where what follows is told or asked rather than ordered, or has a condition; 0: nowhere."""
+        said = self.said[first:last]
+        if not self._is_parted(last):
+            is_told = not TELLING_WORDS.isdisjoint(said) and said[-2:] != ["you", "to"]
+            is_asked = self._is_parted(first) and said[0] in _QUESTIONS
+            if (is_told and COMMAND_NOUNS.isdisjoint(said)) or is_asked:
+                return self._sentence(first)[1]
+        opening = next((each for each in said if each not in _PARTING), "")
+        if opening in _WHEN and (_FUNCTION_WHEN | _COUNTING).isdisjoint(said):
+            return min(last + 1, self._sentence(first)[1])
+        return 0
+
     def _may_be_command(self, first: int, last: int) -> bool:
         """Whether words between two islands say something that must not be passed over."""
-        start, end = self.words[first][0], self.words[last - 1][1]
-        if any(start < until and since < end for since, until in self.islands.names):
+        if not self.named.isdisjoint(range(first, last)):
             return True
         said = self.said[first:last]
-        speaks_of_commands = not COMMAND_NOUNS.isdisjoint(said)
-        if not self._is_parted(last) and not speaks_of_commands:
-            # "He told me to": what follows is told, not asked for.
-            is_told = not TELLING_WORDS.isdisjoint(said) and said[-2:] != ["you", "to"]
-            if said[0] in _QUESTIONS or is_told:
+        if not CHOOSING_WORDS.isdisjoint(said):
+            return True
+        negated = (
+            each in NEGATIONS and not after.isdecimal() for each, after in pairwise([*said, ""])
+        )
+        if not self._is_parted(last) and any(negated):
+            return True
+        if not self._is_parted(first):
+            # "for my grandmother", "three times": it goes on with the island before.
+            follows = next((each for each in said if not self._is_function(each)), None)
+            is_described = said[0] in _GOING_ON and said[1:2] and said[1] in _DEFINITE
+            is_end = last in self.ends or said[-1] in _CONJUNCTIONS
+            is_end = is_end and said[0] not in _PREDICATING
+            if follows and follows not in _COUNTING_NOUNS and (is_described or is_end):
                 return True
-        if not self._is_parted(first) and said[0] in _GOING_ON:
-            # "for my grandmother": it goes on with the island before.
-            follows = next((each for each in said[1:] if each not in _FUNCTION), None)
-            is_described = len(said) > 1 and said[1] in DETERMINERS
-            if follows and follows not in _COUNTING and (is_described or self._is_parted(last)):
-                return True
-        if speaks_of_commands:
+        if not COMMAND_NOUNS.isdisjoint(said):
             return False
-        parts = [place for place in range(first, last) if place == first or self._is_parted(place)]
-        return any(self._begins_command(place, last) for place in parts)
+        parts = [first, *filter(self._is_parted, range(first + 1, last)), last]
+        return any(starmap(self._begins_command, pairwise(parts)))
+
+    def _is_function(self, word: str) -> bool:
+        return word in _FUNCTION or word.isdecimal()
 
     def _begins_command(self, first: int, last: int) -> bool:
         """Whether words begin as a command does: by a word of the grammar, or "turn off the lights"."""
@@ -257,10 +296,10 @@ class _Cut:
             if self.said[first] not in _BEFORE_COMMAND:
                 return False
             first += 1
-        if first == last:
+        if first == last or self.said[first] in NUMBERS:
             return False
         rest = self.said[first + 1 : last]
-        if "you" in rest[:2]:
+        if "you" in rest[:3]:
             return False  # "let me tell you": nobody asks a robot to tell itself
         if self.said[first] in self.islands.beginnings:
             return any(each not in _FUNCTION | _COUNTING for each in rest)
@@ -276,12 +315,17 @@ class _Cut:
             before = joined[-1] if joined else None
             if (
                 before
-                and before.last == each.first
+                and (before.last == each.first or each.first < before.reach)
                 and not (before.is_command and each.is_command)
-                and ((before.is_held and each.is_held) or not self._is_parted(each.first))
+                and (
+                    (before.is_held and each.is_held)
+                    or each.first < before.reach
+                    or not self._is_parted(each.first)
+                )
             ):
                 is_held = before.is_held or each.is_held
-                joined[-1] = _Range(before.first, each.last, is_held=is_held)
+                reach = max(before.reach, each.reach)
+                joined[-1] = _Range(before.first, each.last, is_held=is_held, reach=reach)
             else:
                 joined.append(each)
         return joined
@@ -307,8 +351,12 @@ class _Cut:
         if words.is_held:
             yield self._piece(start, end, False)
             return
-        found = cut_at_joints(self.utterance[start:end], judge)
-        for each in found:
+        if words.first or words.last < len(self.words):
+            if opening := _OPENING.match(self.utterance, start, end):
+                start = opening.end()
+            if closing := _CLOSING.search(self.utterance, start, end):
+                end = closing.start()
+        for each in cut_at_joints(self.utterance[start:end], judge):
             yield self._piece(start + each.start, start + each.end, each.is_understood)
 
     def _piece(self, start: int, end: int, is_understood: bool) -> Piece:
@@ -330,19 +378,25 @@ def _words_of(phrases: Iterable[str]) -> frozenset[str]:
     return frozenset(word for phrase in phrases for word in phrase.split())
 
 
-_ONE_WORD = frozenset(each for each in JOINTS if " " not in each)
-_PARTING = _ONE_WORD.difference(SEQUENCE_WORDS) | {"but", "or"}
-_COUNTING = COMMAND_NOUNS | SEQUENCE_WORDS | frozenset(NUMBERS)
+_PARTING = frozenset(each for each in JOINTS if " " not in each).difference(SEQUENCE_WORDS)
+_CONJUNCTIONS = _PARTING & BOUNDARIES
+_COUNTING_NOUNS = COMMAND_NOUNS | SEQUENCE_WORDS | SEQUENCE_NOUNS
+_COUNTING = _COUNTING_NOUNS | set(NUMBERS)
 # What may stand before the verb of a command.
-_BEFORE_COMMAND = _words_of((*COURTESY_OPENINGS, *COURTESY_CLOSINGS, *JOINTS)) | {"but", "to"}
+_BEFORE_COMMAND = (
+    _words_of((*COURTESY_OPENINGS, *COURTESY_CLOSINGS, *JOINTS)) | SEQUENCE_WORDS | {"but", "to"}
+)
 _FUNCTION = (
-    (BOUNDARIES | DETERMINERS | NO_COMMAND_WORDS | _BEFORE_COMMAND)
-    - COMMAND_NOUNS
-    - {"finished", "go", "do"}
-) | {"do", "be", "been", "only", "just"}
-_QUESTIONS = NO_COMMAND_WORDS & {"did", "does", "has", "is", "are"}
+    BOUNDARIES | DETERMINERS | NO_COMMAND_WORDS | YES_WORDS | _BEFORE_COMMAND
+    | {"be", "been", "only", "just"}
+) - COMMAND_NOUNS  # fmt: skip
 _GOING_ON = PLACE_PREPOSITIONS | {"for", "with", "without", "of", "about", "that", "which", "who"}
 _DEFINITE = DETERMINERS - (ARTICLES - {"the"}) - {"this", "that", "any"}
+_PREDICATING = frozenset({"is", "are", "was", "will", "would", "should", "has"})  # "... is my wish"
+_QUESTIONS = NO_COMMAND_WORDS & {"did", "does", "has", "is", "are"}
+_WHEN = frozenset({"when", "once", "while", "until", "till"})
+# "When you are done", "once that is finished" speak of the command before.
+_FUNCTION_WHEN = frozenset(FINISHED_WORDS) | {"you", "that", "this", "all", "everything"}
 
 
 # Without a grammar
@@ -372,22 +426,20 @@ def cut_at_joints(
 
     An utterance that ``judge`` understands as it is, is one command. Of the cuts all of whose pieces are understood,
     the one with the fewest counts, and of these the one with the highest sum. Where there is none, the utterance
-    comes back as one piece that is not understood, without what joins it to others.
+    comes back as one piece that is not understood.
     """
+    whole = Piece(0, len(utterance), utterance, False)
+    if judge is None:
+        return (whole,)
+    [score] = judge([utterance])
+    if score is not None:
+        return (replace(whole, is_understood=True),)
     opening = _OPENING.match(utterance)
     starts, ends = [opening.end() if opening else 0], []
     for joint in _JOINT.finditer(utterance, starts[0]):
         ends.append(joint.start())
         starts.append(joint.end())
     ends.append(len(utterance))
-    closing = _CLOSING.search(utterance, starts[0])
-    last = closing.start() if closing else len(utterance)
-    whole = Piece(starts[0], last, utterance[starts[0] : last].rstrip(_AROUND), False)
-    if judge is None:
-        return (replace(whole, end=whole.start + len(whole.text)),)
-    [score] = judge([utterance])
-    if score is not None:
-        return (Piece(0, len(utterance), utterance, True),)
     if len(ends) > MOST_JOINTS + 1:
         return (whole,)
     places = [(first, last) for first in range(len(starts)) for last in range(first, len(ends))]

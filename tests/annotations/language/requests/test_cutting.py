@@ -1,9 +1,11 @@
+import re
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from annotations.language.english import JOINTS
-from annotations.language.requests import cut_commands
+from annotations.language.requests import Islands, cut, cut_at_joints
 
 GO, TAKE, GREET = "go to the galley", "take the cup and bring it to me", "greet Ann"
 
@@ -14,6 +16,76 @@ def knows(*commands):
 
 
 JUDGE = knows(GO, TAKE, GREET)
+
+
+def texts_of(said, judge=JUDGE):
+    return tuple(each.text for each in cut_at_joints(said, judge))
+
+
+def islands_of(said, *commands):
+    found = (match.span() for each in commands for match in re.finditer(re.escape(each), said))
+    return Islands(frozenset(found))
+
+
+def cut_out(said, *commands):
+    """Return the pieces of a text in which a grammar knows ``commands``; those not understood after a "!"."""
+    pieces = cut(said, islands_of(said, *commands))
+    return [each.text if each.is_understood else f"! {each.text}" for each in pieces]
+
+
+@pytest.mark.parametrize(
+    "between", [". ", " and ", "; once that is over, ", " now my other wish: ", "\n2. "]
+)
+def test_what_lies_between_two_commands_is_dropped(between):
+    assert cut_out(f"{GO}{between}{GREET}", GO, GREET) == [GO, GREET]
+
+
+def test_the_fewest_commands_that_cover_most_words_are_taken():
+    parts = ("take the cup", "bring it to me", "the cup and bring it")
+    assert cut_out(f"{TAKE}. {GO}", TAKE, GO, *parts) == [TAKE, GO]
+
+
+def test_a_sentence_that_ends_inside_a_name_ends_nowhere():
+    meet = "greet Dr. Ann"
+    said = f"{meet}. {GO}."
+    islands = Islands(islands_of(said, meet, GO).spans, frozenset({(6, 13)}))
+    assert [each.text for each in cut(said, islands)] == [meet, GO]
+
+
+def test_what_may_be_a_command_is_a_piece_of_its_own():
+    said = f"{GO}. Polish the glasses. {GREET}"
+    assert cut_out(said, GO, GREET) == [GO, "! Polish the glasses", GREET]
+    said = f"{GO}, fetch water, {GREET}"
+    islands = Islands(islands_of(said, GO, GREET).spans, frozenset(), frozenset({"fetch"}))
+    assert [each.text for each in cut(said, islands)] == [GO, "fetch water", GREET]
+
+
+@pytest.mark.parametrize(
+    "said",
+    [f"{GO} unless it rains. {GREET}.", f"if it rains, {GO}. {GREET}.", f"don't {GO}. {GREET}."],
+)
+def test_what_is_held_back_is_not_understood(said):
+    held, greet = cut_out(said, GO, GREET)
+    assert held == f"! {said.partition('.')[0]}" and greet == GREET
+
+
+@pytest.mark.parametrize(
+    "said", [f"I wonder how to {GO}", f"{GO} or {GREET}", f"{GO}, I am tired", "I am tired"]
+)
+def test_what_is_no_order_comes_back_whole(said):
+    assert cut_out(said, GO, GREET) == [f"! {said}"]
+
+
+@given(st.text(max_size=40), st.data())
+def test_pieces_lie_in_the_text_in_order(text, data):
+    places = st.integers(0, len(text))
+    spans = st.frozensets(st.tuples(places, places).filter(lambda each: each[0] < each[1]))
+    islands = Islands(data.draw(spans), data.draw(spans))
+    end = 0
+    for piece in cut(text, islands):
+        assert end <= piece.start <= piece.end <= len(text)
+        assert piece.text == text[piece.start : piece.end]
+        end = piece.end
 
 
 @pytest.mark.parametrize(
@@ -30,7 +102,7 @@ JUDGE = knows(GO, TAKE, GREET)
     ],
 )
 def test_three_commands_are_found_however_they_are_joined(said):
-    assert [each.casefold() for each in cut_commands(said, JUDGE)] == [
+    assert [each.casefold() for each in texts_of(said)] == [
         GO,
         TAKE,
         GREET.casefold(),
@@ -38,15 +110,15 @@ def test_three_commands_are_found_however_they_are_joined(said):
 
 
 def test_a_command_with_joints_inside_stays_whole():
-    assert cut_commands(TAKE, JUDGE) == (TAKE,)
-    assert cut_commands(f"{TAKE}, then {GO}", JUDGE) == (TAKE, GO)
+    assert texts_of(TAKE) == (TAKE,)
+    assert texts_of(f"{TAKE}, then {GO}") == (TAKE, GO)
 
 
 def test_where_a_piece_is_not_understood_the_utterance_comes_back():
     said = f"{GO} and then open the door"
-    assert cut_commands(said, JUDGE) == (said,)
+    assert texts_of(said) == (said,)
     four = f"{GO}. {GO}. {GO}. {GO}."
-    assert cut_commands(four, JUDGE) == (four,)
+    assert texts_of(four) == (four,)
 
 
 def test_fewer_commands_count_more_and_better_ones_among_as_many():
@@ -55,13 +127,11 @@ def test_fewer_commands_count_more_and_better_ones_among_as_many():
     def judge(pieces):
         return [scores.get(each) for each in pieces]
 
-    assert cut_commands("a. b. c", judge) == ("a. b", "c")
+    assert texts_of("a. b. c", judge) == ("a. b", "c")
 
 
 @given(st.text(alphabet="ab .,;1)", max_size=60) | st.lists(st.sampled_from(JOINTS)).map(" ".join))
 def test_any_text_is_cut_or_comes_back(text):
-    assert cut_commands(text, knows()) == (text,)
-    everything = cut_commands(
-        text, lambda pieces: [None if each == text else 0.0 for each in pieces]
-    )
+    assert texts_of(text, knows()) == (text,)
+    everything = texts_of(text, lambda pieces: [None if each == text else 0.0 for each in pieces])
     assert 1 <= len(everything) <= 3

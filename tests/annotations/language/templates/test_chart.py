@@ -3,6 +3,7 @@
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from annotations.language.grammar import Budget, Lattice
 from annotations.language.templates import TaskCategory, TemplateChart, generate, read_template
 from annotations.language.templates.chart import ChartDerivation
 from annotations.language.templates.expansion import generation_size
@@ -60,3 +61,25 @@ def test_parsing_is_the_inverse_of_generating(grammar, templates, others):
         )
     for command in map(" ".join, others):
         assert bool(chart.parse(command)) == (command in generated)
+
+
+def test_spans_are_the_commands_inside():
+    chart = TemplateChart(
+        [category("1", "go = (go)", "go back = (back)"), category("2", "run away = (run)")]
+    )
+    lattice = Lattice.of_words(["please", "go", "back", "and", "run", "away"])
+    assert chart.spans(lattice) == {(1, 2), (1, 3), (4, 6)}
+    assert chart.beginnings == {"go", "run"}
+    assert chart.spans(lattice, Budget(1)) < chart.spans(lattice)
+
+
+@given(
+    small_grammars(),
+    st.lists(small_templates(), max_size=3),
+    st.lists(st.sampled_from(TOKENS), max_size=6),
+)
+def test_what_has_a_derivation_is_a_span(grammar, templates, words):
+    chart = TemplateChart([TaskCategory("1", grammar, tuple(templates))])
+    places = [(start, end) for end in range(len(words) + 1) for start in range(end)]
+    derived = {place for place in places if chart.parse(" ".join(words[slice(*place)]))}
+    assert derived <= chart.spans(Lattice.of_words(words))

@@ -1,0 +1,154 @@
+"""Several commands in one utterance, by the grammar oracle of the world ``competition``."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from random import Random
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from annotations.language.templates import (
+    Balance,
+    Language,
+    SampleRequest,
+    read_generator_folder,
+)
+from annotations.worlds.shipped_worlds import SHIPPED_WORLDS
+from parser_service.parsers.interface import Knowledge
+from parser_service.parsers.oracle import GrammarOracle
+from parser_service.parsers.several import pieces_of
+from tests.annotations.language.ontology_files import read_ontology_folder
+from tests.parser_service.parsers.joins import TALK, WAYS
+from tests.timing import least_seconds
+
+FOLDER = SHIPPED_WORLDS["competition"].folder
+# The name of an entity in them: "be a" is heard as Bea, and "a game" as a category.
+NAMING = {each for each in WAYS if "Be a dear" in each or "play a game" in each}
+
+
+@cache
+def oracle() -> GrammarOracle:
+    ontology, _ = read_ontology_folder(FOLDER)
+    categories = read_generator_folder(FOLDER).categories()
+    return GrammarOracle(knowledge=Knowledge(ontology=ontology, grammar=categories))
+
+
+@cache
+def commands() -> tuple[str, ...]:
+    """Commands of every line of the templates, with entities."""
+    random = Random(0)
+    ontology, _ = read_ontology_folder(FOLDER)
+    named: dict[str, list[str]] = {}
+    for entity in ontology.entities:
+        named.setdefault(entity.entity_class, []).append(entity.text)
+    categories = read_generator_folder(FOLDER).categories()
+    sample = Language(categories).sample(SampleRequest(200, 0, Balance.LINES)).generated
+    texts = (each.command.replace(" ,", ",") for each in sample.expansions)
+    return tuple(re.sub(r"<(\w+)>", lambda it: random.choice(named[it[1]]), text) for text in texts)
+
+
+def answers(texts):
+    return [[(each.form, each.values) for each in found] for found in oracle().predict(texts)]
+
+
+def inside(command):
+    return command[:1].lower() + command[1:]
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_three_commands_are_found_however_they_are_joined(way):
+    three = Random(way).sample(commands(), 3)
+    pieces = pieces_of(way.format(*map(inside, three)), oracle())
+    understood = [each.text for each in pieces if each.is_understood]
+    assert answers(understood) == answers(three)
+    assert len(pieces) == 3 or way in NAMING
+
+
+@pytest.mark.parametrize(("said", "understood"), TALK.items())
+def test_nothing_is_cut_out_of_what_asks_for_something_else(said, understood):
+    pieces = pieces_of(said, oracle())
+    assert [inside(each.text) for each in pieces if each.is_understood] == understood
+
+
+def test_a_command_of_the_language_stays_whole():
+    for command in commands():
+        (piece,) = pieces_of(command, oracle())
+        assert (piece.text, piece.is_understood) == (command, True)
+
+
+def test_a_sentence_may_end_inside_a_command():
+    said = "Bring me the cocoa. Go to the galley. Then find the quince and bring it to me."
+    assert [each.text for each in pieces_of(said, oracle()) if each.is_understood] == [
+        "Bring me the cocoa",
+        "Go to the galley. Then find the quince and bring it to me",
+    ]
+
+
+def test_a_learned_parser_judges_what_the_grammar_does_not_derive():
+    said = (
+        "greet Maria in the lobby. Fling the cocoa at Otto, and then chuck the quince. Do not go."
+    )
+    known = {"Fling the cocoa at Otto", "chuck the quince", "Do not go"}
+    pieces = pieces_of(said, oracle(), lambda texts: [0.0 if t in known else None for t in texts])
+    assert [(each.text, each.is_understood) for each in pieces] == [
+        ("greet Maria in the lobby", True),
+        ("Fling the cocoa at Otto", True),
+        ("chuck the quince", True),
+        ("Do not go", False),
+    ]
+
+
+def test_without_a_grammar_the_learned_parser_alone_judges():
+    def judge(texts):
+        return [0.0 if text in ("wave", "sit down") else None for text in texts]
+
+    assert [each.text for each in pieces_of("wave and then sit down", None, judge)] == [
+        "wave",
+        "sit down",
+    ]
+    (piece,) = pieces_of("wave and then sit down", None)
+    assert not piece.is_understood
+
+
+@pytest.mark.parametrize("said", ["and greet Maria in the lobby ", "if you find the cocoa ", ". "])
+def test_a_long_text_takes_less_than_a_second(said):
+    text = (said * 1_000)[:1_000]
+    assert least_seconds(lambda: pieces_of(text, oracle()), 2) < 1
+
+
+@settings(max_examples=50)
+@given(
+    st.lists(
+        st.sampled_from(
+            [
+                "bring me the cocoa",
+                "greet Maria in the lobby",
+                "the",
+                "and then",
+                ". ",
+                ", ",
+                "or",
+                "don't",
+                "if",
+                "number two",
+                "🙂",
+                "\n",
+                "find the",
+                "in the galley",
+                "how to",
+                ": ",
+            ]
+        ),
+        max_size=12,
+    ).map(" ".join)
+)
+def test_pieces_lie_in_the_text_in_order(text):
+    end = 0
+    for piece in pieces_of(text, oracle()):
+        assert end <= piece.start < piece.end <= len(text)
+        assert piece.text == text[piece.start : piece.end]
+        assert oracle().understands(piece.text) or not piece.is_understood
+        end = piece.end
