@@ -27,7 +27,7 @@ from annotations.language.grounding.questions import (
 from annotations.language.grounding.role_evidence import Evidence
 from annotations.language.grounding.roles import SlotPath
 from annotations.language.grounding.utterance_lattice import HeardLattice, UtteranceReader
-from annotations.language.grounding.utterance_mentions import UtteranceMentions
+from annotations.language.grounding.utterance_mentions import UtteranceMentions, are_alike
 
 __all__ = [
     "QUESTION_WORD",
@@ -43,6 +43,7 @@ __all__ = [
     "Span",
     "UtteranceMentions",
     "UtteranceReader",
+    "are_alike",
     "choices_of",
     "deanonymize",
     "fill_all",
