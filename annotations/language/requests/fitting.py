@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
 from itertools import combinations
 from math import inf
@@ -103,14 +103,19 @@ def fit(
     for slot in slots:
         if not slot.entity_class or slot.is_named or slot.value is not None:
             continue
-        other = next((each for each in unused if slot.entity_class in _classes(each, heard, ontology)), None)
+        other = next(
+            (each for each in unused if slot.entity_class in _classes(each, heard, ontology)), None
+        )
         if other is None:
             not_said.append(slot)
         else:
             unused.remove(other)
     words, starts = _words(heard)
     left_out = sorted(
-        (*_entities_left_out(form, unused, heard, use, ontology), *_words_left_out(form, words, starts, use, heard)),
+        (
+            *_entities_left_out(form, unused, heard, use, ontology),
+            *_words_left_out(form, words, starts, use, heard),
+        ),
         key=lambda each: each.start,
     )
     filled = _filled(form, slots, heard, use.places(words))
@@ -120,7 +125,9 @@ def fit(
     return Fit(tuple(not_said), tuple(left_out), exchanged, score)
 
 
-def exchange(form: Form, slots: Sequence[Slot], exchanged: Exchange) -> tuple[Form, tuple[str | None, ...]]:
+def exchange(
+    form: Form, slots: Sequence[Slot], exchanged: Exchange
+) -> tuple[Form, tuple[str | None, ...]]:
     """Return the form with two slots exchanged, their classes too, and what then fills its class tokens, in order.
 
     Raises:
@@ -133,9 +140,7 @@ def exchange(form: Form, slots: Sequence[Slot], exchanged: Exchange) -> tuple[Fo
     return form, tuple(other.get(each.path, each.filler) for each in slots if each.entity_class)
 
 
-def best_fitting(
-    scored: Sequence[tuple[float, Fit]], within: float = 2.0
-) -> list[int]:
+def best_fitting(scored: Sequence[tuple[float, Fit]], within: float = 2.0) -> list[int]:
     """Return the numbers of candidates in the order of how well they fit.
 
     Of those that are at most ``within`` nats below the best one, the ones without exchanged slots come first, then
@@ -196,7 +201,11 @@ def _entities_left_out(
 
 
 def _words_left_out(
-    form: Form, words: Sequence[str], places: Sequence[tuple[int, int]], use: WordUse, heard: Anonymized
+    form: Form,
+    words: Sequence[str],
+    places: Sequence[tuple[int, int]],
+    use: WordUse,
+    heard: Anonymized,
 ) -> Iterator[LeftOut]:
     used = frozenset(predicates(form))
     has_person = not PERSON_PREDICATES.isdisjoint(used)

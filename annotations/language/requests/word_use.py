@@ -26,18 +26,29 @@ from annotations.language.english import (
     THING_WORDS,
     sample_commands,
 )
-from annotations.language.forms import PERSON_PREDICATES, Form, canonical_text, predicates, read_form
-from annotations.language.grounding import are_alike
-from annotations.language.grounding.role_evidence import as_pair
-from annotations.language.grounding.roles import (
+from annotations.language.forms import (
+    PERSON_PREDICATES,
+    Form,
+    canonical_text,
+    predicates,
+    read_form,
+)
+from annotations.language.grounding import (
     SlotPath,
+    are_alike,
+    as_pair,
     class_of,
     context_of,
     role_of,
     tokens_of,
     words_of,
 )
-from annotations.language.predicates import Predicate, PredicateKind, is_entity_kind
+from annotations.language.predicates import (
+    ArgumentKind,
+    Predicate,
+    PredicateKind,
+    is_entity_kind,
+)
 from annotations.language.rewording import Rewording
 from annotations.language.symbols import DEFAULT_CLASSES, EntityClasses, Symbols
 
@@ -53,7 +64,15 @@ _FEATURE_VALUES = 60
 _LEAST = {"cue": -5.0, "near": -2.0, "action": -2.0}
 _MOST_BY_ORDER = 1.5  # log odds: people put parts of a command in any order
 _NAMES_NOTHING = frozenset(
-    (*BOUNDARIES, *DETERMINERS, *PERSON_WORDS, *THING_WORDS, *PLACE_PREPOSITIONS, *COURTESY_WORDS, *NUMBERS)
+    (
+        *BOUNDARIES,
+        *DETERMINERS,
+        *PERSON_WORDS,
+        *THING_WORDS,
+        *PLACE_PREPOSITIONS,
+        *COURTESY_WORDS,
+        *NUMBERS,
+    )
 )
 
 
@@ -246,17 +265,19 @@ def _meanings(
             continue
         covers = (_cover(commands, kind, len(pairs)) for kind in with_predicate)
         found = [
-            (rounds, common, names)
-            for rounds, common, names in covers
-            if names and common <= most
+            (rounds, common, names) for rounds, common, names in covers if names and common <= most
         ]
         if found:
             meanings[word] = frozenset(min(found)[2])
     for name, words in PREDICATE_WORDS.items():
         for word in words if name in declared else ():
             commands = with_word.get(word, 0)
-            besides = {each for each, mine in with_predicate[False].items() if commands & mine}
-            meanings[word] = frozenset(_alike(name) | besides)
+            asked = {
+                each
+                for each, mine in with_predicate[False].items()
+                if commands & mine and _is_asked(declared[each])  # "are they lying or standing"
+            }
+            meanings[word] = frozenset(_alike(name) | asked)
     return meanings
 
 
@@ -268,12 +289,19 @@ def _with_all(commands: int, predicates: Mapping[str, int]) -> list[str]:
     return [name for name, mine in predicates.items() if not commands & ~mine]
 
 
+def _is_asked(predicate: Predicate) -> bool:
+    """Return whether a description has a value that is asked for: ``(pose $2 $1)``."""
+    return any(list(each.arguments) == [ArgumentKind.VARIABLE] * 2 for each in predicate.signatures)
+
+
 def _has_slot(predicate: Predicate) -> bool:
     """Return whether a description takes an entity, which says by itself what is described."""
     return any(is_entity_kind(kind) for each in predicate.signatures for kind in each.arguments)
 
 
-def _cover(commands: int, predicates: Mapping[str, int], number: int) -> tuple[int, int, tuple[str, ...]]:
+def _cover(
+    commands: int, predicates: Mapping[str, int], number: int
+) -> tuple[int, int, tuple[str, ...]]:
     """Return the fewest predicates one of which each of ``commands`` has, and how many commands have one of them at
     all; none where there are more than ``_MOST_MEANINGS``. Greedy, rare predicates first."""
     names: list[str] = []

@@ -98,6 +98,6 @@ __all__ = [
     "read_template",
     "set_problems",
     "shared_problems",
-    "template_checker",
     "spread_derivations",
+    "template_checker",
 ]
