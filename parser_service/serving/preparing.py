@@ -27,7 +27,7 @@ from parser_service.robots.action_naming import names_of
 
 MOST_CANDIDATES = 20
 # What the grammar tells about which words of an utterance go where:
-MOST_OF_A_TEMPLATE = 40  # commands; more of one template say nothing new
+MOST_OF_A_TEMPLATE = 25  # commands; more of one template say nothing new
 MOST_COMMANDS = 4_000
 REMEMBERED_WORLDS = 8
 

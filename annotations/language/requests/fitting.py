@@ -167,9 +167,14 @@ def _fillers(slot: Slot) -> Iterator[str]:
 
 def _classes(span: Span, heard: Anonymized, ontology: Ontology) -> set[str]:
     """Return the classes that the words of a span may be of."""
-    said = ontology.class_of_text(heard.original[span.start : span.end])
-    others = (each.entity_class for each in span.others)
-    return {span.entity_class, span.entity.entity_class, *others, *([said] if said else [])}
+    text = heard.original[span.start : span.end].casefold()
+    others = {each.entity_class for each in span.others}
+    namesakes = {
+        each.entity_class
+        for each in ontology.entities
+        if text in (each.text.casefold(), *map(str.casefold, each.aliases))
+    }
+    return {span.entity_class, span.entity.entity_class, *others, *namesakes}
 
 
 def _words(heard: Anonymized) -> tuple[list[str], list[tuple[int, int]]]:
