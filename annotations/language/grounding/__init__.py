@@ -25,14 +25,21 @@ from annotations.language.grounding.questions import (
     open_slots_as_json,
     question_for,
 )
-from annotations.language.grounding.role_evidence import Evidence
-from annotations.language.grounding.roles import SlotPath
+from annotations.language.grounding.role_evidence import Evidence, as_pair
+from annotations.language.grounding.roles import (
+    SlotPath,
+    class_of,
+    context_of,
+    role_of,
+    tokens_of,
+    words_of,
+)
 from annotations.language.grounding.utterance_lattice import (
     HeardChange,
     HeardLattice,
     UtteranceReader,
 )
-from annotations.language.grounding.utterance_mentions import UtteranceMentions
+from annotations.language.grounding.utterance_mentions import UtteranceMentions, are_alike
 
 __all__ = [
     "QUESTION_WORD",
@@ -51,7 +58,11 @@ __all__ = [
     "Span",
     "UtteranceMentions",
     "UtteranceReader",
+    "are_alike",
+    "as_pair",
     "choices_of",
+    "class_of",
+    "context_of",
     "deanonymize",
     "fill_all",
     "filled",
@@ -64,5 +75,8 @@ __all__ = [
     "open_slots_as_json",
     "question_for",
     "resolve_slots",
+    "role_of",
+    "tokens_of",
     "with_values",
+    "words_of",
 ]

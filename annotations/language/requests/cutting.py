@@ -39,7 +39,7 @@ from annotations.language.english import (
     TELLING_WORDS,
     YES_WORDS,
 )
-from annotations.language.requests.qualifying import Hold, holds_in
+from annotations.language.requests.qualifying import Qualified, holds_in
 
 MOST_COMMANDS = 3  # as many as a referee gives at once
 MOST_JOINTS = 16  # in an utterance, so at most 153 pieces; one with more is not cut
@@ -193,9 +193,9 @@ class _Cut:
         for held in holds_in(self.utterance):
             word = bisect_right(self.starts, held.start) - 1
             first, last = self._sentence(word)
-            if held.hold is Hold.FORBIDDEN and self._is_parted(word):
+            if held.code == Qualified.FORBIDDEN and self._is_parted(word):
                 first = word
-            if held.hold is Hold.TAKEN_BACK and first:
+            if held.code == Qualified.TAKEN_BACK and first:
                 first, _ = self._sentence(first - 1)
             ranges.append(_Range(first, last, is_held=True))
         return _merged(ranges)
