@@ -23,6 +23,7 @@ class Likeness(IntEnum):
     EXACT = 0
     ALIAS = 1
     INFLECTED = 2
+    MEMBER = 3  # the name of a category, for one of its objects
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +150,7 @@ def readings_of(entity: Entity, classes: EntityClasses) -> Iterator[tuple[str, R
             return
         # A class whose singular nobody has said, or is its plural: "a food" is one of its objects, too.
         for noun in _singulars_of(text):
-            yield noun, Reading(Likeness.INFLECTED, "object", noun, entity)
+            yield noun, Reading(Likeness.MEMBER, "object", noun, entity)
     for noun in (text, *entity.aliases) if classes.has_plurals(entity_class) else ():
         for spelling in spellings(noun):
             yield spelling, Reading(Likeness.INFLECTED, entity_class, text, entity)

@@ -131,7 +131,7 @@ class _Name:
 
     def cost(self, said: str) -> int:
         """Return what it costs to hear the name in ``said``."""
-        is_inflected = self.reading.likeness is Likeness.INFLECTED
+        is_inflected = self.reading.likeness >= Likeness.INFLECTED
         return (0 if said == self.spelling else FOLDED) + (FOLDED if is_inflected else 0)
 
     def rank(self, said: str) -> tuple[int, Likeness]:
