@@ -112,8 +112,11 @@ class UtteranceReader:
 
 
 def fold(word: str) -> str:
-    """Return a word without its case, accents, and signs such as apostrophes and hyphens; a lone sign stays."""
-    parts = unicodedata.normalize("NFD", word.casefold())
+    """Return a word without its case, accents, and signs such as apostrophes and hyphens; a lone sign stays.
+
+    Full-width letters and ligatures are the letters that they stand for.
+    """
+    parts = unicodedata.normalize("NFKD", word.casefold())
     letters = "".join(each for each in parts if not unicodedata.combining(each))
     return _SIGNS_INSIDE.sub("", letters) or word
 
@@ -358,6 +361,11 @@ class _Everything:
         # Openings and closings follow one another from the two ends.
         skipped += self._chain(_OPENINGS)
         skipped += self._chain_back(_CLOSINGS)
+        # The number of a list: "1. bring me the tea", "(2) follow Bo".
+        number = next((place for place in range(len(self.texts)) if self._is_word(place)), 0)
+        after = self.texts[number + 1 : number + 2]
+        if after and self.texts[number].isdecimal() and not after[0][0].isalnum():
+            skipped.append((number, number + 1))
         return sorted(set(skipped))
 
     def _places_of(
