@@ -141,8 +141,11 @@ class UtteranceReader:
 
 
 def fold(word: str) -> str:
-    """Return a word without its case, accents, and signs such as apostrophes and hyphens; a lone sign stays."""
-    parts = unicodedata.normalize("NFD", word.casefold())
+    """Return a word without its case, accents, and signs such as apostrophes and hyphens; a lone sign stays.
+
+    Full-width letters and ligatures are the letters that they stand for.
+    """
+    parts = unicodedata.normalize("NFKD", word.casefold())
     letters = "".join(each for each in parts if not unicodedata.combining(each))
     return _SIGNS_INSIDE.sub("", letters) or word
 
@@ -160,7 +163,7 @@ class Name:
 
     def cost(self, said: str) -> int:
         """Return what it costs to hear the name in ``said``."""
-        is_inflected = self.reading.likeness is Likeness.INFLECTED
+        is_inflected = self.reading.likeness >= Likeness.INFLECTED
         return (0 if said == self.spelling else FOLDED) + (FOLDED if is_inflected else 0)
 
     def rank(self, said: str) -> tuple[int, Likeness]:
@@ -400,6 +403,11 @@ class Everything:
         # Openings and closings follow one another from the two ends.
         skipped += self._chain(_OPENINGS)
         skipped += self._chain_back(_CLOSINGS)
+        # The number of a list: "1. bring me the tea", "(2) follow Bo".
+        number = next((place for place in range(len(self.texts)) if self._is_word(place)), 0)
+        after = self.texts[number + 1 : number + 2]
+        if after and self.texts[number].isdecimal() and not after[0][0].isalnum():
+            skipped.append((number, number + 1))
         return sorted(set(skipped))
 
     def _places_of(

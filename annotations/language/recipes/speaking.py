@@ -56,6 +56,7 @@ _TURNED = {
     "you": "me",
 }
 _TO_TURN = re.compile(rf"\b({'|'.join(_TURNED)})\b", re.IGNORECASE)
+_ON = re.compile(r"\bon (?=\{(\w+)\})")
 _MOST_CLAUSES = 3  # after which "it" and "them" may stand for something else
 
 
@@ -257,17 +258,22 @@ def _preposition(place: TaskValue) -> str:
     """Return "in" for a room, "with" for the operator and "at" for any other place."""
     if isinstance(place, Operator):
         return "with"
-    return "in" if isinstance(place, Named) and place.entity_class == "room" else "at"
+    return "in" if _is_room(place) else "at"
+
+
+def _is_room(value: TaskValue) -> bool:
+    return isinstance(value, Named) and value.entity_class == "room"
 
 
 def _pattern(primitive: Primitive, values: Mapping[str, TaskValue]) -> str:
-    """Return the fullest pattern whose parameters all have a value."""
+    """Return the fullest pattern whose parameters all have a value; nothing is said to be on a room."""
     names = {
         each: {match["name"] for match in PLACEHOLDER.finditer(each)} for each in primitive.said
     }
     fitting = [each for each in primitive.said if names[each] <= values.keys()]
     if fitting:
-        return max(fitting, key=lambda each: len(names[each]))
+        fullest = max(fitting, key=lambda each: len(names[each]))
+        return _ON.sub(lambda match: "in " if _is_room(values[match[1]]) else match[0], fullest)
     name = _CAPITAL.sub(" ", primitive.name.replace("_", " ")).lower()
     return " ".join((name, *(f"{{{each}}}" for each in values)))
 
