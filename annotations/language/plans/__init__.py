@@ -32,11 +32,17 @@ from annotations.language.plans.plan import (
     plan_schema,
     plan_schema_text,
 )
-from annotations.language.plans.planning import argument_names, doubts_about, make_plan
+from annotations.language.plans.planning import (
+    NOT_UNDERSTOOD,
+    argument_names,
+    doubts_about,
+    make_plan,
+)
 
 __all__ = [
     "ASK",
     "AT",
+    "NOT_UNDERSTOOD",
     "TAKEN_NAMES",
     "ActionName",
     "Condition",

@@ -262,7 +262,10 @@ def test_a_superlative_needs_a_set() -> None:
 
 
 def test_a_description_alone_is_nothing_to_do() -> None:
-    assert troubles(plan_of('(λ$1:e (is_a $1 "tea") (at $1 "stool"))')) == [Trouble.NO_ACTION]
+    plan = plan_of('(λ$1:e (is_a $1 "tea") (at $1 "stool"))')
+    assert [(each.trouble, each.step) for each in plan.problems] == [(Trouble.NO_ACTION, 0)]
+    assert [each.predicate for each in plan.steps] == [ASK]
+    assert said_in(plan, 0, "expects")["text"] == "command"
 
 
 def test_a_likely_entity_is_to_be_confirmed() -> None:
