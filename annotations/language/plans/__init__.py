@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from annotations.language.plans.behavior_tree import (
     TAKEN_NAMES,
+    Robust,
     node_name,
     port_name,
     to_behavior_tree,
@@ -56,6 +57,7 @@ __all__ = [
     "PlanOf",
     "PlanProblem",
     "Referred",
+    "Robust",
     "Step",
     "StepResult",
     "Trouble",
