@@ -10,6 +10,7 @@ from typing import Any
 
 from annotations.language.errors import Refusal
 from annotations.language.forms import UNKNOWN, Form, read_form
+from annotations.language.grounding import Slot
 from annotations.language.plans import PlanProblem, Trouble
 from annotations.language.recipes import (
     MOST_COMMANDS,
@@ -61,7 +62,7 @@ class JointAnswer:
 
     @property
     def spoken(self) -> str:
-        return spoken(self.plan.plan)
+        return self.plan.spoken
 
     def as_json(self) -> dict[str, Any]:
         """Return plain values, as REST answers them (docs/reference/recipes.md)."""
@@ -118,7 +119,7 @@ def plan_together(
         _understood(ask.parse(world.name, text, run=run), text, language) for text in texts
     )
     plans = [each.task_plan for each in commands]
-    return JointAnswer(commands, join(plans, language.recipes, distances))
+    return JointAnswer(commands, join(plans, language.recipes, distances, texts))
 
 
 def _items(utterance: str) -> list[str]:
@@ -144,20 +145,33 @@ def _understood(
     is_unknown = best is None or answer["is_unknown"]
     form: Form = UNKNOWN
     doubts: list[PlanProblem] = []
+    slots: list[Slot] = []
     if best is not None and not is_unknown:
         form = read_form(best["grounded"])
-        # Of which of several entities is meant; what else is wrong follows from the form.
+        # Of which of several entities is meant; what else is wrong follows from the form and its open slots.
         doubts = [
             PlanProblem(Trouble.AMBIGUOUS, 0, each["message"], each["hint"])
             for each in best["plan"]["problems"]
-            if each["code"] == Trouble.AMBIGUOUS
+            if each["code"] == Trouble.AMBIGUOUS and not each["step"]
+        ]
+        slots = [
+            Slot(
+                tuple(each["path"]),
+                each["token"],
+                each["entity_class"],
+                tuple(each["choices"]),
+                each["is_named"],
+                phrases=tuple(each["phrases"]),
+            )
+            for each in best["open_slots"]
+            if each["likely"] is None
         ]
     return UnderstoodCommand(
         utterance,
         is_unknown,
         best["grounded"] if best else "",
         best["english"] if best else "",
-        task_plan_of(form, doubts, language),
+        task_plan_of(form, doubts, language, slots=slots),
     )
 
 

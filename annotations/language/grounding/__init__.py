@@ -19,6 +19,7 @@ from annotations.language.grounding.drawing import may_fill
 from annotations.language.grounding.grounding import Grounded, ground
 from annotations.language.grounding.questions import (
     choices_of,
+    is_asked_plainly,
     named_entities,
     noun_for,
     open_slots_as_json,
@@ -50,6 +51,7 @@ __all__ = [
     "ground",
     "ground_like",
     "ground_text",
+    "is_asked_plainly",
     "may_fill",
     "named_entities",
     "noun_for",

@@ -63,7 +63,7 @@ def spoken(plan: TaskPlan) -> str:
     """Return one sentence for the robot to speak.
 
     >>> spoken(plan)
-    'I will go to the kitchen, find a coke, and bring it to you.'
+    'I will go to the kitchen, find a coke, take it, and bring it to you.'
 
     A plan that only asks is said as it asks.
     """
@@ -99,7 +99,9 @@ class _Clauses:
         while at < len(self.steps):
             step = self.steps[at]
             delivery = self._delivery(at)
-            if delivery:
+            if delivery:  # the way there goes without saying
+                clauses.append(self.say(step, self._last))
+                self._remember(step)
                 step = self.steps[at + delivery]
                 effect = step.primitive.effect(EffectKind.RELEASES)
                 assert effect is not None
