@@ -12,6 +12,7 @@ from annotations.language.grounding import (
     Slot,
     UtteranceMentions,
     fill_all,
+    is_asked_plainly,
     named_entities,
     resolve_slots,
     with_values,
@@ -84,6 +85,8 @@ class AnswerWriter:
 
     def _fill(self, candidate: Candidate, form: Form, slots: Slots) -> Reading[str] | None:
         """Return the outline with its entities; None where it would say something else."""
+        if not all(slot.filler is not None or is_asked_plainly(slot) for slot in slots):
+            return None  # the plan asks for it in words of this utterance
         put_in = [(slot.path, value) for slot in slots if (value := slot.filler) is not None]
         if len({value.casefold() for _, value in put_in}) < len(put_in):
             return None  # who is named twice is one person

@@ -8,6 +8,7 @@ from typing import Any
 
 from annotations.language.errors import Refusal
 from annotations.language.forms import UNKNOWN, Form, read_form
+from annotations.language.grounding import Slot
 from annotations.language.plans import PlanProblem, Trouble
 from annotations.language.recipes import (
     MOST_COMMANDS,
@@ -54,7 +55,7 @@ class JointAnswer:
 
     @property
     def spoken(self) -> str:
-        return spoken(self.plan.plan)
+        return self.plan.spoken
 
     def as_json(self) -> dict[str, Any]:
         """Return plain values, as REST answers them (docs/reference/recipes.md)."""
@@ -98,7 +99,7 @@ def plan_together(
     ask = client()
     commands = tuple(understood(ask.parse(world.name, text, run=run), language) for text in texts)
     plans = [each.task_plan for each in commands]
-    return JointAnswer(commands, join(plans, language.recipes, distances))
+    return JointAnswer(commands, join(plans, language.recipes, distances, texts))
 
 
 def understood(answer: Mapping[str, Any], language: WorldLanguage) -> UnderstoodCommand:
@@ -107,20 +108,33 @@ def understood(answer: Mapping[str, Any], language: WorldLanguage) -> Understood
     is_unknown = best is None or answer["is_unknown"]
     form: Form = UNKNOWN
     doubts: list[PlanProblem] = []
+    slots: list[Slot] = []
     if best is not None and not is_unknown:
         form = read_form(best["grounded"])
-        # Of which of several entities is meant; what else is wrong follows from the form.
+        # Of which of several entities is meant; what else is wrong follows from the form and its open slots.
         doubts = [
             PlanProblem(Trouble.AMBIGUOUS, 0, each["message"], each["hint"])
             for each in best["plan"]["problems"]
-            if each["code"] == Trouble.AMBIGUOUS
+            if each["code"] == Trouble.AMBIGUOUS and not each["step"]
+        ]
+        slots = [
+            Slot(
+                tuple(each["path"]),
+                each["token"],
+                each["entity_class"],
+                tuple(each["choices"]),
+                each["is_named"],
+                phrases=tuple(each["phrases"]),
+            )
+            for each in best["open_slots"]
+            if each["likely"] is None
         ]
     return UnderstoodCommand(
         answer["utterance"],
         is_unknown,
         best["grounded"] if best else "",
         best["english"] if best else "",
-        task_plan_of(form, doubts, language),
+        task_plan_of(form, doubts, language, slots=slots),
     )
 
 

@@ -27,7 +27,7 @@ from annotations.language.grounding import (
     open_slots_as_json,
 )
 from annotations.language.ontology import Ontology
-from annotations.language.plans import Lookup, PlanProblem, doubts_about, make_plan
+from annotations.language.plans import Lookup, PlanProblem, make_plan
 from annotations.language.predicates import gloss
 from annotations.language.recipes import TaskPlan, apply_recipes, spoken
 from parser_service.parsers.interface import UNKNOWN, Candidate, ScoreKind
@@ -239,7 +239,7 @@ def answer_with(
         slots=given.slots,
         lookup=lookup,
     )
-    task_plan = task_plan_of(given.form, doubts_about(given.slots), language, lookup)
+    task_plan = task_plan_of(given.form, (), language, lookup, given.slots)
     return ParsedCandidate(
         form=candidate.form,
         score=score_of(candidate),
@@ -263,16 +263,27 @@ def answer_with(
 
 
 def task_plan_of(
-    form: Form, doubts: Sequence[PlanProblem], language: WorldLanguage, lookup: Lookup | None = None
+    form: Form,
+    doubts: Sequence[PlanProblem],
+    language: WorldLanguage,
+    lookup: Lookup | None = None,
+    slots: Sequence[Slot] = (),
 ) -> TaskPlan:
     """Return what the robot of the world does for a form with entities, in its own primitives.
 
     Args:
-        doubts: the problems of entities that are only likely.
+        doubts: the problems of entities that are only likely, where ``slots`` do not have them.
         lookup: finds the entities; that of the language by default.
+        slots: those of the form, so that the plan asks for the open ones as a dialogue does.
     """
     # Recipes know the arguments by the names that the language gives them, whatever the robot calls them.
-    plan = make_plan(form, language.ontology, language.predicates, lookup=lookup or language.lookup)
+    plan = make_plan(
+        form,
+        language.ontology,
+        language.predicates,
+        slots=slots,
+        lookup=lookup or language.lookup,
+    )
     plan = replace(plan, problems=(*doubts, *plan.problems))
     return apply_recipes(plan, language.recipes, language.usual)
 

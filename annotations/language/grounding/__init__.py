@@ -20,6 +20,7 @@ from annotations.language.grounding.grounding import Grounded, ground
 from annotations.language.grounding.hearing import HeardText, HearingReader
 from annotations.language.grounding.questions import (
     choices_of,
+    is_asked_plainly,
     named_entities,
     noun_for,
     open_slots_as_json,
@@ -69,6 +70,7 @@ __all__ = [
     "ground",
     "ground_like",
     "ground_text",
+    "is_asked_plainly",
     "may_fill",
     "named_entities",
     "noun_for",

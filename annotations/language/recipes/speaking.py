@@ -24,7 +24,7 @@ from annotations.language.recipes.values import PLACE, TaskValue, content, kinds
 
 YOU = "you"
 THE = "the "
-_ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
+ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 COME_BACK = "come back to you"
 NOTHING = "I have nothing to do."
 _PRONOUNS = {PERSON: "them", THING: "it"}
@@ -64,7 +64,7 @@ def spoken(plan: TaskPlan) -> str:
     """Return one sentence for the robot to speak.
 
     >>> spoken(plan)
-    'I will go to the kitchen, find a coke, and bring it to you.'
+    'I will go to the kitchen, find a coke, take it, and bring it to you.'
 
     A plan that only asks is said as it asks.
     """
@@ -100,7 +100,9 @@ class _Clauses:
         while at < len(self.steps):
             step = self.steps[at]
             delivery = self._delivery(at)
-            if delivery:
+            if delivery:  # the way there goes without saying
+                clauses.append(self.say(step, self._last))
+                self._remember(step)
                 step = self.steps[at + delivery]
                 effect = step.primitive.effect(EffectKind.RELEASES)
                 assert effect is not None
@@ -176,7 +178,7 @@ class _Clauses:
         alike = [each for each in self.steps if _learnt(each, {}) == words]
         if len(alike) > 1 and step.primitive.effect(EffectKind.SPEAKS) and words.startswith(THE):
             # Of answers that somebody gives in one place their order tells which is meant.
-            ordinal = "".join(_ORDINALS[alike.index(step) :][:1])
+            ordinal = "".join(ORDINALS[alike.index(step) :][:1])
             return f"{THE}{ordinal} {words.removeprefix(THE)}" if ordinal else words
         is_one_of_many = len(alike) > 1
         is_one_of_many |= self._has_namesake(step)
