@@ -176,7 +176,7 @@ def test_the_first_is_promoted_where_it_is_right_more_often_than_wrong(split, fi
 
 @pytest.mark.parametrize("new", [0, 3, 4, 12])
 def test_a_parser_that_writes_no_new_form_is_not_promoted_where_a_third_is_new(world, new):
-    """Of twelve validation pairs ``new`` ask for forms that training does not have, the others for various known ones."""
+    """Of twelve validation pairs ``new`` ask for forms that training does not have, the others for known ones."""
     split = known_split(world, "asked", new)
     known = split.examples.filter(part="train").values_list("logical_form", flat=True)
     for pk, form in zip(
