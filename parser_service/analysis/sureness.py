@@ -275,9 +275,7 @@ def operating_point(
     if len(bounds):
         return OperatingPoint(float(bounds.min()))
     acted = given >= by_promise
-    chance = binom.sf(
-        (~right[acted]).sum() - 1, acted.sum(), allowed
-    )  # of so many wrong ones, or more
+    chance = _chance_of(int((~right[acted]).sum()), int(acted.sum()), allowed)
     above_all = float(np.nextafter(surest[0], np.inf))
     return OperatingPoint(by_promise if chance >= UNLIKELY else max(by_promise, above_all))
 
