@@ -14,14 +14,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from math import exp, log, log2
+from math import exp, lgamma, log, log2
 from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import minimize
-from scipy.special import expit
-from scipy.stats import binom
 
 from parser_service.analysis.arrays import Bools, Floats
 from parser_service.analysis.clustered import folds_of
@@ -158,6 +155,11 @@ def _log_odds(log_probability: float) -> float:
     return float(np.clip(log(probability / (1 - probability)), -_MOST_LOG_ODDS, _MOST_LOG_ODDS))
 
 
+def _share(log_odds: ArrayLike) -> Floats:
+    """Return the probabilities with these log-odds, any shape."""
+    return np.exp(-np.logaddexp(0.0, np.negative(log_odds)))
+
+
 @dataclass(frozen=True, slots=True)
 class Calibration:
     """Turns evidence into a probability. ``examples`` is how many it was fitted to."""
@@ -172,6 +174,9 @@ class Calibration:
         The posterior is convex and the search starts at the default, so that equal examples in any order give equal
         weights (to the tolerance of the search).
         """
+        # Not before something is fitted: whatever answers loads this module.
+        from scipy.optimize import minimize
+
         if not evidences:
             return cls()
         features = np.array([_features(each) for each in evidences])  # [examples, features]
@@ -184,7 +189,7 @@ class Calibration:
             odds = signs * (features @ weights)
             off = weights - default
             loss = np.logaddexp(0.0, -odds).sum() + 0.5 * (precision * off**2).sum()
-            slope = -(signs * expit(-odds)) @ features + precision * off
+            slope = -(signs * _share(-odds)) @ features + precision * off
             return float(loss), slope
 
         bounds = [
@@ -210,7 +215,7 @@ class Calibration:
         """Return how probable it is that the answer has the plan that was meant, ``LEAST`` to ``MOST``."""
         weights = [self.weights[name] for name in WEIGHTS]
         odds = sum(map(float.__mul__, weights, _features(evidence)))
-        return float(np.clip(expit(odds), LEAST, MOST))
+        return float(np.clip(_share(odds), LEAST, MOST))
 
 
 @dataclass(frozen=True, slots=True)
@@ -270,11 +275,26 @@ def operating_point(
     if len(bounds):
         return OperatingPoint(float(bounds.min()))
     acted = given >= by_promise
-    chance = binom.sf(
-        (~right[acted]).sum() - 1, acted.sum(), allowed
-    )  # of so many wrong ones, or more
+    chance = _chance_of(int((~right[acted]).sum()), int(acted.sum()), allowed)
     above_all = float(np.nextafter(surest[0], np.inf))
     return OperatingPoint(by_promise if chance >= UNLIKELY else max(by_promise, above_all))
+
+
+def _chance_of(wrong: int, count: int, allowed: float) -> float:
+    """Return how probable it is that ``wrong`` or more of ``count`` are, where each is with probability ``allowed``."""
+    if not 0 < allowed < 1:
+        return float(not wrong or allowed >= 1)
+    fewer = (
+        exp(
+            lgamma(count + 1)
+            - lgamma(number + 1)
+            - lgamma(count - number + 1)
+            + number * log(allowed)
+            + (count - number) * log(1 - allowed)
+        )
+        for number in range(wrong)
+    )
+    return max(0.0, 1 - sum(fewer))
 
 
 def decide(
