@@ -78,10 +78,9 @@ class Command(ReportingCommand):
 
 def _describe(row: AnswererEvaluation) -> dict[str, Any]:
     measured = reliability_of([row])
-    about = {"error": None, "bins": []}
-    if measured:
-        about = {"error": measured.error, "bins": list(bins_of(measured))}
-    return {**as_row(row), "reliability": about}
+    error = measured.error if measured else None
+    bins = list(bins_of(measured)) if measured else []
+    return {**as_row(row), "reliability": {"error": error, "bins": bins}}
 
 
 def _lines(report: Mapping[str, Any]) -> Iterator[str]:
