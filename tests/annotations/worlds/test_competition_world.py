@@ -372,12 +372,12 @@ def test_the_trash_is_the_garbage_pail():
         ),
         ("1. Bring me the cocoa.", "bring me the cocoa"),
         ("(2) follow Otto", "follow Otto"),
-        ("Ｂｒｉｎｇ ｍｅ ｔｈｅ ｃｏｃｏａ．", "bring me the cocoa"),  # noqa: RUF001
-        ("１．ﬁnd ｔｈｅ ｃｏｃｏａ", "find the cocoa"),  # noqa: RUF001
+        ("Ｂｒｉｎｇ ｍｅ ｔｈｅ ｃｏｃｏａ．", "bring me the cocoa"),
+        ("１．ﬁnd ｔｈｅ ｃｏｃｏａ", "find the cocoa"),
         (
             "Go to the ｌｏｂｂｙ，ﬁnd Otto and follow him",
             "go to the lobby, find Otto and follow him",
-        ),  # noqa: RUF001
+        ),
     ],
 )
 def test_commas_pronouns_numbers_of_lists_and_other_letters_are_heard(said, as_written):

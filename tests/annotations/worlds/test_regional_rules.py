@@ -27,6 +27,8 @@ ROWS = [
         },
     ),
     ("entities", {"entity_class": "pose", "text": "squatting", "aliases": ["squatting down"]}),
+    ("entities", {"entity_class": "colour", "text": "purple", "aliases": []}),
+    ("entities", {"entity_class": "garment", "text": "kimono", "aliases": []}),
     ("entities", {"entity_class": "topic", "text": "your favourite drink", "aliases": []}),
 ]
 # What is said → its form, and what the robot says that it will do.
@@ -42,6 +44,10 @@ SAID = {
     "follow the squatting person": (
         "( follow ( lambda $1 e ( person $1 ) ( pose $1 “squatting” ) ) )",
         "I will find the person who is squatting and follow them.",
+    ),
+    "find a person in a purple kimono": (
+        "( find ( lambda $1 e ( person $1 ) ( wears $1 “purple” “kimono” ) ) )",
+        "I will find the person in a purple kimono.",
     ),
     "Tell the person squatting down in the lobby your favourite drink.": (
         "( say “your favourite drink” "
