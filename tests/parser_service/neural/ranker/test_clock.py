@@ -69,6 +69,22 @@ def test_a_training_that_would_last_too_long_takes_fewer_steps_and_says_so(
     assert all(parser.predict(utterances(pairs)))
 
 
+def test_preparing_counts_as_progress(config, pairs, tmp_path, monkeypatch):
+    """Time left is what progress leaves: after long preparing, few steps are most of neither."""
+    prepare = RankerFitting._prepare
+
+    def slowly(fitting, *arguments):
+        prepare(fitting, *arguments)
+        fitting._clock.before = 3600.0
+
+    monkeypatch.setattr(RankerFitting, "_prepare", slowly)
+    observe = Recorder(tmp_path)
+    FormRanker(config).fit(pairs[:20], pairs[20:], observe)
+    assert observe.fractions[LEAST_TIMED] > 0.9
+    assert observe.fractions == sorted(observe.fractions)
+    assert observe.fractions[-1] == 1
+
+
 def test_a_training_that_has_time_takes_all_steps(config, pairs, tmp_path):
     observe = Recorder(tmp_path)
     FormRanker(config).fit(pairs[:20], pairs[20:], observe)
