@@ -180,7 +180,7 @@ class Fitting:
         """
         step, total = self._trainings[self._at].step, self._trainings[-1].span.end
         done = step / total
-        if self._clock.a_step:
+        if self._clock.a_step and step < total:
             left = (total - step) * self._clock.a_step + self._seconds_beside_steps()
             done = self._clock.spent / (self._clock.spent + left)
         self._done = max(self._done, done)
