@@ -29,8 +29,9 @@ from annotations.language.requests.qualifying import says_number
 from annotations.language.requests.word_use import Place, Role, WordUse, role_at
 
 EXCHANGED = 1.5  # log odds by which two mentions fit better where the other one is
-ELSEWHERE = 5.0  # log odds by which a mention fits another role of the same action better
+ELSEWHERE = 4.0  # log odds by which a mention fits another role of the same action better
 PLACE = "location"  # and what is alike: what may be of somebody, of something, or a destination
+GOAL = "argument 1"
 MOST_SLOTS = 16  # that are compared in pairs
 _WORD = re.compile(r"<\w+>|\w+(?:['’]\w+)?|[^\w\s]")
 
@@ -98,6 +99,7 @@ def fit(
     if isinstance(form, Unknown):
         return Fit()
     fillers = {each.casefold() for slot in slots for each in _fillers(slot)}
+    fillers |= {str(each.value).casefold() for each in walk(form) if isinstance(each, Constant)}
     unused = [span for span in heard.spans if span.value.casefold() not in fillers]
     not_said = []
     for slot in slots:
@@ -267,7 +269,8 @@ def _exchanges(
                 found |= {one.slot.path, other.slot.path}
                 yield Exchange((one.slot, other.slot), nats)
     for each in filled:
-        if each.slot.path in found or not are_alike(each.slot.entity_class, PLACE):
+        is_goal = each.role.similar == GOAL  # to go there, and to meet somebody there, is the same
+        if is_goal or each.slot.path in found or not are_alike(each.slot.entity_class, PLACE):
             continue
         taken = {other.role.similar for other in filled}
         rivals = [
