@@ -143,12 +143,14 @@ class NearWords:
 
 
 def _by_sound(said: str, word: str) -> Near | None:
-    if OSA.distance(said, word) > min(MOST_EDITS, max(len(said), len(word)) // 2):
+    edits = OSA.distance(said, word)
+    if edits > min(MOST_EDITS, max(len(said), len(word)) // 2):
         return None
     more = OF_A_WORD if is_common(said) else 0
+    kind = "sound" if more or edits > _most_edits(said) else "spelling"
     if sounds_like(said, word):
-        return Near(word, "sound", SAME_SOUND + more)
-    return Near(word, "sound", SAME_SOUND + more + LOOSE, not more)
+        return Near(word, kind, SAME_SOUND + more)
+    return Near(word, kind, SAME_SOUND + more + LOOSE, not more)
 
 
 def _by_letters(said: str, word: str, edits: int, most: int) -> Near | None:

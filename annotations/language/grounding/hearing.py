@@ -57,7 +57,7 @@ from annotations.language.grounding.utterance_lattice import (
 )
 
 # Costs, beside those of near words.
-FILLER, REPEATED, REPAIRED, COURTESY = 1, 3, 4, 0  # more than what passing over costs
+FILLER, REPEATED, REPAIRED = 1, 1, 4  # more than what passing over costs
 ARTICLE, CONTRACTED, JOINED, COUNTED, ALIAS = 3, 2, 3, 2, 4
 MOST_REPAIRED = 6  # words that a correction takes back
 MOST_REPEATED = 4  # words that are said twice
@@ -65,6 +65,7 @@ MOST_IN_A_NAME = 3  # changes in one name
 MOST_TOKENS = 120  # of an utterance; a longer one is heard as it is
 MOST_RIVALS = 4  # names that are equally near
 SHORTEST_PART = 2  # letters of each of two words that were taken for one
+LONGEST_SPLIT = 40  # letters of such a word
 _INNER = 16  # places for the words of one token
 _BLANK = " "
 
@@ -75,6 +76,7 @@ _FUNCTION_WORDS = BOUNDARIES | DETERMINERS | PLACE_PREPOSITIONS
 _LIKE_PREPOSITIONS = frozenset(("two", "2", "four", "4"))
 _CUT_OFF = frozenset("-‐‑–—…")
 _WORD = re.compile(r"\w")
+_COMMA = re.compile(" ?,?")
 _LEFT_OVER = re.compile(r" ?([,;:])(?: ?[,;:])*+")
 _APOSTROPHE = re.compile("['’]")
 
@@ -344,7 +346,8 @@ class _Noisy(Everything):
                 and fold(self.utterance[start + cut : end]) in known
             )
             is_word = folded in known or is_common(folded) or folded in self.reader.names
-            if not is_word and len(folded) == end - start and (cut := next(cuts, None)):
+            is_short = len(folded) == end - start <= LONGEST_SPLIT
+            if is_short and not is_word and (cut := next(cuts, None)):
                 words = f"{self.utterance[start:cut]} {self.utterance[cut:end]}"
                 changes += self._change("split", place, place + 1, words)
                 tokens += [(start, cut), (cut, end)]
@@ -581,7 +584,7 @@ class _Noisy(Everything):
         for start, stop in ranges:
             is_filler = tuple(self.folded[start:stop]) in _FILLERS
             kind = "filler" if is_filler else "courtesy"
-            yield start, stop, kind, SKIPPED * (stop - start) + COURTESY
+            yield start, stop, kind, SKIPPED * (stop - start)
         for place, folded in enumerate(self.folded):
             if folded in ARTICLES:
                 yield place, place + 1, "article", ARTICLE
@@ -685,8 +688,13 @@ def _changed(utterance: str, changes: Sequence[HeardChange]) -> str:
     """Return an utterance with changes made that are in its order; signs that are left over go."""
     pieces, end = [], 0
     for change in changes:
-        pieces += [utterance[end : change.start], change.heard]
-        end = change.end
+        before, after = utterance[end : change.start], change.end
+        # The commas around a filler go with it.
+        if change.kind == "filler" and before.rstrip().endswith(","):
+            before, after = before.rstrip(" ,") + " ", change.end
+            after += len(_COMMA.match(utterance, change.end)[0])  # type: ignore[index]
+        pieces += [before, change.heard]
+        end = after
     text = " ".join("".join((*pieces, utterance[end:])).split())
     return _LEFT_OVER.sub(r"\1", text).lstrip(" ,;:.!?-")
 
