@@ -202,9 +202,12 @@ def _vowels(word: str) -> tuple[str, ...]:
     groups = _VOWELS.findall(word)
     if is_long and len(groups) == 1 and len(groups[0]) == 1:
         return (_SOUNDS_OF[groups[0]][0].lower(),)
-    return tuple(
+    sounds = [
         _SOUNDS_OF.get(group, _SOUNDS_OF.get(group[:2], _SOUNDS_OF[group[0]])) for group in groups
-    )
+    ]
+    if word.endswith(("ear", "ears")):
+        sounds[-1] += "Aa"  # pear, but also near
+    return tuple(sounds)
 
 
 def sounds_like(one: str, other: str) -> bool:

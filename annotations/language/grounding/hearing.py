@@ -16,6 +16,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 from annotations.language.english import (
     ARTICLES,
@@ -31,6 +32,7 @@ from annotations.language.english import (
     HEARD_CLOSINGS,
     HEARD_OPENINGS,
     KEPT_WORDS,
+    LIKE_CONTRACTIONS,
     NUMBERS,
     OPEN_WORDS,
     PLACE_PREPOSITIONS,
@@ -167,9 +169,9 @@ class HearingReader(UtteranceReader):
         return frozenset(self.words) | {word for tokens in self._called for word in tokens}
 
     @cached_property
-    def trie(self) -> dict[str, dict]:  # type: ignore[type-arg]
+    def trie(self) -> dict[str, Any]:
         """The words of names → the next words. What is under "" are the keys of ``called`` that end there."""
-        root: dict[str, dict] = {}  # type: ignore[type-arg]
+        root: dict[str, Any] = {}
         for tokens in self._called:
             for path in {tokens, ("".join(tokens),)}:
                 node = root
@@ -311,7 +313,7 @@ class _Noisy(Everything):
         """Yield contractions, and words that are none and are near one name alone."""
         for place in range(len(self.tokens)):
             for first, second in self._written_out(place):
-                if first in OPEN_WORDS:
+                if first in OPEN_WORDS and self.folded[place] not in LIKE_CONTRACTIONS:
                     yield place, place + 1, "contraction", f"{first} {second}"
                     break
         inside = {each for start, stop in self._named_at for each in range(start, stop)}
@@ -407,6 +409,9 @@ class _Noisy(Everything):
         """Yield what a contraction stands for."""
         text = self.texts[place].casefold()
         base, *ending = _APOSTROPHE.split(text)
+        if text in LIKE_CONTRACTIONS:
+            first, second = LIKE_CONTRACTIONS[text].split()
+            yield first, second
         if len(ending) == 1 and ending[0] in CONTRACTIONS:
             yield fold(base), CONTRACTIONS[ending[0]]
         for short, long in CONTRACTIONS.items():
@@ -512,9 +517,9 @@ class _Noisy(Everything):
         self,
         start: int,
         place: int,
-        node: dict[str, dict],
-        way: _Way,  # type: ignore[type-arg]
-    ) -> Iterator[tuple[int, dict[str, dict], _Way]]:  # type: ignore[type-arg]
+        node: dict[str, Any],
+        way: _Way,
+    ) -> Iterator[tuple[int, dict[str, Any], _Way]]:
         folded = self.folded[place]
         if not self._is_word(place):
             if place > start:
