@@ -367,7 +367,13 @@ class _Noisy(Everything):
 
     def _near(self, table: NearWords, place: int) -> Iterator[Near]:
         if self._may_be_another(place):
-            yield from table.near(self.folded[place])
+            said = self.folded[place]
+            # "bring me the objects" asks for several; "a drinks" for one.
+            is_several = said.endswith("s") and {*self.folded[:place][-1:]}.isdisjoint(("a", "an"))
+            for near in table.near(said):
+                is_one = near.kind == "inflection" and not near.word.endswith("s")
+                if not (place and is_several and is_one):
+                    yield near
         elif self._is_counting_nothing(place):
             word = _WORDS_OF_NUMBERS.get(self.folded[place], self.folded[place])
             yield from (each for each in table.near(word) if each.kind == "sound")
@@ -555,7 +561,9 @@ class _Noisy(Everything):
             if both in node and place + 2 - start > 1:
                 change = (place, place + 2, "joined", both)
                 yield place + 2, node[both], way.then(JOINED, change)
-            for near in self.reader.near_name_words.near(both):
+            parts = {folded, self.folded[place + 1]}
+            is_free = parts.isdisjoint(_FUNCTION_WORDS) and parts.isdisjoint(self.reader.names)
+            for near in self.reader.near_name_words.near(both) if is_free else ():
                 if near.word in node and near.is_sure and near.kind != "inflection":
                     change = (place, place + 2, "joined", near.word)
                     yield place + 2, node[near.word], way.then(near.cost + JOINED, change)

@@ -168,6 +168,8 @@ def test_names_are_heard_by_their_sound_their_letters_and_household_words(uttera
         "you should never go to the galley",
         "you shouldn't go to the galley",
         "Emily goes to the galley",
+        "tell me what the biggest things on the piano is",
+        "take the papaya from the fridge to Emily",
     ],
 )
 def test_another_name_and_another_request_stay_what_they_are(utterance):
