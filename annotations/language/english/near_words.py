@@ -33,7 +33,7 @@ MOST_EDITS = 3
 # What it costs to hear another word. Words that sound the same are equally near, however they are spelt.
 SAME_SOUND, SAME_STEM, EDITED, AN_EDIT = 5, 5, 5, 2
 OF_A_WORD = 3  # more where what was said is a word itself
-LOOSE = 2  # more where only the words beside it make it likely
+LOOSE = 3  # more where only the words beside it make it likely
 LONGEST = 24  # letters of a word that is compared
 SHORTEST = 3
 # Words that tie others together; recognisers seldom put them for a noun or a verb.
