@@ -252,13 +252,17 @@ class _Cut:
     def _reach(self, first: int, last: int) -> int:
         """Return up to where what follows is told or asked rather than ordered, or has a condition; 0: nowhere."""
         said = self.said[first:last]
-        if not self._is_parted(last):
-            is_told = not TELLING_WORDS.isdisjoint(said) and said[-2:] != ["you", "to"]
-            is_asked = self._is_parted(first) and said[0] in _QUESTIONS
-            if (is_told and COMMAND_NOUNS.isdisjoint(said)) or is_asked:
-                return self._sentence(first)[1]
+        is_attached = not self._is_parted(last)
+        is_told = not TELLING_WORDS.isdisjoint(said) and said[-2:] != ["you", "to"]
+        is_told = is_told and is_attached and COMMAND_NOUNS.isdisjoint(said)
+        is_asked = is_attached and self._is_parted(first) and said[0] in _QUESTIONS
+        if is_told or is_asked or said[-1] in TELLING_WORDS:
+            return self._sentence(first)[1]
         opening = next((each for each in said if each not in _PARTING), "")
-        if opening in _WHEN and (_FUNCTION_WHEN | _COUNTING).isdisjoint(said):
+        is_timed = opening in _WHEN and (_DONE_WORDS | _COUNTING).isdisjoint(said)
+        if is_timed or (
+            opening in _SUBORDINATING and not self.named.isdisjoint(range(first, last))
+        ):
             return min(last + 1, self._sentence(first)[1])
         return 0
 
@@ -288,7 +292,7 @@ class _Cut:
         return any(starmap(self._begins_command, pairwise(parts)))
 
     def _is_function(self, word: str) -> bool:
-        return word in _FUNCTION or word.isdecimal()
+        return word in _FUNCTION or word.isdecimal() or len(word) == 1
 
     def _begins_command(self, first: int, last: int) -> bool:
         """Whether words begin as a command does: by a word of the grammar, or "turn off the lights"."""
@@ -395,8 +399,9 @@ _DEFINITE = DETERMINERS - (ARTICLES - {"the"}) - {"this", "that", "any"}
 _PREDICATING = frozenset({"is", "are", "was", "will", "would", "should", "has"})  # "... is my wish"
 _QUESTIONS = NO_COMMAND_WORDS & {"did", "does", "has", "is", "are"}
 _WHEN = frozenset({"when", "once", "while", "until", "till"})
-# "When you are done", "once that is finished" speak of the command before.
-_FUNCTION_WHEN = frozenset(FINISHED_WORDS) | {"you", "that", "this", "all", "everything"}
+_SUBORDINATING = frozenset({"after", "before", "should"})
+# "When you are done", "once that is finished", "once more" speak of the command before.
+_DONE_WORDS = frozenset(FINISHED_WORDS) | {"you", "that", "this", "all", "everything", "more"}
 
 
 # Without a grammar

@@ -28,6 +28,11 @@ FOLDER = SHIPPED_WORLDS["competition"].folder
 # The name of an entity in them: "be a" is heard as Bea, and "a game" as a category.
 NAMING = {each for each in WAYS if "Be a dear" in each or "play a game" in each}
 
+FRAGMENTS = (
+    *("bring me the cocoa", "greet Maria in the lobby", "the", "and then", ". ", ", ", "or", "if"),
+    *("don't", "number two", "🙂", "\n", "find the", "in the galley", "how to", ": "),
+)
+
 
 @cache
 def oracle() -> GrammarOracle:
@@ -122,26 +127,7 @@ def test_a_long_text_takes_less_than_a_second(said):
 @settings(max_examples=50)
 @given(
     st.lists(
-        st.sampled_from(
-            [
-                "bring me the cocoa",
-                "greet Maria in the lobby",
-                "the",
-                "and then",
-                ". ",
-                ", ",
-                "or",
-                "don't",
-                "if",
-                "number two",
-                "🙂",
-                "\n",
-                "find the",
-                "in the galley",
-                "how to",
-                ": ",
-            ]
-        ),
+        st.sampled_from(FRAGMENTS),
         max_size=12,
     ).map(" ".join)
 )
