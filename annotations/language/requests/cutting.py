@@ -217,19 +217,19 @@ class _Cut:
         for place in range(1, len(self.words) + 1):
             if blocked[place - 1]:
                 free = place
-            options = [(best[place - 1][0], best[place - 1][1], None)]
-            for span in ending.get(place, ()):
-                if span[0] >= free:
-                    covered, fewer, _ = best[span[0]]
-                    options.append((covered + place - span[0], fewer - 1, span))
-            best.append(max(options, key=lambda each: (each[0], each[1])))
+            best.append((*best[place - 1][:2], None))
+            for first, last in ending.get(place, ()):
+                if first >= free:
+                    covered, fewer, _ = best[first]
+                    option = covered + last - first, fewer - 1, (first, last)
+                    best[place] = max(best[place], option, key=lambda each: each[:2])
         chosen: list[_Range] = []
         place = len(self.words)
         while place:
-            span = best[place][2]
-            if span:
-                chosen.append(_Range(*span, is_command=True))
-            place = span[0] if span else place - 1
+            taken = best[place][2]
+            if taken:
+                chosen.append(_Range(*taken, is_command=True))
+            place = taken[0] if taken else place - 1
         return chosen[::-1]
 
     def _holds_end(self, first: int, last: int) -> bool:
