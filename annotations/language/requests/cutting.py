@@ -16,7 +16,7 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise, starmap
+from itertools import compress, groupby, pairwise, starmap
 from typing import NamedTuple
 
 from annotations.language.english import (
@@ -84,8 +84,9 @@ class Islands:
 def cut(utterance: str, islands: Islands, judge: Judge | None = None) -> tuple[Piece, ...]:
     """Return the commands of an utterance, in its order, and what may be one and is not understood.
 
-    What is forbidden, has a condition or is taken back is not understood, and neither is an utterance with a single
-    island, unless the rest only counts ("Command one: ..."): it may be said of something else.
+    What is forbidden, has a condition or is taken back is not understood. An utterance with a single island comes
+    back whole, and is not understood, unless the rest only counts ("Command one: ...") or is held back: it may be
+    one command in other words, or said of something else.
 
     Args:
         islands: what the grammar finds.
@@ -137,11 +138,47 @@ class _Cut:
         held = self._held()
         chosen = self._choose(held)
         ranges = sorted([*chosen, *held])
-        ranges = sorted([*ranges, *self._unknown(ranges)])
-        ranges = self._joined(ranges)
-        if len(ranges) <= 1 and not self._is_counted(ranges):
+        ranges = self._joined(sorted([*ranges, *self._unknown(ranges)]))
+        islands = [each.first for each in chosen]
+        rests = {each for each in ranges if self._is_rest(each, islands)}
+        n_commands = len(ranges) - len(rests) - sum(each.is_held for each in ranges)
+        if n_commands < 2 and (rests or (len(ranges) < 2 and not self._is_counted(ranges))):
             ranges = [_Range(0, len(self.words), is_held=bool(held))]
+        elif judge:
+            ranges = self._judge_sentences(ranges, rests, judge)
         return tuple(piece for each in ranges for piece in self._as_pieces(each, judge))
+
+    def _is_rest(self, words: _Range, islands: Sequence[int]) -> bool:
+        """Whether no island is in a range, and no reason not to take it for a part of the command beside it."""
+        has_island = bisect_left(islands, words.first) < bisect_left(islands, words.last)
+        return not (has_island or words.is_held or words.reach)
+
+    def _judge_sentences(
+        self, ranges: Sequence[_Range], rests: Collection[_Range], judge: Judge
+    ) -> list[_Range]:
+        """Join what a sentence holds where it is one command in other words: "go to the galley and fetch some tea"."""
+        groups = [
+            list(group) for _, group in groupby(ranges, lambda each: self._sentence(each.first))
+        ]
+        asked = [
+            len(each) > 1
+            and not any(one.is_held for one in each)
+            and any(one in rests for one in each)
+            for each in groups
+        ]
+        texts = [
+            self.utterance[self.words[each[0].first][0] : self.words[each[-1].last - 1][1]]
+            for each in groups
+        ]
+        scores = iter(judge(list(compress(texts, asked))) if any(asked) else ())
+        judged: list[_Range] = []
+        for group, is_asked in zip(groups, asked, strict=True):
+            if is_asked and next(scores) is not None:
+                first, last = group[0].first, group[-1].last
+                self.places[first, last] = self.words[first][0], self.words[last - 1][1]
+                group = [_Range(first, last, is_command=True)]
+            judged += group
+        return judged
 
     # Sentences and signs
 
