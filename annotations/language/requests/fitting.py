@@ -32,6 +32,7 @@ EXCHANGED = 1.5  # log odds by which two mentions fit better where the other one
 ELSEWHERE = 4.0  # log odds by which a mention fits another role of the same action better
 PLACE = "location"  # and what is alike: what may be of somebody, of something, or a destination
 GOAL = "argument 1"
+MOST_MENTIONS = 8  # of one value that are compared
 MOST_SLOTS = 16  # that are compared in pairs
 _WORD = re.compile(r"<\w+>|\w+(?:['’]\w+)?|[^\w\s]")
 
@@ -106,7 +107,12 @@ def fit(
         if not slot.entity_class or slot.is_named or slot.value is not None:
             continue
         other = next(
-            (each for each in unused if slot.entity_class in _classes(each, heard, ontology)), None
+            (
+                each
+                for each in unused[:MOST_SLOTS]
+                if slot.entity_class in _classes(each, heard, ontology)
+            ),
+            None,
         )
         if other is None:
             not_said.append(slot)
@@ -251,7 +257,7 @@ def _filled(
                 if span.value.casefold() == value
             )
             if mine:
-                filled.append(_Filled(slot, role_at(form, slot.path), mine))
+                filled.append(_Filled(slot, role_at(form, slot.path), mine[:MOST_MENTIONS]))
     return filled[:MOST_SLOTS]
 
 
